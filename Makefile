@@ -1,0 +1,54 @@
+# What a stranger, a developer and CI call, all alike. Nothing but `deps` calls a system package manager.
+
+SHELL := /bin/sh
+.DEFAULT_GOAL := help
+.PHONY: help deps need venv build demo test test-all check bench wheel
+
+HOUSE ?= builtin:apartment
+OUT ?= out/demo
+
+stage := sh xtask/sh/stage.sh
+locked := $(if $(filter true,$(CI)),--locked)
+bin := .venv/bin
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/\1\t\2/p' Makefile | awk -F '\t' '{ printf "make %-10s%s\n", $$1, $$2 }'
+
+deps: ## optional system packages by apt (software Vulkan); survives where apt or root is missing
+	@sh xtask/sh/deps.sh
+
+need:
+	@sh xtask/sh/need.sh
+
+venv: need ## .venv in the root, with dwell in it
+	@$(stage) 'extension and .venv' sh xtask/sh/venv.sh
+
+build: need ## everything the tests run
+	@sh xtask/sh/build.sh $(locked)
+
+demo: venv ## walk an agent through HOUSE and write what it saw, heard and did to OUT
+	@sh xtask/sh/viewer.sh
+	$(bin)/dwell demo $(HOUSE) --out $(OUT)
+	@echo "Open $(OUT)/index.html"
+
+test: build ## Rust tests, doc tests, Python tests
+	@status=0; \
+	$(stage) 'Rust tests' sh xtask/sh/rust-tests.sh $(locked) || status=1; \
+	$(stage) 'doc tests' cargo test $(locked) --workspace --doc --quiet || status=1; \
+	$(stage) 'Python tests' sh xtask/sh/python-tests.sh || status=1; \
+	exit $$status
+
+test-all: export DWELL_TEST_ALL = 1
+test-all: test ## the same with the slow tests, and the benches once each
+	@$(stage) 'benches, once each' cargo test $(locked) --workspace --benches --quiet
+
+check: venv ## formatting, lints, docs, layers, sizes, licences, types
+	@cargo xtask check
+
+bench: venv ## figures of every stage
+	cargo bench $(locked) -p dwell-benches --profile dev
+	for what in load render physics acoustics env; do $(bin)/dwell bench $$what $(HOUSE) || exit 1; done
+
+wheel: venv ## the wheel that strangers install, in dist/
+	@$(stage) 'wheel' env VIRTUAL_ENV=$(CURDIR)/.venv $(bin)/maturin build $(locked) --release --manifest-path python/Cargo.toml --out dist
+	@cargo xtask sizes

@@ -1,0 +1,12 @@
+#!/bin/sh
+# pytest over the package's tests and those that cross engines; slow ones with DWELL_TEST_ALL=1.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+folders=
+for folder in python/tests tests/python; do
+    [ ! -d "$folder" ] || folders="$folders $folder"
+done
+only='not slow'
+[ -z "${DWELL_TEST_ALL:-}" ] || only=
+# shellcheck disable=SC2086 # a list of folders
+exec .venv/bin/python -m pytest --config-file python/pyproject.toml --rootdir . --quiet -m "$only" "$@" $folders

@@ -1,0 +1,149 @@
+//! The list: DESIGN section 1 as data. A new crate is one entry.
+
+/// What one crate of ours may use of ours.
+#[derive(Debug)]
+pub(crate) struct Rule {
+    pub name: &'static str,
+    /// Relative to the root.
+    pub folder: &'static str,
+    pub may_use: &'static [&'static str],
+    /// What its tests may use besides.
+    pub tests_may_use: &'static [&'static str],
+}
+
+/// A dependency that only these members may reach.
+#[derive(Debug)]
+pub(crate) struct Wall {
+    pub dependency: &'static str,
+    pub behind: &'static [&'static str],
+}
+
+const SCENE: &[&str] = &["dwell-scene"];
+const HOUSES: &[&str] = &["dwell-houses"];
+const ENGINES: &[&str] = &[
+    "dwell-acoustics",
+    "dwell-houses",
+    "dwell-physics",
+    "dwell-render",
+    "dwell-scene",
+    "dwell-semantics",
+];
+const WORLD_AND_BELOW: &[&str] = &[
+    "dwell",
+    "dwell-acoustics",
+    "dwell-houses",
+    "dwell-physics",
+    "dwell-render",
+    "dwell-scene",
+    "dwell-semantics",
+];
+const ALL: &[&str] = &[
+    "dwell",
+    "dwell-acoustics",
+    "dwell-calibration",
+    "dwell-houses",
+    "dwell-physics",
+    "dwell-render",
+    "dwell-scene",
+    "dwell-semantics",
+];
+
+/// From the bottom to the top.
+pub(crate) const CRATES: &[Rule] = &[
+    Rule {
+        name: "dwell-scene",
+        folder: "engine/scene",
+        may_use: &[],
+        tests_may_use: &[],
+    },
+    Rule {
+        name: "dwell-houses",
+        folder: "engine/houses",
+        may_use: SCENE,
+        tests_may_use: &[],
+    },
+    Rule {
+        name: "dwell-render",
+        folder: "engine/render",
+        may_use: SCENE,
+        tests_may_use: HOUSES,
+    },
+    Rule {
+        name: "dwell-physics",
+        folder: "physics",
+        may_use: SCENE,
+        tests_may_use: HOUSES,
+    },
+    Rule {
+        name: "dwell-acoustics",
+        folder: "acoustics",
+        may_use: SCENE,
+        tests_may_use: HOUSES,
+    },
+    Rule {
+        name: "dwell-semantics",
+        folder: "semantics",
+        may_use: SCENE,
+        tests_may_use: HOUSES,
+    },
+    Rule {
+        name: "dwell",
+        folder: "engine/world",
+        may_use: ENGINES,
+        tests_may_use: &[],
+    },
+    Rule {
+        name: "dwell-calibration",
+        folder: "calibration",
+        may_use: WORLD_AND_BELOW,
+        tests_may_use: &[],
+    },
+    Rule {
+        name: "dwell-python",
+        folder: "python",
+        may_use: ALL,
+        tests_may_use: &[],
+    },
+    Rule {
+        name: "dwell-tests",
+        folder: "tests",
+        may_use: ALL,
+        tests_may_use: &[],
+    },
+    Rule {
+        name: "dwell-benches",
+        folder: "benches",
+        may_use: ALL,
+        tests_may_use: &[],
+    },
+    Rule {
+        name: "xtask",
+        folder: "xtask",
+        may_use: &[],
+        tests_may_use: &[],
+    },
+];
+
+/// Each engine's foundation can be exchanged as long as nobody else sees it.
+pub(crate) const WALLS: &[Wall] = &[
+    Wall {
+        dependency: "rapier3d",
+        behind: &["dwell-physics"],
+    },
+    Wall {
+        dependency: "parry3d",
+        behind: &["dwell-physics"],
+    },
+    Wall {
+        dependency: "wgpu",
+        behind: &["dwell-render"],
+    },
+    Wall {
+        dependency: "pyo3",
+        behind: &["dwell-python"],
+    },
+    Wall {
+        dependency: "numpy",
+        behind: &["dwell-python"],
+    },
+];

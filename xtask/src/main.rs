@@ -1,0 +1,79 @@
+//! What the project checks about itself. `cargo xtask` lists the commands.
+#![expect(clippy::print_stdout, reason = "a command's report is its output")]
+
+mod check;
+mod features;
+mod layers;
+mod licences;
+mod manifests;
+mod outcome;
+mod sizes;
+mod tree;
+
+use outcome::Outcome;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+type Command = fn(&Path) -> Result<Outcome, String>;
+
+/// Name, what it does, the function. Adding a command is one line here.
+const COMMANDS: &[(&str, &str, Command)] = &[
+    (
+        "layers",
+        "who may use whom, the walls, and the map in docs/architecture.md",
+        layers::run,
+    ),
+    (
+        "sizes",
+        "long source files, crate count, wheel size, cold build time",
+        sizes::run,
+    ),
+    (
+        "licences",
+        "licences, duplicates, git sources, one glam",
+        licences::run,
+    ),
+    (
+        "features",
+        "tests and extension ask their dependencies for the same features",
+        features::run,
+    ),
+    (
+        "check",
+        "all of these with rustfmt, clippy, rustdoc, ruff, mypy and stubtest",
+        check::run,
+    ),
+];
+
+fn main() -> ExitCode {
+    let wanted = std::env::args().nth(1).unwrap_or_default();
+    let Some((name, _, command)) = COMMANDS.iter().find(|(name, ..)| *name == wanted) else {
+        println!("usage: cargo xtask COMMAND");
+        for (name, what, _) in COMMANDS {
+            println!("  {name:<10} {what}");
+        }
+        return ExitCode::from(2);
+    };
+    match command(&root()) {
+        Ok(outcome) => {
+            print!("{}", outcome.report(name));
+            if outcome.passed() {
+                ExitCode::SUCCESS
+            } else {
+                ExitCode::FAILURE
+            }
+        }
+        Err(why) => {
+            println!("{name}: cannot be checked: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The repository's root, wherever the command is called from.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("xtask lies in the root")
+        .to_path_buf()
+}

@@ -1,0 +1,40 @@
+//! What a check found out.
+
+use std::fmt::Write;
+
+/// Facts worth printing, and findings that must be mended.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(crate) struct Outcome {
+    /// Printed, never a failure.
+    pub notes: Vec<String>,
+    /// Each says where, what was found, what is allowed. One is enough to fail.
+    pub findings: Vec<String>,
+}
+
+impl Outcome {
+    pub(crate) fn passed(&self) -> bool {
+        self.findings.is_empty()
+    }
+
+    pub(crate) fn join(&mut self, other: Self) {
+        self.notes.extend(other.notes);
+        self.findings.extend(other.findings);
+    }
+
+    /// The lines a person reads, the verdict last.
+    pub(crate) fn report(&self, name: &str) -> String {
+        let mut text = String::new();
+        for note in &self.notes {
+            let _ = writeln!(text, "  {note}");
+        }
+        for finding in &self.findings {
+            let _ = writeln!(text, "  MEND {finding}");
+        }
+        let verdict = match self.findings.len() {
+            0 => "ok".to_owned(),
+            count => format!("{count} to mend"),
+        };
+        let _ = writeln!(text, "{name}: {verdict}");
+        text
+    }
+}

@@ -1,0 +1,41 @@
+//! What grows unless someone looks: source files, the number of crates, the wheel, the cold build.
+
+mod ceilings;
+mod files;
+
+use crate::outcome::Outcome;
+use crate::tree;
+use std::path::Path;
+
+pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
+    let mut outcome = files::check(root)?;
+    let ceilings = ceilings::read(root)?;
+    let build = tree::tree(root, &["--workspace", "--edges", "normal,build,dev"])?;
+    let wheel = tree::tree(root, &["--package", "dwell-python", "--edges", "normal"])?;
+    let measured = [
+        (
+            "crates_in_build",
+            "crates in the build of tests and extension",
+            as_f64(build.packages.len()),
+        ),
+        (
+            "crates_in_wheel",
+            "crates in the extension",
+            as_f64(wheel.packages.len()),
+        ),
+        ("wheel_mb", "wheel in dist/, MB", ceilings::wheel_mb(root)),
+        (
+            "cold_build_minutes",
+            "last build from an empty target, minutes",
+            ceilings::cold_build_minutes(root),
+        ),
+    ];
+    for (key, what, value) in measured {
+        outcome.join(ceilings.compare(key, what, value));
+    }
+    Ok(outcome)
+}
+
+fn as_f64(count: usize) -> Option<f64> {
+    u32::try_from(count).ok().map(f64::from)
+}

@@ -1,0 +1,140 @@
+//! The dependency graph as it is built: `cargo tree`, which, unlike `cargo metadata`, leaves out what no feature turns on.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::Command;
+
+/// Name and version.
+pub(crate) type Id = (String, String);
+
+/// A package of the graph.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Package {
+    /// SPDX expression of the manifest, or nothing.
+    pub licence: String,
+    /// Each set of features it is built with; two where host and target differ.
+    pub features: BTreeSet<String>,
+    /// Where a package comes from that is not from a registry: a folder or the address of a repository.
+    pub source: Option<String>,
+}
+
+/// Packages and who uses whom.
+#[derive(Debug, Default)]
+pub(crate) struct Tree {
+    pub packages: BTreeMap<Id, Package>,
+    /// User, used.
+    pub edges: BTreeSet<(Id, Id)>,
+}
+
+/// The graph that `cargo tree` prints for `selection`, such as `["--workspace", "-e", "normal"]`.
+pub(crate) fn tree(root: &Path, selection: &[&str]) -> Result<Tree, String> {
+    let mut args = vec!["tree", "--prefix", "depth", "--format", "|{p}|{l}|{f}"];
+    args.extend(selection);
+    parse(&cargo(root, &args)?)
+}
+
+/// Standard output of a cargo command.
+pub(crate) fn cargo(root: &Path, args: &[&str]) -> Result<String, String> {
+    let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(program)
+        .args(args)
+        .current_dir(root)
+        .output()
+        .map_err(|error| format!("cargo {} cannot be started: {error}", args.join(" ")))?;
+    if !output.status.success() {
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        return Err(format!(
+            "cargo {} failed: {}",
+            args.join(" "),
+            stderr.trim()
+        ));
+    }
+    String::from_utf8(output.stdout).map_err(|error| format!("cargo printed no UTF-8: {error}"))
+}
+
+fn parse(text: &str) -> Result<Tree, String> {
+    let mut tree = Tree::default();
+    let mut path: Vec<Id> = Vec::new();
+    for line in text.lines().filter(|line| !line.trim().is_empty()) {
+        let mut fields = line.split('|');
+        let (Some(depth), Some(package), Some(licence), Some(features)) =
+            (fields.next(), fields.next(), fields.next(), fields.next())
+        else {
+            return Err(format!(
+                "cargo tree printed {line:?}, expected depth|package|licence|features"
+            ));
+        };
+        let depth: usize = depth
+            .parse()
+            .map_err(|_| format!("cargo tree printed {line:?} without a depth"))?;
+        let mut words = package.splitn(3, ' ');
+        let (Some(name), Some(version)) = (words.next(), words.next()) else {
+            return Err(format!(
+                "cargo tree printed {package:?}, expected name and version"
+            ));
+        };
+        let id = (name.to_owned(), version.trim_start_matches('v').to_owned());
+        let source = words
+            .next()
+            .map(|rest| rest.replace("(proc-macro)", ""))
+            .map(|rest| {
+                rest.trim()
+                    .trim_start_matches('(')
+                    .trim_end_matches(')')
+                    .to_owned()
+            });
+        path.truncate(depth);
+        if let Some(user) = path.last() {
+            tree.edges.insert((user.clone(), id.clone()));
+        }
+        let entry = tree.packages.entry(id.clone()).or_default();
+        licence.clone_into(&mut entry.licence);
+        entry
+            .features
+            .insert(features.trim_end_matches(" (*)").to_owned());
+        entry.source = source.filter(|source| !source.is_empty());
+        path.push(id);
+    }
+    Ok(tree)
+}
+
+#[cfg(test)]
+pub(crate) fn made_up(text: &str) -> Tree {
+    parse(text).unwrap()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn id(name: &str) -> Id {
+        (name.to_owned(), "1.0.0".to_owned())
+    }
+
+    #[test]
+    fn depth_makes_edges() {
+        let tree = made_up(
+            "0|a v1.0.0 (/r/a)|MIT|\n1|b v1.0.0|MIT|std\n2|c v1.0.0 (proc-macro)|MIT|x,y\n1|c v1.0.0 (proc-macro)|MIT|x,y (*)\n",
+        );
+        let edges = [(id("a"), id("b")), (id("a"), id("c")), (id("b"), id("c"))];
+        assert_eq!(tree.edges, edges.into());
+        assert_eq!(tree.packages[&id("c")].features, ["x,y".to_owned()].into());
+        assert_eq!(tree.packages[&id("c")].source, None);
+        assert_eq!(tree.packages[&id("a")].source.as_deref(), Some("/r/a"));
+    }
+
+    #[test]
+    fn repositories_are_seen() {
+        let tree = made_up("0|a v1.0.0 (https://host/a?rev=1#abc)|MIT|\n");
+        assert_eq!(
+            tree.packages[&id("a")].source.as_deref(),
+            Some("https://host/a?rev=1#abc")
+        );
+    }
+
+    #[test]
+    fn other_text_is_refused() {
+        assert!(parse("a v1.0.0\n").is_err());
+        assert!(parse("x|a v1.0.0|MIT|\n").is_err());
+    }
+}
