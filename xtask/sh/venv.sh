@@ -24,7 +24,7 @@ if ! works; then
 fi
 
 # maturin installs where these point, and cargo compiles pyo3 again when they change.
-export VIRTUAL_ENV="$venv" PIP_DISABLE_PIP_VERSION_CHECK=1
+export VIRTUAL_ENV="$venv" PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_QUIET=1
 unset CONDA_PREFIX PYTHONHOME PYTHONPATH
 locked=
 [ "${CI:-}" != true ] || locked=--locked
