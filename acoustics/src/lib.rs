@@ -1,0 +1,1 @@
+//! What a microphone hears: rays, band materials, impulse responses.

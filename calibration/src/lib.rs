@@ -1,0 +1,1 @@
+//! Measured data against the simulation: residuals, causes, extensions, gain.

@@ -1,0 +1,1 @@
+//! What a camera sees: the `cpu` back end.

@@ -1,0 +1,98 @@
+//! Rays, what they may see, and what they found.
+
+use glam::Vec3;
+
+/// Which surfaces a ray meets: bits shared by the ray and the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RayMask(pub u8);
+
+impl RayMask {
+    /// Cameras.
+    pub const EYE: Self = Self(1);
+    /// Sound.
+    pub const EAR: Self = Self(2);
+    /// Agents' bodies and navigation.
+    pub const AGENT: Self = Self(4);
+    /// Every ray.
+    pub const ALL: Self = Self(0xff);
+    /// No ray.
+    pub const NONE: Self = Self(0);
+
+    /// Whether a ray and a surface have a bit in common.
+    #[inline]
+    pub fn meets(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// The bits of both.
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+/// A ray, or a segment of one, in world space.
+///
+/// A ray whose origin or direction is not finite, whose direction is zero, or whose range is empty or not a number
+/// meets nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts, m.
+    pub origin: Vec3,
+    /// Where it goes; unit length.
+    pub direction: Vec3,
+    /// Nearest distance that counts, m; at least 0. A ray that leaves a surface starts a little way off it.
+    pub near_m: f32,
+    /// Furthest distance that counts, m; may be infinite.
+    pub far_m: f32,
+}
+
+impl Ray {
+    /// The whole ray from `origin` along `direction`, which need not be normalized.
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+        Self { origin, direction: direction.normalize_or_zero(), near_m: 0.0, far_m: f32::INFINITY }
+    }
+
+    /// The part of this ray between two distances, m.
+    #[must_use]
+    pub fn between(self, near_m: f32, far_m: f32) -> Self {
+        Self { near_m, far_m, ..self }
+    }
+
+    /// The straight way from `start` to `end`, less `margin_m` at either end.
+    pub fn segment(start: Vec3, end: Vec3, margin_m: f32) -> Self {
+        Self::new(start, end - start).between(margin_m, (end - start).length() - margin_m)
+    }
+
+    /// The point at `distance_m`.
+    pub fn at(&self, distance_m: f32) -> Vec3 {
+        self.origin + self.direction * distance_m
+    }
+
+    /// Whether the ray can meet anything at all.
+    #[inline]
+    pub(super) fn is_usable(&self) -> bool {
+        self.origin.is_finite()
+            && self.direction.is_finite()
+            && self.direction != Vec3::ZERO
+            && self.near_m >= 0.0
+            && self.near_m <= self.far_m
+    }
+}
+
+/// Where a ray ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray, m.
+    pub distance_m: f32,
+    /// Weight of the triangle's second corner.
+    pub u: f32,
+    /// Weight of the triangle's third corner; the first has `1 - u - v`.
+    pub v: f32,
+    /// The id given with the static triangle or with the instance.
+    pub id: i32,
+    /// Which instance of the set; nothing for static geometry.
+    pub instance: Option<u32>,
+    /// Position of the triangle in the list from which its tree was built.
+    pub triangle: u32,
+}

@@ -1,0 +1,86 @@
+//! What can be wrong with a scene.
+
+/// A fault in a scene, with its place.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A mesh that contradicts itself.
+    #[error("{at}: {what}")]
+    Mesh {
+        /// Where it stands.
+        at: String,
+        /// What was found and what was allowed.
+        what: String,
+    },
+    /// A texture whose size does not fit its data.
+    #[error("{at}: a texture of {what}; allowed are 1 to 16384 pixels a side, four bytes each")]
+    Texture {
+        /// Where it stands.
+        at: String,
+        /// What was found.
+        what: String,
+    },
+    /// Band values out of order or range.
+    #[error("{at}: bands must rise and stay in range; found {what}")]
+    Bands {
+        /// Where they stand.
+        at: String,
+        /// What was found.
+        what: String,
+    },
+    /// An index that points outside its table.
+    #[error("{at}: points to {table} {index}, but there are {count}")]
+    Dangling {
+        /// Where the reference stands.
+        at: String,
+        /// The table it points into.
+        table: &'static str,
+        /// The index found.
+        index: usize,
+        /// The table's length.
+        count: usize,
+    },
+    /// A number outside its range.
+    #[error("{at}: {field} is {found}; allowed is {allowed}")]
+    Range {
+        /// Where it stands.
+        at: String,
+        /// The field's name.
+        field: &'static str,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A name that must be unique and is not.
+    #[error("{at}: the name {name:?} is taken")]
+    DuplicateName {
+        /// Where the second one stands.
+        at: String,
+        /// The name.
+        name: String,
+    },
+    /// A name that nothing has.
+    #[error("{at}: no {kind} {name:?}; there are {known:?}")]
+    Unknown {
+        /// Where it was asked for.
+        at: String,
+        /// What was looked for.
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// The names that exist, the nearest or first of them.
+        known: Vec<String>,
+    },
+    /// A snapshot that cannot be used here.
+    #[error("snapshot refused: {0}")]
+    Snapshot(String),
+    /// A parameter address that cannot be read.
+    #[error("parameter address {address:?}: {what}")]
+    Address {
+        /// What was given.
+        address: String,
+        /// What is wrong with it.
+        what: String,
+    },
+}

@@ -1,0 +1,397 @@
+//! The one check of a house's tables.
+
+use super::data::{HouseData, Mobility};
+use crate::collider::Collider;
+use crate::error::SceneError;
+use crate::ids::{Id, IdVec, MaterialId, MeshId};
+use std::collections::BTreeSet;
+
+/// Largest coordinate of anything, m: beyond it f32 positions are coarser than 4 mm.
+const LARGEST_COORDINATE_M: f32 = 32_768.0;
+
+fn exists<I: Id, T>(
+    at: &str,
+    table: &'static str,
+    items: &IdVec<I, T>,
+    id: I,
+) -> Result<(), SceneError> {
+    if id.index() < items.len() {
+        return Ok(());
+    }
+    Err(SceneError::Dangling {
+        at: at.to_owned(),
+        table,
+        index: id.index(),
+        count: items.len(),
+    })
+}
+
+fn range(
+    at: &str,
+    field: &'static str,
+    ok: bool,
+    found: impl ToString,
+    allowed: &'static str,
+) -> Result<(), SceneError> {
+    if ok {
+        Ok(())
+    } else {
+        Err(SceneError::Range {
+            at: at.to_owned(),
+            field,
+            found: found.to_string(),
+            allowed,
+        })
+    }
+}
+
+fn unique<'a>(table: &str, names: impl Iterator<Item = &'a str>) -> Result<(), SceneError> {
+    let mut seen = BTreeSet::new();
+    for (k, name) in names.enumerate() {
+        let at = format!("{table}[{k}]");
+        range(
+            &at,
+            "name",
+            !name.is_empty(),
+            "empty",
+            "a name of at least one character",
+        )?;
+        if !seen.insert(name) {
+            return Err(SceneError::DuplicateName {
+                at,
+                name: name.to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn slots(
+    data: &HouseData,
+    at: &str,
+    mesh: MeshId,
+    materials: &[MaterialId],
+) -> Result<(), SceneError> {
+    exists(at, "meshes", &data.meshes, mesh)?;
+    for material in materials {
+        exists(at, "materials", &data.materials, *material)?;
+    }
+    let used = data.meshes[mesh].slot_count();
+    range(
+        at,
+        "materials",
+        used <= materials.len(),
+        materials.len(),
+        "one for each slot that the mesh uses",
+    )
+}
+
+/// Checks every index, name and range of `data`.
+pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
+    unique("rooms", data.rooms.iter().map(|room| room.name.as_str()))?;
+    unique(
+        "structure",
+        data.structure.iter().map(|piece| piece.name.as_str()),
+    )?;
+    unique(
+        "objects",
+        data.objects.iter().map(|object| object.name.as_str()),
+    )?;
+    unique(
+        "materials",
+        data.materials.iter().map(|material| material.name.as_str()),
+    )?;
+    let entities = data.structure.len() + data.objects.len();
+    range(
+        "house",
+        "structure and objects",
+        entities < 1 << 30,
+        entities,
+        "fewer than 2^30",
+    )?;
+    for (id, mesh) in data.meshes.iter_ids() {
+        mesh.check(&format!("meshes[{}]", id.0))?;
+    }
+    for (id, texture) in data.textures.iter_ids() {
+        texture.check(&format!("textures[{}]", id.0))?;
+    }
+    for (id, material) in data.materials.iter_ids() {
+        let at = format!("materials[{}] {:?}", id.0, material.name);
+        material.check(&at)?;
+        if let Some(texture) = material.texture {
+            exists(&at, "textures", &data.textures, texture)?;
+        }
+    }
+    for (id, room) in data.rooms.iter_ids() {
+        let at = format!("rooms[{}] {:?}", id.0, room.name);
+        exists(&at, "levels", &data.levels, room.level)?;
+        range(
+            &at,
+            "footprint",
+            room.footprint.iter().flatten().all(|p| p.is_finite()),
+            "not finite",
+            "finite points",
+        )?;
+    }
+    for (id, piece) in data.structure.iter_ids() {
+        let at = format!("structure[{}] {:?}", id.0, piece.name);
+        exists(&at, "levels", &data.levels, piece.level)?;
+        if let Some(room) = piece.room {
+            exists(&at, "rooms", &data.rooms, room)?;
+        }
+        slots(data, &at, piece.mesh, &piece.materials)?;
+        let bounds = data.meshes[piece.mesh].bounds();
+        let far = bounds.min.abs().max(bounds.max.abs()).max_element();
+        range(
+            &at,
+            "mesh",
+            bounds.is_empty() || far <= LARGEST_COORDINATE_M,
+            far,
+            "coordinates within 32768 m of the origin",
+        )?;
+    }
+    objects(data)?;
+    joints(data)?;
+    fixtures(data)
+}
+
+fn objects(data: &HouseData) -> Result<(), SceneError> {
+    let mut next_part = 0;
+    for (id, object) in data.objects.iter_ids() {
+        let at = format!("objects[{}] {:?}", id.0, object.name);
+        exists(&at, "levels", &data.levels, object.level)?;
+        if let Some(room) = object.room {
+            exists(&at, "rooms", &data.rooms, room)?;
+        }
+        let follows = object.first_part.0 == next_part && object.part_count > 0;
+        range(
+            &at,
+            "first_part",
+            follows,
+            object.first_part.0,
+            "parts in the order of the objects, at least one each",
+        )?;
+        next_part += object.part_count;
+        range(
+            &at,
+            "part_count",
+            next_part as usize <= data.parts.len(),
+            next_part,
+            "parts that exist",
+        )?;
+        for part in object.parts() {
+            let part = &data.parts[part];
+            let at = format!("{at} part {:?}", part.name);
+            range(
+                &at,
+                "object",
+                part.object == id,
+                part.object.0,
+                "the object that lists it",
+            )?;
+            range(
+                &at,
+                "fixed",
+                part.fixed || object.mobility != Mobility::Fixed,
+                part.fixed,
+                "true in a fixed object",
+            )?;
+            range(
+                &at,
+                "world_from_part",
+                part.world_from_part.is_valid(),
+                "not rigid",
+                "finite with a unit quaternion",
+            )?;
+            let far = part.world_from_part.position.abs().max_element();
+            range(
+                &at,
+                "world_from_part",
+                far <= LARGEST_COORDINATE_M,
+                far,
+                "within 32768 m of the origin",
+            )?;
+            range(
+                &at,
+                "part_from_mesh",
+                part.part_from_mesh.is_finite(),
+                "not finite",
+                "finite numbers",
+            )?;
+            range(
+                &at,
+                "density_kg_m3",
+                (0.01..=30_000.0).contains(&part.density_kg_m3),
+                part.density_kg_m3,
+                "0.01 to 30000",
+            )?;
+            if let Some(mass) = part.mass_kg {
+                range(
+                    &at,
+                    "mass_kg",
+                    (1e-6..=1e6).contains(&mass),
+                    mass,
+                    "1e-6 to 1e6",
+                )?;
+            }
+            let exact = part.colliders.contains(&Collider::ExactMesh);
+            range(
+                &at,
+                "colliders",
+                part.fixed || !exact,
+                "exact_mesh",
+                "convex pieces on parts that move",
+            )?;
+            slots(data, &at, part.mesh, &part.materials)?;
+        }
+    }
+    range(
+        "parts",
+        "count",
+        next_part as usize == data.parts.len(),
+        data.parts.len(),
+        "as many as the objects list",
+    )
+}
+
+fn joints(data: &HouseData) -> Result<(), SceneError> {
+    let mut moved = BTreeSet::new();
+    for (id, joint) in data.joints.iter_ids() {
+        let at = format!("joints[{}] {:?}", id.0, joint.name);
+        exists(&at, "objects", &data.objects, joint.object)?;
+        exists(&at, "parts", &data.parts, joint.child)?;
+        range(
+            &at,
+            "child",
+            data.parts[joint.child].object == joint.object,
+            joint.child.0,
+            "a part of its object",
+        )?;
+        range(
+            &at,
+            "child",
+            !data.parts[joint.child].fixed,
+            "a fixed part",
+            "a part that moves",
+        )?;
+        range(
+            &at,
+            "child",
+            moved.insert(joint.child),
+            joint.child.0,
+            "a part that no other joint moves",
+        )?;
+        if let Some(parent) = joint.parent {
+            exists(&at, "parts", &data.parts, parent)?;
+            range(
+                &at,
+                "parent",
+                parent < joint.child,
+                parent.0,
+                "a part that stands before the child",
+            )?;
+        }
+        range(
+            &at,
+            "axis",
+            (joint.axis.length() - 1.0).abs() < 1e-3,
+            joint.axis,
+            "a unit vector",
+        )?;
+        let poses = joint.parent_from_joint.is_valid() && joint.child_from_joint.is_valid();
+        range(
+            &at,
+            "parent_from_joint, child_from_joint",
+            poses,
+            "not rigid",
+            "finite with unit quaternions",
+        )?;
+        let [low, high] = joint.limits;
+        range(
+            &at,
+            "limits",
+            low.is_finite() && high.is_finite() && low <= high,
+            format!("{low} to {high}"),
+            "low <= high",
+        )?;
+        for (field, value) in [
+            ("closed", joint.closed),
+            ("open", joint.open),
+            ("initial", joint.initial),
+        ] {
+            range(
+                &at,
+                field,
+                (low - 1e-6..=high + 1e-6).contains(&value),
+                value,
+                "a position within the limits",
+            )?;
+        }
+        range(
+            &at,
+            "friction",
+            (0.0..=1e6).contains(&joint.friction),
+            joint.friction,
+            "0 to 1e6",
+        )?;
+        range(
+            &at,
+            "damping",
+            (0.0..=1e6).contains(&joint.damping),
+            joint.damping,
+            "0 to 1e6",
+        )?;
+    }
+    Ok(())
+}
+
+fn fixtures(data: &HouseData) -> Result<(), SceneError> {
+    let owners = data.lights.iter().map(|x| ("lights", x.object, x.part));
+    let owners = owners.chain(data.emitters.iter().map(|x| ("emitters", x.object, x.part)));
+    for (table, object, part) in owners.chain(
+        data.receptacles
+            .iter()
+            .map(|x| ("receptacles", x.object, x.part)),
+    ) {
+        exists(table, "objects", &data.objects, object)?;
+        exists(table, "parts", &data.parts, part)?;
+        range(
+            table,
+            "part",
+            data.parts[part].object == object,
+            part.0,
+            "a part of its object",
+        )?;
+    }
+    for light in &data.lights {
+        range(
+            "lights",
+            "power_w",
+            (0.0..=1e5).contains(&light.power_w),
+            light.power_w,
+            "0 to 100000",
+        )?;
+        let finite = light
+            .attenuation
+            .iter()
+            .chain(&light.color)
+            .all(|x| x.is_finite() && *x >= 0.0);
+        range(
+            "lights",
+            "attenuation, color",
+            finite,
+            "negative or not finite",
+            "numbers of at least 0",
+        )?;
+    }
+    for emitter in &data.emitters {
+        range(
+            "emitters",
+            "level_db",
+            (-20.0..=140.0).contains(&emitter.level_db),
+            emitter.level_db,
+            "-20 to 140",
+        )?;
+    }
+    Ok(())
+}

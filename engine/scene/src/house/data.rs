@@ -1,0 +1,192 @@
+//! The tables of a house.
+
+use crate::articulation::Articulation;
+use crate::bounds::Aabb;
+use crate::collider::Collider;
+use crate::fixtures::{Light, Receptacle, SoundEmitter};
+use crate::ids::{
+    IdVec, JointId, LevelId, MaterialId, MeshId, ObjectId, PartId, RoomId, StructureId, TextureId,
+};
+use crate::material::Material;
+use crate::mesh::Mesh;
+use crate::space::Pose;
+use crate::texture::Texture;
+use glam::{Affine3A, Vec2};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// All tables of a house, in file order. Plain data: [`House::new`](crate::House::new) checks it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HouseData {
+    /// The name: the source's id or the file's name.
+    pub name: String,
+    /// Where it comes from: format and version, such as `"suncg@1.0.0"`.
+    pub source: String,
+    /// Storeys, from the lowest.
+    pub levels: IdVec<LevelId, Level>,
+    /// Rooms.
+    pub rooms: IdVec<RoomId, Room>,
+    /// Walls, floors and ceilings. Their meshes are in world space.
+    pub structure: IdVec<StructureId, Structure>,
+    /// Objects.
+    pub objects: IdVec<ObjectId, Object>,
+    /// Rigid parts of all objects; an object's parts stand together, in the order of the objects.
+    pub parts: IdVec<PartId, Part>,
+    /// Joints.
+    pub joints: IdVec<JointId, Articulation>,
+    /// Meshes, shared between instances of a model.
+    pub meshes: IdVec<MeshId, Arc<Mesh>>,
+    /// Materials; names are unique.
+    pub materials: IdVec<MaterialId, Material>,
+    /// Texture images.
+    pub textures: IdVec<TextureId, Arc<Texture>>,
+    /// Lamps' lights.
+    pub lights: Vec<Light>,
+    /// Sources of sound.
+    pub emitters: Vec<SoundEmitter>,
+    /// Places that hold things.
+    pub receptacles: Vec<Receptacle>,
+}
+
+/// A storey.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Level {
+    /// The source's name for it.
+    pub name: String,
+    /// The box around everything on it, m.
+    pub bounds: Aabb,
+}
+
+/// A room.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Room {
+    /// The name, unique in the house: the source's id.
+    pub name: String,
+    /// The storey.
+    pub level: LevelId,
+    /// What people call it, in plain lower-case words (`"living room"`), most fitting first; may be empty.
+    pub kinds: Vec<String>,
+    /// The floor seen from above as triangles of (x, z), m; they may overlap those of other rooms, but not each other.
+    pub footprint: Vec<[Vec2; 3]>,
+    /// Height of the walkable floor, m.
+    pub floor_y: f32,
+    /// Height of the ceiling's lower face, m.
+    pub ceiling_y: f32,
+    /// The box of the source file (it may stick out through doors), m.
+    pub bounds: Aabb,
+}
+
+/// What a structure piece is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StructureKind {
+    /// A wall, or one shell of a wall.
+    Wall,
+    /// A floor.
+    Floor,
+    /// A ceiling.
+    Ceiling,
+    /// The ground outside.
+    Ground,
+    /// A box that belongs to the building.
+    Other,
+}
+
+/// A wall, floor or ceiling piece; never moves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Structure {
+    /// The name, unique in the house, such as `"WallInside#0_0_0"`.
+    pub name: String,
+    /// What it is.
+    pub kind: StructureKind,
+    /// The room it borders, if one is known.
+    pub room: Option<RoomId>,
+    /// The storey.
+    pub level: LevelId,
+    /// Its triangles in world space.
+    pub mesh: MeshId,
+    /// The material of each slot of the mesh.
+    pub materials: Vec<MaterialId>,
+}
+
+/// What kind of thing an object is, in several vocabularies; empty where unknown.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Category {
+    /// The finest name: `"coffee_table"`.
+    pub fine: String,
+    /// The coarse name, a row of `assets/categories.csv` where possible: `"table"`.
+    pub coarse: String,
+    /// The NYU-40 name.
+    pub nyu40: String,
+}
+
+/// How an object can move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mobility {
+    /// Never.
+    Fixed,
+    /// It stands firm, but its joints move: doors, cabinets.
+    Articulated,
+    /// It is a free body.
+    Movable,
+}
+
+/// An object.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Object {
+    /// The name, unique in the house, such as `"chair_2"`.
+    pub name: String,
+    /// The source's id of the node.
+    pub source_id: String,
+    /// The model it is an instance of.
+    pub model: String,
+    /// What kind of thing it is.
+    pub category: Category,
+    /// The storey it starts on.
+    pub level: LevelId,
+    /// The room it starts in.
+    pub room: Option<RoomId>,
+    /// How it can move.
+    pub mobility: Mobility,
+    /// Whether a hand can take it, as far as shape and use say; weight and size are judged by physics.
+    pub pickable: bool,
+    /// Whether it starts switched on; `None` when it has no switch.
+    pub switch: Option<bool>,
+    /// Its first part. The parts of an object stand together; the first is its root.
+    pub first_part: PartId,
+    /// The number of its parts, at least one.
+    pub part_count: u32,
+}
+
+impl Object {
+    /// The ids of its parts, the root first.
+    pub fn parts(&self) -> impl DoubleEndedIterator<Item = PartId> + ExactSizeIterator + use<> {
+        (self.first_part.0..self.first_part.0 + self.part_count).map(PartId)
+    }
+}
+
+/// A rigid part of an object.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// The object it belongs to.
+    pub object: ObjectId,
+    /// The name, unique in its object: `"leaf"`, `"seat"`.
+    pub name: String,
+    /// Whether it never moves; such parts are baked into the static geometry.
+    pub fixed: bool,
+    /// Where it stands at the start.
+    pub world_from_part: Pose,
+    /// What it looks like.
+    pub mesh: MeshId,
+    /// Scale, mirror and offset of the mesh on the part.
+    pub part_from_mesh: Affine3A,
+    /// The material of each slot of the mesh.
+    pub materials: Vec<MaterialId>,
+    /// Convex pieces (or [`Collider::ExactMesh`] for a fixed part) in part space; empty: nothing touches it.
+    pub colliders: Vec<Collider>,
+    /// Mass, kg; `None`: volume of the colliders times `density_kg_m3`.
+    pub mass_kg: Option<f32>,
+    /// Mean density of the colliders' volume, kg/m³ (a cupboard is mostly air).
+    pub density_kg_m3: f32,
+}

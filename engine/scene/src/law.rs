@@ -1,0 +1,140 @@
+//! Laws as data: physical effects that the basic model lacks.
+//!
+//! A law acts in one engine, where it has one file and one line in that engine's `laws::all()`. This module holds only
+//! what every engine, the world and calibration need to talk about one.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A law that is installed in a world, with its numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LawSpec {
+    /// The law's id, such as `"drag"`.
+    pub id: String,
+    /// The version of the law's equation.
+    pub version: u32,
+    /// What it acts on: an object's name, a joint's name or a surface's material; `None`: everything it can act on.
+    #[serde(default)]
+    pub target: Option<String>,
+    /// Values by parameter name, in the units of [`ParamInfo::unit`].
+    pub params: BTreeMap<String, f64>,
+}
+
+impl LawSpec {
+    /// The value of parameter `name`, or its default from `info`; `None` when the law has no such parameter.
+    pub fn value(&self, info: &LawInfo, name: &str) -> Option<f64> {
+        let param = info.params.iter().find(|param| param.name == name)?;
+        Some(self.params.get(name).copied().unwrap_or(param.default))
+    }
+
+    /// Whether every parameter has its default: such a law is not installed, so that nothing changes bit for bit.
+    pub fn is_default(&self, info: &LawInfo) -> bool {
+        info.params.iter().all(|param| {
+            self.params
+                .get(param.name)
+                .is_none_or(|value| *value == param.default)
+        })
+    }
+
+    /// Checks version, names and bounds against `info`.
+    ///
+    /// # Errors
+    /// [`crate::SceneError`] names the parameter, what was found and what is allowed.
+    pub fn check(&self, info: &LawInfo) -> Result<(), crate::SceneError> {
+        let at = format!("law {}", self.id);
+        if self.version != info.version {
+            let found = format!("{} (this build has {})", self.version, info.version);
+            return Err(crate::SceneError::Range {
+                at,
+                field: "version",
+                found,
+                allowed: "this build's version",
+            });
+        }
+        for (name, value) in &self.params {
+            let Some(param) = info.params.iter().find(|param| param.name == name) else {
+                let known = info
+                    .params
+                    .iter()
+                    .map(|param| param.name.to_owned())
+                    .collect();
+                return Err(crate::SceneError::Unknown {
+                    at,
+                    kind: "parameter",
+                    name: name.clone(),
+                    known,
+                });
+            };
+            if !(param.low..=param.high).contains(value) {
+                let found = format!(
+                    "{name} = {value} (bounds {} to {} {})",
+                    param.low, param.high, param.unit
+                );
+                return Err(crate::SceneError::Range {
+                    at,
+                    field: "parameter",
+                    found,
+                    allowed: "a value within its bounds",
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The engine a law acts in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Engine {
+    /// Forces, joints, contacts.
+    Physics,
+    /// Sound.
+    Acoustics,
+    /// Cameras and depth sensors.
+    Render,
+    /// Clocks and trackers.
+    Measurement,
+}
+
+/// One number of a law.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ParamInfo {
+    /// The name in [`LawSpec::params`].
+    pub name: &'static str,
+    /// The SI unit, `"1"` for none.
+    pub unit: &'static str,
+    /// The value at which the law does nothing.
+    pub default: f64,
+    /// The lowest value that is allowed.
+    pub low: f64,
+    /// The highest value that is allowed.
+    pub high: f64,
+    /// The range that a physicist finds plausible indoors, for calibration's plausibility check.
+    pub plausible: [f64; 2],
+}
+
+/// What is known about a law: for docs, calibration and errors.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LawInfo {
+    /// The id, unique over all engines.
+    pub id: &'static str,
+    /// The version of the equation.
+    pub version: u32,
+    /// What a person calls it: `"quadratic air drag"`.
+    pub name: &'static str,
+    /// The equation, in plain text with units.
+    pub equation: &'static str,
+    /// Where the equation comes from.
+    pub source: &'static str,
+    /// The engine it acts in.
+    pub engine: Engine,
+    /// What it acts on: `"object"`, `"joint"`, `"material"`, `"world"`, `"sensor"`.
+    pub acts_on: &'static str,
+    /// Its parameters.
+    pub params: &'static [ParamInfo],
+    /// Ids of laws and nuisances that look alike in data.
+    pub rivals: &'static [&'static str],
+    /// The experiment that separates it from its rivals.
+    pub separating_experiment: &'static str,
+}

@@ -1,0 +1,43 @@
+//! The nouns of dwell: [`House`], [`State`], ids, spaces, units, materials, laws as data, random streams, meshes, BVH,
+//! navigation.
+//!
+//! A [`House`] is checked once and never changes; a [`State`] is plain data, one per running world. Engines read both
+//! and know nothing of each other.
+
+mod articulation;
+mod bounds;
+mod collider;
+mod error;
+mod fixtures;
+mod house;
+mod ids;
+pub mod law;
+pub mod material;
+pub mod math;
+mod mesh;
+pub mod parallel;
+pub mod random;
+pub mod space;
+mod state;
+mod texture;
+pub mod units;
+
+pub use articulation::{Articulation, JointKind, Servo};
+pub use bounds::Aabb;
+pub use collider::Collider;
+pub use error::SceneError;
+pub use fixtures::{Holding, Light, LightShape, Receptacle, SoundEmitter};
+pub use house::{
+    Category, House, HouseData, Level, Mobility, Object, Part, Room, ShoeboxMaterials, Structure,
+    StructureKind,
+};
+pub use ids::{
+    AgentId, Entity, EntityId, Id, IdVec, JointId, LevelId, MaterialId, MeshId, ObjectId, PartId,
+    RoomId, StructureId, TextureId,
+};
+pub use law::{LawInfo, LawSpec};
+pub use material::{Bands, Material};
+pub use mesh::Mesh;
+pub use space::Pose;
+pub use state::{Address, AgentBody, AgentState, Contact, Parameter, State, Velocity};
+pub use texture::Texture;

@@ -1,0 +1,374 @@
+//! Parameters have addresses: `object/12/mass_kg`, `material/carpet/absorption/1000`, `pair/oak~steel/friction`.
+//!
+//! An override in [`State::overrides`](super::State) goes before the house's value, per world, without rebuilding the
+//! house. Engines read through [`State::object_mass_kg`](super::State::object_mass_kg) and kin.
+
+use super::State;
+use crate::error::SceneError;
+use crate::house::House;
+use crate::ids::{Entity, EntityId, JointId, MaterialId, ObjectId, PartId};
+use crate::material::{Bands, PairContact, library};
+use crate::units::STANDARD_GRAVITY_M_S2;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// The address of a parameter: two to five words or numbers with slashes between them.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Address(String);
+
+impl Address {
+    /// The words, at least two.
+    pub fn words(&self) -> Vec<&str> {
+        self.0.split('/').collect()
+    }
+
+    /// The text.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    fn fault(&self, what: impl Into<String>) -> SceneError {
+        SceneError::Address {
+            address: self.0.clone(),
+            what: what.into(),
+        }
+    }
+}
+
+impl FromStr for Address {
+    type Err = SceneError;
+    fn from_str(text: &str) -> Result<Self, SceneError> {
+        let fault = |what: &str| {
+            Err(SceneError::Address {
+                address: text.to_owned(),
+                what: what.to_owned(),
+            })
+        };
+        let words: Vec<&str> = text.split('/').collect();
+        if !(2..=5).contains(&words.len()) {
+            return fault(
+                "an address has two to five words with slashes between them, as in object/12/mass_kg",
+            );
+        }
+        if words
+            .iter()
+            .any(|word| word.is_empty() || word.len() > 128 || word.chars().any(char::is_control))
+        {
+            return fault("each word has 1 to 128 printable characters");
+        }
+        Ok(Self(text.to_owned()))
+    }
+}
+
+impl TryFrom<String> for Address {
+    type Error = SceneError;
+    fn try_from(text: String) -> Result<Self, SceneError> {
+        text.parse()
+    }
+}
+
+impl From<Address> for String {
+    fn from(address: Address) -> Self {
+        address.0
+    }
+}
+
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// What stands at an address.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// The value in force: the override, else the house's.
+    pub value: f64,
+    /// SI unit, `"1"` for none.
+    pub unit: &'static str,
+    /// The lowest value that is allowed.
+    pub low: f64,
+    /// The highest value that is allowed.
+    pub high: f64,
+}
+
+/// Objects are addressed by the id that sensors give them, or by name.
+fn find_object(house: &House, address: &Address, word: &str) -> Result<ObjectId, SceneError> {
+    let by_id = word
+        .parse()
+        .ok()
+        .and_then(|id| match house.entity(EntityId(id)) {
+            Some(Entity::Object(object)) => Some(object),
+            _ => None,
+        });
+    by_id.or_else(|| house.object_named(word)).ok_or_else(|| {
+        let first = house.structure.len() + 1;
+        let last = house.structure.len() + house.objects.len();
+        address.fault(format!(
+            "no object {word:?}; objects have the ids {first} to {last}, or names"
+        ))
+    })
+}
+
+fn find_material(house: &House, address: &Address, word: &str) -> Result<MaterialId, SceneError> {
+    let found = house
+        .materials
+        .iter_ids()
+        .find(|(_, material)| material.name == word);
+    found.map(|(id, _)| id).ok_or_else(|| {
+        let known: Vec<_> = house
+            .materials
+            .iter()
+            .take(12)
+            .map(|material| &material.name)
+            .collect();
+        address.fault(format!(
+            "no material {word:?}; there are {} such as {known:?}",
+            house.materials.len()
+        ))
+    })
+}
+
+fn find_joint(house: &House, address: &Address, word: &str) -> Result<JointId, SceneError> {
+    let index = word
+        .parse::<u32>()
+        .ok()
+        .map(JointId)
+        .filter(|id| house.joints.get(*id).is_some());
+    index.ok_or_else(|| {
+        address.fault(format!(
+            "no joint {word:?}; there are {}, counted from 0",
+            house.joints.len()
+        ))
+    })
+}
+
+impl State {
+    /// What stands at `address`.
+    ///
+    /// # Errors
+    /// [`SceneError::Address`] says which word is wrong and what is allowed there.
+    pub fn parameter(&self, house: &House, address: &Address) -> Result<Parameter, SceneError> {
+        let make = |value: f32, unit, low, high| {
+            Ok(Parameter {
+                value: f64::from(value),
+                unit,
+                low,
+                high,
+            })
+        };
+        match address.words()[..] {
+            ["object", object, "mass_kg"] => {
+                let object = find_object(house, address, object)?;
+                let root = &house.parts[house.objects[object].first_part];
+                make(self.object_mass_kg(house, object).or(root.mass_kg).unwrap_or(0.0), "kg", 1e-6, 1e6)
+            }
+            ["material", material, field] => {
+                let material = &house.materials[find_material(house, address, material)?];
+                match field {
+                    "friction" => make(self.scalar(address, material.friction), "1", 0.0, 10.0),
+                    "restitution" => make(self.scalar(address, material.restitution), "1", 0.0, 1.0),
+                    "density_kg_m3" => make(self.scalar(address, material.density_kg_m3), "kg/m3", 0.01, 30_000.0),
+                    _ => Err(address.fault(format!(
+                        "no field {field:?}; a material has friction, restitution, density_kg_m3, absorption/HZ, scattering/HZ"
+                    ))),
+                }
+            }
+            ["material", material, field, hz] => {
+                let id = find_material(house, address, material)?;
+                let frequency: f32 = hz.parse().ok().filter(|f| (1.0..=1e5).contains(f)).ok_or_else(|| {
+                    address.fault(format!("{hz:?} is no frequency; allowed are 1 to 100000 Hz"))
+                })?;
+                match field {
+                    "absorption" => make(self.absorption(house, id).at(frequency), "1", 0.0, 1.0),
+                    "scattering" => make(self.scattering(house, id).at(frequency), "1", 0.0, 1.0),
+                    _ => Err(address.fault(format!("no field {field:?} by frequency; there are absorption and scattering"))),
+                }
+            }
+            ["pair", pair, field] => {
+                let (a, b) = pair.split_once('~').ok_or_else(|| address.fault("a pair is written a~b"))?;
+                if let Some(name) = [a, b].into_iter().find(|name| library().get(name).is_none()) {
+                    return Err(address.fault(format!("no substance {name:?} in the library")));
+                }
+                let contact = self.pair_contact(a, b);
+                match field {
+                    "friction" => make(contact.friction, "1", 0.0, 10.0),
+                    "restitution" => make(contact.restitution, "1", 0.0, 1.0),
+                    _ => Err(address.fault(format!("no field {field:?}; a pair has friction and restitution"))),
+                }
+            }
+            ["joint", joint, field] => {
+                let joint = &house.joints[find_joint(house, address, joint)?];
+                match field {
+                    "friction" => make(self.scalar(address, joint.friction), "N m or N", 0.0, 1e6),
+                    "damping" => make(self.scalar(address, joint.damping), "N m s/rad or N s/m", 0.0, 1e6),
+                    _ => Err(address.fault(format!("no field {field:?}; a joint has friction and damping"))),
+                }
+            }
+            ["world", "gravity_m_s2"] => make(self.gravity_m_s2(), "m/s2", 0.0, 100.0),
+            _ => Err(address.fault(
+                "known are object/ID/mass_kg, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, world/gravity_m_s2",
+            )),
+        }
+    }
+
+    /// Overrides the parameter at `address`.
+    ///
+    /// # Errors
+    /// [`SceneError::Address`] for an address that names nothing or a value outside its range.
+    pub fn set_parameter(
+        &mut self,
+        house: &House,
+        address: &Address,
+        value: f64,
+    ) -> Result<(), SceneError> {
+        let parameter = self.parameter(house, address)?;
+        if !(parameter.low..=parameter.high).contains(&value) {
+            let Parameter {
+                low, high, unit, ..
+            } = parameter;
+            return Err(address.fault(format!(
+                "{value} is out of range; allowed are {low} to {high} {unit}"
+            )));
+        }
+        self.overrides.insert(address.clone(), value);
+        Ok(())
+    }
+
+    fn scalar(&self, address: &Address, base: f32) -> f32 {
+        self.overrides
+            .get(address)
+            .map_or(base, |value| *value as f32)
+    }
+
+    fn lookup(&self, text: String) -> Option<f32> {
+        if self.overrides.is_empty() {
+            None
+        } else {
+            self.overrides
+                .get(&Address(text))
+                .map(|value| *value as f32)
+        }
+    }
+
+    /// The overridden mass of an object, kg; `None` when only the house's parts speak.
+    pub fn object_mass_kg(&self, house: &House, object: ObjectId) -> Option<f32> {
+        self.lookup(format!(
+            "object/{}/mass_kg",
+            house.entity_of_object(object).0
+        ))
+        .or_else(|| self.lookup(format!("object/{}/mass_kg", house.objects[object].name)))
+    }
+
+    /// Friction and restitution between two substances, with overrides in either order.
+    pub fn pair_contact(&self, a: &str, b: &str) -> PairContact {
+        let base = library().pair(a, b);
+        let field = |name: &str| {
+            self.lookup(format!("pair/{a}~{b}/{name}"))
+                .or_else(|| self.lookup(format!("pair/{b}~{a}/{name}")))
+        };
+        PairContact {
+            friction: field("friction").unwrap_or(base.friction),
+            restitution: field("restitution").unwrap_or(base.restitution),
+        }
+    }
+
+    /// The substance a part is mostly made of: that of its first material.
+    pub fn part_substance<'a>(&self, house: &'a House, part: PartId) -> &'a str {
+        house.parts[part]
+            .materials
+            .first()
+            .map_or("", |material| house.materials[*material].substance.as_str())
+    }
+
+    /// Acceleration of free fall, m/s².
+    pub fn gravity_m_s2(&self) -> f32 {
+        self.lookup("world/gravity_m_s2".to_owned())
+            .unwrap_or(STANDARD_GRAVITY_M_S2)
+    }
+
+    /// Absorption of a material with overrides.
+    pub fn absorption(&self, house: &House, material: MaterialId) -> Bands {
+        let material = &house.materials[material];
+        self.bands(&material.name, "absorption", &material.absorption)
+    }
+
+    /// Scattering of a material with overrides.
+    pub fn scattering(&self, house: &House, material: MaterialId) -> Bands {
+        let material = &house.materials[material];
+        self.bands(&material.name, "scattering", &material.scattering)
+    }
+
+    /// The bands of one material field, each band replaced or a band added where an override stands.
+    fn bands(&self, material: &str, field: &str, base: &Bands) -> Bands {
+        let prefix = format!("material/{material}/{field}/");
+        let mut bands = base.clone();
+        // A slash sorts before '0', so that this range holds exactly the addresses that begin with the prefix.
+        for (address, value) in self.overrides.range(Address(prefix.clone())..) {
+            let Some(hz) = address.0.strip_prefix(&prefix) else {
+                break;
+            };
+            let Ok(frequency) = hz.parse::<f32>() else {
+                continue;
+            };
+            let place = bands
+                .centres_hz
+                .partition_point(|centre| *centre < frequency);
+            if bands.centres_hz.get(place) == Some(&frequency) {
+                bands.values[place] = *value as f32;
+            } else {
+                bands.centres_hz.insert(place, frequency);
+                bands.values.insert(place, *value as f32);
+            }
+        }
+        bands
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ShoeboxMaterials;
+
+    #[test]
+    fn overrides_replace_one_band_and_leave_the_house_alone() {
+        let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
+        let mut state = State::new(&house);
+        let address: Address = "material/floor/absorption/1000".parse().unwrap();
+        let before = state.parameter(&house, &address).unwrap();
+        state.set_parameter(&house, &address, 0.77).unwrap();
+        assert!((state.parameter(&house, &address).unwrap().value - 0.77).abs() < 1e-6);
+        assert_ne!(before.value, 0.77);
+        let other: Address = "material/floor/absorption/500".parse().unwrap();
+        assert_eq!(
+            state.parameter(&house, &other).unwrap(),
+            State::new(&house).parameter(&house, &other).unwrap()
+        );
+    }
+
+    #[test]
+    fn wrong_addresses_say_what_is_allowed() {
+        let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
+        let mut state = State::new(&house);
+        for text in [
+            "mass",
+            "object/99/mass_kg",
+            "material/oka/friction",
+            "pair/oak/friction",
+            "world/gravity",
+            "a//b",
+        ] {
+            let message = match text.parse::<Address>() {
+                Ok(address) => state.parameter(&house, &address).unwrap_err().to_string(),
+                Err(error) => error.to_string(),
+            };
+            assert!(message.contains(text), "{message}");
+        }
+        let gravity: Address = "world/gravity_m_s2".parse().unwrap();
+        assert!(state.set_parameter(&house, &gravity, f64::NAN).is_err());
+        assert!(state.set_parameter(&house, &gravity, 1.62).is_ok());
+        assert!((state.gravity_m_s2() - 1.62).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,116 @@
+//! What changes while a world runs: plain data, one per world.
+
+mod address;
+mod agent;
+mod snapshot;
+
+pub use address::{Address, Parameter};
+pub use agent::{AgentBody, AgentState};
+
+use crate::house::House;
+use crate::ids::{AgentId, IdVec, JointId, ObjectId, PartId};
+use crate::law::LawSpec;
+use crate::space::Pose;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The changing half of a world. Physics writes it, the world owns it, every engine reads it; it holds no mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Simulated time since the start, s.
+    pub time_s: f64,
+    /// Control steps since the start.
+    pub step: u64,
+
+    // ---- integrated
+    /// `world_from_part` of every part. Shape (part,).
+    pub part_pose: IdVec<PartId, Pose>,
+    /// Velocity of every part. Shape (part,).
+    pub part_velocity: IdVec<PartId, Velocity>,
+    /// Position of every joint, rad or m. Shape (joint,).
+    pub joint_position: IdVec<JointId, f32>,
+    /// Velocity of every joint, rad/s or m/s. Shape (joint,).
+    pub joint_velocity: IdVec<JointId, f32>,
+    /// Where each servo is told to go, rad or m; `None`: it is off. Shape (joint,).
+    pub joint_target: IdVec<JointId, Option<f32>>,
+    /// The agents.
+    pub agents: IdVec<AgentId, AgentState>,
+
+    // ---- set by actions
+    /// Whether each object is switched on; objects without a switch stay `false`. Shape (object,).
+    pub switched_on: IdVec<ObjectId, bool>,
+    /// Who holds each object. Shape (object,).
+    pub held_by: IdVec<ObjectId, Option<AgentId>>,
+
+    // ---- set from outside
+    /// Parameters that differ from the house's.
+    pub overrides: BTreeMap<Address, f64>,
+    /// Laws that are installed, in order.
+    pub laws: Vec<LawSpec>,
+
+    // ---- derived by physics in the last step
+    /// Pairs of things that touch, each once, sorted.
+    pub contacts: Vec<Contact>,
+}
+
+/// Linear and angular velocity in world space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Velocity {
+    /// Of the part's origin, m/s.
+    pub linear: Vec3,
+    /// rad/s.
+    pub angular: Vec3,
+}
+
+/// Two things that touch.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// The part whose number is lower.
+    pub a: PartId,
+    /// The other part; `None`: the structure of the house.
+    pub b: Option<PartId>,
+}
+
+impl State {
+    /// The state in which `house` starts: everything where the file puts it, at rest, no agents.
+    pub fn new(house: &House) -> Self {
+        let (parts, joints, objects) = (house.parts.len(), house.joints.len(), house.objects.len());
+        Self {
+            time_s: 0.0,
+            step: 0,
+            part_pose: house
+                .parts
+                .iter()
+                .map(|part| part.world_from_part)
+                .collect(),
+            part_velocity: IdVec::filled(Velocity::default(), parts),
+            joint_position: house.joints.iter().map(|joint| joint.initial).collect(),
+            joint_velocity: IdVec::filled(0.0, joints),
+            joint_target: IdVec::filled(None, joints),
+            agents: IdVec::new(),
+            switched_on: house
+                .objects
+                .iter()
+                .map(|object| object.switch.unwrap_or(false))
+                .collect(),
+            held_by: IdVec::filled(None, objects),
+            overrides: BTreeMap::new(),
+            laws: Vec::new(),
+            contacts: Vec::new(),
+        }
+    }
+
+    /// How far an object is open: the largest openness of its joints; `None` when it has no joint.
+    pub fn openness(&self, house: &House, object: ObjectId) -> Option<f32> {
+        house
+            .joints_of(object)
+            .map(|joint| house.joints[joint].openness(self.joint_position[joint]))
+            .reduce(f32::max)
+    }
+
+    /// Whether an object is switched on and has a switch, or has none and cannot be off.
+    pub fn is_on(&self, house: &House, object: ObjectId) -> bool {
+        house.objects[object].switch.is_none() || self.switched_on[object]
+    }
+}

@@ -1,0 +1,143 @@
+//! A state as bytes, and its hash.
+
+use super::State;
+use crate::error::SceneError;
+use crate::house::House;
+use xxhash_rust::xxh3::xxh3_64;
+
+const MAGIC: &[u8; 4] = b"dwst";
+const VERSION: u32 = 1;
+const HEADER: usize = 4 + 4 + 8 + 8;
+
+impl House {
+    /// A number that tells this house's tables from another's: names, counts and masses, not triangles.
+    pub fn fingerprint(&self) -> u64 {
+        let mut text = format!(
+            "{} {} {} {}",
+            self.name,
+            self.source,
+            self.parts.len(),
+            self.joints.len()
+        );
+        for object in &self.objects {
+            text.push('\n');
+            text.push_str(&object.name);
+        }
+        xxh3_64(text.as_bytes())
+    }
+}
+
+impl State {
+    fn body_bytes(&self) -> Vec<u8> {
+        postcard::to_stdvec(self)
+            .expect("a state is plain data that postcard can always write to memory")
+    }
+
+    /// A number that changes with any bit of the state, derived fields and stored order included.
+    ///
+    /// # Determinism
+    /// Equal states give equal numbers on every machine (XXH3 over the snapshot's body).
+    pub fn hash(&self) -> u64 {
+        xxh3_64(&self.body_bytes())
+    }
+
+    /// The state as bytes: header, version, fingerprint of the house, check sum, body.
+    pub fn to_bytes(&self, house: &House) -> Vec<u8> {
+        let body = self.body_bytes();
+        let mut bytes = Vec::with_capacity(HEADER + body.len());
+        bytes.extend_from_slice(MAGIC);
+        bytes.extend_from_slice(&VERSION.to_le_bytes());
+        bytes.extend_from_slice(&house.fingerprint().to_le_bytes());
+        bytes.extend_from_slice(&xxh3_64(&body).to_le_bytes());
+        bytes.extend_from_slice(&body);
+        bytes
+    }
+
+    /// Reads what [`State::to_bytes`] wrote.
+    ///
+    /// # Errors
+    /// [`SceneError::Snapshot`] for foreign or corrupted bytes, another version, or another house.
+    pub fn from_bytes(house: &House, bytes: &[u8]) -> Result<Self, SceneError> {
+        let refuse = |why: String| Err(SceneError::Snapshot(why));
+        if bytes.len() < HEADER || &bytes[..4] != MAGIC {
+            return refuse(format!(
+                "{} bytes that do not begin with \"dwst\"",
+                bytes.len()
+            ));
+        }
+        let word = |at: usize| u64::from_le_bytes(std::array::from_fn(|k| bytes[at + k]));
+        let version = u32::from_le_bytes(std::array::from_fn(|k| bytes[4 + k]));
+        if version != VERSION {
+            return refuse(format!("version {version}; this build reads {VERSION}"));
+        }
+        if word(8) != house.fingerprint() {
+            return refuse(format!("it belongs to another house than {:?}", house.name));
+        }
+        let body = &bytes[HEADER..];
+        if word(16) != xxh3_64(body) {
+            return refuse("its check sum does not fit: it is damaged".to_owned());
+        }
+        let state: Self =
+            postcard::from_bytes(body).map_err(|error| SceneError::Snapshot(error.to_string()))?;
+        let lengths = (
+            state.part_pose.len(),
+            state.part_velocity.len(),
+            state.joint_position.len(),
+            state.held_by.len(),
+        );
+        if lengths
+            != (
+                house.parts.len(),
+                house.parts.len(),
+                house.joints.len(),
+                house.objects.len(),
+            )
+        {
+            return refuse(format!(
+                "it has other counts of parts, joints and objects ({lengths:?}) than the house"
+            ));
+        }
+        Ok(state)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{AgentBody, AgentState, House, ShoeboxMaterials, State};
+    use glam::Vec3;
+
+    #[test]
+    fn a_snapshot_comes_back_equal_and_damage_is_refused() {
+        let house = House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
+        let mut state = State::new(&house);
+        state.agents.push(AgentState::new(
+            AgentBody::default(),
+            Vec3::new(1.0, 0.0, 2.0),
+            0.4,
+        ));
+        let bytes = state.to_bytes(&house);
+        let again = State::from_bytes(&house, &bytes).unwrap();
+        assert_eq!(again, state);
+        assert_eq!(again.hash(), state.hash());
+        for k in 0..bytes.len() {
+            let mut damaged = bytes.clone();
+            damaged[k] ^= 0x10;
+            assert!(State::from_bytes(&house, &damaged).is_err(), "byte {k}");
+        }
+        assert!(State::from_bytes(&house, &bytes[..bytes.len() - 1]).is_err());
+    }
+
+    #[test]
+    fn the_hash_sees_every_field() {
+        let house = House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
+        let state = State::new(&house);
+        let mut later = state.clone();
+        later.time_s += 1e-12;
+        assert_ne!(later.hash(), state.hash());
+        let mut other = state.clone();
+        other
+            .overrides
+            .insert("world/gravity_m_s2".parse().unwrap(), 9.7);
+        assert_ne!(other.hash(), state.hash());
+    }
+}

@@ -1,0 +1,1 @@
+//! Time: worlds, agents, sensors, tasks, batches; joins the engines.

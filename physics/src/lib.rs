@@ -1,0 +1,1 @@
+//! What moves and touches; rapier stays behind this wall.
