@@ -1,1 +1,13 @@
 //! Where houses come from: one folder a format, the built-in house, textures, `open`.
+
+mod build;
+mod error;
+mod limits;
+pub mod obj;
+mod report;
+mod root;
+pub mod suncg;
+
+pub use error::HousesError;
+pub use report::{At, Damage, Report, Unmapped, Warning};
+pub use root::DataRoot;

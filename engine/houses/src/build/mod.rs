@@ -1,0 +1,15 @@
+//! What several formats need to make a [`HouseData`](dwell_scene::HouseData) out of their files.
+
+mod components;
+mod looks;
+mod names;
+mod pieces;
+mod tables;
+mod textures;
+
+pub(crate) use components::{Component, components, submesh};
+pub(crate) use looks::{Look, LookTable};
+pub(crate) use names::Names;
+pub(crate) use pieces::convex_pieces;
+pub(crate) use tables::{CategoryRow, category, room_kind, substance_of};
+pub(crate) use textures::{decode, texture_name};

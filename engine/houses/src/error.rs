@@ -1,0 +1,127 @@
+//! Why a house could not be opened or written.
+
+use std::path::PathBuf;
+
+use crate::report::At;
+
+/// Everything that stops a house from being opened or written.
+///
+/// Damage that can be survived is not here but in [`crate::Report`].
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum HousesError {
+    /// The HOUSE string names no format this version opens.
+    #[error("{house:?} is no house this version opens; allowed are {allowed}")]
+    UnknownHouse {
+        /// The string as given.
+        house: String,
+        /// Every accepted form, joined.
+        allowed: String,
+    },
+    /// `builtin:NAME` with a name that does not exist.
+    #[error("no built-in house {name:?}; this version has {known:?}")]
+    UnknownBuiltin {
+        /// The name as given.
+        name: String,
+        /// The names that exist.
+        known: Vec<String>,
+    },
+    /// A folder that holds no house, or more than one.
+    #[error("{path}: expected one house in this folder, found {found:?}")]
+    NotOneHouse {
+        /// The folder.
+        path: PathBuf,
+        /// The houses in it; at most a handful are listed.
+        found: Vec<String>,
+    },
+    /// The operating system refused to read or write.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A size or a count beyond what is read; checked before memory is taken.
+    #[error("{at}: {what} {found} is more than the {allowed} that are read")]
+    TooLarge {
+        /// The file and place.
+        at: At,
+        /// What was counted, with its unit.
+        what: &'static str,
+        /// The number found.
+        found: u64,
+        /// The largest number read.
+        allowed: u64,
+    },
+    /// The text or the bytes are not what the format asks for.
+    #[error("{at}: {message}")]
+    Syntax {
+        /// The file and place.
+        at: At,
+        /// What was found and what was expected.
+        message: String,
+    },
+    /// A field without which nothing can be built.
+    #[error("{at}: expected {expected}, found {found}")]
+    Field {
+        /// The file and field.
+        at: At,
+        /// What the field must hold.
+        expected: &'static str,
+        /// What it holds.
+        found: String,
+    },
+    /// A file that belongs to a version of the format this program does not read.
+    #[error("{at}: version {found:?} is not read; allowed are {allowed:?}")]
+    Version {
+        /// The file and field.
+        at: At,
+        /// The version the file states.
+        found: String,
+        /// The versions read.
+        allowed: Vec<String>,
+    },
+    /// A path inside a file that points out of the house's own folder.
+    #[error("{at}: path {path:?} leaves the folder {root}; refused")]
+    PathLeavesRoot {
+        /// The file that holds the path.
+        at: At,
+        /// The path as written there.
+        path: String,
+        /// The folder that bounds every path.
+        root: PathBuf,
+    },
+    /// Nothing in the file can be seen, touched or heard.
+    #[error("{at}: the house is empty, not one triangle could be read ({damage} warnings)")]
+    Empty {
+        /// The file.
+        at: At,
+        /// How many warnings the report holds.
+        damage: usize,
+    },
+    /// The converted house breaks a rule of the scene.
+    #[error("{at}: {source}")]
+    Scene {
+        /// The file.
+        at: At,
+        /// The rule and the place.
+        source: dwell_scene::SceneError,
+    },
+    /// Something the target format cannot express at all.
+    #[error("{path}: cannot be written: {message}")]
+    Unwritable {
+        /// The file or folder to be written.
+        path: PathBuf,
+        /// What stands in the way.
+        message: String,
+    },
+}
+
+impl HousesError {
+    /// An [`HousesError::Io`] for `path`.
+    pub(crate) fn io(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io { path, source }
+    }
+}

@@ -1,0 +1,101 @@
+//! What an OBJ and an MTL file hold, nothing interpreted.
+
+use std::ops::Range;
+
+/// An index that a face corner does not give.
+pub const NONE: u32 = u32::MAX;
+
+/// A Wavefront OBJ file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ObjFile {
+    /// Names after `mtllib`, in order.
+    pub material_libraries: Vec<String>,
+    /// `v`, file units. A coordinate that is no finite number is NaN.
+    pub positions: Vec<[f32; 3]>,
+    /// `vt`.
+    pub texcoords: Vec<[f32; 2]>,
+    /// `vn`, not normalized.
+    pub normals: Vec<[f32; 3]>,
+    /// Corners of all faces, one face after another; positions are in range, the others are in range or [`NONE`].
+    pub corners: Vec<Corner>,
+    /// Where each face ends in `corners`.
+    pub face_ends: Vec<u32>,
+    /// Stretches of faces under the same `o`, `g` and `usemtl`; together they cover all faces in order.
+    pub runs: Vec<Run>,
+}
+
+/// A corner of a face: 0-based indices, or [`NONE`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Corner {
+    /// Into `positions`.
+    pub position: u32,
+    /// Into `texcoords`.
+    pub texcoord: u32,
+    /// Into `normals`.
+    pub normal: u32,
+}
+
+/// Faces that stand under the same names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Run {
+    /// The last `o`, empty before the first.
+    pub object: String,
+    /// The last `g`, empty before the first.
+    pub group: String,
+    /// The last `usemtl`.
+    pub material: Option<String>,
+    /// Which faces.
+    pub faces: Range<usize>,
+}
+
+impl ObjFile {
+    /// The corners of face `face`.
+    pub fn face(&self, face: usize) -> &[Corner] {
+        let start = if face == 0 {
+            0
+        } else {
+            self.face_ends[face - 1] as usize
+        };
+        &self.corners[start..self.face_ends[face] as usize]
+    }
+
+    /// How many faces there are.
+    pub fn face_count(&self) -> usize {
+        self.face_ends.len()
+    }
+
+    /// How many triangles the faces make when fanned.
+    pub fn triangle_count(&self) -> usize {
+        self.corners.len() - 2 * self.face_ends.len()
+    }
+}
+
+/// A Wavefront MTL file; the order of materials is the order of SUNCG's overrides.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MtlFile {
+    /// The materials in file order.
+    pub materials: Vec<MtlMaterial>,
+}
+
+/// One `newmtl`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MtlMaterial {
+    /// Its name.
+    pub name: String,
+    /// `Ka`, 0 to 1.
+    pub ambient: Option<[f32; 3]>,
+    /// `Kd`, 0 to 1.
+    pub diffuse: Option<[f32; 3]>,
+    /// `Ks`, 0 to 1.
+    pub specular: Option<[f32; 3]>,
+    /// `Ke`.
+    pub emission: Option<[f32; 3]>,
+    /// `Ns`, Phong exponent.
+    pub shininess: Option<f32>,
+    /// `d`, or 1 - `Tr`: 1 is opaque.
+    pub opacity: Option<f32>,
+    /// `illum`.
+    pub illumination: Option<i32>,
+    /// `map_Kd`, as written, options removed.
+    pub diffuse_map: Option<String>,
+}

@@ -1,0 +1,14 @@
+//! Wavefront OBJ and MTL: the parser that SUNCG uses, and a single OBJ file as a house.
+//!
+//! The parser is our own because `tobj` refuses a whole file for one unreadable number, does not say in which line, and
+//! gives materials by name where SUNCG's overrides count positions; the tests compare the two on files both can read.
+
+pub mod file;
+mod lines;
+mod read_mtl;
+mod read_obj;
+mod shape;
+
+pub use read_mtl::read_mtl;
+pub use read_obj::read_obj;
+pub(crate) use shape::{PartShape, shape_of};

@@ -1,0 +1,312 @@
+//! Faces of an OBJ file into triangle meshes.
+
+use dwell_scene::Mesh;
+use glam::{Vec2, Vec3, Vec3Swizzles as _};
+
+use super::file::{Corner, MtlFile, NONE, ObjFile, Run};
+use crate::report::{At, Damage, Report};
+
+/// Most material slots of one mesh: slots are 16-bit numbers.
+const MAX_SLOTS: usize = u16::MAX as usize;
+
+/// The material slots of a model: those of its MTL files in file order, then names that only `usemtl` knows.
+///
+/// SUNCG's overrides count these positions.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Slots {
+    /// Name of each slot, and its position in the MTL file.
+    pub(crate) entries: Vec<(String, Option<usize>)>,
+}
+
+impl Slots {
+    /// The slots of `obj` with `mtl`.
+    pub(crate) fn of(obj: &ObjFile, mtl: &MtlFile, at: &At, report: &mut Report) -> Self {
+        let mut slots = Self::default();
+        for (i, material) in mtl.materials.iter().enumerate().take(MAX_SLOTS) {
+            if slots.find(&material.name).is_some() {
+                report.warn(
+                    at.clone(),
+                    Damage::DuplicateMaterial {
+                        name: material.name.clone(),
+                    },
+                );
+            }
+            slots.entries.push((material.name.clone(), Some(i)));
+        }
+        for run in &obj.runs {
+            let name = run.material.as_deref().unwrap_or("");
+            if slots.find(name).is_none() && slots.entries.len() < MAX_SLOTS {
+                if run.material.is_some() {
+                    report.warn(
+                        at.clone(),
+                        Damage::MissingMaterial {
+                            name: name.to_owned(),
+                        },
+                    );
+                }
+                slots.entries.push((name.to_owned(), None));
+            }
+        }
+        slots
+    }
+
+    fn find(&self, name: &str) -> Option<u16> {
+        self.entries
+            .iter()
+            .position(|(known, _)| known == name)
+            .map(|i| i as u16)
+    }
+
+    /// The slot that a stretch of faces shows.
+    pub(crate) fn of_run(&self, run: &Run) -> u16 {
+        self.find(run.material.as_deref().unwrap_or(""))
+            .unwrap_or(0)
+    }
+}
+
+/// Runs of an OBJ file as one mesh.
+pub(crate) struct PartShape<'a> {
+    /// The file.
+    pub(crate) obj: &'a ObjFile,
+    /// The slot of each run that is taken, with the run.
+    pub(crate) runs: Vec<(u16, &'a Run)>,
+    /// Whether corners without texture coordinates get some, in metres on the nearest axis plane, because a texture
+    /// lies on them.
+    pub(crate) box_mapping: bool,
+}
+
+/// Fans polygons into triangles, brings corners together into vertices, replaces numbers that are not finite.
+pub(crate) fn shape_of(shape: &PartShape<'_>, at: &At, report: &mut Report) -> Mesh {
+    let obj = shape.obj;
+    let faces = || {
+        shape
+            .runs
+            .iter()
+            .flat_map(|(slot, run)| run.faces.clone().map(move |face| (*slot, face)))
+    };
+    let corners = || faces().flat_map(|(_, face)| obj.face(face));
+    let normals = corners().any(|corner| corner.normal != NONE);
+    let uvs = shape.box_mapping || corners().any(|corner| corner.texcoord != NONE);
+    let triangle_count = faces().map(|(_, face)| obj.face(face).len() - 2).sum();
+    let mut builder = Builder {
+        obj,
+        mesh: Mesh::default(),
+        heads: vec![NONE; obj.positions.len()],
+        chain: Vec::new(),
+        normals,
+        uvs,
+        box_mapping: shape.box_mapping,
+    };
+    builder.mesh.triangles.reserve(triangle_count);
+    let mut degenerate = 0;
+    let mut ring = Vec::new();
+    for (slot, face) in faces() {
+        let face = obj.face(face);
+        let flat = face_normal(obj, face);
+        ring.clear();
+        ring.extend(face.iter().map(|corner| builder.vertex(*corner, flat)));
+        for k in 1..ring.len() - 1 {
+            builder.mesh.triangles.push([ring[0], ring[k], ring[k + 1]]);
+            builder.mesh.slots.push(slot);
+            let [a, b, c] = builder.mesh.corners(builder.mesh.triangles.len() - 1);
+            degenerate += u64::from((b - a).cross(c - a) == Vec3::ZERO);
+        }
+    }
+    report.warn_times(at.clone(), Damage::DegenerateTriangles, degenerate);
+    builder.mesh
+}
+
+fn position(obj: &ObjFile, corner: Corner) -> Vec3 {
+    // The first importers set what was no number to 0, and houses depend on it.
+    Vec3::from(obj.positions[corner.position as usize].map(|x| if x.is_finite() { x } else { 0.0 }))
+}
+
+/// The unit normal of a polygon (Newell's method); up for one without area.
+fn face_normal(obj: &ObjFile, face: &[Corner]) -> Vec3 {
+    let mut sum = Vec3::ZERO;
+    for (k, corner) in face.iter().enumerate() {
+        let (p, q) = (
+            position(obj, *corner),
+            position(obj, face[(k + 1) % face.len()]),
+        );
+        sum += (p - q).yzx() * (p + q).zxy();
+    }
+    sum.try_normalize().unwrap_or(Vec3::Y)
+}
+
+struct Builder<'a> {
+    obj: &'a ObjFile,
+    mesh: Mesh,
+    /// For each position of the file the newest vertex made of it.
+    heads: Vec<u32>,
+    /// For each vertex its corner and the next vertex at the same position.
+    chain: Vec<(Corner, u32)>,
+    normals: bool,
+    uvs: bool,
+    box_mapping: bool,
+}
+
+impl Builder<'_> {
+    /// The vertex of a corner; the same corner of another face is the same vertex unless it needs this face's normal.
+    fn vertex(&mut self, corner: Corner, flat: Vec3) -> u32 {
+        let own = (self.normals && corner.normal == NONE)
+            || (self.box_mapping && corner.texcoord == NONE);
+        let head = self.heads[corner.position as usize];
+        let mut vertex = if own { NONE } else { head };
+        while vertex != NONE {
+            let (known, next) = self.chain[vertex as usize];
+            if known == corner {
+                return vertex;
+            }
+            vertex = next;
+        }
+        let vertex = self.mesh.positions.len() as u32;
+        let point = position(self.obj, corner);
+        self.mesh.positions.push(point);
+        if self.normals {
+            let stored = self
+                .obj
+                .normals
+                .get(corner.normal as usize)
+                .map(|n| Vec3::from(*n));
+            self.mesh
+                .normals
+                .push(stored.and_then(Vec3::try_normalize).unwrap_or(flat));
+        }
+        if self.uvs {
+            let stored = self
+                .obj
+                .texcoords
+                .get(corner.texcoord as usize)
+                .map(|uv| Vec2::from(*uv));
+            let made = || {
+                if self.box_mapping {
+                    box_uv(point, flat)
+                } else {
+                    Vec2::ZERO
+                }
+            };
+            self.mesh.uvs.push(stored.unwrap_or_else(made));
+        }
+        // A vertex with a normal of its own is found by nobody: it stays out of the chain.
+        self.chain.push((corner, if own { NONE } else { head }));
+        if !own {
+            self.heads[corner.position as usize] = vertex;
+        }
+        vertex
+    }
+}
+
+/// Texture coordinates in metres on the axis plane that the face is nearest to, v upwards on sides.
+fn box_uv(point: Vec3, normal: Vec3) -> Vec2 {
+    let a = normal.abs();
+    if a.y >= a.x && a.y >= a.z {
+        Vec2::new(point.x, -point.z)
+    } else if a.x >= a.z {
+        Vec2::new(point.z, point.y)
+    } else {
+        Vec2::new(point.x, point.y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::obj::{read_mtl, read_obj};
+
+    fn mesh(text: &str, box_mapping: bool) -> (Mesh, Report) {
+        let mut report = Report::new();
+        let at = At::file("a.obj");
+        let obj = read_obj(text.as_bytes(), "a.obj", &mut report);
+        let slots = Slots::of(&obj, &MtlFile::default(), &at, &mut Report::new());
+        let runs = obj
+            .runs
+            .iter()
+            .map(|run| (slots.of_run(run), run))
+            .collect();
+        let mesh = shape_of(
+            &PartShape {
+                obj: &obj,
+                runs,
+                box_mapping,
+            },
+            &at,
+            &mut report,
+        );
+        mesh.check("a.obj").unwrap();
+        (mesh, report)
+    }
+
+    #[test]
+    fn a_quad_is_fanned_from_its_first_corner_and_shares_vertices() {
+        let (mesh, _) = mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", false);
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(
+            (mesh.positions.len(), mesh.normals.len(), mesh.uvs.len()),
+            (4, 0, 0)
+        );
+    }
+
+    #[test]
+    fn corners_with_and_without_texture_coordinates_mix() {
+        let (mesh, _) = mesh(
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.5 0.5\nvn 0 0 2\nf 1//1 2//1 3//1\nf 1/1/1 2/1/1 3//1\nf 1 3 2\n",
+            false,
+        );
+        assert_eq!(
+            mesh.positions.len(),
+            8,
+            "3 shared, 2 with coordinates, 3 with the face's own normal"
+        );
+        assert_eq!((mesh.normals[0], mesh.normals[7]), (Vec3::Z, Vec3::NEG_Z));
+        assert_eq!((mesh.uvs[0], mesh.uvs[3]), (Vec2::ZERO, Vec2::splat(0.5)));
+    }
+
+    #[test]
+    fn missing_texture_coordinates_are_made_where_a_texture_lies() {
+        let (mesh, _) = mesh("v 1 2 3\nv 2 2 3\nv 1 2 4\nf 1 3 2\n", true);
+        assert_eq!(
+            mesh.uvs,
+            [
+                Vec2::new(1.0, -3.0),
+                Vec2::new(1.0, -4.0),
+                Vec2::new(2.0, -3.0)
+            ]
+        );
+    }
+
+    #[test]
+    fn nan_becomes_zero_and_flat_triangles_are_counted() {
+        let (mesh, report) = mesh(
+            "v 0 nan 0\nv 1 0 0\nv 2 0 0\nvn 0 0 nan\nf 1//1 2//1 3//1\n",
+            false,
+        );
+        assert_eq!((mesh.positions[0], mesh.normals[0]), (Vec3::ZERO, Vec3::Y));
+        assert_eq!(report.count(|d| *d == Damage::DegenerateTriangles), 1);
+    }
+
+    #[test]
+    fn slots_follow_the_material_file_not_the_use() {
+        let obj = read_obj(
+            b"v 0 0 0\nusemtl b\nf 1 1 1\nusemtl x\nf 1 1 1\n",
+            "a.obj",
+            &mut Report::new(),
+        );
+        let mtl = read_mtl(b"newmtl a\nnewmtl b\n", "a.mtl", &mut Report::new());
+        let mut report = Report::new();
+        let slots = Slots::of(&obj, &mtl, &At::file("a.obj"), &mut report);
+        assert_eq!(
+            slots.entries,
+            [
+                ("a".into(), Some(0)),
+                ("b".into(), Some(1)),
+                ("x".into(), None)
+            ]
+        );
+        assert_eq!(
+            (slots.of_run(&obj.runs[0]), slots.of_run(&obj.runs[1])),
+            (1, 2)
+        );
+        assert_eq!(report.len(), 1);
+    }
+}

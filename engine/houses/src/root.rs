@@ -1,0 +1,189 @@
+//! A folder that bounds every path: nothing a file names can lead out of it.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::error::HousesError;
+use crate::report::At;
+
+/// A folder and the only way to read files below it.
+///
+/// Paths inside are written with `/`, relative to the root, without `.` or `..`.
+#[derive(Debug, Clone)]
+pub struct DataRoot {
+    folder: PathBuf,
+    /// The same with symbolic links resolved, to compare with.
+    real: PathBuf,
+}
+
+/// A path could not be opened because it leads out of the root.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Leaves;
+
+impl DataRoot {
+    /// A root at `folder`.
+    ///
+    /// # Errors
+    /// [`HousesError::Io`] when the folder does not exist.
+    pub fn new(folder: impl Into<PathBuf>) -> Result<Self, HousesError> {
+        let mut folder = folder.into();
+        if folder.as_os_str().is_empty() {
+            folder.push(".");
+        }
+        let real = folder.canonicalize().map_err(HousesError::io(&folder))?;
+        Ok(Self { folder, real })
+    }
+
+    /// The folder as it was given.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The path `name` means inside folder `inside` of this root, relative to the root.
+    ///
+    /// `name` may hold `..`, double slashes and backslashes (all occur in SUNCG and in OBJ files from Windows).
+    ///
+    /// # Errors
+    /// [`Leaves`] when the path is absolute or climbs out of the root.
+    pub fn resolve(inside: &str, name: &str) -> Result<String, Leaves> {
+        if name.starts_with(['/', '\\'])
+            || name.as_bytes().get(1) == Some(&b':')
+            || name.contains('\0')
+        {
+            return Err(Leaves);
+        }
+        let mut parts: Vec<&str> = Vec::new();
+        for part in inside.split('/').chain(name.split(['/', '\\'])) {
+            match part {
+                "" | "." => {}
+                ".." => {
+                    parts.pop().ok_or(Leaves)?;
+                }
+                part => parts.push(part),
+            }
+        }
+        Ok(parts.join("/"))
+    }
+
+    /// Whether a file exists at `path`, inside the root.
+    pub fn has_file(&self, path: &str) -> bool {
+        self.folder.join(path).is_file()
+    }
+
+    /// Reads the file at `path`, at most `max_bytes` long.
+    ///
+    /// # Errors
+    /// [`HousesError::PathLeavesRoot`] when a link leads out of the root, [`HousesError::TooLarge`] above `max_bytes`,
+    /// [`HousesError::Io`] when the system refuses.
+    pub fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
+        let full = self.folder.join(path);
+        let real = full.canonicalize().map_err(HousesError::io(&full))?;
+        if !real.starts_with(&self.real) {
+            return Err(HousesError::PathLeavesRoot {
+                at: At::file(path),
+                path: path.to_owned(),
+                root: self.folder.clone(),
+            });
+        }
+        read_capped(&full, path, max_bytes)
+    }
+}
+
+/// Reads a file of at most `max_bytes`; `name` stands in the error.
+///
+/// # Errors
+/// [`HousesError::TooLarge`] and [`HousesError::Io`].
+pub(crate) fn read_capped(path: &Path, name: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
+    let file = File::open(path).map_err(HousesError::io(path))?;
+    let meta = file.metadata().map_err(HousesError::io(path))?;
+    if !meta.is_file() {
+        let source = std::io::Error::new(std::io::ErrorKind::InvalidInput, "is not a regular file");
+        return Err(HousesError::Io {
+            path: path.into(),
+            source,
+        });
+    }
+    let too_large = |found| HousesError::TooLarge {
+        at: At::file(name),
+        what: "file size in bytes",
+        found,
+        allowed: max_bytes,
+    };
+    if meta.len() > max_bytes {
+        return Err(too_large(meta.len()));
+    }
+    let mut bytes = Vec::with_capacity(meta.len() as usize + 1);
+    // A file that grows while it is read still ends at the cap.
+    file.take(max_bytes + 1)
+        .read_to_end(&mut bytes)
+        .map_err(HousesError::io(path))?;
+    if bytes.len() as u64 > max_bytes {
+        return Err(too_large(bytes.len() as u64));
+    }
+    Ok(bytes)
+}
+
+/// The folder part of a path inside a root: `object/83` of `object/83/83.obj`.
+pub(crate) fn folder_of(path: &str) -> &str {
+    path.rsplit_once('/').map_or("", |(folder, _)| folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn double_slashes_and_parents_resolve_inside_the_root() {
+        assert_eq!(
+            DataRoot::resolve("object/83", "../../texture//wood_8.jpg").as_deref(),
+            Ok("texture/wood_8.jpg")
+        );
+        assert_eq!(
+            DataRoot::resolve("", "./a\\b.png").as_deref(),
+            Ok("a/b.png")
+        );
+    }
+
+    #[test]
+    fn paths_out_of_the_root_are_refused() {
+        for name in [
+            "../../../etc/passwd",
+            "/etc/passwd",
+            "C:\\secret",
+            "\\\\host\\share",
+            "a/../../../..",
+            "a\0b",
+        ] {
+            assert_eq!(DataRoot::resolve("object/83", name), Err(Leaves), "{name}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_out_of_the_root_is_refused() {
+        let outside = tempfile::tempdir().unwrap();
+        let inside = tempfile::tempdir().unwrap();
+        std::fs::write(outside.path().join("secret"), "x").unwrap();
+        std::os::unix::fs::symlink(outside.path().join("secret"), inside.path().join("link"))
+            .unwrap();
+        let root = DataRoot::new(inside.path()).unwrap();
+        assert!(matches!(
+            root.read("link", 10),
+            Err(HousesError::PathLeavesRoot { .. })
+        ));
+    }
+
+    #[test]
+    fn a_file_above_the_cap_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a"), "12345").unwrap();
+        let root = DataRoot::new(folder.path()).unwrap();
+        assert_eq!(root.read("a", 5).unwrap().len(), 5);
+        let error = root.read("a", 4).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "a: file size in bytes 5 is more than the 4 that are read"
+        );
+    }
+}
