@@ -56,6 +56,9 @@ fn timed(outcome: &mut Outcome, name: &str, stage: impl FnOnce() -> Result<bool,
 }
 
 fn run_program(root: &Path, stage: &Stage) -> Result<bool, String> {
+    if let Some(file) = stage.needs.filter(|file| !root.join(file).is_file()) {
+        return Err(format!("{file} is missing"));
+    }
     let mut command = Command::new(&stage.program);
     command
         .args(&stage.args)

@@ -6,92 +6,79 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Stage {
     pub name: &'static str,
     pub program: PathBuf,
-    pub args: Vec<&'static str>,
+    pub args: Vec<String>,
     pub env: Vec<(&'static str, &'static str)>,
+    /// A file without which the program would find nothing to complain about.
+    pub needs: Option<&'static str>,
 }
+
+const CONFIG: &str = "python/pyproject.toml";
+const STUB: &str = "python/dwell/_native.pyi";
+/// What stubtest may overlook, each line with its reason; may be absent.
+const ALLOWLIST: &str = "python/stubtest-allowlist.txt";
 
 /// In order; the cheapest first. Python's tools are those of `.venv`.
 pub(crate) fn all(root: &Path) -> Vec<Stage> {
-    let cargo = || std::env::var_os("CARGO").map_or_else(|| "cargo".into(), PathBuf::from);
     let locked = if std::env::var("CI").as_deref() == Ok("true") {
         "--locked"
     } else {
         "--quiet"
     };
-    let python = |name, args: &[&'static str]| Stage {
-        name,
-        program: root.join(".venv/bin/python"),
-        args: args.to_vec(),
-        env: vec![("MYPYPATH", "python")],
-    };
-    let rust = |name, args: &[&'static str], env: &[(&'static str, &'static str)]| Stage {
-        name,
-        program: cargo(),
-        args: args.to_vec(),
-        env: env.to_vec(),
-    };
-    vec![
-        rust("rustfmt", &["fmt", "--all", "--check"], &[]),
-        rust(
+    let mut stubtest = format!("-m mypy.stubtest dwell._native --mypy-config-file {CONFIG}");
+    if root.join(ALLOWLIST).is_file() {
+        stubtest = format!("{stubtest} --allowlist {ALLOWLIST}");
+    }
+    let mut stages = vec![
+        cargo("rustfmt", "fmt --all --check"),
+        cargo(
             "clippy",
-            &[
-                "clippy",
-                locked,
-                "--workspace",
-                "--all-targets",
-                "--",
-                "-D",
-                "warnings",
-            ],
-            &[],
+            &format!("clippy {locked} --workspace --all-targets -- -D warnings"),
         ),
-        rust(
-            "rustdoc",
-            &["doc", locked, "--workspace", "--no-deps"],
-            &[("RUSTDOCFLAGS", "-D warnings")],
-        ),
+        cargo("rustdoc", &format!("doc {locked} --workspace --no-deps")),
+        python(root, "ruff", &format!("-m ruff check --config {CONFIG} .")),
         python(
-            "ruff",
-            &[
-                "-m",
-                "ruff",
-                "check",
-                "--config",
-                "python/pyproject.toml",
-                ".",
-            ],
-        ),
-        python(
+            root,
             "ruff format",
-            &[
-                "-m",
-                "ruff",
-                "format",
-                "--check",
-                "--config",
-                "python/pyproject.toml",
-                ".",
-            ],
+            &format!("-m ruff format --check --config {CONFIG} ."),
         ),
         python(
+            root,
             "mypy",
-            &[
-                "-m",
-                "mypy",
-                "--config-file",
-                "python/pyproject.toml",
-                "python/dwell",
-            ],
+            &format!("-m mypy --config-file {CONFIG} python/dwell"),
         ),
-        python(
-            "stubtest",
-            &[
-                "-m",
-                "mypy.stubtest",
-                "dwell._native",
-                "--mypy-config-file",
-                "python/pyproject.toml",
-            ],
-        ),
-    ]
+        python(root, "stubtest", &stubtest),
+    ];
+    for stage in &mut stages {
+        match stage.name {
+            "rustdoc" => stage.env.push(("RUSTDOCFLAGS", "-D warnings")),
+            "stubtest" => {
+                stage.env.push(("MYPYPATH", "python"));
+                stage.needs = Some(STUB);
+            }
+            _ => {}
+        }
+    }
+    stages
+}
+
+fn cargo(name: &'static str, args: &str) -> Stage {
+    stage(
+        name,
+        std::env::var_os("CARGO").map_or_else(|| "cargo".into(), PathBuf::from),
+        args,
+    )
+}
+
+fn python(root: &Path, name: &'static str, args: &str) -> Stage {
+    stage(name, root.join(".venv/bin/python"), args)
+}
+
+fn stage(name: &'static str, program: PathBuf, args: &str) -> Stage {
+    Stage {
+        name,
+        program,
+        args: args.split_whitespace().map(str::to_owned).collect(),
+        env: Vec::new(),
+        needs: None,
+    }
 }
