@@ -6,6 +6,11 @@
 
 mod articulation;
 mod bounds;
+/// Rays and what they find.
+pub mod bvh {
+    mod ray;
+    pub use ray::{Hit, Ray, RayMask};
+}
 mod collider;
 mod error;
 mod fixtures;
@@ -17,6 +22,7 @@ pub mod math;
 mod mesh;
 pub mod parallel;
 pub mod random;
+pub mod rays;
 pub mod space;
 mod state;
 mod texture;

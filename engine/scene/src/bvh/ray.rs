@@ -50,13 +50,22 @@ pub struct Ray {
 impl Ray {
     /// The whole ray from `origin` along `direction`, which need not be normalized.
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
-        Self { origin, direction: direction.normalize_or_zero(), near_m: 0.0, far_m: f32::INFINITY }
+        Self {
+            origin,
+            direction: direction.normalize_or_zero(),
+            near_m: 0.0,
+            far_m: f32::INFINITY,
+        }
     }
 
     /// The part of this ray between two distances, m.
     #[must_use]
     pub fn between(self, near_m: f32, far_m: f32) -> Self {
-        Self { near_m, far_m, ..self }
+        Self {
+            near_m,
+            far_m,
+            ..self
+        }
     }
 
     /// The straight way from `start` to `end`, less `margin_m` at either end.

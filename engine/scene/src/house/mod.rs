@@ -2,16 +2,20 @@
 
 mod check;
 mod data;
+mod geometry;
 mod queries;
 mod shoebox;
 
 pub use data::{
     Category, HouseData, Level, Mobility, Object, Part, Room, Structure, StructureKind,
 };
+pub(crate) use geometry::normals_map;
+pub use geometry::{Geometry, Placed, StaticTriangle, Surface, SurfaceOwner};
 pub use shoebox::ShoeboxMaterials;
 
 use crate::error::SceneError;
 use std::ops::Deref;
+use std::sync::OnceLock;
 
 /// A checked, immutable house. Share it as `Arc<House>`: a thousand worlds over one house cost one set of meshes.
 ///
@@ -20,6 +24,7 @@ use std::ops::Deref;
 #[derive(Debug)]
 pub struct House {
     data: HouseData,
+    geometry: OnceLock<Geometry>,
 }
 
 impl House {
@@ -29,7 +34,15 @@ impl House {
     /// [`SceneError`] with the place, what was found and what is allowed.
     pub fn new(data: HouseData) -> Result<Self, SceneError> {
         check::check(&data)?;
-        Ok(Self { data })
+        Ok(Self {
+            data,
+            geometry: OnceLock::new(),
+        })
+    }
+
+    /// The triangles of the house baked for rays; made at first use.
+    pub fn geometry(&self) -> &Geometry {
+        self.geometry.get_or_init(|| Geometry::bake(&self.data))
     }
 
     /// The plain data, for editing and writing.
@@ -42,6 +55,7 @@ impl Clone for House {
     fn clone(&self) -> Self {
         Self {
             data: self.data.clone(),
+            geometry: OnceLock::new(),
         }
     }
 }

@@ -1,0 +1,152 @@
+//! The triangles of a house, prepared for rays once and shared by all of its worlds.
+
+use super::data::HouseData;
+use crate::ids::{EntityId, Id, IdVec, MaterialId, MeshId, PartId, StructureId};
+use crate::mesh::Mesh;
+use crate::rays::interim::Tree;
+use glam::{Affine3A, Mat3A, Vec3};
+use std::sync::Arc;
+
+/// What a surface belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SurfaceOwner {
+    /// A wall, floor or ceiling piece.
+    Structure(StructureId),
+    /// A part of an object.
+    Part(PartId),
+}
+
+/// One mesh that stands in the house: a structure piece or a part.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// What it belongs to.
+    pub owner: SurfaceOwner,
+    /// The sensors' id.
+    pub entity: EntityId,
+    /// Its mesh.
+    pub mesh: MeshId,
+    /// Where it stands; for parts that move: where they stand at the start.
+    pub world_from_mesh: Affine3A,
+    /// `world_from_part` is rigid: this is the rest of the way, for parts that move.
+    pub part_from_mesh: Affine3A,
+}
+
+/// Where a static triangle comes from.
+#[derive(Clone, Copy, Debug)]
+pub struct StaticTriangle {
+    /// Position in [`Geometry::placed`].
+    pub placed: u32,
+    /// Position in the mesh.
+    pub triangle: u32,
+}
+
+/// Static geometry baked flat in world space, and the meshes of the parts that move.
+#[derive(Debug)]
+pub struct Geometry {
+    /// All triangles that never move.
+    pub static_bvh: Arc<Tree>,
+    /// Where each static triangle comes from. Shape (static triangle,).
+    pub static_triangles: Vec<StaticTriangle>,
+    /// Structure pieces in order, then parts in order.
+    pub placed: Vec<Placed>,
+    /// The parts that move, in order: instance `k` of a [`RayScene`](crate::rays::RayScene) is `movable[k]`.
+    pub movable: Vec<PartId>,
+    /// The trees of the meshes that some moving part shows.
+    pub mesh_bvh: IdVec<MeshId, Option<Arc<Tree>>>,
+    structure_count: usize,
+}
+
+impl Geometry {
+    /// Bakes the tables of a checked house.
+    pub(super) fn bake(data: &HouseData) -> Self {
+        let structure_count = data.structure.len();
+        let mut placed = Vec::with_capacity(structure_count + data.parts.len());
+        for (id, piece) in data.structure.iter_ids() {
+            placed.push(Placed {
+                owner: SurfaceOwner::Structure(id),
+                entity: EntityId(1 + id.0 as i32),
+                mesh: piece.mesh,
+                world_from_mesh: Affine3A::IDENTITY,
+                part_from_mesh: Affine3A::IDENTITY,
+            });
+        }
+        let mut movable = Vec::new();
+        let mut mesh_bvh: IdVec<MeshId, _> = IdVec::filled(None, data.meshes.len());
+        for (id, part) in data.parts.iter_ids() {
+            placed.push(Placed {
+                owner: SurfaceOwner::Part(id),
+                entity: EntityId((1 + structure_count + part.object.index()) as i32),
+                mesh: part.mesh,
+                world_from_mesh: part.world_from_part.to_affine() * part.part_from_mesh,
+                part_from_mesh: part.part_from_mesh,
+            });
+            if !part.fixed {
+                movable.push(id);
+                let mesh = &data.meshes[part.mesh];
+                mesh_bvh[part.mesh].get_or_insert_with(|| Arc::new(Tree::build(mesh, |_| 0)));
+            }
+        }
+        let mut baked = Mesh::default();
+        let mut static_triangles = Vec::new();
+        for (k, thing) in placed.iter().enumerate() {
+            if let SurfaceOwner::Part(part) = thing.owner
+                && !data.parts[part].fixed
+            {
+                continue;
+            }
+            let mesh = &data.meshes[thing.mesh];
+            let base = baked.positions.len() as u32;
+            baked.positions.extend(
+                mesh.positions
+                    .iter()
+                    .map(|p| thing.world_from_mesh.transform_point3(*p)),
+            );
+            baked
+                .triangles
+                .extend(mesh.triangles.iter().map(|t| t.map(|vertex| vertex + base)));
+            let sources = (0..mesh.triangles.len() as u32).map(|triangle| StaticTriangle {
+                placed: k as u32,
+                triangle,
+            });
+            static_triangles.extend(sources);
+        }
+        let tag = |index: usize| placed[static_triangles[index].placed as usize].entity.0;
+        let static_bvh = Arc::new(Tree::build(&baked, tag));
+        Self {
+            static_bvh,
+            static_triangles,
+            placed,
+            movable,
+            mesh_bvh,
+            structure_count,
+        }
+    }
+
+    /// The entry of [`Self::placed`] for a part.
+    pub fn placed_part(&self, part: PartId) -> &Placed {
+        &self.placed[self.structure_count + part.index()]
+    }
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// The sensors' id.
+    pub entity: EntityId,
+    /// What it belongs to.
+    pub owner: SurfaceOwner,
+    /// The material of the triangle's slot.
+    pub material: MaterialId,
+    /// The mesh.
+    pub mesh: MeshId,
+    /// The triangle in the mesh.
+    pub triangle: u32,
+    /// The triangle's normal in world space, unit length, towards the side from which its corners run
+    /// counter-clockwise in the model (mirrored instances keep their model's front).
+    pub normal: Vec3,
+}
+
+/// The map of normals that belongs to a map of points: its inverse transpose.
+pub(crate) fn normals_map(world_from_mesh: &Affine3A) -> Mat3A {
+    world_from_mesh.matrix3.inverse().transpose()
+}

@@ -1,0 +1,217 @@
+//! Rays through a house as it stands in one world: the one way in which eyes, ears and hands find surfaces.
+
+pub(crate) mod interim;
+
+use crate::bvh::{Hit, Ray, RayMask};
+use crate::house::{House, Placed, Surface, SurfaceOwner, normals_map};
+use crate::ids::{EntityId, Id, MaterialId, PartId};
+use crate::state::State;
+use glam::{Affine3A, Mat3A, Vec2, Vec3};
+use interim::Instances;
+use std::sync::Arc;
+
+/// Rays in a fan: they start at one point, as those of a pinhole camera do.
+pub const FAN: usize = 16;
+
+/// The surfaces of a house where its parts stand in one world.
+///
+/// Static geometry is shared by all worlds over the house; a scene of its own costs a few hundred bytes a moving part.
+#[derive(Clone, Debug)]
+pub struct RayScene {
+    house: Arc<House>,
+    instances: Instances,
+    /// For each moving part, where it stands. Shape (instance,).
+    world_from_mesh: Vec<Affine3A>,
+}
+
+impl RayScene {
+    /// The house as it stands at the start.
+    pub fn new(house: Arc<House>) -> Self {
+        let geometry = house.geometry();
+        let start: Vec<Affine3A> = geometry
+            .movable
+            .iter()
+            .map(|part| geometry.placed_part(*part).world_from_mesh)
+            .collect();
+        let mut scene = Self {
+            instances: Instances::default(),
+            world_from_mesh: start,
+            house,
+        };
+        scene.rebuild();
+        scene
+    }
+
+    /// Moves the parts to where `state` has them. Allocates nothing after the first call.
+    pub fn update(&mut self, state: &State) {
+        let geometry = self.house.geometry();
+        for (place, part) in self.world_from_mesh.iter_mut().zip(&geometry.movable) {
+            *place =
+                state.part_pose[*part].to_affine() * geometry.placed_part(*part).part_from_mesh;
+        }
+        self.rebuild();
+    }
+
+    fn rebuild(&mut self) {
+        let geometry = self.house.geometry();
+        self.instances.rebuild(geometry, &self.world_from_mesh);
+    }
+
+    /// The house.
+    pub fn house(&self) -> &Arc<House> {
+        &self.house
+    }
+
+    /// The nearest surface that `mask` meets on the ray. Surfaces that coincide within 0.1 mm count as one: the lower id.
+    pub fn closest(&self, ray: &Ray, mask: RayMask) -> Option<Hit> {
+        self.instances
+            .closest(self.house.geometry(), ray, mask, EntityId::VOID)
+    }
+
+    /// As [`Self::closest`], as if the thing called `hidden` were not there.
+    pub fn closest_without(&self, ray: &Ray, mask: RayMask, hidden: EntityId) -> Option<Hit> {
+        self.instances
+            .closest(self.house.geometry(), ray, mask, hidden)
+    }
+
+    /// Whether anything that `mask` meets stands on the ray.
+    pub fn occluded(&self, ray: &Ray, mask: RayMask) -> bool {
+        self.instances.occluded(self.house.geometry(), ray, mask)
+    }
+
+    /// As [`Self::closest`] for rays that start at one point, faster when they go nearly the same way.
+    ///
+    /// `directions`: unit length, one row for each of x, y, z. Shape (3, 16). A zero direction meets nothing.
+    pub fn closest_fan(
+        &self,
+        origin: Vec3,
+        directions: &[[f32; FAN]; 3],
+        near_m: f32,
+        far_m: f32,
+        mask: RayMask,
+    ) -> [Option<Hit>; FAN] {
+        std::array::from_fn(|k| {
+            let direction = Vec3::new(directions[0][k], directions[1][k], directions[2][k]);
+            self.closest(
+                &Ray {
+                    origin,
+                    direction,
+                    near_m,
+                    far_m,
+                },
+                mask,
+            )
+        })
+    }
+
+    /// The part of a moving instance.
+    pub fn part_of_instance(&self, instance: u32) -> PartId {
+        self.house.geometry().movable[instance as usize]
+    }
+
+    fn placed(&self, hit: &Hit) -> (&Placed, u32, Affine3A) {
+        let geometry = self.house.geometry();
+        if let Some(instance) = hit.instance {
+            let place = self.world_from_mesh[instance as usize];
+            (
+                geometry.placed_part(self.part_of_instance(instance)),
+                hit.triangle,
+                place,
+            )
+        } else {
+            let source = geometry.static_triangles[hit.triangle as usize];
+            let placed = &geometry.placed[source.placed as usize];
+            (placed, source.triangle, placed.world_from_mesh)
+        }
+    }
+
+    /// What the hit lies on.
+    pub fn surface(&self, hit: &Hit) -> Surface {
+        let (placed, triangle, world_from_mesh) = self.placed(hit);
+        let mesh = &self.house.meshes[placed.mesh];
+        let [a, b, c] = mesh.corners(triangle as usize);
+        let normal = normals_map(&world_from_mesh) * glam::Vec3A::from((b - a).cross(c - a));
+        Surface {
+            entity: placed.entity,
+            owner: placed.owner,
+            material: self
+                .house
+                .slot_material(placed.owner, mesh.slot(triangle as usize)),
+            mesh: placed.mesh,
+            triangle,
+            normal: Vec3::from(normal).normalize_or_zero(),
+        }
+    }
+
+    /// The texture coordinates at the hit; zero where the mesh has none.
+    pub fn uv(&self, hit: &Hit) -> Vec2 {
+        let (placed, triangle, _) = self.placed(hit);
+        let mesh = &self.house.meshes[placed.mesh];
+        if mesh.uvs.is_empty() {
+            return Vec2::ZERO;
+        }
+        let [a, b, c] = mesh.triangles[triangle as usize].map(|vertex| mesh.uvs[vertex as usize]);
+        a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v
+    }
+
+    /// The interpolated normal at the hit in world space, unit length; the triangle's own where the mesh has none.
+    pub fn shading_normal(&self, hit: &Hit) -> Vec3 {
+        let (placed, triangle, world_from_mesh) = self.placed(hit);
+        let mesh = &self.house.meshes[placed.mesh];
+        if mesh.normals.is_empty() {
+            return self.surface(hit).normal;
+        }
+        let [a, b, c] =
+            mesh.triangles[triangle as usize].map(|vertex| mesh.normals[vertex as usize]);
+        let normal = a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
+        let normals: Mat3A = normals_map(&world_from_mesh);
+        let turned = Vec3::from(normals * glam::Vec3A::from(normal)).normalize_or_zero();
+        if turned == Vec3::ZERO {
+            self.surface(hit).normal
+        } else {
+            turned
+        }
+    }
+}
+
+impl House {
+    /// The material of a slot of something placed in the house.
+    pub fn slot_material(&self, owner: SurfaceOwner, slot: u16) -> MaterialId {
+        match owner {
+            SurfaceOwner::Structure(id) => self.structure[id].materials[usize::from(slot)],
+            SurfaceOwner::Part(id) => self.parts[id].materials[usize::from(slot)],
+        }
+    }
+
+    /// The moving instance of a part; `None` for a fixed one.
+    pub fn instance_of_part(&self, part: PartId) -> Option<u32> {
+        self.geometry()
+            .movable
+            .binary_search_by_key(&part.index(), |id| id.index())
+            .ok()
+            .map(|k| k as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ShoeboxMaterials;
+
+    #[test]
+    fn a_ray_in_a_room_meets_the_wall_it_points_at() {
+        let house =
+            Arc::new(House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap());
+        let scene = RayScene::new(house.clone());
+        let ray = Ray::new(Vec3::new(1.0, 1.0, 2.0), Vec3::X);
+        let hit = scene.closest(&ray, RayMask::ALL).unwrap();
+        let surface = scene.surface(&hit);
+        assert!((hit.distance_m - 5.0).abs() < 1e-5);
+        assert_eq!(house.materials[surface.material].name, "east");
+        assert!((surface.normal - Vec3::NEG_X).length() < 1e-6);
+        assert!(
+            scene.occluded(&ray, RayMask::ALL)
+                && !scene.occluded(&ray.between(0.0, 4.9), RayMask::ALL)
+        );
+    }
+}
