@@ -34,8 +34,8 @@ pub use collider::Collider;
 pub use error::SceneError;
 pub use fixtures::{Holding, Light, LightShape, Receptacle, SoundEmitter};
 pub use house::{
-    Category, House, HouseData, Level, Mobility, Object, Part, Room, ShoeboxMaterials, Structure,
-    StructureKind,
+    Category, Geometry, House, HouseData, Level, Mobility, Object, Part, Placed, Room,
+    ShoeboxMaterials, StaticTriangle, Structure, StructureKind, Surface, SurfaceOwner,
 };
 pub use ids::{
     AgentId, Entity, EntityId, Id, IdVec, JointId, LevelId, MaterialId, MeshId, ObjectId, PartId,
