@@ -6,6 +6,8 @@ SHELL := /bin/sh
 
 HOUSE ?= builtin:apartment
 OUT ?= out/demo
+# VIEWER=no leaves the Rerun SDK out (a download of some 150 MB).
+VIEWER ?= yes
 
 stage := sh xtask/sh/stage.sh
 locked := $(if $(filter true,$(CI)),--locked)
@@ -27,7 +29,7 @@ build: need ## everything the tests run
 	@sh xtask/sh/build.sh $(locked)
 
 demo: venv ## walk an agent through HOUSE and write what it saw, heard and did to OUT
-	@sh xtask/sh/viewer.sh
+	@[ '$(VIEWER)' = no ] || sh xtask/sh/viewer.sh
 	$(bin)/dwell demo $(HOUSE) --out $(OUT)
 	@echo "Open $(OUT)/index.html"
 

@@ -38,8 +38,14 @@ if [ "$(cat "$venv/dwell-stamp" 2>/dev/null)" = "$stamp" ] && "$venv/bin/maturin
 else
     rm -f "$venv/dwell-stamp"
     echo "venv: installing what python/pyproject.toml names"
-    "$venv/bin/python" -m pip install --quiet \
-        "$(sed -n 's/^requires *= *\["\(maturin[^"]*\)"\].*/\1/p' python/pyproject.toml)"
-    develop --extras dev
+    maturin=$(sed -n 's/^requires *= *\["\(maturin[^"]*\)"\].*/\1/p' python/pyproject.toml)
+    "$venv/bin/python" -m pip install "$maturin" || {
+        echo "dwell needs $maturin from the Python package registry, and pip cannot install it (see above)." >&2
+        exit 1
+    }
+    develop --extras dev || {
+        echo "dwell could not be built and installed into .venv (see above); if pip is what failed, remove .venv and try again." >&2
+        exit 1
+    }
     echo "$stamp" >"$venv/dwell-stamp"
 fi
