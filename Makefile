@@ -42,13 +42,13 @@ test: build ## Rust tests, doc tests, Python tests
 
 test-all: export DWELL_TEST_ALL = 1
 test-all: test ## the same with the slow tests, and the benches once each
-	@$(stage) 'benches, once each' cargo test $(locked) --workspace --benches --quiet
+	@$(stage) 'benches, once each' sh xtask/sh/benches.sh --once $(locked)
 
 check: venv ## formatting, lints, docs, layers, sizes, licences, types
 	@cargo xtask check
 
 bench: venv ## figures of every stage
-	cargo bench $(locked) -p dwell-benches --profile dev
+	@sh xtask/sh/benches.sh $(locked)
 	for what in load render physics acoustics env; do $(bin)/dwell bench $$what $(HOUSE) || exit 1; done
 
 wheel: venv ## the wheel that strangers install, in dist/
