@@ -70,9 +70,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// The repository's root, wherever the command is called from.
+/// The repository's root, wherever the command is called from; as cargo says at run time, since checkouts may share a build.
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    let xtask =
+        std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
+    Path::new(&xtask)
         .parent()
         .expect("xtask lies in the root")
         .to_path_buf()
