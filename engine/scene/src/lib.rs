@@ -20,6 +20,7 @@ pub mod law;
 pub mod material;
 pub mod math;
 mod mesh;
+pub mod navigation;
 pub mod parallel;
 pub mod random;
 pub mod rays;
