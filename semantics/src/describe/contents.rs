@@ -1,0 +1,58 @@
+//! Things counted by kind.
+
+use super::object::{adjectives, joined, phrase};
+use crate::english::{counted, with_article};
+use crate::scene::Scene;
+use dwell_scene::ObjectId;
+
+/// Things of one kind.
+pub(super) struct Group {
+    /// The things, in order.
+    pub(super) objects: Vec<ObjectId>,
+}
+
+impl Group {
+    /// "four brown wooden chairs": with the adjectives that all share.
+    pub(super) fn text(&self, scene: &Scene<'_>) -> String {
+        let facts = scene.facts(self.objects[0]);
+        if let [only] = self.objects[..] {
+            return with_article(&phrase(scene, only));
+        }
+        let mut shared = adjectives(scene, self.objects[0]);
+        for object in &self.objects {
+            for (known, word) in shared.iter_mut().zip(adjectives(scene, *object)) {
+                *known = known.take().filter(|known| word.as_ref() == Some(known));
+            }
+        }
+        counted(
+            self.objects.len(),
+            &joined(&shared),
+            &facts.noun,
+            &facts.plural,
+        )
+    }
+}
+
+/// `objects` by spoken noun, the largest things first (they are seen first), then by noun.
+pub(super) fn grouped(scene: &Scene<'_>, objects: &[ObjectId]) -> Vec<Group> {
+    let mut groups: Vec<(f32, &str, Group)> = Vec::new();
+    for object in objects {
+        let noun = scene.facts(*object).noun.as_str();
+        let volume = scene.extent(*object).bounds.volume();
+        match groups.iter_mut().find(|(_, known, _)| *known == noun) {
+            Some((largest, _, group)) => {
+                *largest = largest.max(volume);
+                group.objects.push(*object);
+            }
+            None => groups.push((
+                volume,
+                noun,
+                Group {
+                    objects: vec![*object],
+                },
+            )),
+        }
+    }
+    groups.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(q.1)));
+    groups.into_iter().map(|(_, _, group)| group).collect()
+}

@@ -1,0 +1,127 @@
+//! A caption of one object.
+
+use crate::english::{article, with_article};
+use crate::predicates;
+use crate::scene::{Scene, Term};
+use dwell_scene::{ObjectId, RoomId, StructureKind};
+
+/// Openness above which a thing is called open, and below which closed.
+const OPEN: f32 = 0.5;
+const CLOSED: f32 = 0.02;
+
+/// The adjectives of a thing by what they say: size, openness, colour, substance.
+pub(super) type Adjectives = [Option<String>; 4];
+
+pub(super) fn adjectives(scene: &Scene<'_>, object: ObjectId) -> Adjectives {
+    let facts = scene.facts(object);
+    let size = facts.size.word().map(str::to_owned);
+    let openness = scene.state.openness(scene.house(), object).map(|openness| {
+        let word = match openness {
+            o if o > OPEN => "open",
+            o if o < CLOSED => "closed",
+            _ => "half-open",
+        };
+        word.to_owned()
+    });
+    let material = facts.material_word();
+    // Glass and mirrors have the colour of what lies behind or before them.
+    let color = facts.color_phrase().filter(|_| material != Some("glass"));
+    [size, openness, color, material.map(str::to_owned)]
+}
+
+/// Adjectives in a row; may be empty.
+pub(super) fn joined(adjectives: &Adjectives) -> String {
+    let words: Vec<&str> = adjectives.iter().flatten().map(String::as_str).collect();
+    words.join(" ")
+}
+
+/// Adjectives and noun.
+pub(super) fn phrase(scene: &Scene<'_>, object: ObjectId) -> String {
+    let words = joined(&adjectives(scene, object));
+    let noun = &scene.facts(object).noun;
+    if words.is_empty() {
+        noun.clone()
+    } else {
+        format!("{words} {noun}")
+    }
+}
+
+/// A landmark in a room: "the table" when it is the only one there, else "a table".
+pub(super) fn landmark(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
+    let noun = &scene.facts(object).noun;
+    let alike = room.map_or(2, |room| {
+        scene
+            .objects_in(room)
+            .iter()
+            .filter(|other| scene.facts(**other).is_called(noun))
+            .count()
+    });
+    if alike == 1 {
+        format!("the {noun}")
+    } else {
+        format!("{} {noun}", article(noun))
+    }
+}
+
+fn first_related(scene: &Scene<'_>, object: ObjectId, name: &str) -> Option<ObjectId> {
+    let predicate = predicates::find(name).ok()?;
+    let holds = |other: &ObjectId| {
+        *other != object && predicate.holds(scene, Term::Object(object), Term::Object(*other), None)
+    };
+    let mut found: Vec<ObjectId> = scene.house().objects.ids().filter(holds).collect();
+    // A thing is placed by something larger than itself; the largest is the easiest to find.
+    found.retain(|other| name != "next_to" || scene.facts(*other).category.is_some());
+    let volume = |id: ObjectId| scene.extent(id).bounds.volume();
+    let largest = found
+        .into_iter()
+        .max_by(|p, q| volume(*p).total_cmp(&volume(*q)).then(q.cmp(p)))?;
+    (name != "next_to" || volume(largest) > 0.3 * volume(object)).then_some(largest)
+}
+
+/// Where it is beside something else: " on the table"; empty when nothing is near.
+fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
+    for (name, words) in [("in", "in"), ("on", "on")] {
+        if let Some(other) = first_related(scene, object, name) {
+            return format!(" {words} {}", landmark(scene, other, room));
+        }
+    }
+    let house = scene.house();
+    let is_opening = scene
+        .facts(object)
+        .category
+        .is_some_and(|row| row.openable && !row.movable);
+    let walls = house
+        .structure
+        .iter_ids()
+        .filter(|(_, piece)| piece.kind == StructureKind::Wall);
+    let hangs = predicates::find("hangs_on").is_ok_and(|predicate| {
+        walls.into_iter().any(|(wall, _)| {
+            predicate.holds(scene, Term::Object(object), Term::Structure(wall), None)
+        })
+    });
+    if hangs && !is_opening {
+        return " on the wall".to_owned();
+    }
+    first_related(scene, object, "next_to").map_or_else(String::new, |other| {
+        format!(" next to {}", landmark(scene, other, room))
+    })
+}
+
+/// A caption: "a brown wooden chair next to the table in the kitchen".
+pub fn caption(scene: &Scene<'_>, object: ObjectId) -> String {
+    let room = scene.room_of(object);
+    let mut text = with_article(&phrase(scene, object));
+    if scene.house().objects[object].switch.is_some() && scene.state.switched_on[object] {
+        text.push_str(" that is switched on");
+    }
+    if scene.holder(object).is_some() {
+        text.push_str(" in somebody's hand");
+    } else {
+        text.push_str(&place(scene, object, room));
+    }
+    if let Some(room) = room {
+        text.push_str(" in the ");
+        text.push_str(&scene.semantics.room(room).label);
+    }
+    text
+}

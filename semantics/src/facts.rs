@@ -1,0 +1,231 @@
+//! What is true of an object in every state: kind, colours, substances, size.
+
+use crate::category::{CategoryRow, categories};
+use crate::color::{Patch, Vocabulary, color_words};
+use crate::geometry::mapped_area_m2;
+use crate::size::Size;
+use dwell_scene::material::{Substance, library};
+use dwell_scene::{Aabb, House, IdVec, MaterialId, ObjectId};
+use glam::Vec3;
+
+/// Share of the surface from which a substance gives a thing its adjective.
+const MADE_OF_SHARE: f32 = 0.5;
+
+/// The lasting facts about an object.
+#[derive(Clone, Debug)]
+pub struct Facts {
+    /// Its category, if the table knows it.
+    pub category: Option<&'static CategoryRow>,
+    /// Spoken noun, for one.
+    pub noun: String,
+    /// Spoken noun, for several.
+    pub plural: String,
+    /// Its materials by share of the visible surface, largest first.
+    pub patches: Vec<Patch>,
+    /// Its colours in plain words with their shares, largest first.
+    pub colors: Vec<(&'static str, f32)>,
+    /// Its substances with their shares of the surface, largest first.
+    pub substances: Vec<(&'static Substance, f32)>,
+    /// Edges of the box around it in the axes of its root part, m.
+    pub extents_m: Vec3,
+    /// How large it is for its kind.
+    pub size: Size,
+}
+
+impl Facts {
+    pub(crate) fn gather(
+        house: &House,
+        colors: &IdVec<MaterialId, [f32; 3]>,
+        id: ObjectId,
+    ) -> Self {
+        let object = &house.objects[id];
+        let category = categories().of(&object.category);
+        let (noun, plural) = category.map_or_else(
+            || unknown_noun(&object.category),
+            |row| (row.singular.to_owned(), row.plural.to_owned()),
+        );
+        let (patches, substances) = surfaces(house, colors, id);
+        let extents_m = own_box(house, id).size();
+        Self {
+            category,
+            noun,
+            plural,
+            colors: color_words(&patches, Vocabulary::Plain),
+            patches,
+            substances,
+            extents_m,
+            size: Size::of(extents_m, category),
+        }
+    }
+
+    /// The words for its colours in `vocabulary`, largest share first.
+    pub fn color_words(&self, vocabulary: Vocabulary) -> Vec<&'static str> {
+        color_words(&self.patches, vocabulary)
+            .into_iter()
+            .map(|(word, _)| word)
+            .collect()
+    }
+
+    /// The colour a speaker would use: the one of most of the surface, else the two largest; `None` without a surface
+    /// or when no two cover most of it.
+    pub fn color_phrase(&self) -> Option<String> {
+        match self.colors[..] {
+            [(one, share), ..] if share >= 0.6 => Some(one.to_owned()),
+            [(one, p), (two, q), ..] if p + q >= 0.6 => Some(format!("{one} and {two}")),
+            [(one, _)] => Some(one.to_owned()),
+            _ => None,
+        }
+    }
+
+    /// The adjective of what it is mostly made of; `None` when nothing prevails, or when the kind of thing says it
+    /// already.
+    pub fn material_word(&self) -> Option<&'static str> {
+        let (substance, share) = self.substances.first()?;
+        let dull = [
+            "hard_surface",
+            "electronics",
+            "appliance",
+            "human",
+            "animal",
+            "leaves",
+            "food",
+            "books",
+            "paper",
+            "wax",
+            "foam",
+            "painted_plaster",
+            "mirror",
+            "light_curtain",
+            "heavy_curtain",
+            "water",
+            "textile",
+            "carpet",
+        ];
+        let said = self.noun.split(' ').any(|word| {
+            substance.adjective == word
+                || substance.noun == word
+                || substance.words.iter().any(|w| w == word)
+        });
+        (*share >= MADE_OF_SHARE && !said && !dull.contains(&substance.name.as_str()))
+            .then_some(substance.adjective.as_str())
+    }
+
+    /// Whether a speaker may call it `noun`: its spoken noun, a synonym, or a more general last word ("table" for a
+    /// coffee table).
+    pub fn is_called(&self, noun: &str) -> bool {
+        let matches = |name: &str| {
+            name == noun
+                || name
+                    .strip_suffix(noun)
+                    .is_some_and(|rest| rest.ends_with(' '))
+        };
+        matches(&self.noun)
+            || self
+                .category
+                .is_some_and(|row| row.synonyms.iter().any(|name| matches(name)))
+    }
+}
+
+/// The noun for a category outside the table: its own name in plain letters.
+fn unknown_noun(category: &dwell_scene::Category) -> (String, String) {
+    let name = if category.fine.is_empty() {
+        &category.coarse
+    } else {
+        &category.fine
+    };
+    let plain: String = name
+        .chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_lowercase()
+            } else {
+                ' '
+            }
+        })
+        .collect();
+    let noun = plain.split_whitespace().collect::<Vec<_>>().join(" ");
+    if noun.is_empty() {
+        ("thing".to_owned(), "things".to_owned())
+    } else {
+        (noun.clone(), format!("{noun}s"))
+    }
+}
+
+/// The box around all parts, in the axes of the root part.
+fn own_box(house: &House, id: ObjectId) -> Aabb {
+    let object = &house.objects[id];
+    let root_from_world = house.parts[object.first_part].world_from_part.inverse();
+    let mut bounds = Aabb::EMPTY;
+    for part in object.parts() {
+        let part = &house.parts[part];
+        let root_from_mesh =
+            (root_from_world * part.world_from_part).to_affine() * part.part_from_mesh;
+        for point in &house.meshes[part.mesh].positions {
+            bounds.add_point(root_from_mesh.transform_point3(*point));
+        }
+    }
+    bounds
+}
+
+type Substances = Vec<(&'static Substance, f32)>;
+
+/// Materials by opacity-weighted share of the surface, and substances by plain share.
+fn surfaces(
+    house: &House,
+    colors: &IdVec<MaterialId, [f32; 3]>,
+    id: ObjectId,
+) -> (Vec<Patch>, Substances) {
+    let mut areas: Vec<(MaterialId, f64)> = Vec::new();
+    for part in house.objects[id].parts() {
+        let part = &house.parts[part];
+        let mesh = &house.meshes[part.mesh];
+        for triangle in 0..mesh.triangles.len() {
+            let Some(material) = part.materials.get(usize::from(mesh.slot(triangle))) else {
+                continue;
+            };
+            let area = mapped_area_m2(mesh.corners(triangle), &part.part_from_mesh);
+            match areas.iter_mut().find(|(known, _)| known == material) {
+                Some((_, sum)) => *sum += area,
+                None => areas.push((*material, area)),
+            }
+        }
+    }
+    let seen = |material: MaterialId, area: f64| {
+        area * f64::from(house.materials[material].opacity.max(0.02))
+    };
+    let visible: f64 = areas
+        .iter()
+        .map(|(material, area)| seen(*material, *area))
+        .sum();
+    let total: f64 = areas.iter().map(|(_, area)| area).sum();
+    if total <= 0.0 {
+        return (Vec::new(), Vec::new());
+    }
+    let mut patches: Vec<Patch> = areas
+        .iter()
+        .map(|(material, area)| Patch {
+            material: *material,
+            linear: colors[*material],
+            share: (seen(*material, *area) / visible) as f32,
+        })
+        .collect();
+    patches.sort_by(|p, q| {
+        q.share
+            .total_cmp(&p.share)
+            .then(p.material.cmp(&q.material))
+    });
+    let mut substances: Substances = Vec::new();
+    for (material, area) in areas {
+        let substance = library().get_or_default(&house.materials[material].substance);
+        let share = (area / total) as f32;
+        match substances
+            .iter_mut()
+            .find(|(known, _)| known.name == substance.name)
+        {
+            Some((_, sum)) => *sum += share,
+            None => substances.push((substance, share)),
+        }
+    }
+    substances.sort_by(|p, q| q.1.total_cmp(&p.1).then(p.0.name.cmp(&q.0.name)));
+    (patches, substances)
+}

@@ -1,0 +1,217 @@
+//! Convex outlines seen from above.
+
+use glam::Vec2;
+
+/// Points nearer than this to a straight outline are left out, m.
+const STRAIGHT_M: f32 = 5e-4;
+
+/// A convex outline in the ground plane: points (x, z), m, in one turning sense; may be a point or a line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Hull {
+    points: Vec<Vec2>,
+}
+
+fn segment_to_point(a: Vec2, b: Vec2, p: Vec2) -> f32 {
+    let along = b - a;
+    let length2 = along.length_squared();
+    let t = if length2 > 0.0 {
+        ((p - a).dot(along) / length2).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (a + along * t).distance(p)
+}
+
+fn segments_cross(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool {
+    let side = |p: Vec2, q: Vec2, r: Vec2| (q - p).perp_dot(r - p);
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
+impl Hull {
+    /// The smallest convex outline around `points`.
+    ///
+    /// # Source
+    /// A. M. Andrew, Inf. Proc. Letters 9, 216 (1979): monotone chain.
+    pub fn around(points: impl IntoIterator<Item = Vec2>) -> Self {
+        let mut sorted: Vec<Vec2> = points.into_iter().filter(|p| p.is_finite()).collect();
+        sorted.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
+        sorted.dedup();
+        if sorted.len() < 3 {
+            return Self { points: sorted };
+        }
+        let chain = |points: &mut dyn Iterator<Item = Vec2>| {
+            let mut chain: Vec<Vec2> = Vec::new();
+            for point in points {
+                while let [.., a, b] = chain[..] {
+                    let edge = point - a;
+                    if (b - a).perp_dot(edge) > STRAIGHT_M * edge.length() {
+                        break;
+                    }
+                    chain.pop();
+                }
+                chain.push(point);
+            }
+            chain.pop();
+            chain
+        };
+        let mut points = chain(&mut sorted.iter().copied());
+        points.extend(chain(&mut sorted.iter().rev().copied()));
+        Self { points }
+    }
+
+    /// The corners.
+    pub fn points(&self) -> &[Vec2] {
+        &self.points
+    }
+
+    fn edges(&self) -> impl Iterator<Item = (Vec2, Vec2)> + '_ {
+        let next = self.points.iter().cycle().skip(1);
+        self.points.iter().copied().zip(next.copied())
+    }
+
+    /// The area, m².
+    pub fn area_m2(&self) -> f32 {
+        let origin = self.points.first().copied().unwrap_or_default();
+        self.edges()
+            .map(|(a, b)| (a - origin).perp_dot(b - origin))
+            .sum::<f32>()
+            .abs()
+            * 0.5
+    }
+
+    /// Whether `point` lies inside or on the border.
+    pub fn contains(&self, point: Vec2) -> bool {
+        self.points.len() > 2
+            && self
+                .edges()
+                .all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
+    }
+
+    /// Distance to a point, m; 0 inside.
+    pub fn distance_to(&self, point: Vec2) -> f32 {
+        if self.contains(point) {
+            return 0.0;
+        }
+        self.edges()
+            .map(|(a, b)| segment_to_point(a, b, point))
+            .fold(f32::INFINITY, f32::min)
+    }
+
+    /// The area that two outlines share, m².
+    ///
+    /// # Source
+    /// I. E. Sutherland, G. W. Hodgman, Comm. ACM 17, 32 (1974): clipping edge by edge.
+    pub fn overlap_m2(&self, other: &Self) -> f32 {
+        if other.points.len() < 3 {
+            return 0.0;
+        }
+        let mut points = self.points.clone();
+        for (a, b) in other.edges() {
+            let depth = |p: Vec2| (b - a).perp_dot(p - a);
+            let mut kept = Vec::with_capacity(points.len() + 1);
+            for (k, p) in points.iter().enumerate() {
+                let q = points[(k + 1) % points.len()];
+                let (from, to) = (depth(*p), depth(q));
+                if from >= 0.0 {
+                    kept.push(*p);
+                }
+                if (from >= 0.0) != (to >= 0.0) {
+                    kept.push(*p + (q - *p) * (from / (from - to)));
+                }
+            }
+            points = kept;
+        }
+        Self { points }.area_m2()
+    }
+
+    /// The smallest distance between two outlines, m; 0 when they touch or overlap.
+    pub fn distance(&self, other: &Self) -> f32 {
+        let mut best = f32::INFINITY;
+        for (points, hull) in [(&self.points, other), (&other.points, self)] {
+            for point in points {
+                best = best.min(hull.distance_to(*point));
+            }
+        }
+        let crosses = |(a, b)| other.edges().any(|(c, d)| segments_cross(a, b, c, d));
+        if best > 0.0 && self.edges().any(crosses) {
+            0.0
+        } else {
+            best
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::random::Key;
+
+    fn square(x: f32, z: f32, half: f32) -> Hull {
+        Hull::around(
+            [
+                (-1.0, -1.0),
+                (1.0, -1.0),
+                (1.0, 1.0),
+                (-1.0, 1.0),
+                (0.0, 0.0),
+                (0.0, 1.0),
+            ]
+            .map(|(u, v)| Vec2::new(x + u * half, z + v * half)),
+        )
+    }
+
+    #[test]
+    fn squares_have_their_distances() {
+        let a = square(0.0, 0.0, 1.0);
+        assert_eq!(a.points().len(), 4);
+        assert!((a.area_m2() - 4.0).abs() < 1e-5);
+        assert!((a.distance(&square(3.0, 0.0, 1.0)) - 1.0).abs() < 1e-6);
+        assert!((a.distance(&square(3.0, 3.0, 1.0)) - 2.0_f32.sqrt()).abs() < 1e-6);
+        assert!(a.distance(&square(0.1, 0.0, 0.2)) <= 0.0);
+        assert!(a.distance(&square(1.5, 0.0, 1.0)) <= 0.0);
+        assert!((a.overlap_m2(&square(1.5, 0.5, 1.0)) - 0.75).abs() < 1e-5);
+        assert!(a.overlap_m2(&square(3.0, 0.0, 1.0)) <= 0.0);
+        // A long bar through the square: no corner of either lies in the other.
+        let bar = Hull::around(
+            [(-5.0, -0.1), (5.0, -0.1), (5.0, 0.1), (-5.0, 0.1)].map(|(x, z)| Vec2::new(x, z)),
+        );
+        assert!(a.distance(&bar) <= 0.0);
+    }
+
+    /// Against the least distance between points sampled in both outlines.
+    #[test]
+    fn distances_agree_with_sampling() {
+        for seed in 0..20 {
+            let mut stream = Key::root(seed).stream();
+            let mut cloud = |x: f32| -> Vec<Vec2> {
+                (0..12)
+                    .map(|_| Vec2::new(x + stream.range(-1.0, 1.0), stream.range(-1.0, 1.0)))
+                    .collect()
+            };
+            let (p, q) = (cloud(0.0), cloud(1.5));
+            let (a, b) = (Hull::around(p.clone()), Hull::around(q));
+            assert!(p.iter().all(|point| a.distance_to(*point) < 1e-3));
+            let grid = |hull: &Hull| -> Vec<Vec2> {
+                (0..60)
+                    .flat_map(|i| {
+                        (0..60).map(move |j| {
+                            Vec2::new(-1.0 + 0.06 * i as f32, -1.0 + 0.034 * j as f32)
+                        })
+                    })
+                    .filter(|point| hull.contains(*point))
+                    .chain(hull.points().iter().copied())
+                    .collect()
+            };
+            let (u, v) = (grid(&a), grid(&b));
+            let sampled = u
+                .iter()
+                .flat_map(|x| v.iter().map(move |y| x.distance(*y)))
+                .fold(f32::INFINITY, f32::min);
+            assert!(
+                (a.distance(&b) - sampled).abs() < 0.07,
+                "{} {sampled}",
+                a.distance(&b)
+            );
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Triangles where they stand, and rays against them.
+
+use dwell_scene::{House, ObjectId, State, StructureId};
+use glam::{Affine3A, Vec3};
+
+/// Calls `visit` with the corners of every triangle of an object where it stands in `state`, in world space, m.
+pub(crate) fn object_triangles(
+    house: &House,
+    state: &State,
+    object: ObjectId,
+    mut visit: impl FnMut([Vec3; 3]),
+) {
+    for id in house.objects[object].parts() {
+        let part = &house.parts[id];
+        let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
+        let mesh = &house.meshes[part.mesh];
+        for triangle in 0..mesh.triangles.len() {
+            visit(
+                mesh.corners(triangle)
+                    .map(|corner| world_from_mesh.transform_point3(corner)),
+            );
+        }
+    }
+}
+
+/// Calls `visit` with the corners of every triangle of a structure piece, m.
+pub(crate) fn structure_triangles(
+    house: &House,
+    piece: StructureId,
+    mut visit: impl FnMut([Vec3; 3]),
+) {
+    let mesh = &house.meshes[house.structure[piece].mesh];
+    for triangle in 0..mesh.triangles.len() {
+        visit(mesh.corners(triangle));
+    }
+}
+
+/// The area of a triangle after `map`, m².
+pub(crate) fn mapped_area_m2(corners: [Vec3; 3], map: &Affine3A) -> f64 {
+    let [a, b, c] = corners.map(|corner| map.transform_point3(corner));
+    f64::from((b - a).cross(c - a).length()) * 0.5
+}
+
+/// The height at which a vertical line through (x, z) of `point` meets the triangle, if the triangle is flatter than 60
+/// degrees; m.
+pub(crate) fn height_under([a, b, c]: [Vec3; 3], point: Vec3) -> Option<f32> {
+    let normal = (b - a).cross(c - a);
+    if normal.y.abs() < 0.5 * normal.length() || normal.y == 0.0 {
+        return None;
+    }
+    let turn = |p: Vec3, q: Vec3| (q.x - p.x) * (point.z - p.z) - (q.z - p.z) * (point.x - p.x);
+    let (s, t, u) = (turn(a, b), turn(b, c), turn(c, a));
+    let inside = (s >= 0.0 && t >= 0.0 && u >= 0.0) || (s <= 0.0 && t <= 0.0 && u <= 0.0);
+    inside.then(|| a.y - (normal.x * (point.x - a.x) + normal.z * (point.z - a.z)) / normal.y)
+}
+
+/// Whether the ray from `origin` along `direction` meets the triangle from either side, at a positive distance.
+///
+/// # Source
+/// T. Möller, B. Trumbore, J. Graphics Tools 2, 21 (1997).
+pub(crate) fn ray_meets([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> bool {
+    let (ab, ac) = (b - a, c - a);
+    let p = direction.cross(ac);
+    let determinant = ab.dot(p);
+    if determinant.abs() < 1e-12 {
+        return false;
+    }
+    let offset = origin - a;
+    let u = offset.dot(p) / determinant;
+    let q = offset.cross(ab);
+    let v = direction.dot(q) / determinant;
+    u >= 0.0 && v >= 0.0 && u + v <= 1.0 && ac.dot(q) / determinant > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_lie_on_the_plane_and_steep_faces_have_none() {
+        let slope = [
+            Vec3::new(0.0, 0.0, 0.0),
+            Vec3::new(2.0, 1.0, 0.0),
+            Vec3::new(0.0, 0.0, 2.0),
+        ];
+        assert!((height_under(slope, Vec3::new(0.5, 9.0, 0.5)).unwrap() - 0.25).abs() < 1e-6);
+        assert_eq!(height_under(slope, Vec3::new(-0.1, 0.0, 0.5)), None);
+        let wall = [Vec3::ZERO, Vec3::Y, Vec3::new(0.1, 1.0, 1.0)];
+        assert_eq!(height_under(wall, Vec3::new(0.03, 0.0, 0.5)), None);
+    }
+
+    #[test]
+    fn rays_meet_what_lies_ahead_from_both_sides() {
+        let triangle = [
+            Vec3::new(0.0, -1.0, -1.0),
+            Vec3::new(0.0, 1.0, -1.0),
+            Vec3::new(0.0, 0.0, 1.0),
+        ];
+        assert!(ray_meets(triangle, Vec3::new(-1.0, 0.0, 0.0), Vec3::X));
+        assert!(ray_meets(triangle, Vec3::new(1.0, 0.0, 0.0), Vec3::NEG_X));
+        assert!(!ray_meets(triangle, Vec3::new(1.0, 0.0, 0.0), Vec3::X));
+        assert!(!ray_meets(triangle, Vec3::new(-1.0, 2.0, 0.0), Vec3::X));
+    }
+}

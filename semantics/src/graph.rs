@@ -1,0 +1,172 @@
+//! The scene graph: rooms, objects with their properties, and every relation that holds.
+
+use crate::predicates;
+use crate::scene::{Scene, Term, Viewer};
+use dwell_scene::ObjectId;
+use serde::{Deserialize, Serialize};
+
+/// What is where. Ids are those of sensors; rooms are counted from 0.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SceneGraph {
+    /// Rooms in order.
+    pub rooms: Vec<RoomNode>,
+    /// Objects in order.
+    pub objects: Vec<ObjectNode>,
+    /// Relations, sorted by subject, then predicate, then object.
+    pub relations: Vec<Edge>,
+}
+
+/// A room.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RoomNode {
+    /// Counted from 0.
+    pub room: u32,
+    /// Spoken name of its own in the house: "kitchen", "second bedroom".
+    pub name: String,
+    /// Floor area, m².
+    pub area_m2: f32,
+}
+
+/// An object.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ObjectNode {
+    /// The sensors' id.
+    pub id: i32,
+    /// The house's name for it.
+    pub name: String,
+    /// Spoken noun.
+    pub noun: String,
+    /// Plain colour words, largest share first.
+    pub colors: Vec<String>,
+    /// Substances by name, largest share first.
+    pub substances: Vec<String>,
+    /// Its size for its kind.
+    pub size: crate::Size,
+    /// The room it is in.
+    pub room: Option<u32>,
+    /// The middle of its box, m.
+    pub center: [f32; 3],
+    /// The edges of its box, m.
+    pub extents: [f32; 3],
+    /// How far it is open, 0 to 1; nothing for what does not open.
+    pub openness: Option<f32>,
+    /// Whether it is switched on; nothing for what has no switch.
+    pub switched_on: Option<bool>,
+    /// The agent that holds it, counted from 0.
+    pub held_by: Option<u32>,
+}
+
+/// One relation that holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Edge {
+    /// The sensors' id of an object.
+    pub subject: i32,
+    /// The predicate's name.
+    pub predicate: String,
+    /// The sensors' id of an object or structure piece; for `in_room` the room.
+    pub object: i32,
+}
+
+fn node(scene: &Scene<'_>, id: ObjectId) -> ObjectNode {
+    let (house, facts) = (scene.house(), scene.facts(id));
+    let bounds = scene.extent(id).bounds;
+    ObjectNode {
+        id: house.entity_of_object(id).0,
+        name: house.objects[id].name.clone(),
+        noun: facts.noun.clone(),
+        colors: facts
+            .colors
+            .iter()
+            .map(|(word, _)| (*word).to_owned())
+            .collect(),
+        substances: facts
+            .substances
+            .iter()
+            .map(|(substance, _)| substance.name.clone())
+            .collect(),
+        size: facts.size,
+        room: scene.room_of(id).map(|room| room.0),
+        center: bounds.center().into(),
+        extents: bounds.size().into(),
+        openness: scene.state.openness(house, id),
+        switched_on: house.objects[id]
+            .switch
+            .map(|_| scene.state.switched_on[id]),
+        held_by: scene.holder(id).map(|agent| agent.0),
+    }
+}
+
+/// Everything that can be said about the scene, as data; with a viewer, left and right too.
+///
+/// Relations are those between objects, between an object and a structure piece it rests or hangs on, and `in_room`.
+pub fn scene_graph(scene: &Scene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
+    let house = scene.house();
+    let rooms = house.rooms.ids().map(|id| {
+        let facts = scene.semantics.room(id);
+        RoomNode {
+            room: id.0,
+            name: facts.label.clone(),
+            area_m2: facts.area_m2,
+        }
+    });
+    let mut relations = Vec::new();
+    for subject in house.objects.ids() {
+        let others = house
+            .objects
+            .ids()
+            .filter(|other| *other != subject)
+            .map(Term::Object);
+        let pieces = house.structure.ids().map(Term::Structure);
+        let terms: Vec<Term> = house
+            .rooms
+            .ids()
+            .map(Term::Room)
+            .chain(others)
+            .chain(pieces)
+            .collect();
+        for predicate in predicates::all() {
+            for term in &terms {
+                if !predicate.holds(scene, Term::Object(subject), *term, viewer) {
+                    continue;
+                }
+                let object = match *term {
+                    Term::Object(id) => house.entity_of_object(id).0,
+                    Term::Structure(id) => house.entity_of_structure(id).0,
+                    Term::Room(id) => id.0 as i32,
+                    Term::Agent(id) => house.entity_of_agent(id).0,
+                };
+                let subject = house.entity_of_object(subject).0;
+                relations.push(Edge {
+                    subject,
+                    predicate: predicate.name().to_owned(),
+                    object,
+                });
+            }
+        }
+    }
+    relations.sort_by(|p, q| {
+        (p.subject, &p.predicate, p.object).cmp(&(q.subject, &q.predicate, q.object))
+    });
+    SceneGraph {
+        rooms: rooms.collect(),
+        objects: house.objects.ids().map(|id| node(scene, id)).collect(),
+        relations,
+    }
+}
+
+impl SceneGraph {
+    /// The relations of one object, by sensors' id.
+    pub fn of(&self, id: i32) -> impl Iterator<Item = &Edge> {
+        self.relations.iter().filter(move |edge| edge.subject == id)
+    }
+
+    /// The number of rooms and objects.
+    pub fn node_count(&self) -> usize {
+        self.rooms.len() + self.objects.len()
+    }
+
+    /// The object with a sensors' id.
+    pub fn object(&self, id: i32) -> Option<&ObjectNode> {
+        self.objects.iter().find(|node| node.id == id)
+    }
+}

@@ -1,0 +1,45 @@
+//! "Find the red chair in the bedroom."
+
+use super::task::{FOUND_M, Goal, Instruction, InstructionKind};
+use crate::refer::refer;
+use crate::scene::Scene;
+
+/// What is part of the building, stands between rooms, or has no name of its own, is not looked for.
+const NOT_SOUGHT: [&str; 11] = [
+    "door",
+    "garage_door",
+    "window",
+    "curtain",
+    "blinds",
+    "arch",
+    "stairs",
+    "switch",
+    "unknown",
+    "box",
+    "ground",
+];
+
+pub(super) fn candidates(scene: &Scene<'_>) -> Vec<Instruction> {
+    let objects = scene.house().objects.ids();
+    objects
+        .filter(|object| {
+            let row = scene.facts(*object).category;
+            row.is_some_and(|row| !row.structure && !NOT_SOUGHT.contains(&row.name))
+                && scene.room_of(*object).is_some()
+        })
+        .filter_map(|object| {
+            let expression = refer(scene, object)?;
+            let goal = Goal {
+                rooms: Vec::new(),
+                objects: vec![object],
+                radius_m: FOUND_M,
+                in_sight: true,
+            };
+            Some(Instruction::new(
+                InstructionKind::FindObject,
+                expression.definite(),
+                goal,
+            ))
+        })
+        .collect()
+}

@@ -1,0 +1,65 @@
+//! Instructions in words, and the check whether they were fulfilled.
+//!
+//! To add a kind: a file here with its candidates, and a line in [`candidates`].
+
+mod find_object;
+mod go_to_room;
+mod task;
+
+pub use task::{Goal, Instruction, InstructionKind, Progress};
+
+use crate::error::SemanticsError;
+use crate::scene::Scene;
+use dwell_scene::random::Key;
+
+/// How much room a text has at most, in characters.
+pub const MAX_TEXT_LEN: usize = 120;
+/// Every character that a text may have.
+pub const CHARSET: &str = " ',-.ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+
+/// Every instruction of a kind that the scene offers, with one fixed wording each, in order. Each means exactly one thing.
+pub fn candidates(scene: &Scene<'_>, kind: InstructionKind) -> Vec<Instruction> {
+    let found = match kind {
+        InstructionKind::GoToRoom => go_to_room::candidates(scene),
+        InstructionKind::FindObject => find_object::candidates(scene),
+    };
+    found
+        .into_iter()
+        .filter(|instruction| {
+            let fits = instruction.text.len() <= MAX_TEXT_LEN;
+            fits && instruction.text.chars().all(|c| CHARSET.contains(c))
+                && instruction.tokens().is_ok()
+        })
+        .collect()
+}
+
+/// One of `candidates`, with a wording of its own, both drawn from `key`; `None` when there is none.
+///
+/// # Determinism
+/// Equal candidates and keys give equal instructions.
+pub fn choose(candidates: &[Instruction], key: Key) -> Option<Instruction> {
+    let mut stream = key.child("instruction").stream();
+    let chosen = stream.choose(candidates)?;
+    Some(chosen.reworded(stream.bits()))
+}
+
+/// An instruction of a kind.
+///
+/// # Errors
+/// [`SemanticsError::NoInstruction`] when the scene offers none.
+pub fn instruction(
+    scene: &Scene<'_>,
+    kind: InstructionKind,
+    key: Key,
+) -> Result<Instruction, SemanticsError> {
+    choose(&candidates(scene, kind), key).ok_or_else(|| SemanticsError::NoInstruction {
+        house: scene.house().name.clone(),
+        kind: kind.name(),
+        why: match kind {
+            InstructionKind::GoToRoom => {
+                "no room can be told from all others by its kind and contents"
+            }
+            InstructionKind::FindObject => "no object can be told from all others by words",
+        },
+    })
+}

@@ -1,0 +1,167 @@
+//! An instruction, bound to what it means.
+
+use crate::error::SemanticsError;
+use crate::scene::{Scene, Viewer};
+use crate::sight::sees;
+use crate::tokens;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{AgentId, ObjectId, RoomId};
+use glam::Vec2;
+use serde::{Deserialize, Serialize};
+
+/// How near to a thing's outline an agent must be to have found it, m.
+pub(super) const FOUND_M: f32 = 1.5;
+/// Half the angle within which the thing must lie for the agent to have found it, rad: 45 degrees.
+const FOUND_HALF_ANGLE_RAD: f32 = std::f32::consts::FRAC_PI_4;
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InstructionKind {
+    /// Go to a room.
+    GoToRoom,
+    /// Find a thing: stand near it and look at it.
+    FindObject,
+}
+
+impl InstructionKind {
+    /// All kinds.
+    pub const ALL: [Self; 2] = [Self::GoToRoom, Self::FindObject];
+
+    /// The name, in letters and underscores.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::GoToRoom => "go_to_room",
+            Self::FindObject => "find_object",
+        }
+    }
+
+    /// Wordings; `{}` stands for what is meant, with its article.
+    pub(crate) fn wordings(self) -> &'static [&'static str] {
+        match self {
+            Self::GoToRoom => &[
+                "Go to {}.",
+                "Walk to {}.",
+                "Please go to {}.",
+                "Enter {}.",
+                "Move to {}.",
+            ],
+            Self::FindObject => &[
+                "Find {}.",
+                "Look for {}.",
+                "Please find {}.",
+                "Go to {}.",
+                "Show me {}.",
+            ],
+        }
+    }
+}
+
+/// How far an instruction is fulfilled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Progress {
+    /// It is fulfilled now.
+    Success,
+    /// It cannot be fulfilled any more, or the agent stopped in the wrong place.
+    Failure,
+    /// Not yet.
+    Continue,
+}
+
+/// Where an instruction leads, for rewards and path planning; no words in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Goal {
+    /// The rooms that count; empty when a thing counts.
+    pub rooms: Vec<RoomId>,
+    /// The things that count; empty when a room counts.
+    pub objects: Vec<ObjectId>,
+    /// How near to a thing's outline from above one must come, m; 0 for a room, in which one must stand.
+    pub radius_m: f32,
+    /// Whether the thing must be in sight too.
+    pub in_sight: bool,
+}
+
+/// An instruction in words, bound at reset to the things it means: later changes of the scene do not change what counts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Instruction {
+    /// What is asked.
+    pub kind: InstructionKind,
+    /// The words, of [`CHARSET`](super::CHARSET), at most [`MAX_TEXT_LEN`](super::MAX_TEXT_LEN) of them.
+    pub text: String,
+    /// What is meant, with its article: "the red chair in the kitchen".
+    pub target: String,
+    /// Where it leads.
+    pub goal: Goal,
+}
+
+impl Instruction {
+    pub(super) fn new(kind: InstructionKind, target: String, goal: Goal) -> Self {
+        let text = kind.wordings()[0].replace("{}", &target);
+        Self {
+            kind,
+            text,
+            target,
+            goal,
+        }
+    }
+
+    /// The same instruction in the wording that `choice` picks.
+    pub(super) fn reworded(&self, choice: u64) -> Self {
+        let wordings = self.kind.wordings();
+        let wording = wordings[(choice % wordings.len() as u64) as usize];
+        Self {
+            text: wording.replace("{}", &self.target),
+            ..self.clone()
+        }
+    }
+
+    /// The words as numbers; shape ([`tokens::LENGTH`],), padded with 0.
+    ///
+    /// # Errors
+    /// [`SemanticsError::UnknownWord`] or [`SemanticsError::TooLong`]; never for a text of this crate's own making.
+    pub fn tokens(&self) -> Result<Vec<i32>, SemanticsError> {
+        tokens::tokenize(&self.text)
+    }
+
+    /// Whether the agent has fulfilled it in this scene: it stands in the room; or it stands within the goal's radius of the
+    /// thing's outline and sees it at most 45 degrees from where it looks, or holds it.
+    ///
+    /// `rays` must be up to date with the scene's state. [`Progress::Failure`] when the agent does not exist.
+    pub fn verify(&self, scene: &Scene<'_>, rays: &RayScene, agent: AgentId) -> Progress {
+        let (Some(body), Some(viewer)) = (
+            scene.state.agents.get(agent),
+            Viewer::of_agent(scene.state, agent),
+        ) else {
+            return Progress::Failure;
+        };
+        let here = Vec2::new(body.position.x, body.position.z);
+        let in_room = || {
+            scene
+                .room_of_agent(agent)
+                .is_some_and(|room| self.goal.rooms.contains(&room))
+        };
+        let found = |object: &ObjectId| {
+            let extent = scene.extent(*object);
+            // A thing on another storey is not near, however straight above it one stands.
+            let level = extent.bounds.max.y > body.position.y - 0.5
+                && extent.bounds.min.y < body.position.y + body.body.height_m + 1.0;
+            let near = extent.footprint.distance_to(here) <= self.goal.radius_m;
+            let seen = || sees(scene, rays, &viewer, *object, FOUND_HALF_ANGLE_RAD);
+            body.holding == Some(*object) || (level && near && (!self.goal.in_sight || seen()))
+        };
+        if in_room() || self.goal.objects.iter().any(found) {
+            Progress::Success
+        } else {
+            Progress::Continue
+        }
+    }
+
+    /// As [`Self::verify`] for an agent that says it is done: [`Progress::Continue`] becomes [`Progress::Failure`].
+    pub fn verify_at_stop(&self, scene: &Scene<'_>, rays: &RayScene, agent: AgentId) -> Progress {
+        match self.verify(scene, rays, agent) {
+            Progress::Continue => Progress::Failure,
+            judged => judged,
+        }
+    }
+}

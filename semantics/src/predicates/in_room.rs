@@ -1,0 +1,41 @@
+//! In a room.
+
+use super::{Laws, Predicate};
+use crate::scene::{Scene, Term, Viewer};
+
+/// `a` is in room `b`: the middle of its box lies over the room's floor and between floor and ceiling (0.3 m of tolerance), in the
+/// smallest such room where floors overlap; a held thing is where its holder is; a thing in a wall (a window, a door) that
+/// was never moved is in the room that the house's file names. An agent is where its feet are. Nothing is in two rooms.
+pub(super) struct InRoom;
+
+impl Predicate for InRoom {
+    fn name(&self) -> &'static str {
+        "in_room"
+    }
+
+    fn words(&self) -> &'static str {
+        "in"
+    }
+
+    fn laws(&self) -> Laws {
+        Laws {
+            irreflexive: true,
+            antisymmetric: true,
+            functional: true,
+            ..Laws::default()
+        }
+    }
+
+    fn holds(&self, scene: &Scene<'_>, subject: Term, object: Term, _: Option<&Viewer>) -> bool {
+        let Term::Room(room) = object else {
+            return false;
+        };
+        let found = match subject {
+            Term::Object(id) => scene.room_of(id),
+            Term::Agent(id) => scene.room_of_agent(id),
+            Term::Structure(id) => scene.house().structure[id].room,
+            Term::Room(_) => None,
+        };
+        found == Some(room)
+    }
+}

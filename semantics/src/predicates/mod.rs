@@ -1,0 +1,92 @@
+//! Relations: the one engine that is used for saying and for checking.
+//!
+//! To add one: a file here that implements [`Predicate`], and a line in [`all`].
+
+mod hangs_on;
+mod in_room;
+mod inside;
+mod left_of;
+mod next_to;
+mod on;
+mod right_of;
+mod support;
+
+pub use support::Support;
+pub(crate) use support::supports_of;
+
+use crate::error::SemanticsError;
+use crate::scene::{Scene, Term, Viewer};
+
+/// What always holds of a relation; checked for every relation by the tests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "the laws are independent of each other"
+)]
+pub struct Laws {
+    /// r(a, b) gives r(b, a).
+    pub symmetric: bool,
+    /// r(a, b) excludes r(b, a).
+    pub antisymmetric: bool,
+    /// Nothing has it to itself.
+    pub irreflexive: bool,
+    /// r(a, b) and r(a, c) give b = c.
+    pub functional: bool,
+    /// The name of the relation s with r(a, b) exactly when s(b, a).
+    pub converse: Option<&'static str>,
+}
+
+/// A relation between two things.
+pub trait Predicate: Sync {
+    /// The name, in letters and underscores.
+    fn name(&self) -> &'static str;
+
+    /// The words between subject and object: "the cup is **on** the table".
+    fn words(&self) -> &'static str;
+
+    /// What always holds of it.
+    fn laws(&self) -> Laws;
+
+    /// Whether it means anything only from somebody's point of view.
+    fn needs_viewer(&self) -> bool {
+        false
+    }
+
+    /// Whether it holds. `false` for kinds of things it says nothing about, and without the viewer it needs.
+    fn holds(
+        &self,
+        scene: &Scene<'_>,
+        subject: Term,
+        object: Term,
+        viewer: Option<&Viewer>,
+    ) -> bool;
+}
+
+/// Every relation.
+pub fn all() -> &'static [&'static dyn Predicate] {
+    &[
+        &in_room::InRoom,
+        &inside::Inside,
+        &on::On,
+        &hangs_on::HangsOn,
+        &next_to::NextTo,
+        &left_of::LeftOf,
+        &right_of::RightOf,
+    ]
+}
+
+/// The relation called `name`.
+///
+/// # Errors
+/// [`SemanticsError::UnknownPredicate`] lists those that exist.
+pub fn find(name: &str) -> Result<&'static dyn Predicate, SemanticsError> {
+    let known = || all().iter().map(|predicate| predicate.name()).collect();
+    all()
+        .iter()
+        .find(|predicate| predicate.name() == name)
+        .copied()
+        .ok_or_else(|| SemanticsError::UnknownPredicate {
+            name: name.to_owned(),
+            known: known(),
+        })
+}

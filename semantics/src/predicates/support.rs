@@ -1,0 +1,105 @@
+//! What a thing rests on.
+
+use crate::geometry::{height_under, object_triangles, structure_triangles};
+use crate::scene::{Scene, Term};
+use dwell_scene::{ObjectId, StructureKind};
+use glam::Vec3;
+
+/// How far a surface may lie above or below a point of the sole and still carry it, m: models float and sink a little.
+pub(crate) const REST_GAP_M: f32 = 0.03;
+/// The layer at a thing's foot whose faces are its underside, m; thinner in thin things.
+const UNDERSIDE_M: f32 = 0.01;
+/// The share of a sole that something must carry to count: a board across two chairs rests on both.
+pub(crate) const REST_SHARE: f32 = 1.0 / 3.0;
+
+/// Something that carries a thing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Support {
+    /// What carries: an object or a structure piece.
+    pub by: Term,
+    /// The share of the sole's points that rest on it, 0 to 1.
+    pub share: f32,
+}
+
+/// For every point of the sole the highest surface within [`REST_GAP_M`] of it, and whose it is.
+struct Search {
+    sole: Vec<Vec3>,
+    best: Vec<Option<(f32, Term)>>,
+}
+
+impl Search {
+    /// Offers a triangle of `owner`; what lies below `least_m` is the owner's own underside, which carries nothing.
+    fn offer(&mut self, corners: [Vec3; 3], owner: Term, least_m: f32) {
+        let low = corners[0].min(corners[1]).min(corners[2]);
+        let high = corners[0].max(corners[1]).max(corners[2]);
+        for (point, best) in self.sole.iter().zip(&mut self.best) {
+            let near =
+                point.x >= low.x && point.x <= high.x && point.z >= low.z && point.z <= high.z;
+            if !near || point.y < low.y - REST_GAP_M || point.y > high.y + REST_GAP_M {
+                continue;
+            }
+            let Some(height) = height_under(corners, *point) else {
+                continue;
+            };
+            let higher = best.is_none_or(|(known, _)| height > known);
+            if (height - point.y).abs() <= REST_GAP_M && height >= least_m && higher {
+                *best = Some((height, owner));
+            }
+        }
+    }
+}
+
+/// What `object` rests on, the largest share first; empty when it is held, hangs or floats.
+///
+/// Each point of its sole counts for the highest surface that lies within 3 cm of it and is flatter than 60 degrees, of
+/// whatever object or structure piece.
+pub(crate) fn supports_of(scene: &Scene<'_>, object: ObjectId) -> Vec<Support> {
+    let house = scene.house();
+    let extent = scene.extent(object);
+    if scene.holder(object).is_some() || extent.sole.is_empty() {
+        return Vec::new();
+    }
+    let reach = extent.bounds.grown(REST_GAP_M);
+    let mut search = Search {
+        sole: extent.sole.clone(),
+        best: vec![None; extent.sole.len()],
+    };
+    for other in house.objects.ids().filter(|other| *other != object) {
+        let bounds = scene.extent(other).bounds;
+        let carries = scene.holder(other).is_none();
+        if carries && bounds.intersects(&reach) && bounds.min.y <= extent.bottom_m() + REST_GAP_M {
+            let least_m = bounds.min.y + UNDERSIDE_M.min(0.3 * bounds.size().y);
+            object_triangles(house, scene.state, other, |corners| {
+                search.offer(corners, Term::Object(other), least_m);
+            });
+        }
+    }
+    for (id, piece) in house
+        .structure
+        .iter_ids()
+        .filter(|(_, piece)| piece.kind != StructureKind::Ceiling)
+    {
+        let bounds = scene.semantics.structure_bounds(id);
+        if bounds.intersects(&reach) && !house.meshes[piece.mesh].triangles.is_empty() {
+            structure_triangles(house, id, |corners| {
+                search.offer(corners, Term::Structure(id), f32::MIN);
+            });
+        }
+    }
+    let mut supports: Vec<(Term, usize)> = Vec::new();
+    for (_, owner) in search.best.iter().flatten() {
+        match supports.iter_mut().find(|(known, _)| known == owner) {
+            Some((_, points)) => *points += 1,
+            None => supports.push((*owner, 1)),
+        }
+    }
+    supports.sort_by(|p, q| q.1.cmp(&p.1).then(p.0.cmp(&q.0)));
+    let count = search.sole.len().max(1);
+    supports
+        .into_iter()
+        .map(|(by, points)| Support {
+            by,
+            share: points as f32 / count as f32,
+        })
+        .collect()
+}

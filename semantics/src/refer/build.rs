@@ -1,0 +1,136 @@
+//! The shortest description that means exactly one thing.
+
+use super::expression::{Expression, Relation};
+use crate::predicates;
+use crate::scene::{Scene, Term};
+use dwell_scene::ObjectId;
+
+/// Relations that a landmark may stand in, the most telling first.
+const TELLING: [&str; 3] = ["in", "on", "next_to"];
+
+/// The descriptions of `target` by its own properties, shortest first.
+fn by_properties(scene: &Scene<'_>, target: ObjectId) -> Vec<Expression> {
+    let facts = scene.facts(target);
+    let noun = Expression::noun(&facts.noun);
+    let color = facts
+        .colors
+        .first()
+        .map(|(word, _)| vec![(*word).to_owned()]);
+    let two = (facts.colors.len() > 1).then(|| {
+        facts.colors[..2]
+            .iter()
+            .map(|(word, _)| (*word).to_owned())
+            .collect::<Vec<_>>()
+    });
+    let material = facts.material_word().map(str::to_owned);
+    let size = facts.size.word().map(|_| facts.size);
+    let mut found = vec![noun.clone()];
+    found.extend(color.iter().map(|colors| Expression {
+        colors: colors.clone(),
+        ..noun.clone()
+    }));
+    found.extend(material.iter().map(|word| Expression {
+        material: Some(word.clone()),
+        ..noun.clone()
+    }));
+    found.extend(size.map(|size| Expression {
+        size: Some(size),
+        ..noun.clone()
+    }));
+    if let (Some(colors), Some(word)) = (&color, &material) {
+        found.push(Expression {
+            colors: colors.clone(),
+            material: Some(word.clone()),
+            ..noun.clone()
+        });
+    }
+    if let (Some(colors), Some(size)) = (&color, size) {
+        found.push(Expression {
+            colors: colors.clone(),
+            size: Some(size),
+            ..noun.clone()
+        });
+    }
+    found.extend(two.map(|colors| Expression { colors, ..noun }));
+    found
+}
+
+/// The relations in which `target` stands to things that a noun and at most one adjective tell apart in their room.
+fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
+    let mut found = Vec::new();
+    for name in TELLING {
+        let Ok(predicate) = predicates::find(name) else {
+            continue;
+        };
+        for landmark in scene
+            .house()
+            .objects
+            .ids()
+            .filter(|landmark| *landmark != target)
+        {
+            if scene.facts(landmark).category.is_none()
+                || !predicate.holds(scene, Term::Object(target), Term::Object(landmark), None)
+            {
+                continue;
+            }
+            let facts = scene.facts(landmark);
+            let mut words = vec![Expression::noun(&facts.noun)];
+            if let Some((color, _)) = facts.colors.first() {
+                words.push(Expression {
+                    colors: vec![(*color).to_owned()],
+                    ..words[0].clone()
+                });
+            }
+            found.extend(words.into_iter().map(|landmark| Relation {
+                predicate: name.to_owned(),
+                landmark: Box::new(landmark),
+            }));
+        }
+    }
+    found
+}
+
+/// The shortest description of `target` that fits nothing else in the house, or `None` when properties, room and one
+/// landmark do not tell it apart.
+///
+/// # Source
+/// After the incremental algorithm of R. Dale and E. Reiter, Cognitive Science 19, 233 (1995); here every candidate is
+/// checked against all objects, so that a result is unique by construction.
+pub fn refer(scene: &Scene<'_>, target: ObjectId) -> Option<Expression> {
+    let unique = |expression: &Expression| expression.matches(scene) == [target];
+    let room = scene
+        .room_of(target)
+        .map(|room| scene.semantics.room(room).noun.clone());
+    let own = by_properties(scene, target);
+    let in_room: Vec<Expression> = own
+        .iter()
+        .map(|expression| Expression {
+            room: room.clone(),
+            ..expression.clone()
+        })
+        .collect();
+    // The noun, then the noun with the room, then adjectives without and with the room.
+    let plain = own[..1]
+        .iter()
+        .chain(&in_room[..1])
+        .chain(&own)
+        .chain(&in_room);
+    if let Some(found) = plain.into_iter().find(|expression| unique(expression)) {
+        return Some(found.clone());
+    }
+    let relations = by_relations(scene, target);
+    let with = |expression: &Expression, relation: &Relation| Expression {
+        relation: Some(relation.clone()),
+        ..expression.clone()
+    };
+    // A landmark that also fits elsewhere in the house is named with the room.
+    own.iter()
+        .chain(&in_room)
+        .take(8)
+        .flat_map(|expression| {
+            relations
+                .iter()
+                .map(move |relation| with(expression, relation))
+        })
+        .find(unique)
+}

@@ -1,0 +1,143 @@
+//! A description of a thing, what it means, and how it sounds.
+
+use crate::english::with_article;
+use crate::facts::Facts;
+use crate::predicates;
+use crate::scene::{Scene, Term};
+use crate::size::Size;
+use dwell_scene::ObjectId;
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
+
+/// A description of an object by its properties. [`Expression::matches`] says what it means, [`Expression::text`] how it
+/// sounds; both rest on the same predicates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Expression {
+    /// Spoken noun.
+    pub noun: String,
+    /// Plain colour words, all of which the thing shows; may be empty.
+    pub colors: Vec<String>,
+    /// Adjective of a substance on at least a fifth of its surface.
+    pub material: Option<String>,
+    /// Its size for its kind.
+    pub size: Option<Size>,
+    /// A relation to another thing.
+    pub relation: Option<Relation>,
+    /// The spoken noun of the room it is in.
+    pub room: Option<String>,
+}
+
+/// A relation to a landmark.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Relation {
+    /// The predicate's name.
+    pub predicate: String,
+    /// The landmark.
+    pub landmark: Box<Expression>,
+}
+
+impl Expression {
+    /// A description by the noun alone.
+    pub fn noun(noun: &str) -> Self {
+        Self {
+            noun: noun.to_owned(),
+            colors: Vec::new(),
+            material: None,
+            size: None,
+            relation: None,
+            room: None,
+        }
+    }
+
+    fn fits(&self, facts: &Facts) -> bool {
+        let shows = |color: &String| facts.colors.iter().any(|(word, _)| word == color);
+        let made_of = |word: &String| {
+            facts
+                .substances
+                .iter()
+                .any(|(substance, share)| substance.adjective == *word && *share >= 0.2)
+        };
+        facts.is_called(&self.noun)
+            && self.colors.iter().all(shows)
+            && self.material.as_ref().is_none_or(made_of)
+            && self.size.is_none_or(|size| facts.size == size)
+    }
+
+    /// Whether `object` fits the description in this scene. A relation fits when some landmark fits.
+    pub fn fits_object(&self, scene: &Scene<'_>, object: ObjectId) -> bool {
+        let in_room = |name: &String| {
+            scene
+                .room_of(object)
+                .is_some_and(|room| scene.semantics.room(room).is_called(name))
+        };
+        let related = |relation: &Relation| {
+            let Ok(predicate) = predicates::find(&relation.predicate) else {
+                return false;
+            };
+            scene.house().objects.ids().any(|landmark| {
+                landmark != object
+                    && predicate.holds(scene, Term::Object(object), Term::Object(landmark), None)
+                    && relation.landmark.fits_object(scene, landmark)
+            })
+        };
+        self.fits(scene.facts(object))
+            && self.room.as_ref().is_none_or(in_room)
+            && self.relation.as_ref().is_none_or(related)
+    }
+
+    /// Every object that fits, in order.
+    pub fn matches(&self, scene: &Scene<'_>) -> Vec<ObjectId> {
+        scene
+            .house()
+            .objects
+            .ids()
+            .filter(|object| self.fits_object(scene, *object))
+            .collect()
+    }
+
+    /// Adjectives and noun: "large brown wooden table".
+    pub fn phrase(&self) -> String {
+        let mut words: Vec<&str> = Vec::new();
+        words.extend(self.size.and_then(Size::word));
+        let colors: Vec<&str> = self.colors.iter().map(String::as_str).collect();
+        let color = colors.join(" and ");
+        if !color.is_empty() {
+            words.push(&color);
+        }
+        words.extend(self.material.as_deref());
+        words.push(&self.noun);
+        words.join(" ")
+    }
+
+    fn tail(&self) -> String {
+        let mut text = String::new();
+        if let Some(relation) = &self.relation {
+            let words =
+                predicates::find(&relation.predicate).map_or("near", predicates::Predicate::words);
+            let _ = write!(text, " {words} {}", relation.landmark.definite());
+        }
+        if let Some(room) = &self.room {
+            let _ = write!(text, " in the {room}");
+        }
+        text
+    }
+
+    /// With the definite article: "the brown chair next to the table in the kitchen".
+    pub fn definite(&self) -> String {
+        format!("the {}{}", self.phrase(), self.tail())
+    }
+
+    /// With the indefinite article: "a brown chair in the kitchen".
+    pub fn indefinite(&self) -> String {
+        format!("{}{}", with_article(&self.phrase()), self.tail())
+    }
+
+    /// "the ..." when exactly one object fits, else "a ...".
+    pub fn text(&self, scene: &Scene<'_>) -> String {
+        if self.matches(scene).len() == 1 {
+            self.definite()
+        } else {
+            self.indefinite()
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Kinds of rooms, `assets/rooms.csv`.
+
+use crate::error::SemanticsError;
+use crate::table::Table;
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// A row of `assets/rooms.csv`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomKind {
+    /// The identifier.
+    pub name: &'static str,
+    /// Spoken, for one.
+    pub singular: &'static str,
+    /// Spoken, for several.
+    pub plural: &'static str,
+    /// Other spoken words.
+    pub synonyms: Vec<&'static str>,
+    /// Whether it has walls all round.
+    pub indoor: bool,
+}
+
+/// All kinds of rooms.
+#[derive(Debug)]
+pub struct RoomKinds {
+    rows: Vec<RoomKind>,
+    by_word: BTreeMap<String, usize>,
+}
+
+fn key(word: &str) -> String {
+    word.to_lowercase().replace('_', " ")
+}
+
+impl RoomKinds {
+    fn parse(text: &'static str) -> Result<Self, SemanticsError> {
+        let table = Table::parse("rooms.csv", text)?;
+        let (mut rows, mut by_word) = (Vec::new(), BTreeMap::new());
+        let mut weaker = Vec::new();
+        for row in table.rows() {
+            let index = rows.len();
+            let kind = RoomKind {
+                name: row.text("name")?,
+                singular: row.text("singular")?,
+                plural: row.text("plural")?,
+                synonyms: row.list("synonyms")?,
+                indoor: row.flag("indoor")?,
+            };
+            by_word.entry(key(kind.name)).or_insert(index);
+            weaker.push((key(kind.singular), index));
+            weaker.extend(row.list("aliases")?.iter().map(|word| (key(word), index)));
+            weaker.extend(kind.synonyms.iter().map(|word| (key(word), index)));
+            rows.push(kind);
+        }
+        for (word, index) in weaker {
+            by_word.entry(word).or_insert(index);
+        }
+        Ok(Self { rows, by_word })
+    }
+
+    /// All rows, in file order.
+    pub fn rows(&self) -> &[RoomKind] {
+        &self.rows
+    }
+
+    /// The kind that a word means: identifier, spoken word, synonym or label of a file; case and underscores do not
+    /// matter.
+    pub fn get(&self, word: &str) -> Option<&RoomKind> {
+        self.by_word.get(&key(word)).map(|index| &self.rows[*index])
+    }
+}
+
+/// The table that ships with the engine.
+pub fn room_kinds() -> &'static RoomKinds {
+    static TABLE: LazyLock<RoomKinds> = LazyLock::new(|| {
+        RoomKinds::parse(include_str!("../../assets/rooms.csv"))
+            .expect("assets/rooms.csv is checked by this crate's tests")
+    });
+    &TABLE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_label_of_the_sample_format_is_known() {
+        let labels = [
+            "Bedroom",
+            "Room",
+            "Bathroom",
+            "Toilet",
+            "Kitchen",
+            "Living_Room",
+            "Office",
+            "Dining_Room",
+            "Garage",
+            "Hallway",
+            "Hall",
+            "Balcony",
+            "Child_Room",
+            "Gym",
+            "Wardrobe",
+            "Storage",
+            "Guest_Room",
+            "Terrace",
+            "Entryway",
+            "Lobby",
+            "Loggia",
+            "Boiler_room",
+            "Aeration",
+            "Passenger_elevator",
+            "Freight_elevator",
+            "Outside",
+        ];
+        for label in labels {
+            assert!(room_kinds().get(label).is_some(), "{label}");
+        }
+        assert_eq!(room_kinds().rows().len(), labels.len());
+        assert_eq!(
+            room_kinds().get("Living_Room").unwrap().singular,
+            "living room"
+        );
+        assert_eq!(room_kinds().get("lounge").unwrap().name, "living_room");
+        assert_eq!(room_kinds().get("observatory"), None);
+    }
+}

@@ -1,0 +1,171 @@
+//! What is true of a room in every state.
+
+use crate::color::{Patch, Vocabulary, color_words};
+use crate::english;
+use crate::room_kind::{RoomKind, room_kinds};
+use dwell_scene::material::library;
+use dwell_scene::{House, IdVec, MaterialId, Room, RoomId, StructureKind};
+use std::collections::BTreeMap;
+
+/// How far in front of a wall its room is looked for, m.
+const PROBE_M: f32 = 0.08;
+
+/// The lasting facts about a room.
+#[derive(Clone, Debug)]
+pub struct RoomFacts {
+    /// Its kind, if the table knows it.
+    pub kind: Option<&'static RoomKind>,
+    /// Spoken noun, for one.
+    pub noun: String,
+    /// Spoken noun, for several.
+    pub plural: String,
+    /// Every word it may be called by: its kinds' nouns and synonyms.
+    pub names: Vec<String>,
+    /// A name of its own in the house, without article: "kitchen", "second bedroom".
+    pub label: String,
+    /// Floor area, m².
+    pub area_m2: f32,
+    /// The adjective of most of its floor: "tiled".
+    pub floor_word: Option<&'static str>,
+    /// The colour word of most of its walls' inner faces.
+    pub wall_color: Option<&'static str>,
+}
+
+impl RoomFacts {
+    pub(crate) fn gather(
+        house: &House,
+        colors: &IdVec<MaterialId, [f32; 3]>,
+    ) -> IdVec<RoomId, Self> {
+        let surfaces = Surfaces::gather(house, colors);
+        let mut rooms: IdVec<RoomId, Self> = house
+            .rooms
+            .iter_ids()
+            .map(|(id, room)| Self::of(room, &surfaces, id))
+            .collect();
+        let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+        let mut total: BTreeMap<String, usize> = BTreeMap::new();
+        for room in &rooms {
+            *total.entry(room.noun.clone()).or_default() += 1;
+        }
+        for room in rooms.iter_mut() {
+            let number = seen.entry(room.noun.clone()).or_default();
+            *number += 1;
+            if total[&room.noun] > 1 {
+                room.label = format!("{} {}", english::ordinal(*number), room.noun);
+            }
+        }
+        rooms
+    }
+
+    fn of(room: &Room, surfaces: &Surfaces, id: RoomId) -> Self {
+        let kinds: Vec<Option<&RoomKind>> = room
+            .kinds
+            .iter()
+            .map(|kind| room_kinds().get(kind))
+            .collect();
+        let kind = kinds.first().copied().flatten();
+        let said = room.kinds.first().map_or("room", String::as_str);
+        let (noun, plural) = kind.map_or_else(
+            || (said.to_owned(), format!("{said}s")),
+            |kind| (kind.singular.to_owned(), kind.plural.to_owned()),
+        );
+        let mut names: Vec<String> = vec![noun.clone()];
+        for kind in kinds.into_iter().flatten() {
+            names.push(kind.singular.to_owned());
+            names.extend(kind.synonyms.iter().map(|&name| name.to_owned()));
+        }
+        names.dedup();
+        Self {
+            kind,
+            label: noun.clone(),
+            noun,
+            plural,
+            names,
+            area_m2: room.area_m2(),
+            floor_word: surfaces.floor_word(id),
+            wall_color: surfaces.wall_color(id),
+        }
+    }
+
+    /// Whether a speaker may call it `name`.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.names.iter().any(|known| known == name) || self.label == name
+    }
+}
+
+/// Areas of floors by substance and of inner walls by material, per room.
+struct Surfaces {
+    floors: IdVec<RoomId, BTreeMap<String, f32>>,
+    walls: IdVec<RoomId, Vec<Patch>>,
+}
+
+impl Surfaces {
+    fn gather(house: &House, colors: &IdVec<MaterialId, [f32; 3]>) -> Self {
+        let count = house.rooms.len();
+        let mut floors = IdVec::filled(BTreeMap::new(), count);
+        let mut walls: IdVec<RoomId, Vec<Patch>> = IdVec::filled(Vec::new(), count);
+        for piece in &house.structure {
+            let mesh = &house.meshes[piece.mesh];
+            for triangle in 0..mesh.triangles.len() {
+                let [a, b, c] = mesh.corners(triangle);
+                let normal = (b - a).cross(c - a);
+                let (Some(out), Some(id)) = (
+                    normal.try_normalize(),
+                    piece.materials.get(usize::from(mesh.slot(triangle))),
+                ) else {
+                    continue;
+                };
+                let area_m2 = normal.length() * 0.5;
+                match (piece.kind, piece.room) {
+                    (StructureKind::Floor, Some(room)) if out.y > 0.5 => {
+                        let substance = house.materials[*id].substance.clone();
+                        *floors[room].entry(substance).or_insert(0.0) += area_m2;
+                    }
+                    (StructureKind::Wall, _) if out.y.abs() < 0.5 => {
+                        // A wall has two sides: each triangle counts for the room that it looks into.
+                        if let Some(room) = house.room_at((a + b + c) / 3.0 + out * PROBE_M) {
+                            add(&mut walls[room], *id, colors[*id], area_m2);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        for patches in walls.iter_mut() {
+            let total: f32 = patches.iter().map(|patch| patch.share).sum();
+            for patch in patches.iter_mut() {
+                patch.share /= total;
+            }
+        }
+        Self { floors, walls }
+    }
+
+    fn floor_word(&self, room: RoomId) -> Option<&'static str> {
+        let floor = &self.floors[room];
+        let total: f32 = floor.values().sum();
+        let (name, _) = floor.iter().find(|(_, area)| **area >= 0.5 * total)?;
+        let substance = library()
+            .get(name)
+            .filter(|substance| substance.name != "hard_surface")?;
+        Some(&substance.adjective)
+    }
+
+    fn wall_color(&self, room: RoomId) -> Option<&'static str> {
+        let words = color_words(&self.walls[room], Vocabulary::Plain);
+        words
+            .first()
+            .filter(|(_, share)| *share >= 0.5)
+            .map(|(word, _)| *word)
+    }
+}
+
+fn add(patches: &mut Vec<Patch>, material: MaterialId, linear: [f32; 3], share: f32) {
+    match patches.iter_mut().find(|patch| patch.material == material) {
+        Some(patch) => patch.share += share,
+        None => patches.push(Patch {
+            material,
+            linear,
+            share,
+        }),
+    }
+}

@@ -1,0 +1,178 @@
+//! A house in one state, as predicates see it.
+
+use crate::facts::Facts;
+use crate::geometry::Extent;
+use crate::predicates::{Support, supports_of};
+use crate::semantics::Semantics;
+use dwell_scene::{
+    AgentId, Entity, EntityId, House, IdVec, ObjectId, Pose, RoomId, State, StructureId,
+};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::cell::OnceCell;
+
+/// Something that a predicate speaks about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Term {
+    /// An object.
+    Object(ObjectId),
+    /// A wall, floor or ceiling piece.
+    Structure(StructureId),
+    /// A room.
+    Room(RoomId),
+    /// An agent.
+    Agent(AgentId),
+}
+
+impl Term {
+    /// The object, if it is one.
+    pub fn object(self) -> Option<ObjectId> {
+        if let Self::Object(id) = self {
+            Some(id)
+        } else {
+            None
+        }
+    }
+
+    /// The term of a sensor's id; `None` for void, negative ids, and agents that `state` does not have.
+    pub fn from_entity(house: &House, state: &State, id: EntityId) -> Option<Self> {
+        match house.entity(id)? {
+            Entity::Void => None,
+            Entity::Structure(piece) => Some(Self::Structure(piece)),
+            Entity::Object(object) => Some(Self::Object(object)),
+            Entity::Agent(agent) => state.agents.get(agent).map(|_| Self::Agent(agent)),
+        }
+    }
+}
+
+/// Somebody who looks: left and right are meant from here.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Viewer {
+    /// A camera's pose: it looks along -Z, +X is right.
+    pub world_from_camera: Pose,
+}
+
+impl Viewer {
+    /// The eyes of an agent.
+    pub fn of_agent(state: &State, agent: AgentId) -> Option<Self> {
+        let agent = state.agents.get(agent)?;
+        Some(Self {
+            world_from_camera: agent.world_from_eye(),
+        })
+    }
+
+    /// `point` in the viewer's **upright** frame, m: +X right, +Y up, -Z ahead, turned as the camera is about the vertical
+    /// only, so that looking up or down changes no left or right.
+    pub fn upright_from_world(&self, point: Vec3) -> Vec3 {
+        let ahead = self.world_from_camera.transform_vector(Vec3::NEG_Z);
+        let yaw = dwell_scene::space::yaw_from_forward(ahead);
+        Pose::from_position_yaw(self.world_from_camera.position, yaw)
+            .inverse()
+            .transform_point(point)
+    }
+}
+
+/// A house in one state, with what was measured so far. Cheap to make: everything is measured at first use.
+pub struct Scene<'a> {
+    /// What stays true.
+    pub semantics: &'a Semantics,
+    /// The state.
+    pub state: &'a State,
+    extents: IdVec<ObjectId, OnceCell<Extent>>,
+    supports: IdVec<ObjectId, OnceCell<Vec<Support>>>,
+}
+
+impl<'a> Scene<'a> {
+    pub(crate) fn new(semantics: &'a Semantics, state: &'a State) -> Self {
+        let count = semantics.house().objects.len();
+        Self {
+            semantics,
+            state,
+            extents: (0..count).map(|_| OnceCell::new()).collect(),
+            supports: (0..count).map(|_| OnceCell::new()).collect(),
+        }
+    }
+
+    /// The house.
+    pub fn house(&self) -> &'a House {
+        self.semantics.house()
+    }
+
+    /// What is always true of an object.
+    pub fn facts(&self, object: ObjectId) -> &'a Facts {
+        self.semantics.facts(object)
+    }
+
+    /// Whether every part of the object stands where the house puts it.
+    pub fn at_rest(&self, object: ObjectId) -> bool {
+        let house = self.house();
+        house.objects[object]
+            .parts()
+            .all(|part| self.state.part_pose[part] == house.parts[part].world_from_part)
+    }
+
+    /// Where the object is.
+    pub fn extent(&self, object: ObjectId) -> &Extent {
+        if self.at_rest(object) {
+            return self.semantics.rest_extent(object);
+        }
+        self.extents[object].get_or_init(|| Extent::measure(self.house(), self.state, object))
+    }
+
+    /// What the object rests on, the largest share first.
+    pub fn supports(&self, object: ObjectId) -> &[Support] {
+        self.supports[object].get_or_init(|| supports_of(self, object))
+    }
+
+    /// Who holds the object.
+    pub fn holder(&self, object: ObjectId) -> Option<AgentId> {
+        self.state.held_by.get(object).copied().flatten()
+    }
+
+    /// The room an object is in: of its holder, else the one around the middle of its box (the smallest where rooms
+    /// overlap), else, while it stands where the house puts it, the one that the house's file names. `None` outside.
+    pub fn room_of(&self, object: ObjectId) -> Option<RoomId> {
+        if let Some(agent) = self.holder(object) {
+            return self.room_of_agent(agent);
+        }
+        let here = self.house().room_at(self.extent(object).bounds.center());
+        here.or_else(|| {
+            self.house().objects[object]
+                .room
+                .filter(|_| self.at_rest(object))
+        })
+    }
+
+    /// The room an agent stands in; `None` outside.
+    pub fn room_of_agent(&self, agent: AgentId) -> Option<RoomId> {
+        let agent = self.state.agents.get(agent)?;
+        self.house().room_at(agent.position)
+    }
+
+    /// The objects in a room, in order.
+    pub fn objects_in(&self, room: RoomId) -> Vec<ObjectId> {
+        self.house()
+            .objects
+            .ids()
+            .filter(|object| self.room_of(*object) == Some(room))
+            .collect()
+    }
+
+    /// The middle of a thing, m; `None` for a room and for an unknown agent.
+    pub fn center(&self, term: Term) -> Option<Vec3> {
+        match term {
+            Term::Object(id) => Some(self.extent(id).bounds.center()),
+            Term::Structure(id) => {
+                let mesh = self.house().structure[id].mesh;
+                Some(self.house().meshes[mesh].bounds().center())
+            }
+            Term::Room(_) => None,
+            Term::Agent(id) => self
+                .state
+                .agents
+                .get(id)
+                .map(|agent| agent.position + Vec3::Y * (agent.body.height_m * 0.5)),
+        }
+    }
+}

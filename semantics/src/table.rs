@@ -1,0 +1,108 @@
+//! The committed CSV tables: commas between fields, semicolons inside a field, no quotes.
+
+use crate::error::SemanticsError;
+
+/// A table with a head line.
+pub(crate) struct Table<'a> {
+    file: &'static str,
+    head: Vec<&'a str>,
+    rows: Vec<Vec<&'a str>>,
+}
+
+/// One row of a [`Table`].
+pub(crate) struct Row<'t, 'a> {
+    table: &'t Table<'a>,
+    index: usize,
+}
+
+impl<'a> Table<'a> {
+    /// Splits `text`; every row must have as many fields as the head.
+    pub(crate) fn parse(file: &'static str, text: &'a str) -> Result<Self, SemanticsError> {
+        let mut lines = text.lines();
+        let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+        let mut rows = Vec::new();
+        for (k, line) in lines.enumerate() {
+            let fields: Vec<&str> = line.split(',').collect();
+            if fields.len() != head.len() || line.contains('"') {
+                let what = format!(
+                    "{} fields, allowed are {} without quotes",
+                    fields.len(),
+                    head.len()
+                );
+                return Err(SemanticsError::Table {
+                    file,
+                    line: k + 2,
+                    what,
+                });
+            }
+            rows.push(fields);
+        }
+        Ok(Self { file, head, rows })
+    }
+
+    /// The rows in file order.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_, 'a>> {
+        (0..self.rows.len()).map(|index| Row { table: self, index })
+    }
+}
+
+impl<'a> Row<'_, 'a> {
+    /// A fault in this row.
+    pub(crate) fn fault(&self, what: String) -> SemanticsError {
+        SemanticsError::Table {
+            file: self.table.file,
+            line: self.index + 2,
+            what,
+        }
+    }
+
+    /// The field under `column`.
+    pub(crate) fn text(&self, column: &str) -> Result<&'a str, SemanticsError> {
+        let place = self.table.head.iter().position(|name| *name == column);
+        place
+            .map(|k| self.table.rows[self.index][k])
+            .ok_or_else(|| self.fault(format!("no column {column:?}")))
+    }
+
+    /// The parts of the field under `column`, split at semicolons; an empty field has none.
+    pub(crate) fn list(&self, column: &str) -> Result<Vec<&'a str>, SemanticsError> {
+        Ok(self
+            .text(column)?
+            .split(';')
+            .filter(|part| !part.is_empty())
+            .collect())
+    }
+
+    /// The number under `column`.
+    pub(crate) fn number<N: std::str::FromStr>(&self, column: &str) -> Result<N, SemanticsError> {
+        let text = self.text(column)?;
+        text.parse()
+            .map_err(|_| self.fault(format!("{column} is {text:?}, allowed is a number")))
+    }
+
+    /// 0 or 1 under `column`.
+    pub(crate) fn flag(&self, column: &str) -> Result<bool, SemanticsError> {
+        match self.text(column)? {
+            "0" => Ok(false),
+            "1" => Ok(true),
+            other => Err(self.fault(format!("{column} is {other:?}, allowed are 0 and 1"))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_read_by_column_and_faults_name_their_line() {
+        let table = Table::parse("t.csv", "a,b\n1,x;y\n2,\n").unwrap();
+        let rows: Vec<_> = table.rows().collect();
+        assert_eq!(rows[0].list("b").unwrap(), ["x", "y"]);
+        assert!(rows[1].list("b").unwrap().is_empty());
+        assert_eq!(rows[1].number::<u32>("a").unwrap(), 2);
+        let message = rows[1].flag("a").unwrap_err().to_string();
+        assert_eq!(message, "t.csv line 3: a is \"2\", allowed are 0 and 1");
+        assert!(Table::parse("t.csv", "a,b\n1\n").is_err());
+    }
+}

@@ -1,0 +1,155 @@
+//! Words as numbers: the vocabulary of instructions.
+
+use crate::category::categories;
+use crate::color::Vocabulary;
+use crate::error::SemanticsError;
+use crate::instruct::InstructionKind;
+use crate::predicates;
+use crate::room_kind::room_kinds;
+use dwell_scene::material::library;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
+
+/// The version of `assets/vocabulary.txt`: a number changes its meaning only with it.
+pub const VERSION: u32 = 1;
+/// The number of tokens of every text, padding included.
+pub const LENGTH: usize = 32;
+/// The token of padding.
+pub const PAD: i32 = 0;
+
+/// Splits a text into words and marks: lower case, `.` and `,` apart.
+pub fn words(text: &str) -> Vec<String> {
+    let spaced = text.to_lowercase().replace('.', " . ").replace(',', " , ");
+    spaced.split_whitespace().map(str::to_owned).collect()
+}
+
+/// Every word that an instruction can have, sorted.
+///
+/// `assets/vocabulary.txt` holds these words in an order that never changes; a test compares the two.
+pub fn needed_words() -> BTreeSet<String> {
+    let mut texts: Vec<&str> = vec!["the a an and with in . ,"];
+    texts.extend(InstructionKind::ALL.iter().flat_map(|kind| kind.wordings()));
+    texts.extend(predicates::all().iter().map(|predicate| predicate.words()));
+    texts.extend(Vocabulary::Plain.words());
+    texts.extend(["tiny", "small", "large", "huge"]);
+    texts.extend(
+        library()
+            .iter()
+            .map(|substance| substance.adjective.as_str()),
+    );
+    for row in categories().rows() {
+        texts.push(row.singular);
+        texts.push(row.plural);
+    }
+    texts.extend(room_kinds().rows().iter().map(|kind| kind.singular));
+    texts
+        .iter()
+        .flat_map(|text| words(text))
+        .filter(|word| !word.contains('{'))
+        .collect()
+}
+
+/// The words in the order of their tokens; token k is line k, counted from 1; 0 is padding.
+pub fn vocabulary() -> &'static [&'static str] {
+    static WORDS: OnceLock<Vec<&'static str>> = OnceLock::new();
+    WORDS.get_or_init(|| {
+        include_str!("../../assets/vocabulary.txt")
+            .lines()
+            .collect()
+    })
+}
+
+/// The number of different tokens, padding included: the `nvec` of a space of tokens.
+pub fn count() -> usize {
+    vocabulary().len() + 1
+}
+
+fn by_word() -> &'static BTreeMap<&'static str, i32> {
+    static TOKENS: OnceLock<BTreeMap<&'static str, i32>> = OnceLock::new();
+    TOKENS.get_or_init(|| {
+        vocabulary()
+            .iter()
+            .zip(1..)
+            .map(|(word, token)| (*word, token))
+            .collect()
+    })
+}
+
+/// A text as tokens. Shape ([`LENGTH`],), padded with [`PAD`].
+///
+/// # Errors
+/// [`SemanticsError::UnknownWord`], or [`SemanticsError::TooLong`] for more than [`LENGTH`] tokens.
+pub fn tokenize(text: &str) -> Result<Vec<i32>, SemanticsError> {
+    let words = words(text);
+    if words.len() > LENGTH {
+        return Err(SemanticsError::TooLong {
+            text: text.to_owned(),
+            found: words.len(),
+            allowed: LENGTH,
+        });
+    }
+    let mut tokens = Vec::with_capacity(LENGTH);
+    for word in words {
+        match by_word().get(word.as_str()) {
+            Some(token) => tokens.push(*token),
+            None => {
+                return Err(SemanticsError::UnknownWord {
+                    word,
+                    text: text.to_owned(),
+                    version: VERSION,
+                });
+            }
+        }
+    }
+    tokens.resize(LENGTH, PAD);
+    Ok(tokens)
+}
+
+/// The words of tokens, with spaces between them; unknown tokens and padding are left out.
+pub fn detokenize(tokens: &[i32]) -> String {
+    let known = tokens.iter().filter_map(|token| {
+        usize::try_from(*token)
+            .ok()
+            .and_then(|k| k.checked_sub(1))
+            .and_then(|k| vocabulary().get(k))
+    });
+    known.copied().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Run with `UPDATE_GOLDEN=1` to append new words: tokens that exist keep their numbers.
+    #[test]
+    fn the_committed_vocabulary_holds_every_needed_word_once() {
+        let known: BTreeSet<String> = vocabulary().iter().map(|word| (*word).to_owned()).collect();
+        let missing: Vec<String> = needed_words().difference(&known).cloned().collect();
+        if !missing.is_empty() && std::env::var_os("UPDATE_GOLDEN").is_some() {
+            let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/vocabulary.txt");
+            let all: Vec<String> = vocabulary()
+                .iter()
+                .map(|w| (*w).to_owned())
+                .chain(missing.clone())
+                .collect();
+            std::fs::write(path, all.join("\n") + "\n").unwrap();
+        }
+        assert!(missing.is_empty(), "{} words: {missing:?}", missing.len());
+        assert_eq!(known.len(), vocabulary().len());
+    }
+
+    #[test]
+    fn tokens_come_back_as_words() {
+        let tokens = tokenize("Go to the kitchen.").unwrap();
+        assert_eq!(tokens.len(), LENGTH);
+        assert_eq!(detokenize(&tokens), "go to the kitchen .");
+        assert_eq!(tokens[5..], [PAD; LENGTH - 5]);
+        assert!(tokens.iter().all(|t| (0..count() as i32).contains(t)));
+        let message = tokenize("Go to the xyzzy.").unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "\"xyzzy\" in \"Go to the xyzzy.\" is not in vocabulary version 1"
+        );
+        assert!(tokenize(&"the ".repeat(LENGTH + 1)).is_err());
+    }
+}

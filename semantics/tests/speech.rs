@@ -1,0 +1,414 @@
+//! Captions, descriptions, referring expressions and instructions.
+
+mod common;
+
+use common::{Builder, small_house};
+use dwell_scene::random::Key;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{AgentBody, AgentId, AgentState, Pose, State};
+use dwell_semantics::describe::{caption, describe_house, describe_room, describe_view};
+use dwell_semantics::graph::{SceneGraph, scene_graph};
+use dwell_semantics::instruct::{
+    CHARSET, InstructionKind, MAX_TEXT_LEN, Progress, candidates, choose, instruction,
+};
+use dwell_semantics::refer::{refer, refer_to_room};
+use dwell_semantics::{Semantics, Term, Viewer, predicates, tokens};
+use glam::Vec3;
+
+#[test]
+fn captions_read_aloud() {
+    let s = small_house();
+    let semantics = Semantics::new(&s.house);
+    let mut state = State::new(&s.house);
+    let scene = semantics.scene(&state);
+    assert_eq!(
+        caption(&scene, s.cup),
+        "a white porcelain cup on the table in the kitchen"
+    );
+    assert_eq!(
+        caption(&scene, s.red_chair),
+        "a red plastic chair next to the table in the kitchen"
+    );
+    assert_eq!(
+        caption(&scene, s.apple),
+        "a small red plastic portion of food in the bowl in the kitchen"
+    );
+    assert_eq!(
+        caption(&scene, s.stool),
+        "a brown wooden stool on the rug in the hallway"
+    );
+    assert_eq!(
+        caption(&scene, s.picture),
+        "a yellow picture on the wall in the kitchen"
+    );
+    assert_eq!(
+        caption(&scene, s.bed_b),
+        "a green double bed in the second bedroom"
+    );
+    state.agents.push(AgentState::new(
+        AgentBody::default(),
+        Vec3::new(2.0, 0.0, 7.0),
+        0.0,
+    ));
+    state.held_by[s.cup] = Some(AgentId(0));
+    let scene = semantics.scene(&state);
+    assert_eq!(
+        caption(&scene, s.cup),
+        "a white porcelain cup in somebody's hand in the hallway"
+    );
+}
+
+#[test]
+fn descriptions_read_aloud() {
+    let s = small_house();
+    let semantics = Semantics::new(&s.house);
+    let state = State::new(&s.house);
+    let scene = semantics.scene(&state);
+    assert_eq!(
+        describe_room(&scene, s.kitchen),
+        "The kitchen is about 15 square metres, with a parquet floor and white walls. There is a brown wooden table, \
+         a white refrigerator and two plastic chairs. On the table are a large white porcelain bowl and a white \
+         porcelain cup. In the bowl is a small red plastic portion of food. On the wall hangs a yellow picture."
+    );
+    let text = describe_house(&scene);
+    println!("{text}");
+    assert!(text.starts_with("This house has four rooms: two bedrooms, a hallway and a kitchen. There are 13 things in it.\n"));
+    assert!(text.contains("The second bedroom"));
+    // What is said is counted against what is there.
+    assert_eq!(text.matches("double bed").count(), 2);
+    let viewer = Viewer {
+        world_from_camera: Pose::from_position_yaw(Vec3::new(1.7, 1.3, 3.5), 0.0),
+    };
+    let view = describe_view(&scene, &viewer, &[s.table, s.red_chair, s.blue_chair]);
+    assert_eq!(
+        view,
+        "You are in the kitchen. To the left you see a red plastic chair. Ahead you see a brown wooden table. To the \
+         right you see a blue plastic chair."
+    );
+}
+
+#[test]
+fn texts_are_the_same_every_time() {
+    let s = small_house();
+    let text = || {
+        let semantics = Semantics::new(&s.house);
+        let state = State::new(&s.house);
+        let scene = semantics.scene(&state);
+        let graph = serde_json::to_string(&scene_graph(&scene, None)).unwrap();
+        (describe_house(&scene), graph)
+    };
+    assert_eq!(text(), text());
+}
+
+#[test]
+fn the_graph_holds_exactly_what_the_predicates_say() {
+    let s = small_house();
+    let semantics = Semantics::new(&s.house);
+    let state = State::new(&s.house);
+    let scene = semantics.scene(&state);
+    let viewer = Viewer {
+        world_from_camera: Pose::from_position_yaw(Vec3::new(1.7, 1.3, 3.5), 0.0),
+    };
+    let graph = scene_graph(&scene, Some(&viewer));
+    let again: SceneGraph = serde_json::from_str(&serde_json::to_string(&graph).unwrap()).unwrap();
+    assert_eq!(again.relations, graph.relations);
+    let mut count = 0;
+    for a in s.house.objects.ids() {
+        for b in s.house.objects.ids() {
+            for predicate in predicates::all() {
+                let holds =
+                    predicate.holds(&scene, Term::Object(a), Term::Object(b), Some(&viewer));
+                let edge = dwell_semantics::graph::Edge {
+                    subject: s.house.entity_of_object(a).0,
+                    predicate: predicate.name().to_owned(),
+                    object: s.house.entity_of_object(b).0,
+                };
+                let in_graph = predicate.name() != "in_room" && graph.relations.contains(&edge);
+                assert_eq!(holds, in_graph, "{edge:?}");
+                count += usize::from(holds);
+            }
+        }
+    }
+    assert!(count > 10);
+    let rooms = graph
+        .relations
+        .iter()
+        .filter(|edge| edge.predicate == "in_room")
+        .count();
+    assert_eq!(rooms, s.house.objects.len());
+}
+
+/// Twelve chairs in four colours and two materials over three rooms, with tables as landmarks.
+fn crowded(seed: u64) -> std::sync::Arc<dwell_scene::House> {
+    let mut stream = Key::root(seed).stream();
+    let mut b = Builder::new("crowded");
+    let kinds = ["kitchen", "bedroom", "bedroom", "office"];
+    for (k, kind) in kinds.iter().enumerate() {
+        let (x, z) = (4.0 * (k % 2) as f32, 4.0 * (k / 2) as f32);
+        b.room(kind, [x + 0.05, z + 0.05], [x + 3.95, z + 3.95]);
+    }
+    let colors = [[180, 20, 25], [30, 60, 150], [250, 250, 250], [30, 110, 40]];
+    let nouns = [
+        "chair",
+        "stool",
+        "coffee_table",
+        "table",
+        "vase",
+        "ottoman",
+        "piano",
+    ];
+    for _ in 0..24 {
+        let substance = ["plastic", "wood", "leather"][stream.below(3)];
+        let material = b.material(substance, colors[stream.below(4)]);
+        let size = [0.2, 0.45, 0.9][stream.below(3)];
+        let (x, z) = (stream.range(0.2, 6.8), stream.range(0.2, 6.8));
+        b.thing(
+            nouns[stream.below(nouns.len())],
+            &[([x, 0.0, z], [x + size, size, z + size])],
+            material,
+        );
+    }
+    b.build()
+}
+
+/// The reading of an expression by other code: words are looked up in the graph, not in the engine.
+fn read_by_graph(
+    graph: &SceneGraph,
+    house: &dwell_scene::House,
+    e: &dwell_semantics::refer::Expression,
+) -> Vec<i32> {
+    let called = |id: i32, noun: &str| {
+        let said = &graph.object(id).expect("a node").noun;
+        let object = match house.entity(dwell_scene::EntityId(id)) {
+            Some(dwell_scene::Entity::Object(object)) => &house.objects[object],
+            _ => return false,
+        };
+        let row = dwell_semantics::category::categories()
+            .of(&object.category)
+            .expect("a category of the table");
+        let names = row
+            .synonyms
+            .iter()
+            .map(|s| (*s).to_owned())
+            .chain([said.clone()]);
+        names
+            .into_iter()
+            .any(|name| name == noun || name.ends_with(&format!(" {noun}")))
+    };
+    let matching = graph.objects.iter().filter(|node| {
+        let colors = e.colors.iter().all(|color| node.colors.contains(color));
+        let material = e.material.as_ref().is_none_or(|word| {
+            let library = dwell_scene::material::library();
+            node.substances
+                .iter()
+                .any(|name| library.get(name).expect("a substance").adjective == *word)
+        });
+        let size = e.size.is_none_or(|size| node.size == size);
+        let room = e.room.as_ref().is_none_or(|noun| {
+            node.room.is_some_and(|room| {
+                let name = &graph.rooms[room as usize].name;
+                name == noun || name.ends_with(&format!(" {noun}"))
+            })
+        });
+        let relation = e.relation.as_ref().is_none_or(|relation| {
+            let landmarks = read_by_graph(graph, house, &relation.landmark);
+            graph.of(node.id).any(|edge| {
+                edge.predicate == relation.predicate && landmarks.contains(&edge.object)
+            })
+        });
+        called(node.id, &e.noun) && colors && material && size && room && relation
+    });
+    matching.map(|node| node.id).collect()
+}
+
+#[test]
+fn referring_expressions_mean_exactly_one_thing() {
+    let (mut found, mut total, mut with_landmark) = (0, 0, 0);
+    for seed in 0..12 {
+        let house = crowded(seed);
+        let semantics = Semantics::new(&house);
+        let state = State::new(&house);
+        let scene = semantics.scene(&state);
+        let graph = scene_graph(&scene, None);
+        for object in house.objects.ids() {
+            total += 1;
+            if let Some(expression) = refer(&scene, object) {
+                found += 1;
+                with_landmark += usize::from(expression.relation.is_some());
+                assert_eq!(expression.matches(&scene), [object]);
+                assert_eq!(
+                    read_by_graph(&graph, &house, &expression),
+                    [house.entity_of_object(object).0],
+                    "{expression:?}"
+                );
+                assert!(expression.definite().starts_with("the "));
+                assert_eq!(expression.text(&scene), expression.definite());
+            }
+        }
+    }
+    println!("{found} of {total} things can be told apart, {with_landmark} by a landmark");
+    assert!(found * 10 >= total * 6 && with_landmark > 0);
+}
+
+#[test]
+fn a_shorter_word_that_also_fits_another_thing_is_not_used() {
+    let mut b = Builder::new("tables");
+    b.room("kitchen", [0.0, 0.0], [8.0, 8.0]);
+    let wood = b.material("wood", [150, 111, 72]);
+    let red = b.material("plastic", [180, 20, 25]);
+    let plain = b.thing("table", &[([1.0, 0.0, 1.0], [2.2, 0.75, 1.8])], red);
+    let coffee = b.thing("coffee_table", &[([5.0, 0.0, 5.0], [6.0, 0.42, 5.6])], wood);
+    let house = b.build();
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    // "The table" could be the coffee table.
+    assert_eq!(refer(&scene, plain).unwrap().definite(), "the red table");
+    assert_eq!(
+        refer(&scene, coffee).unwrap().definite(),
+        "the coffee table"
+    );
+}
+
+#[test]
+fn rooms_are_told_apart_by_what_they_hold() {
+    let s = small_house();
+    let semantics = Semantics::new(&s.house);
+    let state = State::new(&s.house);
+    let scene = semantics.scene(&state);
+    let says = |room| refer_to_room(&scene, room).map(|e| e.definite());
+    assert_eq!(says(s.kitchen).as_deref(), Some("the kitchen"));
+    assert_eq!(
+        says(s.bedroom_b).as_deref(),
+        Some("the bedroom with a desk")
+    );
+    // Nothing is in the first bedroom that is not in the second.
+    assert_eq!(says(s.bedroom_a), None);
+    for room in s.house.rooms.ids() {
+        if let Some(expression) = refer_to_room(&scene, room) {
+            assert_eq!(expression.matches(&scene), [room]);
+        }
+    }
+}
+
+#[test]
+fn every_instruction_tokenises_and_keeps_to_its_charset() {
+    let mut texts = 0;
+    for seed in 0..12 {
+        let house = crowded(seed);
+        let semantics = Semantics::new(&house);
+        let state = State::new(&house);
+        let scene = semantics.scene(&state);
+        for kind in InstructionKind::ALL {
+            let all = candidates(&scene, kind);
+            for draw in 0..30 {
+                let Some(chosen) = choose(&all, Key::root(draw)) else {
+                    continue;
+                };
+                texts += 1;
+                assert!(
+                    chosen.text.len() <= MAX_TEXT_LEN
+                        && chosen.text.chars().all(|c| CHARSET.contains(c))
+                );
+                let tokens = chosen.tokens().unwrap();
+                assert_eq!(tokens.len(), tokens::LENGTH);
+                let again = tokens::detokenize(&tokens)
+                    .replace(" .", ".")
+                    .replace(" ,", ",");
+                assert_eq!(again, chosen.text.to_lowercase());
+                assert_eq!(Some(&chosen), choose(&all, Key::root(draw)).as_ref());
+            }
+        }
+    }
+    assert!(texts > 300, "{texts}");
+}
+
+/// An agent whose feet are at `position`, with eyes towards `target`.
+fn agent_towards(position: Vec3, target: Vec3) -> AgentState {
+    let mut agent = AgentState::new(AgentBody::default(), position, 0.0);
+    let way = target - agent.eye_position();
+    agent.yaw_rad = dwell_scene::space::yaw_from_forward(way);
+    agent.pitch_rad = dwell_scene::space::pitch_from_forward(way);
+    agent
+}
+
+#[test]
+fn going_to_a_room_succeeds_in_that_room_only() {
+    let s = small_house();
+    let semantics = Semantics::new(&s.house);
+    let rays = RayScene::new(s.house.clone());
+    let mut state = State::new(&s.house);
+    state.agents.push(AgentState::new(
+        AgentBody::default(),
+        Vec3::new(1.0, 0.0, 5.0),
+        0.0,
+    ));
+    let all = candidates(&semantics.scene(&state), InstructionKind::GoToRoom);
+    let kitchen = all.iter().find(|i| i.goal.rooms == [s.kitchen]).unwrap();
+    assert_eq!(kitchen.text, "Go to the kitchen.");
+    let judge = |state: &State| kitchen.verify(&semantics.scene(state), &rays, AgentId(0));
+    assert_eq!(judge(&state), Progress::Continue);
+    assert_eq!(
+        kitchen.verify_at_stop(&semantics.scene(&state), &rays, AgentId(0)),
+        Progress::Failure
+    );
+    state.agents[AgentId(0)].position = Vec3::new(3.0, 0.0, 3.0);
+    assert_eq!(judge(&state), Progress::Success);
+    assert_eq!(
+        kitchen.verify(&semantics.scene(&state), &rays, AgentId(7)),
+        Progress::Failure
+    );
+}
+
+#[test]
+fn finding_needs_nearness_and_sight() {
+    let s = small_house();
+    let semantics = Semantics::new(&s.house);
+    let mut rays = RayScene::new(s.house.clone());
+    let mut state = State::new(&s.house);
+    let fridge = s.house.object_bounds(&state, s.fridge).center();
+    state
+        .agents
+        .push(agent_towards(Vec3::new(2.0, 0.0, 3.4), fridge));
+    rays.update(&state);
+    let all = candidates(&semantics.scene(&state), InstructionKind::FindObject);
+    let find = all.iter().find(|i| i.goal.objects == [s.fridge]).unwrap();
+    assert_eq!(find.text, "Find the refrigerator.");
+    let judge = |state: &State| find.verify(&semantics.scene(state), &rays, AgentId(0));
+    assert_eq!(judge(&state), Progress::Success);
+    // Turned away.
+    state.agents[AgentId(0)].yaw_rad += 2.0;
+    assert_eq!(judge(&state), Progress::Continue);
+    // Too far.
+    state.agents[AgentId(0)] = agent_towards(Vec3::new(3.8, 0.0, 0.4), fridge);
+    assert_eq!(judge(&state), Progress::Continue);
+    // Near, but behind the wall: it stands in the hall, a step from the refrigerator.
+    state.agents[AgentId(0)] = agent_towards(Vec3::new(0.4, 0.0, 4.6), fridge);
+    assert_eq!(judge(&state), Progress::Continue);
+    // In hand.
+    state.agents[AgentId(0)].holding = Some(s.fridge);
+    assert_eq!(judge(&state), Progress::Success);
+    // Bound at reset: another colour of house changes nothing, the same thing counts.
+    let bound: dwell_semantics::instruct::Instruction =
+        serde_json::from_str(&serde_json::to_string(find).unwrap()).unwrap();
+    assert_eq!(&bound, find);
+}
+
+#[test]
+fn a_house_without_a_unique_thing_says_so() {
+    let mut b = Builder::new("twins");
+    b.room("", [0.0, 0.0], [8.0, 8.0]);
+    let wood = b.material("wood", [150, 111, 72]);
+    for x in [1.0, 5.0] {
+        b.thing("stool", &[([x, 0.0, 1.0], [x + 0.4, 0.6, 1.4])], wood);
+    }
+    let house = b.build();
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    let error = instruction(&scene, InstructionKind::FindObject, Key::root(1)).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "house \"twins\" offers no instruction of kind find_object: no object can be told from all others by words"
+    );
+}
