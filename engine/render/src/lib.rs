@@ -1,1 +1,40 @@
 //! What a camera sees: the `cpu` back end.
+//!
+//! A [`CpuRenderer`] is made once for a house and renders [`View`]s of any world over it into memory of the caller:
+//! colour, depth, ids of things, ids of their classes. [`Map`] is a storey from above.
+//!
+//! # Light
+//! [`Preset::Flat`] shows texture times colour: no lamps, the same at every time of day, the sky where nothing is.
+//!
+//! [`Preset::Lit`] adds light, without shadows: nothing dims what a lamp or window of a room sends to that room's
+//! surfaces, and walls stop all of it. In linear light it sums up
+//!
+//! - lamps that are on: a watt counts as 100 lm, sent evenly by points and lines (a line is four points) and into their
+//!   cone by spots, with the attenuation of the file (usually the inverse square); a lamp shines through its own shade;
+//! - windows that lead to the open air: a sky of 3,000 cd/m² as a disc of the window's area, and the sun where its ray
+//!   passes the window;
+//! - what a room throws back, evenly from all around: the equation of the integrating sphere, with the mean reflectance
+//!   of the room's walls; rooms share it through doors as far as those are open;
+//! - materials that glow, unless their thing is switched off.
+//!
+//! The picture is exposed for the mean light of the camera's room and tone-mapped. The open air has an exposure of its
+//! own, as if photographed apart.
+
+mod camera;
+mod color;
+mod cpu;
+mod error;
+mod frame;
+mod light;
+mod look;
+mod map;
+mod semantic;
+mod surfaces;
+mod texture;
+
+pub use camera::{Camera, Projection};
+pub use cpu::{CpuRenderer, Job};
+pub use error::RenderError;
+pub use frame::{Channels, Frame, FrameMut, Preset, View};
+pub use map::Map;
+pub use semantic::semantic_classes;

@@ -1,0 +1,210 @@
+//! The `cpu` back end: ray casting, always there, the same bits for any number of threads.
+
+mod band;
+mod rays;
+mod shade;
+
+use crate::error::RenderError;
+use crate::frame::{FrameMut, Preset, View};
+use crate::light::{HouseLight, Lighting};
+use crate::look::Look;
+use crate::semantic::class_of_entities;
+use crate::surfaces::Surfaces;
+use crate::texture::Textures;
+use band::Band;
+use dwell_scene::parallel::Threads;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{House, State};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// Rows of an image that one thread takes at a time; a multiple of a packet's edge.
+const BAND_ROWS: usize = 8;
+
+/// Renders views of one house, in any of its worlds.
+///
+/// What pictures show: RGB is what a camera sees, glass and other materials that let light through included. Depth,
+/// instance and semantic tell of the nearest surface, **glass itself** where there is glass; the holes of a texture with
+/// alpha count as surface, too. Surfaces are seen from both sides. Of surfaces that coincide the one with the lower id is
+/// seen.
+///
+/// # Determinism
+/// Equal input, equal bits, for any number of threads and for any company in a batch.
+///
+/// ```
+/// use dwell_render::{Camera, Channels, CpuRenderer, Frame, View};
+/// use dwell_scene::{House, Pose, ShoeboxMaterials, State, parallel::Threads, rays::RayScene};
+/// use std::sync::Arc;
+///
+/// let house = Arc::new(House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default())?);
+/// let (scene, state) = (RayScene::new(house.clone()), State::new(&house));
+/// let view = View::new(Camera::from_fov(64, 64, 90.0)?, Pose::from_position(glam::Vec3::new(3.0, 1.5, 4.0)));
+/// let mut frame = Frame::new(&view.camera, Channels::ALL);
+/// CpuRenderer::new(&house).render(&scene, &state, &[view], &mut [frame.as_mut()], Threads::ONE)?;
+/// assert!((frame.depth[32 * 64 + 32] - 4.0).abs() < 1e-4); // the north wall
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct CpuRenderer {
+    house: Arc<House>,
+    textures: Textures,
+    looks: Vec<Look>,
+    surfaces: Surfaces,
+    /// Class of every entity; the last one is that of agents.
+    classes: Vec<i32>,
+    /// Made when the first lit view is asked for.
+    light: OnceLock<HouseLight>,
+    /// Memory of earlier calls.
+    lightings: Mutex<Vec<Lighting>>,
+}
+
+/// One view of one world, for a batch.
+#[derive(Debug)]
+pub struct Job<'a> {
+    /// The world's surfaces, up to date with `state`.
+    pub scene: &'a RayScene,
+    /// The world.
+    pub state: &'a State,
+    /// The view.
+    pub view: View,
+    /// Where its images go.
+    pub frame: FrameMut<'a>,
+}
+
+impl CpuRenderer {
+    /// Prepares textures, colours and the tables of all triangles of a house, to be shared by all worlds over it.
+    pub fn new(house: &Arc<House>) -> Self {
+        let textures = Textures::new(house);
+        let looks = Look::all(house, &textures);
+        let surfaces = Surfaces::new(house, &looks);
+        tracing::debug!(
+            texture_bytes = textures.bytes(),
+            triangle_bytes = surfaces.bytes(),
+            materials = looks.len(),
+            "cpu renderer prepared"
+        );
+        Self {
+            classes: class_of_entities(house),
+            house: house.clone(),
+            textures,
+            looks,
+            surfaces,
+            light: OnceLock::new(),
+            lightings: Mutex::new(Vec::new()),
+        }
+    }
+
+    /// The house.
+    pub fn house(&self) -> &Arc<House> {
+        &self.house
+    }
+
+    /// Renders views of one world. `frames`: one for each view.
+    ///
+    /// # Errors
+    /// [`RenderError::Count`], [`RenderError::Length`], [`RenderError::Pose`] or [`RenderError::OtherHouse`] for what does
+    /// not fit; then nothing is written.
+    pub fn render(
+        &self,
+        scene: &RayScene,
+        state: &State,
+        views: &[View],
+        frames: &mut [FrameMut<'_>],
+        threads: Threads,
+    ) -> Result<(), RenderError> {
+        if views.len() != frames.len() {
+            return Err(RenderError::Count {
+                views: views.len(),
+                frames: frames.len(),
+            });
+        }
+        let pairs = views.iter().zip(frames);
+        let mut jobs: Vec<Job<'_>> = pairs
+            .map(|(view, frame)| Job {
+                scene,
+                state,
+                view: *view,
+                frame: frame.reborrow(),
+            })
+            .collect();
+        self.render_batch(&mut jobs, threads)
+    }
+
+    /// Renders views of any worlds over the house.
+    ///
+    /// # Errors
+    /// As [`Self::render`]; numbers in messages are positions in `jobs`.
+    pub fn render_batch(&self, jobs: &mut [Job<'_>], threads: Threads) -> Result<(), RenderError> {
+        for (k, job) in jobs.iter().enumerate() {
+            self.check(k, job)?;
+        }
+        // Views of one world follow one another as a rule: its light is made once.
+        let mut lightings: Vec<Lighting> = Vec::new();
+        let mut lit: Vec<Option<usize>> = Vec::new();
+        let mut last: Option<&State> = None;
+        for job in jobs.iter() {
+            if job.view.preset == Preset::Flat {
+                lit.push(None);
+                continue;
+            }
+            if !last.is_some_and(|state| std::ptr::eq(state, job.state)) {
+                last = Some(job.state);
+                lightings.push(self.lighting(job.state));
+            }
+            lit.push(Some(lightings.len() - 1));
+        }
+        let mut bands = Vec::new();
+        for (job, lit) in jobs.iter_mut().zip(lit) {
+            let light = lit.map(|k| {
+                let eye = job.view.world_from_camera.position;
+                (
+                    &lightings[k],
+                    lightings[k].exposure(self.house_light(), eye),
+                )
+            });
+            Band::split(job, light, &mut bands);
+        }
+        threads.for_each(&mut bands, |_, band| band.render(self));
+        drop(bands);
+        self.lightings
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .append(&mut lightings);
+        Ok(())
+    }
+
+    fn check(&self, view: usize, job: &Job<'_>) -> Result<(), RenderError> {
+        if !Arc::ptr_eq(&self.house, job.scene.house()) {
+            return Err(RenderError::OtherHouse { view });
+        }
+        let pose = &job.view.world_from_camera;
+        if !pose.is_valid() {
+            return Err(RenderError::Pose {
+                view,
+                found: format!("{:?} {:?}", pose.position, pose.rotation),
+            });
+        }
+        job.frame.check(view, &job.view.camera)
+    }
+
+    fn house_light(&self) -> &HouseLight {
+        self.light
+            .get_or_init(|| HouseLight::new(&self.house, &self.looks, &self.textures))
+    }
+
+    fn lighting(&self, state: &State) -> Lighting {
+        let used = self
+            .lightings
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .pop();
+        let mut lighting = used.unwrap_or_default();
+        lighting.update(&self.house, self.house_light(), state);
+        lighting
+    }
+
+    /// The class of an entity.
+    #[inline]
+    fn class(&self, entity: i32) -> i32 {
+        self.classes[(entity.max(0) as usize).min(self.classes.len() - 1)]
+    }
+}

@@ -1,0 +1,63 @@
+//! What can be wrong with a request for a picture.
+
+/// A camera, frame or scene that does not fit.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// A number of a camera outside its range.
+    #[error("camera: {field} is {found}; allowed is {allowed}")]
+    Camera {
+        /// The field's name.
+        field: &'static str,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A view whose pose is not finite or not a rotation.
+    #[error(
+        "view {view}: world_from_camera is {found}; allowed are finite positions and unit quaternions"
+    )]
+    Pose {
+        /// The position in the list of views or jobs.
+        view: usize,
+        /// What was found.
+        found: String,
+    },
+    /// A buffer of the wrong length.
+    #[error(
+        "frame {view}: {channel} has {found} elements; {expected} are needed (height x width x channels)"
+    )]
+    Length {
+        /// The position in the list of frames or jobs.
+        view: usize,
+        /// The channel's name.
+        channel: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it must have.
+        expected: usize,
+    },
+    /// Not one frame for each view.
+    #[error("{frames} frames for {views} views; each view needs one")]
+    Count {
+        /// Views found.
+        views: usize,
+        /// Frames found.
+        frames: usize,
+    },
+    /// A scene over another house than the renderer's.
+    #[error("view {view}: the scene is over another house than this renderer was made for")]
+    OtherHouse {
+        /// The position in the list of views or jobs.
+        view: usize,
+    },
+    /// A storey that the house does not have.
+    #[error("no storey {found}; the house has {count}")]
+    Level {
+        /// What was asked for.
+        found: usize,
+        /// How many there are.
+        count: usize,
+    },
+}

@@ -1,0 +1,135 @@
+//! Lamps as light sources without size.
+
+use super::grid::RoomGrid;
+use dwell_scene::{House, Light, LightShape, State, math};
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// Luminous flux of a lamp of one watt, lm: SUNCG's watts are those of efficient lamps.
+pub(crate) const LUMEN_PER_WATT: f32 = 100.0;
+
+/// Nearer than this a lamp shines as at this distance, m: it has a size in truth.
+const NEAREST_M: f32 = 0.05;
+
+/// Parts of a glowing line, as fractions of its length: midpoints of equal quarters.
+const LINE_PARTS: [f32; 4] = [0.125, 0.375, 0.625, 0.875];
+
+/// A lamp that is on, in world space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lamp {
+    pub(crate) position: Vec3,
+    /// Intensity along the axis, cd, for red, green and blue.
+    intensity: Vec3,
+    /// The cone, if it is a spot: axis, cosine of the half angle, exponent.
+    cone: Option<(Vec3, f32, f32)>,
+    attenuation: [f32; 3],
+    /// The thing that it belongs to; light passes that thing's surfaces (shades).
+    pub(crate) entity: i32,
+    /// Position of its room.
+    pub(crate) room: Option<usize>,
+    /// Luminous flux, lm, for red, green and blue.
+    pub(crate) flux_lm: Vec3,
+}
+
+impl Lamp {
+    /// Illuminance on a surface that faces along `normal` (unit length), lx, for red, green and blue: I cos / (c + l d +
+    /// q d²), which is the inverse square law for SUNCG's usual attenuation (0, 0, 1).
+    #[inline]
+    pub(crate) fn illuminance(&self, point: Vec3, normal: Vec3, entity: i32) -> Vec3 {
+        let way = self.position - point;
+        let distance = way.length().max(NEAREST_M);
+        let direction = way / distance;
+        let cosine = normal.dot(direction);
+        let cosine = if entity == self.entity {
+            cosine.abs()
+        } else {
+            cosine
+        };
+        if cosine <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let mut part = 1.0;
+        if let Some((axis, cutoff, exponent)) = self.cone {
+            let turn = -axis.dot(direction);
+            if turn < cutoff {
+                return Vec3::ZERO;
+            }
+            if exponent > 0.0 {
+                part = math::pow(turn.max(0.0), exponent);
+            }
+        }
+        let [constant, linear, quadratic] = self.attenuation;
+        let weakening = constant + distance * (linear + distance * quadratic);
+        self.intensity * (part * cosine / weakening.max(NEAREST_M * NEAREST_M))
+    }
+}
+
+/// Appends what a light amounts to in this state: nothing while it is off, four lamps for a line.
+pub(crate) fn add_lamps(
+    house: &House,
+    state: &State,
+    grid: &RoomGrid,
+    light: &Light,
+    lamps: &mut Vec<Lamp>,
+) {
+    if !state.is_on(house, light.object) || light.power_w <= 0.0 {
+        return;
+    }
+    let world_from_part = state.part_pose[light.part];
+    let flux_lm = Vec3::from_array(light.color) * (light.power_w * LUMEN_PER_WATT);
+    let attenuation = if light.attenuation.iter().sum::<f32>() > 0.0 {
+        light.attenuation
+    } else {
+        [0.0, 0.0, 1.0]
+    };
+    let lamp = |point_in_part: Vec3, share: f32, intensity: Vec3, cone| {
+        let position = world_from_part.transform_point(point_in_part);
+        Lamp {
+            position,
+            intensity: intensity * share,
+            cone,
+            attenuation,
+            entity: house.entity_of_object(light.object).0,
+            room: grid.room(position),
+            flux_lm: flux_lm * share,
+        }
+    };
+    match light.shape {
+        LightShape::Point => lamps.push(lamp(light.position, 1.0, flux_lm / (4.0 * PI), None)),
+        LightShape::Spot {
+            direction,
+            cutoff_rad,
+            dropoff_rate,
+        } => {
+            let axis = world_from_part
+                .transform_vector(direction)
+                .normalize_or(Vec3::NEG_Y);
+            let (cutoff, exponent) = (math::cos(cutoff_rad.clamp(0.01, PI)), dropoff_rate.max(0.0));
+            // The integral of cos^n over the cone; beyond 90 degrees an exponent has no meaning and counts as 0.
+            let exponent = if cutoff < 0.0 { 0.0 } else { exponent };
+            let rest = if exponent > 0.0 {
+                math::pow(cutoff, exponent + 1.0)
+            } else {
+                cutoff
+            };
+            let solid_angle = 2.0 * PI * (1.0 - rest) / (exponent + 1.0);
+            lamps.push(lamp(
+                light.position,
+                1.0,
+                flux_lm / solid_angle.max(1e-3),
+                Some((axis, cutoff, exponent)),
+            ));
+        }
+        LightShape::Line { end } => {
+            let share = 1.0 / LINE_PARTS.len() as f32;
+            for part in LINE_PARTS {
+                lamps.push(lamp(
+                    light.position.lerp(end, part),
+                    share,
+                    flux_lm / (4.0 * PI),
+                    None,
+                ));
+            }
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! The light of [`Preset::Lit`](crate::Preset): lamps, daylight through windows, and what rooms throw back.
+
+mod grid;
+mod lamps;
+mod openings;
+mod rooms;
+mod tone;
+
+pub(crate) use rooms::HouseLight;
+pub(crate) use tone::display;
+
+use dwell_scene::{House, State};
+use glam::Vec3;
+use lamps::{Lamp, add_lamps};
+use rooms::{PANE_TRANSMITTANCE, RoomLight, SKY_LUMINANCE_CD_M2};
+use std::f32::consts::PI;
+
+/// Illuminance by the sun on a surface across its rays behind a pane, lx: a low sun behind thin cloud.
+const SUN_LX: f32 = 6000.0;
+/// Towards the sun: 36 degrees high, between the axes, so that it enters houses however they stand.
+const TO_SUN: Vec3 = Vec3::new(0.485, 0.588, 0.647);
+/// Width of the border of sunlit patches, m.
+const PENUMBRA_M: f32 = 0.03;
+/// How far from a surface its room is looked for, m: beyond the skin of the wall that it belongs to.
+const OFF_SURFACE_M: f32 = 0.1;
+/// What white shows in the open, in units of display white: the open has an exposure of its own.
+const OPEN_AIR: f32 = 1.3;
+
+/// All light of a house in one state.
+#[derive(Debug, Default)]
+pub(crate) struct Lighting {
+    /// By room; those outside come first.
+    lamps: Vec<Lamp>,
+    /// Shape (room,).
+    rooms: Vec<RoomLight>,
+    flux_lm: Vec<Vec3>,
+}
+
+/// The brightness to which an eye in a room adapts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exposure {
+    /// Display white per lx.
+    per_lx: f32,
+}
+
+impl Lighting {
+    /// Reads the switches and places of lamps from `state`, in the memory of an earlier state.
+    pub(crate) fn update(&mut self, house: &House, fixed: &HouseLight, state: &State) {
+        self.lamps.clear();
+        for light in &house.lights {
+            add_lamps(house, state, &fixed.grid, light, &mut self.lamps);
+        }
+        self.lamps
+            .sort_by_key(|lamp| lamp.room.map_or(0, |room| room + 1));
+        self.flux_lm.clear();
+        self.flux_lm.resize(house.rooms.len(), Vec3::ZERO);
+        for lamp in &self.lamps {
+            if let Some(room) = lamp.room {
+                self.flux_lm[room] += lamp.flux_lm;
+            }
+        }
+        fixed.rooms(house, state, &mut self.flux_lm, &mut self.rooms);
+    }
+
+    /// How a camera at `eye` is exposed: by the mean light of its room, not quite to the full, so that dim rooms look
+    /// dimmer than bright ones.
+    pub(crate) fn exposure(&self, fixed: &HouseLight, eye: Vec3) -> Exposure {
+        let mean = if let Some(room) = fixed.grid.room(eye) {
+            self.rooms[room].mean
+        } else {
+            // From outside or from above: the middle one of all rooms.
+            let mut means: Vec<f32> = self.rooms.iter().map(|room| room.mean).collect();
+            means.sort_by(f32::total_cmp);
+            means.get(means.len() / 2).copied().unwrap_or(200.0)
+        };
+        Exposure {
+            per_lx: tone::exposure_per_lx(mean),
+        }
+    }
+
+    /// What a surface of reflectance 1 shows at `point`, in units of display white, for red, green and blue.
+    ///
+    /// `normal`: unit length, towards the viewer; `facing` the same for the flat triangle. `entity`: whose surface it is.
+    pub(crate) fn brightness(
+        &self,
+        fixed: &HouseLight,
+        exposure: Exposure,
+        point: Vec3,
+        (normal, facing): (Vec3, Vec3),
+        entity: i32,
+    ) -> Vec3 {
+        let room = fixed.grid.room(point + facing * OFF_SURFACE_M);
+        let Some(position) = room else {
+            return self.open_air(exposure, point, normal, entity);
+        };
+        let mut lx = self.rooms[position].indirect * fill(normal)
+            + self.lamplight(room, point, normal, entity);
+        for window in fixed
+            .windows
+            .iter()
+            .filter(|window| window.room == position)
+        {
+            lx += Vec3::splat(daylight(window, point, normal));
+        }
+        lx * exposure.per_lx
+    }
+
+    /// Illuminance by the lamps of a room, lx.
+    fn lamplight(&self, room: Option<usize>, point: Vec3, normal: Vec3, entity: i32) -> Vec3 {
+        let first = self.lamps.partition_point(|lamp| lamp.room < room);
+        let mine = self.lamps[first..]
+            .iter()
+            .take_while(|lamp| lamp.room == room);
+        mine.fold(Vec3::ZERO, |sum, lamp| {
+            sum + lamp.illuminance(point, normal, entity)
+        })
+    }
+
+    fn open_air(&self, exposure: Exposure, point: Vec3, normal: Vec3, entity: i32) -> Vec3 {
+        let sky = 0.35 + 0.25 * normal.y;
+        let sun = 0.5 * normal.dot(TO_SUN).max(0.0);
+        Vec3::splat((sky + sun) * OPEN_AIR)
+            + self.lamplight(None, point, normal, entity) * exposure.per_lx
+    }
+}
+
+/// How much of a room's reflected light reaches a surface by where it faces, about 1: floors face bright walls and
+/// ceilings, and walls that meet in a corner differ a little.
+fn fill(normal: Vec3) -> f32 {
+    0.95 + 0.08 * normal.y + 0.07 * normal.x + 0.03 * normal.z
+}
+
+/// Illuminance by a window, lx: the sky as a disc of the same area seen through it, and the sun where its ray passes it.
+fn daylight(window: &openings::Window, point: Vec3, normal: Vec3) -> f32 {
+    let way = window.center - point;
+    let height = -window.normal.dot(way);
+    if height <= 0.0 {
+        return 0.0;
+    }
+    let distance_squared = way.length_squared();
+    let direction = way / distance_squared.sqrt();
+    let area = window.area_m2();
+    let cosines = normal.dot(direction).max(0.0) * (height / distance_squared.sqrt());
+    let sky =
+        SKY_LUMINANCE_CD_M2 * PANE_TRANSMITTANCE * area * cosines / (distance_squared + area / PI);
+    // Against the sun's ray: from the point back to the plane of the window.
+    let against = -window.normal.dot(TO_SUN);
+    let on_surface = normal.dot(TO_SUN);
+    if against <= 0.01 || on_surface <= 0.0 {
+        return sky;
+    }
+    let on_window = point + TO_SUN * (height / against) - window.center;
+    let inside = window.half.map(|half| {
+        let length = half.length().max(1e-6);
+        ((length - on_window.dot(half / length).abs()) / PENUMBRA_M).clamp(0.0, 1.0)
+    });
+    sky + SUN_LX * on_surface * inside[0] * inside[1]
+}
+
+/// The sky behind everything, in units of display white, along a unit direction.
+pub(crate) fn sky(direction: Vec3) -> Vec3 {
+    let (zenith, horizon, ground) = (
+        Vec3::new(0.35, 0.55, 0.9),
+        Vec3::new(0.85, 0.92, 1.0),
+        Vec3::new(0.42, 0.42, 0.38),
+    );
+    if direction.y >= 0.0 {
+        horizon.lerp(zenith, direction.y.sqrt().min(1.0))
+    } else {
+        ground
+    }
+}

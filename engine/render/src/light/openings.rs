@@ -1,0 +1,107 @@
+//! Windows and doors: where daylight comes in and where rooms share their light.
+
+use super::grid::RoomGrid;
+use dwell_scene::{Aabb, House, ObjectId};
+use glam::Vec3;
+
+/// How far from the middle of an opening its rooms are looked for, m.
+const STEP_M: f32 = 0.4;
+
+/// A window between a room and the open air.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Window {
+    /// The room's position.
+    pub(crate) room: usize,
+    /// Its middle, m.
+    pub(crate) center: Vec3,
+    /// Into the room, unit length.
+    pub(crate) normal: Vec3,
+    /// From the middle to two of its edges, m.
+    pub(crate) half: [Vec3; 2],
+}
+
+impl Window {
+    /// m².
+    pub(crate) fn area_m2(&self) -> f32 {
+        4.0 * self.half[0].length() * self.half[1].length()
+    }
+}
+
+/// An opening between two rooms.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passage {
+    /// The rooms' positions.
+    pub(crate) rooms: [usize; 2],
+    /// m².
+    pub(crate) area_m2: f32,
+    /// What closes it.
+    pub(crate) door: ObjectId,
+}
+
+/// All windows and doors of a house at their start.
+pub(crate) fn openings(house: &House, grid: &RoomGrid) -> (Vec<Window>, Vec<Passage>) {
+    let (mut windows, mut passages) = (Vec::new(), Vec::new());
+    for (id, object) in house.objects.iter_ids() {
+        let names = [&object.category.coarse, &object.category.fine];
+        let is = |word: &str| names.iter().any(|name| name.as_str() == word);
+        if !(is("window") || is("door") || is("garage_door") || is("arch")) {
+            continue;
+        }
+        let Some((center, normal, half)) = frame(house, id) else {
+            continue;
+        };
+        let sides = [
+            grid.room(center + normal * STEP_M),
+            grid.room(center - normal * STEP_M),
+        ];
+        let area_m2 = 4.0 * half[0].length() * half[1].length();
+        match sides {
+            [Some(a), Some(b)] if a != b => passages.push(Passage {
+                rooms: [a, b],
+                area_m2,
+                door: id,
+            }),
+            [Some(room), None] if is("window") => windows.push(Window {
+                room,
+                center,
+                normal,
+                half,
+            }),
+            [None, Some(room)] if is("window") => windows.push(Window {
+                room,
+                center,
+                normal: -normal,
+                half,
+            }),
+            _ => {}
+        }
+    }
+    (windows, passages)
+}
+
+/// Middle, thin direction and half edges of an object's box in the space of its first part.
+fn frame(house: &House, id: ObjectId) -> Option<(Vec3, Vec3, [Vec3; 2])> {
+    let object = &house.objects[id];
+    let root = house.parts[object.first_part].world_from_part;
+    let root_from_world = root.inverse();
+    let mut bounds = Aabb::EMPTY;
+    for part in object.parts().map(|part| &house.parts[part]) {
+        let map = (root_from_world * part.world_from_part).to_affine() * part.part_from_mesh;
+        for point in &house.meshes[part.mesh].positions {
+            bounds.add_point(map.transform_point3(*point));
+        }
+    }
+    let size = bounds.size();
+    if bounds.is_empty() || size.max_element() < 0.05 {
+        return None;
+    }
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    let thin = (0..3).min_by(|a, b| size[*a].total_cmp(&size[*b]))?;
+    let edge = |axis: usize| root.transform_vector(axes[axis] * (size[axis] * 0.5));
+    let (first, second) = ((thin + 1) % 3, (thin + 2) % 3);
+    Some((
+        root.transform_point(bounds.center()),
+        root.transform_vector(axes[thin]),
+        [edge(first), edge(second)],
+    ))
+}

@@ -1,0 +1,168 @@
+//! The light that rooms throw back.
+
+use super::grid::RoomGrid;
+use super::openings::{Passage, Window, openings};
+use crate::look::Look;
+use crate::texture::Textures;
+use dwell_scene::{House, Id, RoomId, State};
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// Luminance of the sky, cd/m²: an overcast sky that gives about 10,000 lx in the open.
+pub(crate) const SKY_LUMINANCE_CD_M2: f32 = 3000.0;
+/// What window panes let through.
+pub(crate) const PANE_TRANSMITTANCE: f32 = 0.7;
+/// Illuminance that even a dark room has, lx: what comes through gaps and from appliances that are not modelled.
+const RESIDUAL_LX: f32 = 8.0;
+/// What furniture leaves of the walls' reflectance.
+const FURNITURE: f32 = 0.85;
+/// What a closed door lets through: gaps and glass.
+const CLOSED_DOOR: f32 = 0.1;
+/// Rounds in which rooms exchange light.
+const ROUNDS: usize = 8;
+
+/// What never changes about a house's light.
+#[derive(Debug)]
+pub(crate) struct HouseLight {
+    pub(crate) grid: RoomGrid,
+    pub(crate) windows: Vec<Window>,
+    passages: Vec<Passage>,
+    /// Shape (room,).
+    rooms: Vec<Walls>,
+}
+
+/// The surfaces around a room.
+#[derive(Clone, Copy, Debug)]
+struct Walls {
+    /// m².
+    area_m2: f32,
+    /// Mean reflectance for red, green and blue.
+    reflectance: Vec3,
+}
+
+/// The light in a room.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RoomLight {
+    /// Illuminance from all around by light that was reflected, lx.
+    pub(crate) indirect: Vec3,
+    /// Mean illuminance of its surfaces, lx.
+    pub(crate) mean: f32,
+}
+
+impl HouseLight {
+    pub(crate) fn new(house: &House, looks: &[Look], textures: &Textures) -> Self {
+        let grid = RoomGrid::new(house);
+        let (windows, passages) = openings(house, &grid);
+        let rooms = house
+            .rooms
+            .ids()
+            .map(|id| Walls::new(house, id, looks, textures))
+            .collect();
+        Self {
+            grid,
+            windows,
+            passages,
+            rooms,
+        }
+    }
+
+    /// The light in every room when lamps send `flux_lm` into each.
+    ///
+    /// # Source
+    /// The equation of the integrating sphere, E = `flux` / (A (1 - r)), whose indirect part is r times that; e.g.
+    /// J. W. T. Walsh, *Photometry* (1926). Rooms exchange what passes their doors, as E r S.
+    pub(crate) fn rooms(
+        &self,
+        house: &House,
+        state: &State,
+        flux_lm: &mut [Vec3],
+        light: &mut Vec<RoomLight>,
+    ) {
+        for window in &self.windows {
+            // A vertical window sees half the sky, a roof window all of it.
+            let sky = 0.5 + 0.5 * window.normal.y.abs();
+            flux_lm[window.room] +=
+                Vec3::splat(PI * SKY_LUMINANCE_CD_M2 * sky * PANE_TRANSMITTANCE * window.area_m2());
+        }
+        let mean = |room: usize, total: Vec3| {
+            let walls = &self.rooms[room];
+            total / (walls.area_m2 * (Vec3::ONE - walls.reflectance))
+        };
+        let mut total = flux_lm.to_vec();
+        for _ in 0..ROUNDS {
+            let before = total.clone();
+            total.copy_from_slice(flux_lm);
+            for passage in &self.passages {
+                let open = state.openness(house, passage.door).unwrap_or(1.0);
+                let area = passage.area_m2 * (CLOSED_DOOR + (1.0 - CLOSED_DOOR) * open);
+                let [a, b] = passage.rooms;
+                for (from, to) in [(a, b), (b, a)] {
+                    total[to] += mean(from, before[from]) * self.rooms[from].reflectance * area;
+                }
+            }
+        }
+        light.clear();
+        light.extend((0..self.rooms.len()).map(|room| {
+            let all = mean(room, total[room]) + RESIDUAL_LX;
+            let indirect = all - flux_lm[room] / self.rooms[room].area_m2;
+            RoomLight {
+                indirect: indirect.max(Vec3::splat(RESIDUAL_LX)),
+                mean: luminance(all),
+            }
+        }));
+    }
+}
+
+/// Photometric weight of linear sRGB (IEC 61966-2-1: the Y row of its matrix).
+pub(crate) fn luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}
+
+impl Walls {
+    fn new(house: &House, id: RoomId, looks: &[Look], textures: &Textures) -> Self {
+        let room = &house.rooms[id];
+        let floor = room.area_m2().max(0.5);
+        let height = (room.ceiling_y - room.floor_y).clamp(1.0, 20.0);
+        // The rim of a rectangle of sides 1 to 1.5.
+        let area_m2 = 2.0 * floor + 4.1 * floor.sqrt() * height;
+        let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
+        for piece in house
+            .structure
+            .iter()
+            .filter(|piece| piece.room == Some(id))
+        {
+            let mesh = &house.meshes[piece.mesh];
+            for k in 0..mesh.triangles.len() {
+                let [a, b, c] = mesh.corners(k);
+                let area = (b - a).cross(c - a).length() * 0.5;
+                let material = piece.materials[usize::from(mesh.slot(k))];
+                let mean = mean_color(&looks[material.index()], textures);
+                sum += mean * area;
+                weight += area;
+            }
+        }
+        let reflectance = if weight > 0.0 {
+            sum / weight
+        } else {
+            Vec3::splat(0.5)
+        };
+        Self {
+            area_m2,
+            reflectance: (reflectance * FURNITURE).clamp(Vec3::splat(0.02), Vec3::splat(0.8)),
+        }
+    }
+}
+
+/// The mean colour of a material, in linear light.
+fn mean_color(look: &Look, textures: &Textures) -> Vec3 {
+    let base = Vec3::from_array(look.base);
+    look.texture().map_or(base, |texture| {
+        let [r, g, b, _] = textures.sample(
+            crate::color::Srgb::tables(),
+            texture,
+            glam::Vec2::ZERO,
+            1e12,
+        );
+        base * Vec3::new(r, g, b)
+    })
+}

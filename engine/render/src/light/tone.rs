@@ -1,0 +1,52 @@
+//! From light to display.
+
+use dwell_scene::math;
+
+/// Illuminance at which exposure is neither raised nor lowered, lx.
+const MIDDLE_LX: f32 = 150.0;
+/// How far eyes adapt: 1 would make every room equally bright.
+const ADAPTATION: f32 = 0.85;
+/// What white under the mean illuminance of the room shows, before tone mapping.
+const GAIN: f32 = 1.4;
+/// What becomes display white.
+const WHITE: f32 = 4.0;
+
+/// Units of display white per lx of a room with this mean illuminance.
+pub(crate) fn exposure_per_lx(mean_lx: f32) -> f32 {
+    GAIN / (MIDDLE_LX * math::pow(mean_lx.max(1.0) / MIDDLE_LX, ADAPTATION))
+}
+
+/// Compresses bright light: 0 to 0, [`WHITE`] and more to 1, never falling.
+///
+/// # Source
+/// E. Reinhard et al., "Photographic Tone Reproduction for Digital Images" (2002), equation 4, for each channel.
+#[inline]
+pub(crate) fn display(light: f32) -> f32 {
+    (light * (1.0 + light * (1.0 / (WHITE * WHITE))) / (1.0 + light)).min(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brighter_light_is_never_darker_on_display() {
+        assert!(display(0.0).abs() < 1e-9);
+        assert!((display(WHITE) - 1.0).abs() < 1e-6);
+        let mut last = 0.0;
+        for k in 1..1000 {
+            let now = display(k as f32 * 0.01);
+            assert!(now >= last);
+            last = now;
+        }
+    }
+
+    #[test]
+    fn a_brighter_room_looks_brighter_but_less_than_it_is() {
+        let (dim, bright) = (
+            20.0 * exposure_per_lx(20.0),
+            2000.0 * exposure_per_lx(2000.0),
+        );
+        assert!(bright > dim && bright < 5.0 * dim);
+    }
+}

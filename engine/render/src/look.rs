@@ -1,0 +1,80 @@
+//! Materials as cameras see them.
+
+use crate::color::Srgb;
+use crate::texture::Textures;
+use dwell_scene::{House, Id, Material};
+
+/// No texture.
+const NONE: u32 = u32::MAX;
+
+/// One material, prepared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    /// Colour in linear light; multiplies the texture.
+    pub(crate) base: [f32; 3],
+    /// Position of the image, or [`NONE`].
+    texture: u32,
+    /// What does not pass straight through; multiplies the texture's alpha.
+    pub(crate) opacity: f32,
+    /// Light of its own, in units of display white.
+    pub(crate) emission: [f32; 3],
+    /// Pixels of the image, across times down.
+    pub(crate) texels: f32,
+    /// The bytes of an opaque colour without texture.
+    plain: Option<[u8; 3]>,
+    /// Whether light may pass.
+    pub(crate) clear: bool,
+}
+
+impl Look {
+    pub(crate) fn new(material: &Material, textures: &Textures) -> Self {
+        let srgb = Srgb::tables();
+        let mut look = Self {
+            base: material.base_color,
+            texture: NONE,
+            opacity: material.opacity,
+            emission: material.emission,
+            texels: 0.0,
+            plain: None,
+            clear: material.opacity < 1.0,
+        };
+        if let Some(texture) = material.texture {
+            if let Some([r, g, b, a]) = textures.uniform(texture) {
+                // An image of one colour is a colour.
+                look.base = std::array::from_fn(|k| look.base[k] * srgb.decode([r, g, b][k]));
+                look.opacity *= f32::from(a) / 255.0;
+                look.clear |= a < 255;
+            } else {
+                let (width, height) = textures.size(texture);
+                look.texture = texture.index() as u32;
+                look.texels = width * height;
+                look.clear |= textures.is_clear(texture);
+            }
+        }
+        if look.texture == NONE && !look.clear {
+            look.plain = Some(srgb.encode3(look.base));
+        }
+        look
+    }
+
+    /// Every material of a house, in order.
+    pub(crate) fn all(house: &House, textures: &Textures) -> Vec<Self> {
+        house
+            .materials
+            .iter()
+            .map(|material| Self::new(material, textures))
+            .collect()
+    }
+
+    /// The image.
+    #[inline]
+    pub(crate) fn texture(&self) -> Option<u32> {
+        (self.texture != NONE).then_some(self.texture)
+    }
+
+    /// The bytes of an opaque colour without texture.
+    #[inline]
+    pub(crate) fn plain(&self) -> Option<[u8; 3]> {
+        self.plain
+    }
+}

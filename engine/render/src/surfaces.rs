@@ -1,0 +1,262 @@
+//! What each triangle of a house looks like, in the order in which hits name triangles.
+
+use crate::look::Look;
+use dwell_scene::{House, Id, Mesh, PartId, Placed, State, SurfaceOwner};
+use glam::{Affine3A, Mat3A, Quat, Vec2, Vec3, Vec3A};
+
+/// One triangle.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(crate) struct Triangle {
+    /// Texture coordinates of the first corner, and what the second and third add to them.
+    uv: [Vec2; 3],
+    /// Geometric normal by the winding, unit length; world space, or part space for parts that move.
+    pub(crate) normal: Vec3,
+    /// Texture area per surface area, 1/m²: times the image's pixels, texels per square metre.
+    pub(crate) density: f32,
+    pub(crate) material: u32,
+}
+
+impl Triangle {
+    /// Texture coordinates at a hit with weights `u`, `v` of the second and third corner.
+    #[inline]
+    pub(crate) fn uv(&self, u: f32, v: f32) -> Vec2 {
+        self.uv[0] + self.uv[1] * u + self.uv[2] * v
+    }
+}
+
+/// Marks a triangle whose colour needs more than [`Surfaces::quick`].
+pub(crate) const SLOW: u8 = 0;
+
+/// Tables over all triangles: static ones first, then those of each part that moves.
+#[derive(Debug)]
+pub(crate) struct Surfaces {
+    /// Shape (triangle,).
+    triangles: Vec<Triangle>,
+    /// Normals of the corners, packed; equal where the mesh has none. Shape (triangle,).
+    corner_normals: Vec<[u32; 3]>,
+    /// R, G, B of plain colours and 255, or [`SLOW`] as the last byte. Shape (triangle,).
+    quick: Vec<[u8; 4]>,
+    /// First triangle of each moving instance. Shape (instance,).
+    first: Vec<u32>,
+    /// The part of each moving instance. Shape (instance,).
+    movable: Vec<PartId>,
+}
+
+impl Surfaces {
+    pub(crate) fn new(house: &House, looks: &[Look]) -> Self {
+        let geometry = house.geometry();
+        let count = geometry.static_triangles.len();
+        let mut all = Self {
+            triangles: Vec::with_capacity(count),
+            corner_normals: Vec::with_capacity(count),
+            quick: Vec::with_capacity(count),
+            first: Vec::with_capacity(geometry.movable.len()),
+            movable: geometry.movable.clone(),
+        };
+        for source in &geometry.static_triangles {
+            let placed = &geometry.placed[source.placed as usize];
+            all.add(
+                house,
+                placed,
+                &placed.world_from_mesh,
+                source.triangle as usize,
+                looks,
+            );
+        }
+        for part in &geometry.movable {
+            let placed = geometry.placed_part(*part);
+            all.first.push(all.triangles.len() as u32);
+            for triangle in 0..house.meshes[placed.mesh].triangles.len() {
+                all.add(house, placed, &placed.part_from_mesh, triangle, looks);
+            }
+        }
+        all
+    }
+
+    fn add(
+        &mut self,
+        house: &House,
+        placed: &Placed,
+        map: &Affine3A,
+        triangle: usize,
+        looks: &[Look],
+    ) {
+        let mesh = &house.meshes[placed.mesh];
+        let materials = match placed.owner {
+            SurfaceOwner::Structure(id) => &house.structure[id].materials,
+            SurfaceOwner::Part(id) => &house.parts[id].materials,
+        };
+        let material = materials[usize::from(mesh.slot(triangle))].index();
+        let corners = mesh
+            .corners(triangle)
+            .map(|p| map.transform_point3(p).as_dvec3());
+        let area_normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        // The model's front stays the front when the map mirrors.
+        let mirror = if map.matrix3.determinant() < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        let normal = (area_normal * mirror).normalize_or_zero().as_vec3();
+        let uv = texture_coordinates(mesh, triangle);
+        let (du, dv) = (uv[1] - uv[0], uv[2] - uv[0]);
+        let density = f64::from(du.perp_dot(dv).abs()) / area_normal.length().max(1e-12);
+        self.triangles.push(Triangle {
+            uv: [uv[0], du, dv],
+            normal,
+            density: density as f32,
+            material: material as u32,
+        });
+        self.corner_normals
+            .push(corner_normals(mesh, triangle, map, normal));
+        self.quick.push(match looks[material].plain() {
+            Some([r, g, b]) => [r, g, b, 255],
+            None => [0, 0, 0, SLOW],
+        });
+    }
+
+    /// Where a hit's triangle stands in the tables.
+    #[inline]
+    pub(crate) fn position(&self, instance: Option<u32>, triangle: u32) -> usize {
+        match instance {
+            None => triangle as usize,
+            Some(instance) => self.first[instance as usize] as usize + triangle as usize,
+        }
+    }
+
+    #[inline]
+    pub(crate) fn triangle(&self, position: usize) -> &Triangle {
+        &self.triangles[position]
+    }
+
+    #[inline]
+    pub(crate) fn quick(&self, position: usize) -> [u8; 4] {
+        self.quick[position]
+    }
+
+    /// The interpolated normal at a hit, in the space of [`Triangle::normal`]; not of unit length.
+    pub(crate) fn smooth_normal(&self, position: usize, u: f32, v: f32) -> Vec3 {
+        let [a, b, c] = self.corner_normals[position].map(unpack_normal);
+        a * (1.0 - u - v) + b * u + c * v
+    }
+
+    /// The turn from the space of normals to the world.
+    #[inline]
+    pub(crate) fn rotation(&self, instance: Option<u32>, state: &State) -> Option<Quat> {
+        instance.map(|instance| state.part_pose[self.movable[instance as usize]].rotation)
+    }
+
+    /// Memory held, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(self.triangles.as_slice())
+            + size_of_val(self.corner_normals.as_slice())
+            + size_of_val(self.quick.as_slice())
+    }
+}
+
+fn texture_coordinates(mesh: &Mesh, triangle: usize) -> [Vec2; 3] {
+    if mesh.uvs.is_empty() {
+        return [Vec2::ZERO; 3];
+    }
+    let uv = mesh.triangles[triangle].map(|vertex| mesh.uvs[vertex as usize]);
+    if uv.iter().all(|uv| uv.is_finite()) {
+        uv
+    } else {
+        [Vec2::ZERO; 3]
+    }
+}
+
+fn corner_normals(mesh: &Mesh, triangle: usize, map: &Affine3A, flat: Vec3) -> [u32; 3] {
+    if mesh.normals.is_empty() {
+        return [pack_normal(flat); 3];
+    }
+    let normals: Mat3A = map.matrix3.inverse().transpose();
+    mesh.triangles[triangle].map(|vertex| {
+        let turned =
+            Vec3::from(normals * Vec3A::from(mesh.normals[vertex as usize])).normalize_or_zero();
+        pack_normal(if turned == Vec3::ZERO || !turned.is_finite() {
+            flat
+        } else {
+            turned
+        })
+    })
+}
+
+/// A unit vector in 32 bits, exact to 5e-5 rad.
+///
+/// # Source
+/// Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3 (2014), 2:
+/// octahedral map.
+fn pack_normal(normal: Vec3) -> u32 {
+    let scale = normal.x.abs() + normal.y.abs() + normal.z.abs();
+    if scale == 0.0 || !scale.is_finite() {
+        return pack_normal(Vec3::Y);
+    }
+    let p = normal / scale;
+    let (x, y) = if p.z >= 0.0 {
+        (p.x, p.y)
+    } else {
+        (
+            (1.0 - p.y.abs()).copysign(p.x),
+            (1.0 - p.x.abs()).copysign(p.y),
+        )
+    };
+    let quantize = |k: f32| u32::from((k * 32_767.0).round() as i16 as u16);
+    quantize(x) | (quantize(y) << 16)
+}
+
+fn unpack_normal(packed: u32) -> Vec3 {
+    let part = |bits: u32| f32::from(bits as u16 as i16) * (1.0 / 32_767.0);
+    let (x, y) = (part(packed & 0xffff), part(packed >> 16));
+    let z = 1.0 - x.abs() - y.abs();
+    let fold = (-z).max(0.0);
+    Vec3::new(x - fold.copysign(x), y - fold.copysign(y), z).normalize_or_zero()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::texture::Textures;
+    use dwell_scene::{EntityId, ShoeboxMaterials};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_packed_normal_points_the_same_way(x in -1.0_f32..1.0, y in -1.0_f32..1.0, z in -1.0_f32..1.0) {
+            let Some(normal) = Vec3::new(x, y, z).try_normalize() else { return Ok(()) };
+            let back = unpack_normal(pack_normal(normal));
+            prop_assert!((back - normal).length() < 1e-4, "{} {}", normal, back);
+        }
+    }
+
+    #[test]
+    fn axes_are_packed_exactly() {
+        for axis in [
+            Vec3::X,
+            Vec3::Y,
+            Vec3::Z,
+            Vec3::NEG_X,
+            Vec3::NEG_Y,
+            Vec3::NEG_Z,
+        ] {
+            assert_eq!(unpack_normal(pack_normal(axis)), axis);
+        }
+        assert!(unpack_normal(pack_normal(Vec3::ZERO)).is_normalized());
+    }
+
+    #[test]
+    fn a_room_has_one_texture_unit_a_metre_and_normals_to_the_inside() {
+        let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
+        let looks = Look::all(&house, &Textures::new(&house));
+        let surfaces = Surfaces::new(&house, &looks);
+        assert_eq!(surfaces.triangles.len(), 12);
+        for (k, source) in house.geometry().static_triangles.iter().enumerate() {
+            let triangle = surfaces.triangle(surfaces.position(None, k as u32));
+            assert!((triangle.density - 1.0).abs() < 1e-5);
+            let placed = &house.geometry().placed[source.placed as usize];
+            assert_eq!(triangle.material as i32 + 1, EntityId(placed.entity.0).0);
+            assert!((surfaces.smooth_normal(k, 0.2, 0.3) - triangle.normal).length() < 1e-4);
+        }
+    }
+}
