@@ -106,7 +106,7 @@ pub enum HousesError {
         /// The file.
         at: At,
         /// The rule and the place.
-        source: dwell_scene::SceneError,
+        source: Box<dwell_scene::SceneError>,
     },
     /// Something the target format cannot express at all.
     #[error("{path}: cannot be written: {message}")]
@@ -123,5 +123,23 @@ impl HousesError {
     pub(crate) fn io(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.into();
         move |source| Self::Io { path, source }
+    }
+
+    /// A [`HousesError::Scene`] at `at`.
+    pub(crate) fn scene(at: &At) -> impl FnOnce(dwell_scene::SceneError) -> Self {
+        let at = at.clone();
+        move |source| Self::Scene {
+            at,
+            source: Box::new(source),
+        }
+    }
+
+    /// Why something could not be read, without the path, for a report that names it anyway.
+    pub(crate) fn reason(&self) -> String {
+        match self {
+            Self::Io { source, .. } => source.to_string(),
+            Self::Syntax { message, .. } => message.clone(),
+            error => error.to_string(),
+        }
     }
 }

@@ -1,7 +1,9 @@
-//! Where houses come from: one folder a format, the built-in house, textures, `open`.
+//! Where houses come from: one folder a format, the built-in house, textures, [`open`].
 
 mod build;
 mod error;
+mod formats;
+pub mod gltf;
 mod limits;
 pub mod obj;
 mod report;
@@ -9,5 +11,6 @@ mod root;
 pub mod suncg;
 
 pub use error::HousesError;
+pub use formats::{Format, Opened, formats, open, open_with};
 pub use report::{At, Damage, Report, Unmapped, Warning};
 pub use root::DataRoot;

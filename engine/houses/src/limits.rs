@@ -18,5 +18,3 @@ pub(crate) const MAX_NODES: usize = 200_000;
 pub(crate) const MAX_CORNERS: usize = 100_000;
 /// Largest voxel grid side of a binvox file (SUNCG has 128).
 pub(crate) const MAX_VOXEL_SIDE: u32 = 1024;
-/// Largest binvox file, bytes.
-pub(crate) const MAX_VOXEL_BYTES: u64 = 256 << 20;

@@ -63,7 +63,7 @@ pub(crate) struct LookTable {
 
 impl LookTable {
     /// The material of `look`, made when it is new. Numbers out of range are brought into it.
-    pub(crate) fn add(&mut self, look: Look) -> MaterialId {
+    pub(crate) fn add(&mut self, look: &Look) -> MaterialId {
         let unit = |value: f32| {
             if value.is_finite() {
                 value.clamp(0.0, 1.0)

@@ -4,6 +4,7 @@ mod components;
 mod looks;
 mod names;
 mod pieces;
+mod scene;
 mod tables;
 mod textures;
 
@@ -11,5 +12,6 @@ pub(crate) use components::{Component, components, submesh};
 pub(crate) use looks::{Look, LookTable};
 pub(crate) use names::Names;
 pub(crate) use pieces::convex_pieces;
+pub(crate) use scene::{Scene, Thing};
 pub(crate) use tables::{CategoryRow, category, room_kind, substance_of};
-pub(crate) use textures::{decode, texture_name};
+pub(crate) use textures::{decode, read_images, texture_name};

@@ -16,7 +16,11 @@ pub(crate) struct CategoryRow {
     switchable: u8,
     mounted: u8,
     substances: String,
-    pub(crate) fill: f32,
+    fill: f32,
+    mass_kg: f32,
+    width_m: f32,
+    height_m: f32,
+    depth_m: f32,
 }
 
 impl CategoryRow {
@@ -33,6 +37,16 @@ impl CategoryRow {
     /// Whether it hangs on a wall or ceiling.
     pub(crate) fn is_mounted(&self) -> bool {
         self.mounted == 1
+    }
+
+    /// Mass over the volume of its bounding box, kg/m³: that of a usual specimen, else the substance's times the fill.
+    pub(crate) fn box_density_kg_m3(&self) -> f32 {
+        let density = self.mass_kg / (self.width_m * self.height_m * self.depth_m);
+        if density > 0.0 && density.is_finite() {
+            density
+        } else {
+            self.substance().density_kg_m3 * self.fill
+        }
     }
 
     /// What it is usually made of.
@@ -209,7 +223,7 @@ mod tests {
             Some("table_lamp")
         );
         assert_eq!(
-            category(["no_such_thing", "sofa"]).map(|row| row.is_movable()),
+            category(["no_such_thing", "sofa"]).map(CategoryRow::is_movable),
             Some(true)
         );
     }

@@ -1,11 +1,16 @@
 //! Image files into textures.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
+use std::sync::Arc;
 
 use dwell_scene::Texture;
+use dwell_scene::parallel::Threads;
 use image::ImageReader;
 
-use crate::limits::{MAX_IMAGE_PIXELS, MAX_IMAGE_SIDE};
+use crate::limits::{MAX_IMAGE_BYTES, MAX_IMAGE_PIXELS, MAX_IMAGE_SIDE};
+use crate::report::{At, Damage, Report};
+use crate::root::DataRoot;
 
 /// The name of a texture: its path's last part without the ending.
 pub(crate) fn texture_name(path: &str) -> String {
@@ -44,4 +49,38 @@ pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
         height,
         rgba: image.into_raw(),
     })
+}
+
+/// Reads and decodes images of `root`; those that do not exist or cannot be read are reported and absent.
+pub(crate) fn read_images(
+    root: &DataRoot,
+    wanted: BTreeSet<String>,
+    threads: Threads,
+    report: &mut Report,
+) -> BTreeMap<String, Arc<Texture>> {
+    let wanted: Vec<String> = wanted.into_iter().collect();
+    let decoded = threads.map(wanted.len(), |k| {
+        let path = &wanted[k];
+        let unreadable = |reason| Damage::UnreadableTexture {
+            path: path.clone(),
+            reason,
+        };
+        if !root.has_file(path) {
+            return Err(Damage::MissingTexture { path: path.clone() });
+        }
+        let bytes = root
+            .read(path, MAX_IMAGE_BYTES)
+            .map_err(|error| unreadable(error.reason()))?;
+        decode(&texture_name(path), &bytes).map_err(unreadable)
+    });
+    let mut textures = BTreeMap::new();
+    for (path, result) in wanted.into_iter().zip(decoded) {
+        match result {
+            Ok(texture) => {
+                textures.insert(path, Arc::new(texture));
+            }
+            Err(damage) => report.warn(At::file(path), damage),
+        }
+    }
+    textures
 }

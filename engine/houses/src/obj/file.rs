@@ -99,3 +99,18 @@ pub struct MtlMaterial {
     /// `map_Kd`, as written, options removed.
     pub diffuse_map: Option<String>,
 }
+
+impl MtlMaterial {
+    /// Perceptual roughness of the Phong exponent, 0 to 1; `None` when nothing shines.
+    ///
+    /// # Source
+    /// B. Walter et al., EGSR 2007, section 5: a Blinn-Phong exponent n acts like a Beckmann width with
+    /// n = 2 / alpha² - 2; the perceptual roughness of glTF 2.0 is the root of alpha.
+    pub fn roughness(&self) -> Option<f32> {
+        let shines = self
+            .specular
+            .is_some_and(|color| color.iter().any(|c| *c > 0.0));
+        let exponent = self.shininess.filter(|n| shines && *n > 0.0)?;
+        Some((2.0 / (exponent + 2.0)).sqrt().sqrt())
+    }
+}

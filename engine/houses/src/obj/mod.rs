@@ -3,12 +3,18 @@
 //! The parser is our own because `tobj` refuses a whole file for one unreadable number, does not say in which line, and
 //! gives materials by name where SUNCG's overrides count positions; the tests compare the two on files both can read.
 
+mod convert;
 pub mod file;
 mod lines;
+mod load;
 mod read_mtl;
 mod read_obj;
 mod shape;
 
+pub use convert::open;
+pub(crate) use convert::recognizes;
+pub use load::MeshFiles;
+pub(crate) use load::read_mesh;
 pub use read_mtl::read_mtl;
 pub use read_obj::read_obj;
-pub(crate) use shape::{PartShape, shape_of};
+pub(crate) use shape::{PartShape, Slots, shape_of};

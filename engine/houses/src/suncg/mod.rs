@@ -1,7 +1,17 @@
 //! SUNCG: `house.json` with its rooms, objects, textures and tables.
 
+mod binvox;
+mod convert;
 pub mod file;
 mod lenient;
+pub mod metadata;
+mod open;
 mod parse;
+mod read;
 
+pub use binvox::{Voxels, read_binvox};
+pub use convert::convert;
+pub use open::open;
+pub(crate) use open::recognizes;
 pub use parse::parse;
+pub use read::{SuncgFiles, locate};

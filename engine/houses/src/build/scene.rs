@@ -1,0 +1,355 @@
+//! Named meshes of a general format into a house.
+//!
+//! Formats such as OBJ and glTF know meshes and names, nothing of rooms and doors. What a name says is used: walls,
+//! floors and ceilings become structure, one room lies over the floors, everything else is an object of the category
+//! that its name means.
+
+use std::sync::Arc;
+
+use dwell_scene::{
+    Aabb, Category, Collider, House, HouseData, Level, LevelId, Mesh, Mobility, Object, ObjectId,
+    Part, PartId, Room, RoomId, Structure, StructureKind, Texture, space,
+};
+use glam::{Affine3A, Vec2, Vec3};
+
+use super::tables::CategoryRow;
+use super::{LookTable, Names, category, convex_pieces};
+use crate::error::HousesError;
+use crate::report::{At, Damage, Report};
+
+/// How far a thing may hover above what it stands on, m.
+const GAP_M: f32 = 0.03;
+
+/// A named mesh with its place and materials.
+pub(crate) struct Thing {
+    pub(crate) name: String,
+    pub(crate) mesh: Arc<Mesh>,
+    pub(crate) world_from_mesh: Affine3A,
+    pub(crate) materials: Vec<dwell_scene::MaterialId>,
+}
+
+/// A scene of named meshes.
+pub(crate) struct Scene {
+    pub(crate) name: String,
+    pub(crate) source: &'static str,
+    pub(crate) things: Vec<Thing>,
+    pub(crate) looks: LookTable,
+    pub(crate) textures: Vec<Arc<Texture>>,
+}
+
+impl Scene {
+    /// Makes the house.
+    ///
+    /// # Errors
+    /// [`HousesError::Empty`] without a triangle, [`HousesError::Scene`] when the result breaks a rule of the scene.
+    pub(crate) fn into_house(self, at: &At, report: &mut Report) -> Result<House, HousesError> {
+        if self
+            .things
+            .iter()
+            .all(|thing| thing.mesh.triangles.is_empty())
+        {
+            return Err(HousesError::Empty {
+                at: at.clone(),
+                damage: report.len(),
+            });
+        }
+        let data = HouseData {
+            name: self.name,
+            source: self.source.to_owned(),
+            materials: self.looks.into_materials(),
+            textures: self.textures.into(),
+            ..HouseData::default()
+        };
+        let mut builder = Builder {
+            data,
+            names: Names::default(),
+            structure_names: Names::default(),
+            bounds: Vec::new(),
+            meshes: Vec::new(),
+        };
+        builder.data.levels.push(Level {
+            name: "0".to_owned(),
+            bounds: Aabb::EMPTY,
+        });
+        let (structure, objects): (Vec<_>, Vec<_>) = self
+            .things
+            .into_iter()
+            .filter(|thing| !thing.mesh.triangles.is_empty())
+            .partition(|t| structure_kind(&t.name).is_some());
+        let alone = structure.is_empty() && objects.len() == 1;
+        for thing in structure {
+            builder.structure(thing);
+        }
+        builder.room();
+        for thing in objects {
+            builder.object(thing, alone, at, report);
+        }
+        builder.settle(alone);
+        House::new(builder.data).map_err(HousesError::scene(at))
+    }
+}
+
+/// What part of a building a name means, if it means one: `Wall_3`, `WallInside#0_0_1`, `floor`.
+fn structure_kind(name: &str) -> Option<StructureKind> {
+    let lower = name.to_ascii_lowercase();
+    let word = lower
+        .split(|c: char| !c.is_ascii_alphabetic())
+        .find(|word| !word.is_empty())?;
+    match word {
+        "wall" | "walls" | "wallinside" | "walloutside" => Some(StructureKind::Wall),
+        "floor" | "floors" => Some(StructureKind::Floor),
+        "ceiling" | "ceilings" => Some(StructureKind::Ceiling),
+        "ground" => Some(StructureKind::Ground),
+        "roof" => Some(StructureKind::Other),
+        _ => None,
+    }
+}
+
+/// The row that a name means: `coffee_table_2` means `coffee_table`, `Blue Chair` means `chair`.
+fn category_of(name: &str) -> Option<&'static CategoryRow> {
+    let lower = name.to_ascii_lowercase();
+    let words: Vec<&str> = lower
+        .split(|c: char| !c.is_ascii_alphabetic())
+        .filter(|word| !word.is_empty())
+        .collect();
+    let joined = words.join("_");
+    let tails = (0..words.len()).map(|start| words[start..].join("_"));
+    tails
+        .chain([joined])
+        .find_map(|candidate| category([candidate.as_str()]))
+}
+
+struct Builder {
+    data: HouseData,
+    names: Names,
+    structure_names: Names,
+    /// The box of each object.
+    bounds: Vec<Aabb>,
+    /// Meshes already part of the house.
+    meshes: Vec<Arc<Mesh>>,
+}
+
+const LEVEL: LevelId = LevelId(0);
+
+impl Builder {
+    fn grow(&mut self, bounds: &Aabb) {
+        self.data.levels[LEVEL].bounds = self.data.levels[LEVEL].bounds.union(bounds);
+    }
+
+    fn structure(&mut self, thing: Thing) {
+        let Some(kind) = structure_kind(&thing.name) else {
+            return;
+        };
+        let map = thing.world_from_mesh;
+        let mut mesh = Mesh::clone(&thing.mesh);
+        // Normals follow the inverse transpose; a mirror turns the winding.
+        let normal_map = map.matrix3.inverse().transpose();
+        mesh.positions
+            .iter_mut()
+            .for_each(|p| *p = map.transform_point3(*p));
+        mesh.normals
+            .iter_mut()
+            .for_each(|n| *n = (normal_map * *n).normalize_or(Vec3::Y));
+        if map.matrix3.determinant() < 0.0 {
+            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        self.grow(&mesh.bounds());
+        let name = self.structure_names.unique(&thing.name);
+        let mesh = self.data.meshes.push(Arc::new(mesh));
+        self.data.structure.push(Structure {
+            name,
+            kind,
+            room: None,
+            level: LEVEL,
+            mesh,
+            materials: thing.materials,
+        });
+    }
+
+    /// One room over all floors.
+    fn room(&mut self) {
+        let of = |kind: StructureKind| {
+            let pieces = self
+                .data
+                .structure
+                .iter()
+                .filter(move |piece| piece.kind == kind);
+            pieces.map(|piece| &self.data.meshes[piece.mesh])
+        };
+        let top = of(StructureKind::Floor)
+            .map(|mesh| mesh.bounds().max.y)
+            .reduce(f32::max);
+        let Some(floor_y) = top else { return };
+        let mut footprint = Vec::new();
+        for mesh in of(StructureKind::Floor) {
+            for k in 0..mesh.triangles.len() {
+                let [a, b, c] = mesh.corners(k);
+                let up = (b - a).cross(c - a).normalize_or_zero().y > 0.7;
+                if up && [a, b, c].iter().all(|p| p.y > floor_y - 0.02) {
+                    footprint.push([a, b, c].map(|p| Vec2::new(p.x, p.z)));
+                }
+            }
+        }
+        let bounds = self.data.levels[LEVEL].bounds;
+        let ceiling_y = of(StructureKind::Ceiling)
+            .map(|mesh| mesh.bounds().min.y)
+            .reduce(f32::min)
+            .unwrap_or(bounds.max.y);
+        let room = Room {
+            name: "room_1".to_owned(),
+            level: LEVEL,
+            kinds: Vec::new(),
+            footprint,
+            floor_y,
+            ceiling_y,
+            bounds,
+        };
+        let id = self.data.rooms.push(room);
+        self.data
+            .structure
+            .iter_mut()
+            .for_each(|piece| piece.room = Some(id));
+    }
+
+    fn object(&mut self, thing: Thing, alone: bool, at: &At, report: &mut Report) {
+        let Some((pose, part_from_mesh)) = space::split_affine(&thing.world_from_mesh) else {
+            let reason = "it flattens space or is not finite".to_owned();
+            return report.warn(at.field(&thing.name), Damage::BadTransform { reason });
+        };
+        let world_from_mesh = pose.to_affine() * part_from_mesh;
+        let bounds = Aabb::from_points(
+            thing
+                .mesh
+                .positions
+                .iter()
+                .map(|p| world_from_mesh.transform_point3(*p)),
+        );
+        self.grow(&bounds);
+        self.bounds.push(bounds);
+        let row = category_of(&thing.name);
+        let moves = alone || row.is_some_and(|row| row.is_movable() && !row.is_mounted());
+        let colliders = if moves {
+            convex_pieces(&thing.mesh, &part_from_mesh)
+        } else {
+            vec![Collider::ExactMesh]
+        };
+        let known = self
+            .meshes
+            .iter()
+            .position(|mesh| Arc::ptr_eq(mesh, &thing.mesh));
+        let mesh = known.map_or_else(
+            || {
+                self.meshes.push(thing.mesh.clone());
+                self.data.meshes.push(thing.mesh.clone())
+            },
+            // Structure meshes come first and are never shared.
+            |k| dwell_scene::MeshId((self.data.structure.len() + k) as u32),
+        );
+        let id = ObjectId(self.data.objects.len() as u32);
+        let density_kg_m3 = row
+            .map_or(300.0, CategoryRow::box_density_kg_m3)
+            .clamp(0.1, 30_000.0);
+        let box_m3 = bounds.volume();
+        self.data.parts.push(Part {
+            object: id,
+            name: "body".to_owned(),
+            fixed: !moves,
+            world_from_part: pose,
+            mesh,
+            part_from_mesh,
+            materials: thing.materials,
+            colliders,
+            mass_kg: moves.then(|| (box_m3 * density_kg_m3).clamp(0.02, 2000.0)),
+            density_kg_m3,
+        });
+        let first_part = PartId(self.data.parts.len() as u32 - 1);
+        let handy = bounds.size().max_element() <= 0.6 && box_m3 <= 0.05;
+        let center = bounds.center();
+        let in_room = |room: &Room| room.contains_xz(Vec2::new(center.x, center.z));
+        let room = self
+            .data
+            .rooms
+            .iter()
+            .position(in_room)
+            .map(|k| RoomId(k as u32));
+        self.data.objects.push(Object {
+            name: self.names.unique(&thing.name),
+            source_id: thing.name.clone(),
+            model: thing.name,
+            category: row.map_or_else(Category::default, |row| Category {
+                fine: row.name.clone(),
+                coarse: row.name.clone(),
+                nyu40: row.nyu40_name.clone(),
+            }),
+            level: LEVEL,
+            room,
+            mobility: if moves {
+                Mobility::Movable
+            } else {
+                Mobility::Fixed
+            },
+            pickable: moves && handy,
+            switch: row.is_some_and(CategoryRow::is_switchable).then_some(false),
+            first_part,
+            part_count: 1,
+        });
+    }
+
+    /// Fixes movable things that hang in the air: they would only fall.
+    fn settle(&mut self, alone: bool) {
+        let floor_y = self
+            .data
+            .rooms
+            .iter()
+            .map(|room| room.floor_y)
+            .reduce(f32::max);
+        let ground = floor_y.unwrap_or(self.data.levels[LEVEL].bounds.min.y);
+        for (k, object) in self.data.objects.iter_mut().enumerate() {
+            let own = self.bounds[k];
+            let foot = own.center().with_y(own.min.y);
+            let stands = self.bounds.iter().enumerate().any(|(other, b)| {
+                other != k
+                    && b.min.y < foot.y - 0.01
+                    && foot.y < b.max.y + GAP_M
+                    && b.contains(foot.with_y(b.center().y))
+            });
+            if object.mobility == Mobility::Movable
+                && !alone
+                && !stands
+                && (foot.y - ground).abs() > GAP_M
+            {
+                object.mobility = Mobility::Fixed;
+                object.pickable = false;
+                let part = &mut self.data.parts[object.first_part];
+                (part.fixed, part.colliders, part.mass_kg) =
+                    (true, vec![Collider::ExactMesh], None);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_mean_structure_or_a_category() {
+        assert_eq!(
+            structure_kind("WallInside#0_0_1"),
+            Some(StructureKind::Wall)
+        );
+        assert_eq!(
+            (
+                structure_kind("Floor.001"),
+                structure_kind("floorlamp"),
+                structure_kind("12")
+            ),
+            (Some(StructureKind::Floor), None, None)
+        );
+        let name = |text| category_of(text).map(|row| row.name.as_str());
+        assert_eq!(
+            (name("coffee_table_2"), name("Blue Chair.003"), name("Cube")),
+            (Some("coffee_table"), Some("chair"), None)
+        );
+    }
+}

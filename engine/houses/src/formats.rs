@@ -1,0 +1,88 @@
+//! HOUSE strings: the list of formats, and the one function that opens them all.
+
+use std::path::Path;
+
+use dwell_scene::House;
+use dwell_scene::parallel::Threads;
+
+use crate::error::HousesError;
+use crate::report::Report;
+
+/// A house and the damage that was survived on the way to it.
+pub type Opened = Result<(House, Report), HousesError>;
+
+/// A way to get a house.
+pub struct Format {
+    /// The format's name.
+    pub name: &'static str,
+    /// What a HOUSE string of this format looks like.
+    pub spelling: &'static str,
+    /// Whether a HOUSE string means this format.
+    pub recognizes: fn(&str) -> bool,
+    /// Opens it.
+    pub open: fn(&str, Threads) -> Opened,
+}
+
+/// All formats, in the order in which they are tried. A new one is one folder and one entry here.
+pub fn formats() -> &'static [Format] {
+    &[
+        Format {
+            name: "suncg",
+            spelling: "a path to a house.json, its folder, or a data root with one house",
+            recognizes: |house| crate::suncg::recognizes(Path::new(house)),
+            open: |house, threads| crate::suncg::open(Path::new(house), threads),
+        },
+        Format {
+            name: "gltf",
+            spelling: "a path to a .glb or .gltf",
+            recognizes: |house| crate::gltf::recognizes(Path::new(house)),
+            open: |house, threads| crate::gltf::open(Path::new(house), threads),
+        },
+        Format {
+            name: "obj",
+            spelling: "a path to an .obj",
+            recognizes: |house| crate::obj::recognizes(Path::new(house)),
+            open: |house, threads| crate::obj::open(Path::new(house), threads),
+        },
+    ]
+}
+
+/// Opens the house that `house` names, on as many threads as the machine gives.
+///
+/// # Errors
+/// [`HousesError::UnknownHouse`] lists what is allowed; otherwise what the format says.
+///
+/// # Determinism
+/// The same files give the same house and report for any number of threads.
+pub fn open(house: &str) -> Result<(House, Report), HousesError> {
+    open_with(house, Threads::default())
+}
+
+/// [`open`] on `threads` threads.
+///
+/// # Errors
+/// Those of [`open`].
+pub fn open_with(house: &str, threads: Threads) -> Result<(House, Report), HousesError> {
+    let _span = tracing::debug_span!("open", house).entered();
+    let Some(format) = formats().iter().find(|format| (format.recognizes)(house)) else {
+        let allowed = formats()
+            .iter()
+            .map(|format| format.spelling)
+            .collect::<Vec<_>>()
+            .join("; ");
+        return Err(HousesError::UnknownHouse {
+            house: house.to_owned(),
+            allowed,
+        });
+    };
+    let (house, report) = (format.open)(house, threads)?;
+    tracing::debug!(
+        format = format.name,
+        rooms = house.rooms.len(),
+        objects = house.objects.len(),
+        triangles = house.triangle_count(),
+        warnings = report.len(),
+        "house opened"
+    );
+    Ok((house, report))
+}

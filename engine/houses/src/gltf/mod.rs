@@ -1,0 +1,68 @@
+//! glTF 2.0 and GLB: an object or a scene of named ones as a house.
+
+mod accessor;
+mod buffers;
+mod convert;
+mod nodes;
+mod surface;
+
+use std::path::Path;
+
+use dwell_scene::House;
+use dwell_scene::parallel::Threads;
+
+use crate::error::HousesError;
+use crate::limits::MAX_BUFFER_BYTES;
+use crate::report::{At, Report};
+use crate::root::DataRoot;
+
+/// Whether `path` names a glTF file.
+pub(crate) fn recognizes(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| {
+        ending.eq_ignore_ascii_case("glb") || ending.eq_ignore_ascii_case("gltf")
+    })
+}
+
+/// Opens a `.glb` or `.gltf` file. Every node with a mesh is a thing; names mean structure or a category.
+///
+/// Animations, skins, cameras and lights are not read; each is reported once.
+///
+/// # Errors
+/// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no valid glTF 2.0,
+/// [`HousesError::TooLarge`] for buffers beyond 2 GiB, [`HousesError::Empty`] when no triangle is left,
+/// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
+pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let name = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    std::fs::metadata(path).map_err(HousesError::io(path))?;
+    let root = DataRoot::new(folder)?;
+    let bytes = root.read(&name, MAX_BUFFER_BYTES)?;
+    open_bytes(&bytes, &root, &name, threads)
+}
+
+/// The same from bytes; files beside it are read from `root`.
+///
+/// # Errors
+/// Those of [`open`].
+pub fn open_bytes(
+    bytes: &[u8],
+    root: &DataRoot,
+    name: &str,
+    threads: Threads,
+) -> Result<(House, Report), HousesError> {
+    let at = At::file(name);
+    let mut report = Report::new();
+    let gltf = ::gltf::Gltf::from_slice(bytes).map_err(|error| HousesError::Syntax {
+        at: at.clone(),
+        message: format!("no valid glTF 2.0: {error}"),
+    })?;
+    let blob = gltf.blob.as_deref();
+    let json = gltf.document.as_json();
+    let buffers = buffers::Buffers::load(json, blob, root, &at, &mut report)?;
+    let house = convert::convert(json, &buffers, root, name, threads, &mut report)?;
+    Ok((house, report))
+}

@@ -1,0 +1,163 @@
+//! An OBJ file as a house: an object, or a scene of named ones.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+
+use dwell_scene::material::library;
+use dwell_scene::parallel::Threads;
+use dwell_scene::{House, MaterialId, TextureId};
+use glam::Affine3A;
+
+use super::file::Run;
+use super::load::{MeshFiles, read_mesh};
+use super::shape::{PartShape, Slots, shape_of};
+use crate::build::{Look, LookTable, Scene, Thing, read_images, substance_of, texture_name};
+use crate::error::HousesError;
+use crate::report::{At, Report};
+use crate::root::DataRoot;
+
+/// Whether `path` names an OBJ file.
+pub(crate) fn recognizes(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))
+}
+
+/// Opens an OBJ file with its materials and textures. Every `o` is a thing of its own; without one the file is.
+///
+/// Units are metres and +Y is up, as in SUNCG; the format says neither.
+///
+/// # Errors
+/// [`HousesError::Io`] when the file cannot be read, [`HousesError::Empty`] when it holds no triangle,
+/// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
+pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+    std::fs::metadata(path).map_err(HousesError::io(path))?;
+    let (root, inside) = locate(path)?;
+    let mut report = Report::new();
+    let at = At::file(&inside);
+    let files = read_mesh(&root, &inside, &mut report).unwrap_or_default();
+    let wanted: BTreeSet<String> = files.textures.iter().flatten().cloned().collect();
+    let images = read_images(&root, wanted, threads, &mut report);
+    let slots = Slots::of(&files.obj, &files.mtl, &at, &mut report);
+    let texture_ids: BTreeMap<&str, TextureId> = images
+        .keys()
+        .enumerate()
+        .map(|(k, path)| (path.as_str(), TextureId(k as u32)))
+        .collect();
+    let mut looks = LookTable::default();
+    let materials: Vec<MaterialId> = slots
+        .entries
+        .iter()
+        .map(|(name, in_file)| looks.add(&look(&files, name, *in_file, &texture_ids)))
+        .collect();
+    let name = texture_name(&inside);
+    let mut things: Vec<(String, Vec<(u16, &Run)>)> = Vec::new();
+    for run in &files.obj.runs {
+        let thing = if run.object.is_empty() {
+            &name
+        } else {
+            &run.object
+        };
+        let run = (slots.of_run(run), run);
+        match things.iter_mut().find(|(known, _)| known == thing) {
+            Some((_, runs)) => runs.push(run),
+            None => things.push((thing.clone(), vec![run])),
+        }
+    }
+    let box_mapping = !texture_ids.is_empty();
+    let things = things
+        .into_iter()
+        .map(|(name, runs)| {
+            let mesh = shape_of(
+                &PartShape {
+                    obj: &files.obj,
+                    runs,
+                    box_mapping,
+                },
+                &at,
+                &mut report,
+            );
+            Thing {
+                name,
+                mesh: Arc::new(mesh),
+                world_from_mesh: Affine3A::IDENTITY,
+                materials: materials.clone(),
+            }
+        })
+        .collect();
+    let textures = images.into_values().collect();
+    let house = Scene {
+        name,
+        source: "obj",
+        things,
+        looks,
+        textures,
+    }
+    .into_house(&at, &mut report)?;
+    Ok((house, report))
+}
+
+/// The folder that bounds the file's paths, and the file in it: the data root when the file is a SUNCG model, whose
+/// textures lie outside of its own folder.
+fn locate(path: &Path) -> Result<(DataRoot, String), HousesError> {
+    let name = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let real = DataRoot::new(folder)?
+        .folder()
+        .canonicalize()
+        .map_err(HousesError::io(folder))?;
+    let part = |steps: usize| {
+        Some(
+            real.ancestors()
+                .nth(steps)?
+                .file_name()?
+                .to_string_lossy()
+                .into_owned(),
+        )
+    };
+    match (part(1), part(0), real.ancestors().nth(2)) {
+        (Some(kind), Some(id), Some(root))
+            if (kind == "object" || kind == "room") && root.join("texture").is_dir() =>
+        {
+            Ok((DataRoot::new(root)?, format!("{kind}/{id}/{name}")))
+        }
+        _ => Ok((DataRoot::new(folder)?, name)),
+    }
+}
+
+fn look(
+    files: &MeshFiles,
+    name: &str,
+    in_file: Option<usize>,
+    textures: &BTreeMap<&str, TextureId>,
+) -> Look {
+    let Some(k) = in_file else {
+        let substance = substance_of(name).unwrap_or_else(|| library().default_substance());
+        return Look::plain(if name.is_empty() { "default" } else { name }, substance);
+    };
+    let material = &files.mtl.materials[k];
+    let path = files.textures[k]
+        .as_deref()
+        .filter(|path| textures.contains_key(path));
+    let named = path.and_then(substance_of).or_else(|| substance_of(name));
+    let opacity = material.opacity.unwrap_or(1.0);
+    let usual = || {
+        if opacity < 1.0 {
+            library().get_or_default("glass")
+        } else {
+            library().default_substance()
+        }
+    };
+    Look {
+        srgb: material.diffuse.unwrap_or([1.0; 3]),
+        texture: path.map(|path| textures[path]),
+        opacity,
+        emission: material.emission.unwrap_or([0.0; 3]),
+        roughness: material.roughness(),
+        ..Look::plain(name, named.unwrap_or_else(usual))
+    }
+}

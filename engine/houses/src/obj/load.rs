@@ -1,0 +1,76 @@
+//! An OBJ file together with its materials.
+
+use super::file::{MtlFile, ObjFile};
+use super::{read_mtl, read_obj};
+use crate::limits::MAX_MESH_BYTES;
+use crate::report::{At, Damage, Report};
+use crate::root::{DataRoot, folder_of};
+
+/// An OBJ file and the materials of its MTL files, one after another.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MeshFiles {
+    /// The OBJ file.
+    pub obj: ObjFile,
+    /// The materials.
+    pub mtl: MtlFile,
+    /// For each material its texture, relative to the root, when it names one that stays inside.
+    pub textures: Vec<Option<String>>,
+}
+
+/// Reads an OBJ file with its MTL files.
+pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut Report) -> Option<MeshFiles> {
+    let bytes = match root.read(path, MAX_MESH_BYTES) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            let damage = Damage::UnreadableMesh {
+                path: path.to_owned(),
+                reason: error.reason(),
+            };
+            report.warn(At::file(path), damage);
+            return None;
+        }
+    };
+    let mut files = MeshFiles {
+        obj: read_obj(&bytes, path, report),
+        ..MeshFiles::default()
+    };
+    let folder = folder_of(path);
+    for library in &files.obj.material_libraries {
+        let Ok(mtl_path) = DataRoot::resolve(folder, library) else {
+            report.warn(
+                At::file(path),
+                Damage::PathRefused {
+                    path: library.clone(),
+                },
+            );
+            continue;
+        };
+        let Ok(bytes) = root.read(&mtl_path, MAX_MESH_BYTES) else {
+            report.warn(
+                At::file(path),
+                Damage::MissingMaterialFile { path: mtl_path },
+            );
+            continue;
+        };
+        let mtl = read_mtl(&bytes, &mtl_path, report);
+        for material in &mtl.materials {
+            let texture = material
+                .diffuse_map
+                .as_deref()
+                .map(|map| (map, DataRoot::resolve(folder_of(&mtl_path), map)));
+            if let Some((map, Err(_))) = &texture {
+                report.warn(
+                    At::file(&mtl_path),
+                    Damage::PathRefused {
+                        path: (*map).to_owned(),
+                    },
+                );
+            }
+            files
+                .textures
+                .push(texture.and_then(|(_, resolved)| resolved.ok()));
+        }
+        files.mtl.materials.extend(mtl.materials);
+    }
+    Some(files)
+}

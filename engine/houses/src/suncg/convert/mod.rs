@@ -1,0 +1,177 @@
+//! The only place where SUNCG files become a [`House`]: every decision about meaning is made below this folder.
+
+mod boxes;
+mod fixtures;
+mod hinge;
+mod mobility;
+mod nodes;
+mod objects;
+mod place;
+mod rooms;
+mod shapes;
+mod surface;
+
+use std::collections::BTreeMap;
+
+use dwell_scene::parallel::Threads;
+use dwell_scene::{
+    Aabb, Collider, House, HouseData, Level, LevelId, MeshId, PartId, RoomId, TextureId,
+};
+use glam::Affine3A;
+use tracing::debug_span;
+
+use super::read::SuncgFiles;
+use crate::build::{LookTable, Names};
+use crate::error::HousesError;
+use crate::report::{At, Report};
+
+/// Makes a house of the files.
+///
+/// # Errors
+/// [`HousesError::Field`] for axes nothing can be made of, [`HousesError::Empty`] when no triangle is left,
+/// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
+pub fn convert(
+    files: &SuncgFiles,
+    threads: Threads,
+    report: &mut Report,
+) -> Result<House, HousesError> {
+    let at = At::file(&files.house_path);
+    let data = HouseData {
+        name: files
+            .house
+            .id
+            .clone()
+            .filter(|id| !id.is_empty())
+            .unwrap_or_else(|| files.scene_id.clone()),
+        source: files
+            .house
+            .version
+            .clone()
+            .unwrap_or_else(|| "suncg".to_owned()),
+        ..HouseData::default()
+    };
+    let mut converter = Converter {
+        files,
+        world_from_file: place::world_from_file(&files.house, &at)?,
+        node_names: nodes::names(&files.house, &at, report),
+        shapes: {
+            let _span = debug_span!("shapes").entered();
+            shapes::ModelShapes::build(files, threads, report)
+        },
+        at,
+        report,
+        data,
+        looks: LookTable::default(),
+        textures: BTreeMap::new(),
+        object_names: Names::default(),
+        structure_names: Names::default(),
+        pieces: BTreeMap::new(),
+        stands: Vec::new(),
+    };
+    {
+        let _span = debug_span!("rooms").entered();
+        converter.levels_and_rooms();
+    }
+    {
+        let _span = debug_span!("objects").entered();
+        converter.objects();
+    }
+    converter.finish()
+}
+
+/// A house under construction.
+struct Converter<'a> {
+    files: &'a SuncgFiles,
+    at: At,
+    report: &'a mut Report,
+    /// Scale and axes of the file; the identity in every file seen.
+    world_from_file: Affine3A,
+    /// The name of each node by level and index.
+    node_names: Vec<Vec<String>>,
+    shapes: shapes::ModelShapes,
+    data: HouseData,
+    looks: LookTable,
+    /// Textures that are in use, by path.
+    textures: BTreeMap<&'a str, TextureId>,
+    object_names: Names,
+    structure_names: Names,
+    /// Convex pieces by mesh and the bits of its scale: instances of a model share them.
+    pieces: BTreeMap<(MeshId, [u32; 9]), Vec<Collider>>,
+    /// Where the objects made so far stand, to see what rests on what.
+    stands: Vec<(PartId, Aabb)>,
+}
+
+/// A node's place: level, position there.
+type NodeKey = (usize, usize);
+
+impl Converter<'_> {
+    /// The place of a node in `house.json`.
+    fn node_at(&self, (level, node): NodeKey) -> At {
+        self.at.field(format_args!("levels[{level}].nodes[{node}]"))
+    }
+
+    fn level_id(level: usize) -> LevelId {
+        LevelId(level as u32)
+    }
+
+    fn levels_and_rooms(&mut self) {
+        for (k, level) in self.files.house.levels.iter().enumerate() {
+            let name = level.id.clone().unwrap_or_else(|| k.to_string());
+            self.data.levels.push(Level {
+                name,
+                bounds: Aabb::EMPTY,
+            });
+        }
+        for (k, level) in self.files.house.levels.iter().enumerate() {
+            if level.valid == Some(super::file::Flag(false)) {
+                continue;
+            }
+            for (i, node) in level
+                .nodes
+                .iter()
+                .enumerate()
+                .filter(|(_, node)| node.is_valid())
+            {
+                match node.kind.as_deref() {
+                    Some("Room") => self.room((k, i), node),
+                    Some("Ground") => self.ground((k, i), node),
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    /// The room of a point, by floors: the smallest that holds it.
+    fn room_around(&self, point: glam::Vec3) -> Option<RoomId> {
+        let holds = |room: &dwell_scene::Room| {
+            (room.floor_y - 0.3..=room.ceiling_y + 0.3).contains(&point.y)
+                && room.contains_xz(glam::Vec2::new(point.x, point.z))
+        };
+        let rooms = self.data.rooms.iter_ids().filter(|(_, room)| holds(room));
+        rooms
+            .min_by(|(_, a), (_, b)| a.area_m2().total_cmp(&b.area_m2()))
+            .map(|(id, _)| id)
+    }
+
+    fn finish(mut self) -> Result<House, HousesError> {
+        self.data.materials = self.looks.into_materials();
+        let seen = self
+            .data
+            .structure
+            .iter()
+            .map(|piece| piece.mesh)
+            .chain(self.data.parts.iter().map(|part| part.mesh));
+        if seen
+            .map(|mesh| self.data.meshes[mesh].triangles.len())
+            .sum::<usize>()
+            == 0
+        {
+            return Err(HousesError::Empty {
+                at: self.at,
+                damage: self.report.len(),
+            });
+        }
+        let _span = debug_span!("check").entered();
+        House::new(self.data).map_err(HousesError::scene(&self.at))
+    }
+}

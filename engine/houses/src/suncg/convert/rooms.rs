@@ -1,0 +1,345 @@
+//! Rooms and grounds: structure pieces, floors, kinds.
+
+use std::sync::Arc;
+
+use dwell_scene::{Aabb, LevelId, Mesh, Room, RoomId, Structure, StructureKind};
+use glam::{Vec2, Vec3};
+
+use super::super::file::{Flag, NodeFile};
+use super::super::read::paths;
+use super::{Converter, NodeKey, place};
+use crate::build::room_kind;
+use crate::obj::MeshFiles;
+use crate::obj::file::Run;
+use crate::obj::{PartShape, Slots, shape_of};
+use crate::report::{At, Damage, Unmapped};
+
+/// Faces that look up at least this much belong to the floor that one walks on.
+const UPWARD: f32 = 0.7;
+/// Pieces of a floor this far below its top are not walked on, m.
+const FLOOR_STEP_M: f32 = 0.02;
+
+/// The meshes of a room: file letter, what it holds, whether the node hides it.
+const PARTS: [(char, StructureKind); 3] = [
+    ('c', StructureKind::Ceiling),
+    ('f', StructureKind::Floor),
+    ('w', StructureKind::Wall),
+];
+
+impl<'a> Converter<'a> {
+    pub(super) fn room(&mut self, key: NodeKey, node: &'a NodeFile) {
+        let at = self.node_at(key);
+        let name = self.node_names[key.0][key.1].clone();
+        let kinds = self.room_kinds(node, &at);
+        let room_id = RoomId(self.data.rooms.len() as u32);
+        let level = Self::level_id(key.0);
+        let first_piece = self.data.structure.len();
+        if let Some(model) = self.room_model(node, &at) {
+            for (letter, kind) in PARTS {
+                let hidden = match kind {
+                    StructureKind::Ceiling => node.hide_ceiling,
+                    StructureKind::Floor => node.hide_floor,
+                    _ => node.hide_walls,
+                };
+                if hidden != Some(Flag(true)) {
+                    let path = paths::room(&self.files.scene_id, model, letter);
+                    self.pieces_of(&path, kind, &name, level, Some(room_id), &at);
+                }
+            }
+        }
+        let pieces = first_piece..self.data.structure.len();
+        let room = self.room_from_pieces(pieces, name, level, kinds, node, &at);
+        self.data.levels[level].bounds = self.data.levels[level].bounds.union(&room.bounds);
+        self.data.rooms.push(room);
+    }
+
+    pub(super) fn ground(&mut self, key: NodeKey, node: &'a NodeFile) {
+        let at = self.node_at(key);
+        let name = self.node_names[key.0][key.1].clone();
+        if node.hide_floor == Some(Flag(true)) {
+            return;
+        }
+        if let Some(model) = self.room_model(node, &at) {
+            let path = paths::room(&self.files.scene_id, model, 'f');
+            self.pieces_of(
+                &path,
+                StructureKind::Ground,
+                &name,
+                Self::level_id(key.0),
+                None,
+                &at,
+            );
+        }
+    }
+
+    fn room_model(&mut self, node: &'a NodeFile, at: &At) -> Option<&'a str> {
+        let model = node.model_id.as_deref();
+        match model {
+            None => {
+                let consequence = "it has no walls, floor or ceiling".to_owned();
+                self.report
+                    .warn(at.field("modelId"), Damage::MissingField { consequence });
+            }
+            Some(id) if !paths::is_plain(id) => {
+                self.report.warn(
+                    at.field("modelId"),
+                    Damage::PathRefused {
+                        path: id.to_owned(),
+                    },
+                );
+                return None;
+            }
+            Some(_) => {}
+        }
+        model
+    }
+
+    fn room_kinds(&mut self, node: &NodeFile, at: &At) -> Vec<String> {
+        let mut kinds = Vec::new();
+        for given in node.room_types.iter().flatten() {
+            let kind = room_kind(given).unwrap_or_else(|plain| {
+                let damage = Damage::Unmapped {
+                    what: Unmapped::RoomType,
+                    name: given.clone(),
+                };
+                self.report.warn(at.field("roomTypes"), damage);
+                plain
+            });
+            if !kind.is_empty() && !kinds.contains(&kind) {
+                kinds.push(kind);
+            }
+        }
+        // "Room" says nothing; it must not hide what does.
+        if kinds.len() > 1 {
+            kinds.retain(|kind| kind != "room");
+        }
+        kinds
+    }
+
+    /// One structure piece for each `o` group of a mesh, in file order.
+    fn pieces_of(
+        &mut self,
+        path: &str,
+        kind: StructureKind,
+        node: &str,
+        level: LevelId,
+        room: Option<RoomId>,
+        at: &At,
+    ) {
+        let Some((path, files)) = self.files.meshes.get_key_value(path) else {
+            self.report.warn(
+                at.clone(),
+                Damage::MissingMesh {
+                    path: path.to_owned(),
+                },
+            );
+            return;
+        };
+        let mesh_at = At::file(path);
+        if files.obj.face_count() == 0 {
+            self.report
+                .warn(mesh_at, Damage::EmptyMesh { path: path.clone() });
+            return;
+        }
+        let slots = Slots::of(&files.obj, &files.mtl, &mesh_at, self.report);
+        // A group may be interrupted by others: pieces are gathered by name, in the order of their first faces.
+        let mut groups: Vec<(&str, Vec<&Run>)> = Vec::new();
+        for run in &files.obj.runs {
+            let name = if run.object.is_empty() {
+                run.group.as_str()
+            } else {
+                run.object.as_str()
+            };
+            match groups.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, runs)) => runs.push(run),
+                None => groups.push((name, vec![run])),
+            }
+        }
+        for (group, runs) in groups {
+            let kind = self.piece_kind(group, kind, &mesh_at);
+            let base = if group.is_empty() {
+                format!("{kind:?}#{node}")
+            } else {
+                group.to_owned()
+            };
+            let name = self.structure_names.unique(&base);
+            let (mesh, used) = piece_mesh(files, &slots, runs, &mesh_at, self.report);
+            let materials = used
+                .iter()
+                .map(|slot| self.structure_material(files, &slots, *slot, kind))
+                .collect();
+            let mesh = self.data.meshes.push(Arc::new(self.in_world(mesh)));
+            self.data.structure.push(Structure {
+                name,
+                kind,
+                room,
+                level,
+                mesh,
+                materials,
+            });
+        }
+    }
+
+    /// What a piece is, by the name of its group.
+    fn piece_kind(&mut self, group: &str, of_file: StructureKind, at: &At) -> StructureKind {
+        let kind = match group.split('#').next().unwrap_or("") {
+            "Floor" if of_file == StructureKind::Ground => StructureKind::Ground,
+            "Floor" => StructureKind::Floor,
+            "Ceiling" => StructureKind::Ceiling,
+            "Ground" => StructureKind::Ground,
+            name if name.starts_with("Wall") => StructureKind::Wall,
+            "" => of_file,
+            _ => {
+                let damage = Damage::UnknownPiece {
+                    found: group.to_owned(),
+                    taken_for: format!("{of_file:?}").to_lowercase(),
+                };
+                self.report.warn(at.clone(), damage);
+                of_file
+            }
+        };
+        // Outside of a building there are no rooms.
+        if kind == StructureKind::Floor && of_file == StructureKind::Ground {
+            of_file
+        } else {
+            kind
+        }
+    }
+
+    fn in_world(&self, mut mesh: Mesh) -> Mesh {
+        if self.world_from_file != glam::Affine3A::IDENTITY {
+            let map = self.world_from_file;
+            mesh.positions
+                .iter_mut()
+                .for_each(|p| *p = map.transform_point3(*p));
+            mesh.normals
+                .iter_mut()
+                .for_each(|n| *n = map.transform_vector3(*n).normalize_or(Vec3::Y));
+        }
+        mesh
+    }
+
+    fn room_from_pieces(
+        &mut self,
+        pieces: std::ops::Range<usize>,
+        name: String,
+        level: LevelId,
+        kinds: Vec<String>,
+        node: &NodeFile,
+        at: &At,
+    ) -> Room {
+        let pieces = &self.data.structure.as_slice()[pieces];
+        let meshes = |kind| {
+            pieces
+                .iter()
+                .filter(move |piece| piece.kind == kind)
+                .map(|piece| &self.data.meshes[piece.mesh])
+        };
+        let all = pieces.iter().fold(Aabb::EMPTY, |bounds, piece| {
+            bounds.union(&self.data.meshes[piece.mesh].bounds())
+        });
+        let stated = place::bounds(node.bbox.as_ref(), &self.world_from_file);
+        let bounds = stated.unwrap_or(all);
+        let ceiling_y = meshes(StructureKind::Ceiling)
+            .map(|mesh| mesh.bounds().min.y)
+            .reduce(f32::min);
+        let floor_y = meshes(StructureKind::Floor)
+            .map(|mesh| mesh.bounds().max.y)
+            .reduce(f32::max);
+        let (mut footprint, mut top) = (Vec::new(), floor_y.unwrap_or(bounds.min.y));
+        for mesh in meshes(StructureKind::Floor) {
+            footprint.extend(facing(mesh, 1.0, top - FLOOR_STEP_M..=top));
+        }
+        if footprint.is_empty() {
+            // Without a floor, the ceiling's outline; without that, the box of the walls.
+            let under = ceiling_y.unwrap_or(bounds.max.y);
+            for mesh in meshes(StructureKind::Ceiling) {
+                footprint.extend(facing(mesh, -1.0, under..=under + FLOOR_STEP_M));
+            }
+            if node.hide_floor != Some(Flag(true)) {
+                let consequence =
+                    "no floor; the outline is taken from the ceiling or the box".to_owned();
+                self.report
+                    .warn(at.clone(), Damage::MissingField { consequence });
+            }
+        }
+        if footprint.is_empty() && !bounds.is_empty() {
+            let corner = |x: f32, z: f32| Vec2::new(x, z);
+            let (a, c) = (
+                corner(bounds.min.x, bounds.min.z),
+                corner(bounds.max.x, bounds.max.z),
+            );
+            let (b, d) = (
+                corner(bounds.max.x, bounds.min.z),
+                corner(bounds.min.x, bounds.max.z),
+            );
+            footprint.extend([[a, b, c], [a, c, d]]);
+        }
+        if bounds.is_empty() {
+            top = 0.0;
+        }
+        let ceiling_y = ceiling_y.unwrap_or(if bounds.is_empty() { 0.0 } else { bounds.max.y });
+        Room {
+            name,
+            level,
+            kinds,
+            footprint,
+            floor_y: top,
+            ceiling_y,
+            bounds,
+        }
+    }
+}
+
+/// The mesh of a piece with its own few slots, and the file's slots that they are.
+fn piece_mesh(
+    files: &MeshFiles,
+    slots: &Slots,
+    runs: Vec<&Run>,
+    at: &At,
+    report: &mut crate::Report,
+) -> (Mesh, Vec<u16>) {
+    let mut used: Vec<u16> = Vec::new();
+    let mut own = Vec::new();
+    for run in runs {
+        let slot = slots.of_run(run);
+        let position = used
+            .iter()
+            .position(|known| *known == slot)
+            .unwrap_or_else(|| {
+                used.push(slot);
+                used.len() - 1
+            });
+        own.push((position as u16, run));
+    }
+    let box_mapping = used.iter().any(|slot| {
+        let in_file = slots.entries[usize::from(*slot)].1;
+        in_file.is_some_and(|i| files.textures[i].is_some())
+    });
+    (
+        shape_of(
+            &PartShape {
+                obj: &files.obj,
+                runs: own,
+                box_mapping,
+            },
+            at,
+            report,
+        ),
+        used,
+    )
+}
+
+/// Triangles of (x, z) whose faces look up (`sign` 1) or down (-1) at a height.
+fn facing(mesh: &Mesh, sign: f32, height: std::ops::RangeInclusive<f32>) -> Vec<[Vec2; 3]> {
+    let mut found = Vec::new();
+    for k in 0..mesh.triangles.len() {
+        let corners = mesh.corners(k);
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        if normal.y * sign > UPWARD && corners.iter().all(|p| height.contains(&p.y)) {
+            found.push(corners.map(|p| Vec2::new(p.x, p.z)));
+        }
+    }
+    found
+}

@@ -1,0 +1,201 @@
+//! Meshes of the models, each made once and shared by all instances.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use dwell_scene::parallel::Threads;
+use dwell_scene::{IdVec, Mesh, MeshId};
+
+use super::super::file::NodeFile;
+use super::super::read::{SuncgFiles, paths};
+use super::hinge::{self, Hinge};
+use crate::build::{components, submesh};
+use crate::obj::MeshFiles;
+use crate::obj::{PartShape, Slots, shape_of};
+use crate::report::{At, Damage, Report};
+
+/// The mesh of one OBJ file of a model.
+pub(super) struct ModelShape {
+    pub(super) slots: Slots,
+    pub(super) whole: SharedMesh,
+    /// How it moves between its two states, when a hinge explains them.
+    pub(super) swing: Option<Swing>,
+}
+
+/// A mesh that becomes part of the house at its first use.
+pub(super) struct SharedMesh {
+    pub(super) mesh: Arc<Mesh>,
+    id: Option<MeshId>,
+}
+
+/// A model taken apart at its hinge.
+pub(super) struct Swing {
+    /// What stands still, if anything does.
+    pub(super) frame: Option<SharedMesh>,
+    /// What turns.
+    pub(super) leaf: SharedMesh,
+    /// The hinge, and the turn to the model's other state.
+    pub(super) hinge: Hinge,
+}
+
+impl SharedMesh {
+    fn new(mesh: Mesh) -> Self {
+        Self {
+            mesh: Arc::new(mesh),
+            id: None,
+        }
+    }
+
+    /// Its id in the house.
+    pub(super) fn id(&mut self, meshes: &mut IdVec<MeshId, Arc<Mesh>>) -> MeshId {
+        *self
+            .id
+            .get_or_insert_with(|| meshes.push(self.mesh.clone()))
+    }
+}
+
+/// The shapes of all models in use, by path of their OBJ file.
+pub(super) struct ModelShapes {
+    shapes: BTreeMap<String, ModelShape>,
+}
+
+impl ModelShapes {
+    /// Makes the shapes, several at once.
+    pub(super) fn build(files: &SuncgFiles, threads: Threads, report: &mut Report) -> Self {
+        // Model ids in use, and whether some instance lays a texture on it.
+        let mut models: BTreeMap<&str, bool> = BTreeMap::new();
+        for node in files.house.levels.iter().flat_map(|level| &level.nodes) {
+            if let (true, Some("Object"), Some(model)) = (
+                node.is_valid(),
+                node.kind.as_deref(),
+                node.model_id.as_deref(),
+            ) {
+                *models.entry(model).or_default() |= lays_texture(files, node);
+            }
+        }
+        let models: Vec<_> = models
+            .into_iter()
+            .filter(|(model, _)| paths::is_plain(model))
+            .collect();
+        let built = threads.map(models.len(), |k| {
+            let (model, textured) = models[k];
+            let mut report = Report::new();
+            let shapes = of_model(files, model, textured, &mut report);
+            (shapes, report)
+        });
+        let mut shapes = BTreeMap::new();
+        for (of_model, own) in built {
+            report.append(own);
+            shapes.extend(of_model);
+        }
+        Self { shapes }
+    }
+
+    /// The shape of an OBJ file; `None` when it does not exist or is empty.
+    pub(super) fn get_mut(&mut self, path: &str) -> Option<&mut ModelShape> {
+        self.shapes.get_mut(path)
+    }
+}
+
+fn lays_texture(files: &SuncgFiles, node: &NodeFile) -> bool {
+    let table = node
+        .material_indices
+        .as_ref()
+        .map_or(&[][..], |_| files.house.materials.as_slice());
+    node.materials
+        .iter()
+        .flatten()
+        .chain(table)
+        .any(|material| material.texture.is_some())
+}
+
+/// The shapes of a model's one or two states.
+fn of_model(
+    files: &SuncgFiles,
+    model: &str,
+    textured: bool,
+    report: &mut Report,
+) -> Vec<(String, ModelShape)> {
+    let mut shapes = Vec::new();
+    for second in [false, true] {
+        let path = paths::model(model, second);
+        let Some(mesh_files) = files.meshes.get(&path) else {
+            continue;
+        };
+        let at = At::file(&path);
+        let slots = Slots::of(&mesh_files.obj, &mesh_files.mtl, &at, report);
+        let mesh = model_mesh(mesh_files, &slots, textured, &at, report);
+        if mesh.triangles.is_empty() {
+            report.warn(at, Damage::EmptyMesh { path });
+            continue;
+        }
+        shapes.push((
+            path,
+            ModelShape {
+                slots,
+                whole: SharedMesh::new(mesh),
+                swing: None,
+            },
+        ));
+    }
+    if let [(_, first), (_, second)] = shapes.as_mut_slice() {
+        take_apart(first, second);
+    }
+    shapes
+}
+
+fn model_mesh(
+    files: &MeshFiles,
+    slots: &Slots,
+    textured: bool,
+    at: &At,
+    report: &mut Report,
+) -> Mesh {
+    let box_mapping = textured || files.textures.iter().any(Option::is_some);
+    let runs = files
+        .obj
+        .runs
+        .iter()
+        .map(|run| (slots.of_run(run), run))
+        .collect();
+    shape_of(
+        &PartShape {
+            obj: &files.obj,
+            runs,
+            box_mapping,
+        },
+        at,
+        report,
+    )
+}
+
+/// Finds the hinge between the two states of a model and takes both meshes apart at it.
+fn take_apart(first: &mut ModelShape, second: &mut ModelShape) {
+    let pieces = [
+        components(&first.whole.mesh),
+        components(&second.whole.mesh),
+    ];
+    let Some(found) = hinge::fit([&first.whole.mesh, &second.whole.mesh], &pieces) else {
+        return;
+    };
+    for ((shape, moving), hinge) in [first, second]
+        .into_iter()
+        .zip(found.moving)
+        .zip([found.hinge, found.hinge.back()])
+    {
+        let mesh = &shape.whole.mesh;
+        let mut is_moving = vec![false; mesh.triangles.len()];
+        for k in &moving {
+            is_moving[*k as usize] = true;
+        }
+        let still: Vec<u32> = (0..mesh.triangles.len() as u32)
+            .filter(|k| !is_moving[*k as usize])
+            .collect();
+        let frame = (!still.is_empty()).then(|| SharedMesh::new(submesh(mesh, &still)));
+        shape.swing = Some(Swing {
+            frame,
+            leaf: SharedMesh::new(submesh(mesh, &moving)),
+            hinge,
+        });
+    }
+}

@@ -1,0 +1,93 @@
+//! Rows of a CSV table by column name.
+
+use crate::report::{At, Damage, Report};
+
+/// A CSV table; columns are found by name, because later releases add some.
+pub(super) struct Rows<'a> {
+    reader: csv::Reader<&'a [u8]>,
+    columns: Vec<Option<usize>>,
+}
+
+/// A row: the cells of the columns that were asked for, empty where missing.
+pub(super) struct Row<'a> {
+    record: &'a csv::StringRecord,
+    columns: &'a [Option<usize>],
+}
+
+impl Row<'_> {
+    /// The cell of the `column`-th name asked for.
+    pub(super) fn cell(&self, column: usize) -> &str {
+        self.columns[column]
+            .and_then(|i| self.record.get(i))
+            .unwrap_or("")
+            .trim()
+    }
+
+    /// The same as a number.
+    pub(super) fn number<T: std::str::FromStr>(&self, column: usize) -> Option<T> {
+        self.cell(column).parse().ok()
+    }
+
+    /// The same as three numbers, `"x, y, z"`.
+    pub(super) fn triple(&self, column: usize) -> Option<[f64; 3]> {
+        let mut numbers = self
+            .cell(column)
+            .split(',')
+            .map(|part| part.trim().parse::<f64>().ok().filter(|x| x.is_finite()));
+        Some([numbers.next()??, numbers.next()??, numbers.next()??])
+    }
+}
+
+impl<'a> Rows<'a> {
+    /// A table with the columns `names`; the first must exist.
+    pub(super) fn new(
+        text: &'a [u8],
+        names: &[&str],
+        at: &At,
+        report: &mut Report,
+    ) -> Option<Self> {
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text);
+        let headers = reader.headers().ok()?.clone();
+        let columns: Vec<_> = names
+            .iter()
+            .map(|name| headers.iter().position(|header| header.trim() == *name))
+            .collect();
+        if columns.first().is_none_or(Option::is_none) {
+            let reason = format!(
+                "no column {:?} in {:?}",
+                names.first().unwrap_or(&""),
+                headers.iter().take(8).collect::<Vec<_>>()
+            );
+            report.warn(at.line(1), Damage::BadRow { reason });
+            return None;
+        }
+        Some(Self { reader, columns })
+    }
+
+    /// Calls `row` for every row; rows that cannot be read, and those for which it says so, are reported.
+    pub(super) fn each(
+        mut self,
+        at: &At,
+        report: &mut Report,
+        mut row: impl FnMut(&Row<'_>) -> Result<(), &'static str>,
+    ) {
+        let mut record = csv::StringRecord::new();
+        loop {
+            let result = match self.reader.read_record(&mut record) {
+                Ok(false) => return,
+                Ok(true) => row(&Row {
+                    record: &record,
+                    columns: &self.columns,
+                })
+                .map_err(str::to_owned),
+                Err(error) => Err(error.to_string()),
+            };
+            if let Err(reason) = result {
+                let line = record
+                    .position()
+                    .map_or(0, |position| position.line() as u32);
+                report.warn(at.line(line), Damage::BadRow { reason });
+            }
+        }
+    }
+}

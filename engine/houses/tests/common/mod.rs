@@ -1,0 +1,51 @@
+//! The real sample house, where it is there.
+#![allow(dead_code, reason = "each test file uses what it needs")]
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use dwell_houses::Report;
+use dwell_houses::suncg::{SuncgFiles, convert, locate};
+use dwell_scene::House;
+use dwell_scene::parallel::Threads;
+
+/// The one house of the sample data.
+pub(crate) const SCENE_ID: &str = "0004d52d1aeeb8ae6de39d6bd993e992";
+
+/// The real house: files, what became of them, and what was reported.
+pub(crate) struct Real {
+    pub(crate) root: PathBuf,
+    pub(crate) files: SuncgFiles,
+    pub(crate) house: House,
+    pub(crate) report: Report,
+}
+
+/// The folder of the shared sample data, if this machine has it.
+pub(crate) fn data_root() -> Option<PathBuf> {
+    let shared = std::env::var_os("DWELL_SHARED_DATA").map(PathBuf::from);
+    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let root = shared.unwrap_or(beside).join("suncg");
+    root.join("house").is_dir().then_some(root)
+}
+
+/// The real house, loaded once a test program; `None`, with a line, where it is absent.
+pub(crate) fn real() -> Option<&'static Real> {
+    static REAL: OnceLock<Option<Real>> = OnceLock::new();
+    let real = REAL.get_or_init(|| {
+        let root = data_root()?;
+        let (data, path) = locate(&root.join("house").join(SCENE_ID).join("house.json")).unwrap();
+        let mut report = Report::new();
+        let files = SuncgFiles::read(&data, &path, Threads::exactly(2), &mut report).unwrap();
+        let house = convert(&files, Threads::exactly(2), &mut report).unwrap();
+        Some(Real {
+            root,
+            files,
+            house,
+            report,
+        })
+    });
+    if real.is_none() {
+        println!("skipped: no sample house in ../shared/data/suncg or $DWELL_SHARED_DATA");
+    }
+    real.as_ref()
+}
