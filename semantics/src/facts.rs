@@ -110,6 +110,13 @@ impl Facts {
             .then_some(substance.adjective.as_str())
     }
 
+    /// Whether it belongs to a hole in a wall: a door, a window, a curtain. It marks no place of other things.
+    pub fn is_opening(&self) -> bool {
+        let classes = ["door", "window", "curtain", "blinds"];
+        self.category
+            .is_some_and(|row| classes.contains(&row.nyu40_name))
+    }
+
     /// Whether a speaker may call it `noun`: its spoken noun, a synonym, or a more general last word ("table" for a
     /// coffee table).
     pub fn is_called(&self, noun: &str) -> bool {

@@ -3,12 +3,22 @@
 use crate::color::{Patch, Vocabulary, color_words};
 use crate::english;
 use crate::room_kind::{RoomKind, room_kinds};
+use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
-use dwell_scene::{House, IdVec, MaterialId, Room, RoomId, StructureKind};
+use dwell_scene::math;
+use dwell_scene::random::Key;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{House, IdVec, MaterialId, Room, RoomId, StructureKind, SurfaceOwner};
+use glam::Vec3;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-/// How far in front of a wall its room is looked for, m.
-const PROBE_M: f32 = 0.08;
+/// How many points of its floor stand for a room.
+const POINTS: usize = 256;
+/// From how many of them its walls are looked at.
+const LOOKS: usize = 12;
+/// In how many directions from each.
+const DIRECTIONS: usize = 48;
 
 /// The lasting facts about a room.
 #[derive(Clone, Debug)]
@@ -23,7 +33,7 @@ pub struct RoomFacts {
     pub names: Vec<String>,
     /// A name of its own in the house, without article: "kitchen", "second bedroom".
     pub label: String,
-    /// Floor area, m².
+    /// Area of the floor that lies in no smaller room (as rooms of some files do), m².
     pub area_m2: f32,
     /// The adjective of most of its floor: "tiled".
     pub floor_word: Option<&'static str>,
@@ -33,7 +43,7 @@ pub struct RoomFacts {
 
 impl RoomFacts {
     pub(crate) fn gather(
-        house: &House,
+        house: &Arc<House>,
         colors: &IdVec<MaterialId, [f32; 3]>,
     ) -> IdVec<RoomId, Self> {
         let surfaces = Surfaces::gather(house, colors);
@@ -81,7 +91,7 @@ impl RoomFacts {
             noun,
             plural,
             names,
-            area_m2: room.area_m2(),
+            area_m2: room.area_m2() * surfaces.own_share[id],
             floor_word: surfaces.floor_word(id),
             wall_color: surfaces.wall_color(id),
         }
@@ -93,17 +103,18 @@ impl RoomFacts {
     }
 }
 
-/// Areas of floors by substance and of inner walls by material, per room.
+/// Areas of floors by substance and seen walls by material, per room.
 struct Surfaces {
     floors: IdVec<RoomId, BTreeMap<String, f32>>,
     walls: IdVec<RoomId, Vec<Patch>>,
+    /// The share of its floor that lies in no smaller room.
+    own_share: IdVec<RoomId, f32>,
 }
 
 impl Surfaces {
-    fn gather(house: &House, colors: &IdVec<MaterialId, [f32; 3]>) -> Self {
+    fn gather(house: &Arc<House>, colors: &IdVec<MaterialId, [f32; 3]>) -> Self {
         let count = house.rooms.len();
         let mut floors = IdVec::filled(BTreeMap::new(), count);
-        let mut walls: IdVec<RoomId, Vec<Patch>> = IdVec::filled(Vec::new(), count);
         for piece in &house.structure {
             let mesh = &house.meshes[piece.mesh];
             for triangle in 0..mesh.triangles.len() {
@@ -121,23 +132,29 @@ impl Surfaces {
                         let substance = house.materials[*id].substance.clone();
                         *floors[room].entry(substance).or_insert(0.0) += area_m2;
                     }
-                    (StructureKind::Wall, _) if out.y.abs() < 0.5 => {
-                        // A wall has two sides: each triangle counts for the room that it looks into.
-                        if let Some(room) = house.room_at((a + b + c) / 3.0 + out * PROBE_M) {
-                            add(&mut walls[room], *id, colors[*id], area_m2);
-                        }
-                    }
                     _ => {}
                 }
             }
         }
-        for patches in walls.iter_mut() {
-            let total: f32 = patches.iter().map(|patch| patch.share).sum();
-            for patch in patches.iter_mut() {
-                patch.share /= total;
-            }
+        let rays = RayScene::new(house.clone());
+        let points: IdVec<RoomId, Vec<Vec3>> = house
+            .rooms
+            .ids()
+            .map(|room| points_in(house, room))
+            .collect();
+        let walls = points
+            .iter()
+            .map(|points| seen_walls(&rays, colors, points))
+            .collect();
+        let own_share = points
+            .iter()
+            .map(|points| points.len() as f32 / POINTS as f32)
+            .collect();
+        Self {
+            floors,
+            walls,
+            own_share,
         }
-        Self { floors, walls }
     }
 
     fn floor_word(&self, room: RoomId) -> Option<&'static str> {
@@ -157,6 +174,69 @@ impl Surfaces {
             .filter(|(_, share)| *share >= 0.5)
             .map(|(word, _)| *word)
     }
+}
+
+/// Points at half height over the room's floor, evenly spread by area; those that lie in a smaller room are left out.
+fn points_in(house: &House, id: RoomId) -> Vec<Vec3> {
+    let room = &house.rooms[id];
+    let mut stream = Key::root(0).child("floor").child(u64::from(id.0)).stream();
+    let total = room.area_m2();
+    let mut points = Vec::with_capacity(POINTS);
+    for k in 0..POINTS {
+        let mut left = (k as f32 + 0.5) / POINTS as f32 * total;
+        let triangle = room.footprint.iter().find(|[a, b, c]| {
+            left -= (*b - *a).perp_dot(*c - *a).abs() * 0.5;
+            left <= 0.0
+        });
+        let Some([a, b, c]) = triangle.or(room.footprint.last()) else {
+            break;
+        };
+        let (mut u, mut v) = (stream.uniform_f32(), stream.uniform_f32());
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        let point = *a + (*b - *a) * u + (*c - *a) * v;
+        let point = Vec3::new(point.x, room.floor_y.midpoint(room.ceiling_y), point.y);
+        points.extend(Some(point).filter(|point| house.room_at(*point) == Some(id)));
+    }
+    points
+}
+
+/// The materials of the walls that somebody in the room sees, by share of the directions to the side.
+///
+/// Walls have two shells and rooms may overlap, so what belongs to a room is not what shows in it.
+fn seen_walls(
+    rays: &RayScene,
+    colors: &IdVec<MaterialId, [f32; 3]>,
+    points: &[Vec3],
+) -> Vec<Patch> {
+    let mut patches = Vec::new();
+    let step = (points.len() / LOOKS).max(1);
+    for eye in points.iter().step_by(step) {
+        for k in 0..DIRECTIONS {
+            let turn = std::f32::consts::TAU * (k as f32 + 0.5) / DIRECTIONS as f32;
+            let (x, z) = math::sin_cos(turn);
+            let hit = rays.closest(&Ray::new(*eye, Vec3::new(x, 0.2, z)), RayMask::EYE);
+            let Some(surface) = hit.map(|hit| rays.surface(&hit)) else {
+                continue;
+            };
+            if let SurfaceOwner::Structure(piece) = surface.owner
+                && rays.house().structure[piece].kind == StructureKind::Wall
+            {
+                add(
+                    &mut patches,
+                    surface.material,
+                    colors[surface.material],
+                    1.0,
+                );
+            }
+        }
+    }
+    let seen: f32 = patches.iter().map(|patch| patch.share).sum();
+    for patch in &mut patches {
+        patch.share /= seen;
+    }
+    patches
 }
 
 fn add(patches: &mut Vec<Patch>, material: MaterialId, linear: [f32; 3], share: f32) {

@@ -70,7 +70,8 @@ fn first_related(scene: &Scene<'_>, object: ObjectId, name: &str) -> Option<Obje
     };
     let mut found: Vec<ObjectId> = scene.house().objects.ids().filter(holds).collect();
     // A thing is placed by something larger than itself; the largest is the easiest to find.
-    found.retain(|other| name != "next_to" || scene.facts(*other).category.is_some());
+    let marks = |id: ObjectId| scene.facts(id).category.is_some() && !scene.facts(id).is_opening();
+    found.retain(|other| name != "next_to" || marks(*other));
     let volume = |id: ObjectId| scene.extent(id).bounds.volume();
     let largest = found
         .into_iter()
@@ -86,10 +87,6 @@ fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
         }
     }
     let house = scene.house();
-    let is_opening = scene
-        .facts(object)
-        .category
-        .is_some_and(|row| row.openable && !row.movable);
     let walls = house
         .structure
         .iter_ids()
@@ -99,7 +96,7 @@ fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
             predicate.holds(scene, Term::Object(object), Term::Structure(wall), None)
         })
     });
-    if hangs && !is_opening {
+    if hangs && !scene.facts(object).is_opening() {
         return " on the wall".to_owned();
     }
     first_related(scene, object, "next_to").map_or_else(String::new, |other| {

@@ -69,6 +69,7 @@ fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
             .filter(|landmark| *landmark != target)
         {
             if scene.facts(landmark).category.is_none()
+                || scene.facts(landmark).is_opening()
                 || !predicate.holds(scene, Term::Object(target), Term::Object(landmark), None)
             {
                 continue;
@@ -83,6 +84,7 @@ fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
             }
             found.extend(words.into_iter().map(|landmark| Relation {
                 predicate: name.to_owned(),
+                definite: landmark.matches(scene).len() == 1,
                 landmark: Box::new(landmark),
             }));
         }

@@ -34,6 +34,8 @@ pub struct Relation {
     pub predicate: String,
     /// The landmark.
     pub landmark: Box<Expression>,
+    /// Whether the landmark's description fits one thing only, so that it takes "the".
+    pub definite: bool,
 }
 
 impl Expression {
@@ -112,9 +114,14 @@ impl Expression {
     fn tail(&self) -> String {
         let mut text = String::new();
         if let Some(relation) = &self.relation {
+            let landmark = if relation.definite {
+                relation.landmark.definite()
+            } else {
+                relation.landmark.indefinite()
+            };
             let words =
                 predicates::find(&relation.predicate).map_or("near", predicates::Predicate::words);
-            let _ = write!(text, " {words} {}", relation.landmark.definite());
+            let _ = write!(text, " {words} {}", landmark);
         }
         if let Some(room) = &self.room {
             let _ = write!(text, " in the {room}");
