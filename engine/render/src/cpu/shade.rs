@@ -3,7 +3,7 @@
 use super::CpuRenderer;
 use super::band::Band;
 use crate::color::Srgb;
-use crate::light::{display, sky};
+use crate::light::{beside_surface, display, sky};
 use dwell_scene::bvh::Hit;
 use dwell_scene::{Entity, EntityId};
 use glam::Vec3;
@@ -17,7 +17,7 @@ const GAP: (f32, f32) = (2e-4, 2e-6);
 /// The least cosine at which a pixel's footprint still grows.
 const GRAZING: f32 = 0.05;
 /// What the sky shows on a lit picture, against a flat one: tone mapping darkens it again.
-const LIT_SKY: f32 = 2.6;
+const LIT_SKY: f32 = 4.0;
 
 /// One ray: the point at depth 0 and the way per metre of depth.
 pub(super) type DepthRay = (Vec3, Vec3);
@@ -135,7 +135,8 @@ impl Band<'_> {
             renderer.house_light(),
             *exposure,
             point,
-            (smooth, facing),
+            smooth,
+            beside_surface(point, facing, ray.1),
             hit.id,
         );
         (

@@ -133,3 +133,120 @@ pub(crate) fn add_lamps(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::{
+        Category, HouseData, Level, LevelId, Mesh, Mobility, Object, ObjectId, Part, PartId, Pose,
+    };
+    use std::sync::Arc;
+
+    /// The lamps of a light of 7 W at the origin.
+    fn lamps(shape: LightShape) -> Vec<Lamp> {
+        let mut data = HouseData::default();
+        data.levels.push(Level {
+            name: "0".into(),
+            bounds: dwell_scene::Aabb::EMPTY,
+        });
+        let mesh = data
+            .meshes
+            .push(Arc::new(Mesh::cuboid(Vec3::ZERO, Vec3::ONE)));
+        let substance = dwell_scene::material::library().get_or_default("plaster");
+        let material = data
+            .materials
+            .push(dwell_scene::Material::of("m", substance));
+        data.objects.push(Object {
+            name: "lamp".into(),
+            source_id: String::new(),
+            model: "lamp".into(),
+            category: Category::default(),
+            level: LevelId(0),
+            room: None,
+            mobility: Mobility::Movable,
+            pickable: false,
+            switch: None,
+            first_part: PartId(0),
+            part_count: 1,
+        });
+        data.parts.push(Part {
+            object: ObjectId(0),
+            name: "root".into(),
+            fixed: false,
+            world_from_part: Pose::IDENTITY,
+            mesh,
+            part_from_mesh: glam::Affine3A::IDENTITY,
+            materials: vec![material],
+            colliders: Vec::new(),
+            mass_kg: None,
+            density_kg_m3: 500.0,
+        });
+        let light = Light {
+            object: ObjectId(0),
+            part: PartId(0),
+            position: Vec3::ZERO,
+            shape,
+            color: [1.0, 0.5, 0.0],
+            power_w: 7.0,
+            attenuation: [0.0, 0.0, 1.0],
+        };
+        data.lights.push(light.clone());
+        let house = House::new(data).unwrap();
+        let mut lamps = Vec::new();
+        add_lamps(
+            &house,
+            &State::new(&house),
+            &RoomGrid::new(&house),
+            &light,
+            &mut lamps,
+        );
+        lamps
+    }
+
+    #[test]
+    fn illuminance_is_intensity_times_cosine_over_distance_squared() {
+        let [lamp] = lamps(LightShape::Point)[..] else {
+            panic!("one lamp")
+        };
+        let point = Vec3::new(1.0, -2.0, 0.5);
+        let found = lamp.illuminance(point, Vec3::Y, 99);
+        let expected = 700.0 / (4.0 * PI) * (2.0 / 5.25_f32.sqrt()) / 5.25;
+        assert!((found - Vec3::new(expected, 0.5 * expected, 0.0)).length() < 1e-4 * expected);
+        assert_eq!(lamp.illuminance(point, Vec3::NEG_Y, 99), Vec3::ZERO);
+        // Its own shade shines from behind.
+        assert!((lamp.illuminance(point, Vec3::NEG_Y, 1) - found).length() < 1e-6);
+    }
+
+    /// The illuminance of a sphere around the lamp, integrated over even points (spiral), is the flux.
+    #[test]
+    fn every_lamp_sends_out_its_flux() {
+        let spot = |cutoff_rad: f32, dropoff_rate: f32| LightShape::Spot {
+            direction: Vec3::NEG_Y,
+            cutoff_rad,
+            dropoff_rate,
+        };
+        let line = LightShape::Line { end: Vec3::X * 0.4 };
+        for shape in [
+            LightShape::Point,
+            spot(0.7, 0.0),
+            spot(1.2, 5.0),
+            spot(2.0, 0.0),
+            line,
+        ] {
+            let (count, radius) = (20_000, 50.0_f32);
+            let all = lamps(shape);
+            let mut sum = 0.0;
+            for k in 0..count {
+                let y = 1.0 - (2.0 * k as f32 + 1.0) / count as f32;
+                let ring = (1.0 - y * y).sqrt();
+                let (sin, cos) = (k as f32 * 2.399_963_2).sin_cos();
+                let out = Vec3::new(ring * cos, y, ring * sin);
+                for lamp in &all {
+                    sum += lamp.illuminance(out * radius, -out, 99).x;
+                }
+            }
+            let flux = sum / count as f32 * 4.0 * PI * radius * radius;
+            assert!((flux - 700.0).abs() < 0.01 * 700.0, "{shape:?}: {flux}");
+        }
+    }
+}

@@ -21,8 +21,9 @@ const SUN_LX: f32 = 6000.0;
 const TO_SUN: Vec3 = Vec3::new(0.485, 0.588, 0.647);
 /// Width of the border of sunlit patches, m.
 const PENUMBRA_M: f32 = 0.03;
-/// How far from a surface its room is looked for, m: beyond the skin of the wall that it belongs to.
-const OFF_SURFACE_M: f32 = 0.1;
+/// How far from a surface its room is looked for, m: off the skin of the wall that it belongs to, and towards the viewer,
+/// who sees it from its room.
+const OFF_SURFACE_M: [f32; 2] = [0.1, 0.2];
 /// What white shows in the open, in units of display white: the open has an exposure of its own.
 const OPEN_AIR: f32 = 1.3;
 
@@ -80,16 +81,18 @@ impl Lighting {
 
     /// What a surface of reflectance 1 shows at `point`, in units of display white, for red, green and blue.
     ///
-    /// `normal`: unit length, towards the viewer; `facing` the same for the flat triangle. `entity`: whose surface it is.
+    /// `normal`: unit length, towards the viewer. `looked_up`: where the point's room is looked up, see
+    /// [`beside_surface`]. `entity`: whose surface it is.
     pub(crate) fn brightness(
         &self,
         fixed: &HouseLight,
         exposure: Exposure,
         point: Vec3,
-        (normal, facing): (Vec3, Vec3),
+        normal: Vec3,
+        looked_up: Vec3,
         entity: i32,
     ) -> Vec3 {
-        let room = fixed.grid.room(point + facing * OFF_SURFACE_M);
+        let room = fixed.grid.room(looked_up);
         let Some(position) = room else {
             return self.open_air(exposure, point, normal, entity);
         };
@@ -122,6 +125,13 @@ impl Lighting {
         Vec3::splat((sky + sun) * OPEN_AIR)
             + self.lamplight(None, point, normal, entity) * exposure.per_lx
     }
+}
+
+/// A point in the room from which a surface at `point` is seen. `facing`: normal of the flat triangle towards the viewer;
+/// `direction`: from the viewer, any length.
+pub(crate) fn beside_surface(point: Vec3, facing: Vec3, direction: Vec3) -> Vec3 {
+    let [off, back] = OFF_SURFACE_M;
+    point + facing * off - direction.normalize_or_zero() * back
 }
 
 /// How much of a room's reflected light reaches a surface by where it faces, about 1: floors face bright walls and

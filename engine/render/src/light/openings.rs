@@ -4,8 +4,8 @@ use super::grid::RoomGrid;
 use dwell_scene::{Aabb, House, ObjectId};
 use glam::Vec3;
 
-/// How far from the middle of an opening its rooms are looked for, m.
-const STEP_M: f32 = 0.4;
+/// How far from either face of an opening its rooms are looked for, m.
+const STEP_M: f32 = 0.35;
 
 /// A window between a room and the open air.
 #[derive(Clone, Copy, Debug)]
@@ -47,12 +47,13 @@ pub(crate) fn openings(house: &House, grid: &RoomGrid) -> (Vec<Window>, Vec<Pass
         if !(is("window") || is("door") || is("garage_door") || is("arch")) {
             continue;
         }
-        let Some((center, normal, half)) = frame(house, id) else {
+        let Some((center, thin, half)) = frame(house, id) else {
             continue;
         };
+        let normal = thin.normalize_or(Vec3::X);
         let sides = [
-            grid.room(center + normal * STEP_M),
-            grid.room(center - normal * STEP_M),
+            grid.room(center + thin + normal * STEP_M),
+            grid.room(center - thin - normal * STEP_M),
         ];
         let area_m2 = 4.0 * half[0].length() * half[1].length();
         match sides {
@@ -79,7 +80,7 @@ pub(crate) fn openings(house: &House, grid: &RoomGrid) -> (Vec<Window>, Vec<Pass
     (windows, passages)
 }
 
-/// Middle, thin direction and half edges of an object's box in the space of its first part.
+/// Middle, half the thinnest edge and the other half edges of an object's box in the space of its first part.
 fn frame(house: &House, id: ObjectId) -> Option<(Vec3, Vec3, [Vec3; 2])> {
     let object = &house.objects[id];
     let root = house.parts[object.first_part].world_from_part;
@@ -101,7 +102,7 @@ fn frame(house: &House, id: ObjectId) -> Option<(Vec3, Vec3, [Vec3; 2])> {
     let (first, second) = ((thin + 1) % 3, (thin + 2) % 3);
     Some((
         root.transform_point(bounds.center()),
-        root.transform_vector(axes[thin]),
+        root.transform_vector(axes[thin] * (size[thin] * 0.5).max(1e-4)),
         [edge(first), edge(second)],
     ))
 }

@@ -13,11 +13,13 @@ pub(crate) const SKY_LUMINANCE_CD_M2: f32 = 3000.0;
 /// What window panes let through.
 pub(crate) const PANE_TRANSMITTANCE: f32 = 0.7;
 /// Illuminance that even a dark room has, lx: what comes through gaps and from appliances that are not modelled.
-const RESIDUAL_LX: f32 = 8.0;
+const RESIDUAL_LX: f32 = 15.0;
 /// What furniture leaves of the walls' reflectance.
 const FURNITURE: f32 = 0.85;
 /// What a closed door lets through: gaps and glass.
 const CLOSED_DOOR: f32 = 0.1;
+/// How far walls tint the light of their room: light of one colour meets things of other colours, too.
+const TINT: f32 = 0.5;
 /// Rounds in which rooms exchange light.
 const ROUNDS: usize = 8;
 
@@ -146,6 +148,7 @@ impl Walls {
         } else {
             Vec3::splat(0.5)
         };
+        let reflectance = Vec3::splat(luminance(reflectance)).lerp(reflectance, TINT);
         Self {
             area_m2,
             reflectance: (reflectance * FURNITURE).clamp(Vec3::splat(0.02), Vec3::splat(0.8)),

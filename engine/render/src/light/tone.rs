@@ -7,9 +7,9 @@ const MIDDLE_LX: f32 = 150.0;
 /// How far eyes adapt: 1 would make every room equally bright.
 const ADAPTATION: f32 = 0.85;
 /// What white under the mean illuminance of the room shows, before tone mapping.
-const GAIN: f32 = 1.4;
+const GAIN: f32 = 1.05;
 /// What becomes display white.
-const WHITE: f32 = 4.0;
+const WHITE: f32 = 5.0;
 
 /// Units of display white per lx of a room with this mean illuminance.
 pub(crate) fn exposure_per_lx(mean_lx: f32) -> f32 {
