@@ -81,6 +81,7 @@ pub struct Scene<'a> {
     pub state: &'a State,
     extents: IdVec<ObjectId, OnceCell<Extent>>,
     supports: IdVec<ObjectId, OnceCell<Vec<Support>>>,
+    rooms: IdVec<ObjectId, OnceCell<Option<RoomId>>>,
 }
 
 impl<'a> Scene<'a> {
@@ -91,6 +92,7 @@ impl<'a> Scene<'a> {
             state,
             extents: (0..count).map(|_| OnceCell::new()).collect(),
             supports: (0..count).map(|_| OnceCell::new()).collect(),
+            rooms: (0..count).map(|_| OnceCell::new()).collect(),
         }
     }
 
@@ -133,6 +135,10 @@ impl<'a> Scene<'a> {
     /// The room an object is in: of its holder, else the one around the middle of its box (the smallest where rooms
     /// overlap), else, while it stands where the house puts it, the one that the house's file names. `None` outside.
     pub fn room_of(&self, object: ObjectId) -> Option<RoomId> {
+        *self.rooms[object].get_or_init(|| self.find_room(object))
+    }
+
+    fn find_room(&self, object: ObjectId) -> Option<RoomId> {
         if let Some(agent) = self.holder(object) {
             return self.room_of_agent(agent);
         }

@@ -10,9 +10,10 @@ use dwell_semantics::instruct::{InstructionKind, candidates};
 use dwell_semantics::{Semantics, Size};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The sample house, or `None` with a printed line.
+#[expect(clippy::print_stdout, reason = "what is skipped is said")]
 fn sample() -> Option<Arc<House>> {
     let beside = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
     let root = std::env::var_os("DWELL_SHARED_DATA").map_or(beside, PathBuf::from);
@@ -21,8 +22,12 @@ fn sample() -> Option<Arc<House>> {
         println!("skipped: no sample house in ../shared/data/suncg or $DWELL_SHARED_DATA");
         return None;
     }
-    let (house, _) = suncg::open(&path, Threads::ONE).unwrap();
-    Some(Arc::new(house))
+    static OPENED: OnceLock<Arc<House>> = OnceLock::new();
+    let open = || {
+        let (house, _) = suncg::open(&path, Threads::ONE).expect("the sample opens");
+        Arc::new(house)
+    };
+    Some(OPENED.get_or_init(open).clone())
 }
 
 fn of_model(house: &House, model: &str) -> ObjectId {
@@ -127,18 +132,14 @@ fn predecessor_colors(house: &House, object: ObjectId, list: Vocabulary) -> BTre
                 .corners(triangle)
                 .map(|p| part.part_from_mesh.transform_point3(p));
             let area = f64::from((b - a).cross(c - a).length()) * 0.5;
-            let (key, color) = match material.texture {
-                Some(id) => (
-                    format!("{id:?}"),
-                    house.textures[id].mean_srgb().map(|c| (c / 255.0) as f32),
-                ),
-                None => {
-                    let srgb = material
-                        .base_color
-                        .map(dwell_scene::units::srgb_from_linear);
-                    (format!("{srgb:?} {}", material.opacity), srgb)
-                }
+            let plain = || {
+                material
+                    .base_color
+                    .map(dwell_scene::units::srgb_from_linear)
             };
+            let image = |id| house.textures[id].mean_srgb().map(|c| (c / 255.0) as f32);
+            let color = material.texture.map_or_else(plain, image);
+            let key = format!("{:?} {color:?} {}", material.texture, material.opacity);
             groups.entry(key).or_insert((0.0, color)).0 += area;
         }
     }

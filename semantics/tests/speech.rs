@@ -59,6 +59,76 @@ fn captions_read_aloud() {
 }
 
 #[test]
+fn words_know_what_is_open_and_what_is_on() {
+    let mut b = Builder::new("states");
+    b.room("kitchen", [0.05, 0.05], [3.95, 3.95]);
+    let wood = b.material("wood", [150, 111, 72]);
+    let black = b.material("electronics", [20, 20, 20]);
+    let door = b.thing("door", &[([1.0, 0.0, 1.0], [1.85, 2.05, 1.05])], wood);
+    let cabinet = b.thing(
+        "wardrobe_cabinet",
+        &[([2.4, 0.0, 2.0], [3.6, 2.1, 2.6])],
+        wood,
+    );
+    let radio = b.thing("radio", &[([0.5, 0.0, 3.0], [0.8, 0.18, 3.12])], black);
+    b.data.objects[radio].switch = Some(false);
+    for object in [door, cabinet] {
+        let part = &mut b.data.parts[dwell_scene::PartId(object.0)];
+        let pose = part.world_from_part;
+        b.data.objects[object].mobility = dwell_scene::Mobility::Articulated;
+        b.data.joints.push(dwell_scene::Articulation {
+            name: "hinge".into(),
+            object,
+            parent: None,
+            child: dwell_scene::PartId(object.0),
+            kind: dwell_scene::JointKind::Hinge,
+            axis: Vec3::Y,
+            parent_from_joint: pose,
+            child_from_joint: Pose::IDENTITY,
+            limits: [0.0, 1.5],
+            closed: 0.0,
+            open: 1.5,
+            initial: 0.0,
+            friction: 0.0,
+            damping: 0.0,
+            servo: None,
+        });
+    }
+    let house = b.build();
+    let semantics = Semantics::new(&house);
+    let mut state = State::new(&house);
+    let says = |state: &State, object| caption(&semantics.scene(state), object);
+    assert_eq!(
+        says(&state, door),
+        "a closed brown wooden door in the kitchen"
+    );
+    assert_eq!(
+        says(&state, cabinet),
+        "a brown wooden wardrobe in the kitchen"
+    );
+    assert_eq!(says(&state, radio), "a black radio in the kitchen");
+    for joint in house.joints.ids() {
+        state.joint_position[joint] = 1.5;
+    }
+    state.switched_on[radio] = true;
+    assert_eq!(
+        says(&state, door),
+        "an open brown wooden door in the kitchen"
+    );
+    assert_eq!(
+        says(&state, cabinet),
+        "an open brown wooden wardrobe in the kitchen"
+    );
+    assert_eq!(
+        says(&state, radio),
+        "a black radio that is switched on in the kitchen"
+    );
+    let graph = scene_graph(&semantics.scene(&state), None);
+    let node = graph.object(house.entity_of_object(radio).0).unwrap();
+    assert_eq!((node.switched_on, node.openness), (Some(true), None));
+}
+
+#[test]
 fn descriptions_read_aloud() {
     let s = small_house();
     let semantics = Semantics::new(&s.house);

@@ -15,18 +15,25 @@ pub(super) type Adjectives = [Option<String>; 4];
 pub(super) fn adjectives(scene: &Scene<'_>, object: ObjectId) -> Adjectives {
     let facts = scene.facts(object);
     let size = facts.size.word().map(str::to_owned);
-    let openness = scene.state.openness(scene.house(), object).map(|openness| {
-        let word = match openness {
-            o if o > OPEN => "open",
-            o if o < CLOSED => "closed",
-            _ => "half-open",
-        };
-        word.to_owned()
-    });
+    let openness =
+        scene
+            .state
+            .openness(scene.house(), object)
+            .and_then(|openness| match openness {
+                o if o > OPEN => Some("open"),
+                o if o > CLOSED => Some("half-open"),
+                // A cupboard is closed as a rule; of a door one wants to know.
+                _ => facts.is_opening().then_some("closed"),
+            });
     let material = facts.material_word();
     // Glass and mirrors have the colour of what lies behind or before them.
     let color = facts.color_phrase().filter(|_| material != Some("glass"));
-    [size, openness, color, material.map(str::to_owned)]
+    [
+        size,
+        openness.map(str::to_owned),
+        color,
+        material.map(str::to_owned),
+    ]
 }
 
 /// Adjectives in a row; may be empty.

@@ -55,9 +55,9 @@ fn by_properties(scene: &Scene<'_>, target: ObjectId) -> Vec<Expression> {
     found
 }
 
-/// The relations in which `target` stands to things that a noun and at most one adjective tell apart in their room.
+/// The relations in which `target` stands to other things, each named by its noun and at most one adjective; each once.
 fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
-    let mut found = Vec::new();
+    let mut found: Vec<Relation> = Vec::new();
     for name in TELLING {
         let Ok(predicate) = predicates::find(name) else {
             continue;
@@ -82,11 +82,16 @@ fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
                     ..words[0].clone()
                 });
             }
-            found.extend(words.into_iter().map(|landmark| Relation {
-                predicate: name.to_owned(),
-                definite: landmark.matches(scene).len() == 1,
-                landmark: Box::new(landmark),
-            }));
+            for landmark in words {
+                let relation = Relation {
+                    predicate: name.to_owned(),
+                    landmark: Box::new(landmark),
+                    definite: false,
+                };
+                if !found.contains(&relation) {
+                    found.push(relation);
+                }
+            }
         }
     }
     found
@@ -99,7 +104,15 @@ fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
 /// After the incremental algorithm of R. Dale and E. Reiter, Cognitive Science 19, 233 (1995); here every candidate is
 /// checked against all objects, so that a result is unique by construction.
 pub fn refer(scene: &Scene<'_>, target: ObjectId) -> Option<Expression> {
-    let unique = |expression: &Expression| expression.matches(scene) == [target];
+    // All candidates share the noun, so only what it may call can fit them.
+    let facts = scene.facts(target);
+    let called = |object: &ObjectId| scene.facts(*object).is_called(&facts.noun);
+    let alike: Vec<ObjectId> = scene.house().objects.ids().filter(called).collect();
+    let unique = |expression: &Expression| {
+        alike
+            .iter()
+            .all(|object| expression.fits_object(scene, *object) == (*object == target))
+    };
     let room = scene
         .room_of(target)
         .map(|room| scene.semantics.room(room).noun.clone());
@@ -125,8 +138,8 @@ pub fn refer(scene: &Scene<'_>, target: ObjectId) -> Option<Expression> {
         relation: Some(relation.clone()),
         ..expression.clone()
     };
-    // A landmark that also fits elsewhere in the house is named with the room.
-    own.iter()
+    let mut found = own
+        .iter()
         .chain(&in_room)
         .take(8)
         .flat_map(|expression| {
@@ -134,5 +147,9 @@ pub fn refer(scene: &Scene<'_>, target: ObjectId) -> Option<Expression> {
                 .iter()
                 .map(move |relation| with(expression, relation))
         })
-        .find(unique)
+        .find(unique)?;
+    if let Some(relation) = &mut found.relation {
+        relation.definite = relation.landmark.matches(scene).len() == 1;
+    }
+    Some(found)
 }

@@ -78,8 +78,8 @@ impl Expression {
             };
             scene.house().objects.ids().any(|landmark| {
                 landmark != object
-                    && predicate.holds(scene, Term::Object(object), Term::Object(landmark), None)
                     && relation.landmark.fits_object(scene, landmark)
+                    && predicate.holds(scene, Term::Object(object), Term::Object(landmark), None)
             })
         };
         self.fits(scene.facts(object))
@@ -121,7 +121,7 @@ impl Expression {
             };
             let words =
                 predicates::find(&relation.predicate).map_or("near", predicates::Predicate::words);
-            let _ = write!(text, " {words} {}", landmark);
+            let _ = write!(text, " {words} {landmark}");
         }
         if let Some(room) = &self.room {
             let _ = write!(text, " in the {room}");
