@@ -12,6 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
+static OPENED: OnceLock<Arc<House>> = OnceLock::new();
+
 /// The sample house, or `None` with a printed line.
 #[expect(clippy::print_stdout, reason = "what is skipped is said")]
 fn sample() -> Option<Arc<House>> {
@@ -22,7 +24,6 @@ fn sample() -> Option<Arc<House>> {
         println!("skipped: no sample house in ../shared/data/suncg or $DWELL_SHARED_DATA");
         return None;
     }
-    static OPENED: OnceLock<Arc<House>> = OnceLock::new();
     let open = || {
         let (house, _) = suncg::open(&path, Threads::ONE).expect("the sample opens");
         Arc::new(house)
