@@ -6,11 +6,7 @@
 
 mod articulation;
 mod bounds;
-/// Rays and what they find.
-pub mod bvh {
-    mod ray;
-    pub use ray::{Hit, Ray, RayMask};
-}
+pub mod bvh;
 mod collider;
 mod error;
 mod fixtures;

@@ -1,70 +1,143 @@
-//! The tree in memory: 32-byte nodes in pairs, one cache line a pair.
+//! The tree in memory: nodes with four children, and triangles in blocks of four, each laid out for four-wide arithmetic.
 
-/// An inner node or a leaf; 32 bytes.
-#[repr(C, align(32))]
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
-    /// Lower corner, m.
-    pub(super) min: [f32; 3],
-    /// Inner node: index of the pair of its children. Leaf: its first triangle.
-    pub(super) first: u32,
-    /// Upper corner, m.
-    pub(super) max: [f32; 3],
-    /// Bits 0 to 7: triangles of a leaf, 0 for an inner node. Bits 8 and 9 of an inner node: the axis that separates its
-    /// children; the one with the smaller coordinates comes first.
-    pub(super) meta: u32,
+use glam::{Vec3, Vec4};
+
+use super::ray::RayMask;
+use crate::bounds::Aabb;
+
+/// Children of a node, and triangles of a block.
+pub(super) const WIDTH: usize = 4;
+
+/// What a node's child, or the top of a tree, is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Link(u32);
+
+impl Link {
+    /// Nothing at all.
+    pub(super) const NONE: Self = Self(u32::MAX);
+
+    const LEAF: u32 = 1 << 31;
+
+    /// The node at a position.
+    pub(super) fn node(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// The leaf at a position: a block of triangles, or whatever the tree is over.
+    pub(super) fn leaf(index: usize) -> Self {
+        Self(index as u32 | Self::LEAF)
+    }
+
+    /// Whether it is a leaf, and its position.
+    #[inline(always)]
+    pub(super) fn parts(self) -> (bool, usize) {
+        (self.0 & Self::LEAF != 0, (self.0 & !Self::LEAF) as usize)
+    }
 }
 
-impl Default for Node {
-    fn default() -> Self {
-        Self::NOTHING
-    }
+/// Four boxes and what lies in them; 128 bytes.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    /// Lower corners, then upper corners, m. Shape (6, child).
+    pub(super) planes: [Vec4; 6],
+    pub(super) links: [Link; WIDTH],
+    /// Which children there are, as bits.
+    pub(super) present: u32,
 }
 
 impl Node {
-    /// Most triangles in a leaf.
-    pub(super) const MAX_LEAF: u32 = 255;
+    /// Without children.
+    pub(super) const EMPTY: Self = Self {
+        planes: [Vec4::ZERO; 6],
+        links: [Link::NONE; WIDTH],
+        present: 0,
+    };
 
-    /// A box that no ray enters.
-    pub(super) const NOTHING: Self = Self { min: [f32::MAX; 3], first: 0, max: [f32::MIN; 3], meta: 0 };
-
-    pub(super) fn inner(min: [f32; 3], max: [f32; 3], children: u32, axis: u32) -> Self {
-        Self { min, first: children, max, meta: axis << 8 }
+    /// Makes `link` a child.
+    pub(super) fn set(&mut self, child: usize, bounds: &Aabb, link: Link) {
+        self.set_bounds(child, bounds);
+        self.links[child] = link;
+        self.present |= 1 << child;
     }
 
-    pub(super) fn leaf(min: [f32; 3], max: [f32; 3], first: u32, count: u32) -> Self {
-        Self { min, first, max, meta: count }
+    /// Changes the box of a child.
+    pub(super) fn set_bounds(&mut self, child: usize, bounds: &Aabb) {
+        for axis in 0..3 {
+            self.planes[axis][child] = bounds.min[axis];
+            self.planes[axis + 3][child] = bounds.max[axis];
+        }
     }
 
-    /// Triangles of a leaf; 0 for an inner node.
-    #[inline(always)]
-    pub(super) fn count(&self) -> usize {
-        (self.meta & 255) as usize
-    }
-
-    /// The axis that separates the children of an inner node.
-    #[inline(always)]
-    pub(super) fn axis(&self) -> usize {
-        (self.meta >> 8) as usize
+    /// The smallest box around the boxes of all children.
+    pub(super) fn bounds(&self) -> Aabb {
+        let corner = |child: usize, first: usize| {
+            Vec3::new(
+                self.planes[first][child],
+                self.planes[first + 1][child],
+                self.planes[first + 2][child],
+            )
+        };
+        let present = (0..WIDTH).filter(|child| self.present & (1 << child) != 0);
+        present.fold(Aabb::EMPTY, |all, child| {
+            all.union(&Aabb {
+                min: corner(child, 0),
+                max: corner(child, 3),
+            })
+        })
     }
 }
 
-/// Two siblings; 64 bytes.
-#[repr(C, align(64))]
+/// The corners of up to four triangles. Shapes (axis, triangle), m. An unused place holds NaN and is never hit.
+#[repr(C, align(16))]
 #[derive(Clone, Copy, Debug)]
-pub(super) struct NodePair(pub(super) [Node; 2]);
+pub(super) struct Block {
+    pub(super) a: [Vec4; 3],
+    pub(super) b: [Vec4; 3],
+    pub(super) c: [Vec4; 3],
+}
 
-/// Entries of a traversal stack; builders never exceed the depth that needs it.
-pub(super) const STACK: usize = 64;
+impl Block {
+    pub(super) const EMPTY: Self = Self {
+        a: [Vec4::NAN; 3],
+        b: [Vec4::NAN; 3],
+        c: [Vec4::NAN; 3],
+    };
+}
+
+/// What is needed of a triangle only once a ray passes inside its edges.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    /// Unit length, by the right hand from the first corner over the second to the third.
+    pub(super) normal: [f32; 3],
+    pub(super) id: i32,
+    /// Position in the input.
+    pub(super) index: u32,
+    pub(super) mask: RayMask,
+}
+
+impl Surface {
+    pub(super) const NONE: Self = Self {
+        normal: [0.0; 3],
+        id: 0,
+        index: u32::MAX,
+        mask: RayMask::NONE,
+    };
+}
+
+/// Most nodes on the way from the top of a tree to a leaf; builders keep to it.
+pub(super) const MAX_DEPTH: usize = 32;
+
+/// Entries of a traversal stack: at each level all children but the one that is followed.
+pub(super) const STACK: usize = MAX_DEPTH * (WIDTH - 1);
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_pair_fills_one_cache_line() {
-        assert_eq!(size_of::<Node>(), 32);
-        assert_eq!(size_of::<NodePair>(), 64);
-        assert_eq!(align_of::<NodePair>(), 64);
+    fn a_node_fills_two_cache_lines() {
+        assert_eq!(size_of::<Node>(), 128);
+        assert_eq!(align_of::<Node>(), 64);
     }
 }

@@ -1,9 +1,9 @@
 //! The triangles of a house, prepared for rays once and shared by all of its worlds.
 
 use super::data::HouseData;
+use crate::bvh::{TriangleBvh, TriangleTag};
 use crate::ids::{EntityId, Id, IdVec, MaterialId, MeshId, PartId, StructureId};
 use crate::mesh::Mesh;
-use crate::rays::interim::Tree;
 use glam::{Affine3A, Mat3A, Vec3};
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ pub struct StaticTriangle {
 #[derive(Debug)]
 pub struct Geometry {
     /// All triangles that never move.
-    pub static_bvh: Arc<Tree>,
+    pub static_bvh: Arc<TriangleBvh>,
     /// Where each static triangle comes from. Shape (static triangle,).
     pub static_triangles: Vec<StaticTriangle>,
     /// Structure pieces in order, then parts in order.
@@ -52,7 +52,7 @@ pub struct Geometry {
     /// The parts that move, in order: instance `k` of a [`RayScene`](crate::rays::RayScene) is `movable[k]`.
     pub movable: Vec<PartId>,
     /// The trees of the meshes that some moving part shows.
-    pub mesh_bvh: IdVec<MeshId, Option<Arc<Tree>>>,
+    pub mesh_bvh: IdVec<MeshId, Option<Arc<TriangleBvh>>>,
     structure_count: usize,
 }
 
@@ -83,7 +83,9 @@ impl Geometry {
             if !part.fixed {
                 movable.push(id);
                 let mesh = &data.meshes[part.mesh];
-                mesh_bvh[part.mesh].get_or_insert_with(|| Arc::new(Tree::build(mesh, |_| 0)));
+                mesh_bvh[part.mesh].get_or_insert_with(|| {
+                    Arc::new(TriangleBvh::build(&mesh.positions, &mesh.triangles))
+                });
             }
         }
         let mut baked = Mesh::default();
@@ -110,8 +112,11 @@ impl Geometry {
             });
             static_triangles.extend(sources);
         }
-        let tag = |index: usize| placed[static_triangles[index].placed as usize].entity.0;
-        let static_bvh = Arc::new(Tree::build(&baked, tag));
+        let tag = |index: usize| {
+            TriangleTag::new(placed[static_triangles[index].placed as usize].entity.0)
+        };
+        let static_bvh = TriangleBvh::build_tagged(&baked.positions, &baked.triangles, tag);
+        let static_bvh = Arc::new(static_bvh);
         Self {
             static_bvh,
             static_triangles,

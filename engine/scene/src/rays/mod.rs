@@ -1,13 +1,10 @@
 //! Rays through a house as it stands in one world: the one way in which eyes, ears and hands find surfaces.
 
-pub(crate) mod interim;
-
-use crate::bvh::{Hit, Ray, RayMask};
+use crate::bvh::{Hit, Instance, InstanceSet, PacketHits, Ray, RayMask, RayPacket, SceneBvh};
 use crate::house::{House, Placed, Surface, SurfaceOwner, normals_map};
 use crate::ids::{EntityId, Id, MaterialId, PartId};
 use crate::state::State;
 use glam::{Affine3A, Mat3A, Vec2, Vec3};
-use interim::Instances;
 use std::sync::Arc;
 
 /// Rays in a fan: they start at one point, as those of a pinhole camera do.
@@ -19,7 +16,7 @@ pub const FAN: usize = 16;
 #[derive(Clone, Debug)]
 pub struct RayScene {
     house: Arc<House>,
-    instances: Instances,
+    moving: InstanceSet,
     /// For each moving part, where it stands. Shape (instance,).
     world_from_mesh: Vec<Affine3A>,
 }
@@ -33,13 +30,21 @@ impl RayScene {
             .iter()
             .map(|part| geometry.placed_part(*part).world_from_mesh)
             .collect();
-        let mut scene = Self {
-            instances: Instances::default(),
+        let instances = geometry.movable.iter().zip(&start).map(|(part, place)| {
+            let placed = geometry.placed_part(*part);
+            Instance {
+                mesh: geometry.mesh_bvh[placed.mesh].clone().unwrap_or_default(),
+                world_from_mesh: *place,
+                id: placed.entity.0,
+                mask: RayMask::ALL,
+            }
+        });
+        let moving = InstanceSet::new(instances);
+        Self {
+            moving,
             world_from_mesh: start,
             house,
-        };
-        scene.rebuild();
-        scene
+        }
     }
 
     /// Moves the parts to where `state` has them. Allocates nothing after the first call.
@@ -49,12 +54,15 @@ impl RayScene {
             *place =
                 state.part_pose[*part].to_affine() * geometry.placed_part(*part).part_from_mesh;
         }
-        self.rebuild();
+        self.moving.set_poses(&self.world_from_mesh);
     }
 
-    fn rebuild(&mut self) {
-        let geometry = self.house.geometry();
-        self.instances.rebuild(geometry, &self.world_from_mesh);
+    /// The trees that rays walk.
+    pub fn bvh(&self) -> SceneBvh<'_> {
+        SceneBvh {
+            fixed: &self.house.geometry().static_bvh,
+            moving: &self.moving,
+        }
     }
 
     /// The house.
@@ -64,19 +72,17 @@ impl RayScene {
 
     /// The nearest surface that `mask` meets on the ray. Surfaces that coincide within 0.1 mm count as one: the lower id.
     pub fn closest(&self, ray: &Ray, mask: RayMask) -> Option<Hit> {
-        self.instances
-            .closest(self.house.geometry(), ray, mask, EntityId::VOID)
+        self.bvh().closest(ray, mask)
     }
 
     /// As [`Self::closest`], as if the thing called `hidden` were not there.
     pub fn closest_without(&self, ray: &Ray, mask: RayMask, hidden: EntityId) -> Option<Hit> {
-        self.instances
-            .closest(self.house.geometry(), ray, mask, hidden)
+        self.bvh().closest_without(ray, mask, hidden.0)
     }
 
     /// Whether anything that `mask` meets stands on the ray.
     pub fn occluded(&self, ray: &Ray, mask: RayMask) -> bool {
-        self.instances.occluded(self.house.geometry(), ray, mask)
+        self.bvh().occluded(ray, mask)
     }
 
     /// As [`Self::closest`] for rays that start at one point, faster when they go nearly the same way.
@@ -90,18 +96,39 @@ impl RayScene {
         far_m: f32,
         mask: RayMask,
     ) -> [Option<Hit>; FAN] {
-        std::array::from_fn(|k| {
-            let direction = Vec3::new(directions[0][k], directions[1][k], directions[2][k]);
-            self.closest(
-                &Ray {
-                    origin,
-                    direction,
-                    near_m,
-                    far_m,
-                },
-                mask,
-            )
-        })
+        let bvh = self.bvh();
+        let rays = RayPacket {
+            direction: *directions,
+            near_m: [near_m; FAN],
+            far_m: [far_m; FAN],
+            origin,
+        };
+        let mut hits = PacketHits::new();
+        bvh.closest_packet(&rays, mask, None, &mut hits);
+        std::array::from_fn(|k| bvh.packet_hit(&rays, &hits, k))
+    }
+
+    /// As [`Self::closest_without`] for all rays of a packet, much faster when they go nearly the same way.
+    ///
+    /// `hidden`: [`EntityId::VOID`] hides nothing.
+    pub fn closest_packet<const N: usize>(
+        &self,
+        rays: &RayPacket<N>,
+        mask: RayMask,
+        hidden: EntityId,
+        hits: &mut PacketHits<N>,
+    ) {
+        self.bvh().closest_packet(rays, mask, Some(hidden.0), hits);
+    }
+
+    /// All about one ray of a packet, as [`Self::closest_without`] would give it.
+    pub fn packet_hit<const N: usize>(
+        &self,
+        rays: &RayPacket<N>,
+        hits: &PacketHits<N>,
+        k: usize,
+    ) -> Option<Hit> {
+        self.bvh().packet_hit(rays, hits, k)
     }
 
     /// The part of a moving instance.

@@ -1,5 +1,83 @@
+//! How rays walk the trees. One ray: `single`; many from one point: `packet`, compiled for several instruction levels by
+//! `level`. All compute the same distances bit for bit and judge them by the one rule of `nearest`; boxes are only ever
+//! passed over when nothing in them could count.
+
+pub(super) mod level;
 pub(super) mod nearest;
 pub(super) mod packet;
 pub(super) mod single;
 pub(super) mod slab;
 pub(super) mod triangle;
+
+use glam::Vec4;
+
+use super::node::{Link, Node, STACK, Surface};
+use super::ray::RayMask;
+
+/// What a query sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Filter {
+    mask: RayMask,
+    /// Nothing with this id; beyond the ids of anything when nothing is hidden.
+    hidden: i64,
+}
+
+impl Filter {
+    pub(super) fn new(mask: RayMask, hidden: Option<i32>) -> Self {
+        Self {
+            mask,
+            hidden: hidden.map_or(i64::MAX, i64::from),
+        }
+    }
+
+    /// For the triangles of an instance that was admitted: they carry no ids of their own.
+    #[inline(always)]
+    pub(super) fn within(&self) -> Self {
+        Self {
+            hidden: i64::MAX,
+            ..*self
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn admits(&self, id: i32, mask: RayMask) -> bool {
+        self.mask.meets(mask) && i64::from(id) != self.hidden
+    }
+
+    #[inline(always)]
+    fn admits_surface(&self, surface: &Surface) -> bool {
+        self.admits(surface.id, surface.mask)
+    }
+}
+
+/// Of a node's children in `hits` returns the nearest and puts the others on the stack, further ones deeper.
+#[inline(always)]
+fn push_further(
+    node: &Node,
+    mut hits: u32,
+    enter: Vec4,
+    stack: &mut [(f32, Link); STACK],
+    top: &mut usize,
+) -> Link {
+    let enter = enter.to_array();
+    let first = hits.trailing_zeros() as usize;
+    hits &= hits - 1;
+    let mut closest = (enter[first], node.links[first]);
+    let bottom = *top;
+    while hits != 0 {
+        let k = hits.trailing_zeros() as usize;
+        hits &= hits - 1;
+        let mut entry = (enter[k], node.links[k]);
+        if entry.0 < closest.0 {
+            std::mem::swap(&mut entry, &mut closest);
+        }
+        let mut place = *top;
+        while place > bottom && stack[place - 1].0 < entry.0 {
+            stack[place] = stack[place - 1];
+            place -= 1;
+        }
+        stack[place] = entry;
+        *top += 1;
+    }
+    closest.1
+}

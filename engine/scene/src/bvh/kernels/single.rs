@@ -1,11 +1,15 @@
 //! One ray against one tree.
 
-use super::super::node::{Node, STACK};
-use super::super::triangles::{PackedTriangle, TriangleBvh};
-use super::nearest::{Candidate, Nearest, reach};
-use super::slab::{WideOrigin, crossing, inverse, least, margin, most};
-use super::triangle::{EdgePlanes, dot, inside};
-use crate::bvh::ray::RayMask;
+use glam::Vec4;
+
+use super::super::node::{Link, Node, STACK};
+use super::super::triangles::TriangleBvh;
+use super::super::wide::WideTree;
+use super::Filter;
+use super::nearest::{Claim, Nearest, Place};
+use super::slab::{WideOrigin, crossing, crossing4, inverse, least, margin, most};
+use super::triangle::{EdgePlanes, bounds, corner_height, dot, settled};
+use crate::bounds::Aabb;
 
 /// A ray in the space of a tree, prepared. Its direction need not have unit length: distances are multiples of it.
 #[derive(Clone, Copy, Debug)]
@@ -14,164 +18,191 @@ pub(in super::super) struct Probe {
     pub(in super::super) direction: [f32; 3],
     inverse: [f32; 3],
     wide: WideOrigin,
-    /// 1 / length of the direction.
-    per_length: f32,
-    near: f32,
+    margin: f32,
+    /// See [`EdgePlanes::new`].
+    longest: f32,
+    pub(in super::super) near: f32,
     /// Hits beyond do not count.
-    far: f32,
-    mask: RayMask,
+    pub(in super::super) far: f32,
 }
 
 impl Probe {
-    #[inline]
+    #[inline(always)]
     pub(in super::super) fn new(
-        root: &Node,
+        all: &Aabb,
         origin: [f32; 3],
         direction: [f32; 3],
         (near, far): (f32, f32),
-        mask: RayMask,
+        longest: f32,
     ) -> Self {
-        let length = dot(direction, direction[0], direction[1], direction[2]).sqrt();
+        let margin = margin(origin, all);
+        let (inverse, wide) = (direction.map(inverse), WideOrigin::new(origin, margin));
         Self {
             origin,
             direction,
-            inverse: direction.map(inverse),
-            wide: WideOrigin::new(origin, margin(origin, root)),
-            per_length: 1.0 / length,
+            inverse,
+            wide,
+            margin,
+            longest,
             near,
             far,
-            mask,
         }
     }
 
-    /// Entry distance of a box, or infinity when the ray misses it or meets it beyond `limit`.
+    /// Whether origin and direction survived a transform.
     #[inline(always)]
-    fn entry(&self, node: &Node, limit: f32) -> f32 {
-        let (min, max) = self.wide.corners(&node.min, &node.max);
-        let (enter, leave) = crossing(&min, &max, self.inverse);
-        let enter = most(enter, self.near);
-        if enter <= least(leave, limit) { enter } else { f32::INFINITY }
+    pub(in super::super) fn is_usable(&self) -> bool {
+        let finite = |v: &[f32; 3]| v[0].is_finite() && v[1].is_finite() && v[2].is_finite();
+        finite(&self.origin) && finite(&self.direction)
     }
 
-    /// Distance and reach of the hit with a triangle, up to `limit`.
+    /// Where the ray is inside a box, within its own range.
     #[inline(always)]
-    fn meet(&self, triangle: &PackedTriangle, limit: f32) -> Option<(f32, f32)> {
-        let [x, y, z] = self.direction;
-        let planes = EdgePlanes::new(triangle, self.origin);
-        if !inside(planes.sides(x, y, z)) {
-            return None;
-        }
-        let slope = dot(triangle.normal, x, y, z);
-        let distance = planes.height(triangle.normal) / slope;
-        if slope == 0.0 || !(distance >= self.near && distance <= limit) || !triangle.mask.meets(self.mask) {
-            return None;
-        }
-        let (min, max) = triangle.corners();
-        let (min, max) = self.wide.corners(&min, &max);
+    pub(in super::super) fn range_in(&self, bounds: &Aabb) -> (f32, f32) {
+        let (min, max) = self.wide.corners(bounds.min.as_ref(), bounds.max.as_ref());
         let (enter, leave) = crossing(&min, &max, self.inverse);
-        (enter <= distance && distance <= leave).then(|| (distance, reach(distance, slope.abs() * self.per_length)))
+        (most(enter, self.near), least(leave, self.far))
+    }
+
+    /// Children whose boxes the ray enters up to `limit`, as bits, and where.
+    #[inline(always)]
+    fn enters(&self, node: &Node, limit: f32) -> (u32, Vec4) {
+        let (enter, leave) = crossing4(
+            node,
+            &self.wide.0.map(Vec4::splat),
+            &self.inverse.map(Vec4::splat),
+        );
+        let enter = enter.max(Vec4::splat(self.near));
+        (
+            enter.cmple(leave.min(Vec4::splat(limit))).bitmask() & node.present,
+            enter,
+        )
+    }
+
+    /// Calls `found` for the hits with a block of triangles, with their slot and distance, until it returns `true`.
+    #[inline(always)]
+    fn meet(
+        &self,
+        bvh: &TriangleBvh,
+        block: usize,
+        filter: &Filter,
+        mut found: impl FnMut(u32, f32) -> bool,
+    ) -> bool {
+        let triangles = &bvh.blocks[block];
+        let planes = EdgePlanes::new(triangles, self.origin, self.longest);
+        let mut candidates = planes.inside(self.direction);
+        while candidates != 0 {
+            let lane = candidates.trailing_zeros() as usize;
+            candidates &= candidates - 1;
+            let slot = block * 4 + lane;
+            let surface = &bvh.surfaces[slot];
+            let [x, y, z] = self.direction;
+            let slope = dot(surface.normal, x, y, z);
+            let distance = corner_height(triangles, lane, self.origin, surface.normal) / slope;
+            let (min, max) = bounds(triangles, lane);
+            let (min, max) = self.wide.corners(&min, &max);
+            let distance = settled(
+                distance,
+                slope,
+                crossing(&min, &max, self.inverse),
+                self.margin,
+            );
+            let in_range = distance >= self.near && distance <= self.far;
+            if in_range && filter.admits_surface(surface) && found(slot as u32, distance) {
+                return true;
+            }
+        }
+        false
     }
 }
 
-/// Offers every hit that may matter to `nearest`. `owner`: source and id of an instance; nothing for static geometry.
-#[inline]
-pub(in super::super) fn closest(tree: &TriangleBvh, probe: &Probe, owner: Option<(u32, i32)>, nearest: &mut Nearest) {
-    let offer = |node: &Node, nearest: &mut Nearest| {
-        let first = node.first as usize;
-        for (k, triangle) in tree.triangles[first..first + node.count()].iter().enumerate() {
-            if let Some((distance, reach)) = probe.meet(triangle, least(nearest.limit, probe.far)) {
-                let (source, id) = owner.unwrap_or((0, triangle.id));
-                let slot = (first + k) as u32;
-                nearest.offer(Candidate { distance, reach, id, source, triangle: triangle.index, slot });
-            }
-        }
-    };
-    if probe.entry(&tree.root, least(nearest.limit, probe.far)) == f32::INFINITY {
-        return;
-    }
-    if tree.root.count() > 0 {
-        return offer(&tree.root, nearest);
-    }
-    // Entry distance, pair.
-    let mut stack = [(0.0_f32, 0_u32); STACK];
+/// Visits the leaves that a ray enters before `limit`, nearer ones first, until `leaf` returns `true`. `leaf` may lower the
+/// limit.
+#[inline(always)]
+pub(in super::super) fn traverse(
+    tree: &WideTree,
+    probe: &Probe,
+    mut limit: f32,
+    mut leaf: impl FnMut(usize, &mut f32) -> bool,
+) -> bool {
+    let mut stack = [(0.0_f32, Link::NONE); STACK];
     let mut top = 0;
-    let mut pair = tree.root.first as usize;
+    let mut link = tree.top;
+    if link == Link::NONE {
+        return false;
+    }
     loop {
-        let nodes = &tree.pairs[pair].0;
-        let end = least(nearest.limit, probe.far);
-        let entries = [probe.entry(&nodes[0], end), probe.entry(&nodes[1], end)];
-        let closer = usize::from(entries[1] < entries[0]);
-        let mut next = None;
-        for k in [closer, 1 - closer] {
-            if entries[k] > least(nearest.limit, probe.far) || entries[k] == f32::INFINITY {
+        let (is_leaf, index) = link.parts();
+        if is_leaf {
+            if leaf(index, &mut limit) {
+                return true;
+            }
+        } else {
+            let node = &tree.nodes[index];
+            let (hits, enter) = probe.enters(node, limit);
+            if hits != 0 {
+                link = super::push_further(node, hits, enter, &mut stack, &mut top);
                 continue;
             }
-            if nodes[k].count() > 0 {
-                offer(&nodes[k], nearest);
-            } else if next.is_none() {
-                next = Some(nodes[k].first);
-            } else {
-                stack[top] = (entries[k], nodes[k].first);
-                top += 1;
-            }
-        }
-        if let Some(first) = next {
-            pair = first as usize;
-            continue;
         }
         loop {
             if top == 0 {
-                return;
+                return false;
             }
             top -= 1;
-            if stack[top].0 <= least(nearest.limit, probe.far) {
-                pair = stack[top].1 as usize;
+            if stack[top].0 <= limit {
+                link = stack[top].1;
                 break;
             }
         }
     }
 }
 
-/// Whether anything lies in the ray's range.
-#[inline]
-pub(in super::super) fn occluded(tree: &TriangleBvh, probe: &Probe) -> bool {
-    let mut stack = [0_u32; STACK];
-    let mut top = 0;
-    if probe.entry(&tree.root, probe.far) == f32::INFINITY {
-        return false;
-    }
-    let meets = |node: &Node| {
-        let first = node.first as usize;
-        tree.triangles[first..first + node.count()].iter().any(|t| probe.meet(t, probe.far).is_some())
-    };
-    if tree.root.count() > 0 {
-        return meets(&tree.root);
-    }
-    let mut pair = tree.root.first as usize;
-    loop {
-        let mut next = None;
-        for node in &tree.pairs[pair].0 {
-            if probe.entry(node, probe.far) == f32::INFINITY {
-                continue;
-            }
-            if node.count() > 0 {
-                if meets(node) {
-                    return true;
+/// Offers every hit that may matter to `nearest`.
+#[inline(always)]
+pub(in super::super) fn closest(
+    bvh: &TriangleBvh,
+    probe: &Probe,
+    filter: &Filter,
+    source: u32,
+    nearest: &mut Nearest,
+    claim: impl Fn(Place) -> Claim,
+) {
+    traverse(
+        &bvh.tree,
+        probe,
+        least(nearest.limit, probe.far),
+        |block, limit| {
+            probe.meet(bvh, block, filter, |slot, distance| {
+                if distance <= *limit {
+                    nearest.offer(distance, Place { source, slot }, &claim);
+                    *limit = least(nearest.limit, probe.far);
                 }
-            } else if next.is_none() {
-                next = Some(node.first);
-            } else {
-                stack[top] = node.first;
-                top += 1;
-            }
-        }
-        if let Some(first) = next {
-            pair = first as usize;
-        } else if top > 0 {
-            top -= 1;
-            pair = stack[top] as usize;
-        } else {
-            return false;
-        }
-    }
+                false
+            })
+        },
+    );
+}
+
+/// Whether anything lies in the ray's range.
+#[inline(always)]
+pub(in super::super) fn occluded(bvh: &TriangleBvh, probe: &Probe, filter: &Filter) -> bool {
+    traverse(&bvh.tree, probe, probe.far, |block, _| {
+        probe.meet(bvh, block, filter, |_, _| true)
+    })
+}
+
+/// Calls `found` for every hit in the ray's range, in no particular order.
+pub(in super::super) fn every(
+    bvh: &TriangleBvh,
+    probe: &Probe,
+    filter: &Filter,
+    mut found: impl FnMut(u32, f32),
+) {
+    traverse(&bvh.tree, probe, probe.far, |block, _| {
+        probe.meet(bvh, block, filter, |slot, distance| {
+            found(slot, distance);
+            false
+        })
+    });
 }

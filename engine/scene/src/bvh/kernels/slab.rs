@@ -5,17 +5,22 @@
 //! box enters every box around it. A triangle's hit counts only inside the triangle's own box, so no order of
 //! traversal, no kernel and no tree can lose it.
 
+use glam::Vec4;
+
 use super::super::node::Node;
+use crate::bounds::Aabb;
 
 /// Largest magnitude of an inverse direction: a difference of coordinates times this stays finite.
-const LARGEST_INVERSE: f32 = 1e24;
+pub(in super::super) const LARGEST_INVERSE: f32 = 1e24;
 
 /// The margin of boxes seen from `origin`, m: 2^-20 of the distance to the far corner of the whole tree.
 #[inline]
-pub(in super::super) fn margin(origin: [f32; 3], root: &Node) -> f32 {
+pub(in super::super) fn margin(origin: [f32; 3], bounds: &Aabb) -> f32 {
     let mut reach = 0.0_f32;
     for k in 0..3 {
-        reach = reach.max((origin[k] - root.min[k]).abs()).max((origin[k] - root.max[k]).abs());
+        reach = reach
+            .max((origin[k] - bounds.min[k]).abs())
+            .max((origin[k] - bounds.max[k]).abs());
     }
     (reach * (1.0 / 1_048_576.0)).clamp(1e-9, 1e18)
 }
@@ -24,36 +29,44 @@ pub(in super::super) fn margin(origin: [f32; 3], root: &Node) -> f32 {
 #[inline(always)]
 pub(in super::super) fn inverse(component: f32) -> f32 {
     let inverse = 1.0 / component;
-    if inverse > LARGEST_INVERSE {
-        LARGEST_INVERSE
-    } else if inverse < -LARGEST_INVERSE {
-        -LARGEST_INVERSE
-    } else {
+    let inverse = if inverse < LARGEST_INVERSE {
         inverse
+    } else {
+        LARGEST_INVERSE
+    };
+    if inverse > -LARGEST_INVERSE {
+        inverse
+    } else {
+        -LARGEST_INVERSE
     }
 }
 
-/// What a ray, or a packet with one origin, asks of every box: its origin moved outwards by the margin.
+/// What a ray, or a packet with one origin, subtracts from every box: its origin moved outwards by the margin, for lower
+/// corners and for upper corners.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct WideOrigin {
-    /// Subtracted from lower corners.
-    pub(in super::super) low: [f32; 3],
-    /// Subtracted from upper corners.
-    pub(in super::super) high: [f32; 3],
-}
+pub(in super::super) struct WideOrigin(pub(super) [f32; 6]);
 
 impl WideOrigin {
     #[inline(always)]
     pub(in super::super) fn new(origin: [f32; 3], margin: f32) -> Self {
-        Self { low: origin.map(|o| o + margin), high: origin.map(|o| o - margin) }
+        let [x, y, z] = origin;
+        Self([
+            x + margin,
+            y + margin,
+            z + margin,
+            x - margin,
+            y - margin,
+            z - margin,
+        ])
     }
 
     /// The corners of a box as seen from the origin.
     #[inline(always)]
     pub(in super::super) fn corners(&self, min: &[f32; 3], max: &[f32; 3]) -> ([f32; 3], [f32; 3]) {
+        let o = &self.0;
         (
-            [min[0] - self.low[0], min[1] - self.low[1], min[2] - self.low[2]],
-            [max[0] - self.high[0], max[1] - self.high[1], max[2] - self.high[2]],
+            [min[0] - o[0], min[1] - o[1], min[2] - o[2]],
+            [max[0] - o[3], max[1] - o[4], max[2] - o[5]],
         )
     }
 }
@@ -77,5 +90,21 @@ pub(in super::super) fn crossing(min: &[f32; 3], max: &[f32; 3], inverse: [f32; 
     let (z0, z1) = (min[2] * inverse[2], max[2] * inverse[2]);
     let enter = most(most(least(x0, x1), least(y0, y1)), least(z0, z1));
     let leave = least(least(most(x0, x1), most(y0, y1)), most(z0, z1));
+    (enter, leave)
+}
+
+/// As [`crossing`] for the children of a node and a ray with `wide` origin.
+#[inline(always)]
+pub(in super::super) fn crossing4(
+    node: &Node,
+    wide: &[Vec4; 6],
+    inverse: &[Vec4; 3],
+) -> (Vec4, Vec4) {
+    let at = |plane: usize, axis: usize| (node.planes[plane] - wide[plane]) * inverse[axis];
+    let (x0, x1) = (at(0, 0), at(3, 0));
+    let (y0, y1) = (at(1, 1), at(4, 1));
+    let (z0, z1) = (at(2, 2), at(5, 2));
+    let enter = x0.min(x1).max(y0.min(y1)).max(z0.min(z1));
+    let leave = x0.max(x1).min(y0.max(y1)).min(z0.max(z1));
     (enter, leave)
 }

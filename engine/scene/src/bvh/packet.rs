@@ -1,0 +1,129 @@
+//! Many rays from one point, and what they found.
+
+use glam::Vec3;
+
+use super::ray::Ray;
+
+/// Rays from one point, as those of a pinhole camera or to a lamp; fast when they go nearly the same way.
+///
+/// `N`: a power of two, at most 64. 16 (4 by 4 pixels) is best without wide instructions, 32 (8 by 4) with.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct RayPacket<const N: usize> {
+    /// Unit length. Shape (axis, ray).
+    pub direction: [[f32; N]; 3],
+    /// Nearest distances that count, m; at least 0.
+    pub near_m: [f32; N],
+    /// Furthest distances that count, m; below `near_m` for a ray that is not used.
+    pub far_m: [f32; N],
+    /// Where they start, m.
+    pub origin: Vec3,
+}
+
+impl<const N: usize> RayPacket<N> {
+    /// No ray in use; fill `direction`, `near_m` and `far_m`.
+    pub fn new(origin: Vec3) -> Self {
+        const {
+            assert!(
+                N.is_power_of_two() && N <= 64,
+                "packets hold 1, 2, 4, 8, 16, 32 or 64 rays"
+            );
+        };
+        Self {
+            direction: [[0.0; N]; 3],
+            near_m: [0.0; N],
+            far_m: [-1.0; N],
+            origin,
+        }
+    }
+
+    /// Sets one ray; its direction needs unit length.
+    #[inline]
+    pub fn set(&mut self, k: usize, direction: Vec3, near_m: f32, far_m: f32) {
+        for axis in 0..3 {
+            self.direction[axis][k] = direction[axis];
+        }
+        (self.near_m[k], self.far_m[k]) = (near_m, far_m);
+    }
+
+    /// One of the rays.
+    #[inline]
+    pub fn ray(&self, k: usize) -> Ray {
+        Ray {
+            origin: self.origin,
+            direction: Vec3::new(
+                self.direction[0][k],
+                self.direction[1][k],
+                self.direction[2][k],
+            ),
+            near_m: self.near_m[k],
+            far_m: self.far_m[k],
+        }
+    }
+
+    /// For each ray its furthest distance, or less than anything where it can meet nothing.
+    #[inline(always)]
+    pub(super) fn usable_far(&self) -> [f32; N] {
+        let mut far = [f32::NEG_INFINITY; N];
+        if self.origin.is_finite() {
+            let [x, y, z] = &self.direction;
+            for k in 0..N {
+                let size = (x[k].abs() + y[k].abs()) + z[k].abs();
+                let usable = (size > 0.0) & (size < f32::INFINITY) & (self.near_m[k] >= 0.0);
+                far[k] = if usable & (self.near_m[k] <= self.far_m[k]) {
+                    self.far_m[k]
+                } else {
+                    f32::NEG_INFINITY
+                };
+            }
+        }
+        far
+    }
+}
+
+/// Where the rays of a packet end; see [`Hit`](super::Hit).
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct PacketHits<const N: usize> {
+    /// Distance along the ray, m; infinite where it met nothing.
+    pub distance_m: [f32; N],
+    /// The id; 0 where it met nothing.
+    pub id: [i32; N],
+    /// The triangle's position in its list.
+    pub triangle: [u32; N],
+    /// The instance plus 1; 0 for static geometry.
+    pub(super) source: [u32; N],
+    /// The triangle's place in its tree.
+    pub(super) slot: [u32; N],
+}
+
+impl<const N: usize> PacketHits<N> {
+    /// Nothing met.
+    pub fn new() -> Self {
+        Self {
+            distance_m: [f32::INFINITY; N],
+            id: [0; N],
+            triangle: [0; N],
+            source: [0; N],
+            slot: [u32::MAX; N],
+        }
+    }
+
+    /// Whether a ray met something.
+    #[inline]
+    pub fn is_hit(&self, k: usize) -> bool {
+        self.slot[k] != u32::MAX
+    }
+
+    /// Which instance a ray met; nothing for static geometry.
+    #[inline]
+    pub fn instance(&self, k: usize) -> Option<u32> {
+        self.source[k].checked_sub(1)
+    }
+}
+
+impl<const N: usize> Default for PacketHits<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,127 @@
+//! From two children a node to four.
+
+use super::binary::BinaryTree;
+use super::node::{Link, MAX_DEPTH, Node, WIDTH};
+use crate::bounds::Aabb;
+
+/// A tree as the kernels walk it.
+#[derive(Clone, Debug)]
+pub(super) struct WideTree {
+    pub(super) nodes: Vec<Node>,
+    pub(super) top: Link,
+    pub(super) bounds: Aabb,
+}
+
+impl Default for WideTree {
+    fn default() -> Self {
+        Self {
+            nodes: Vec::new(),
+            top: Link::NONE,
+            bounds: Aabb::EMPTY,
+        }
+    }
+}
+
+impl WideTree {
+    /// Replaces the tree; its memory is used again. `leaf` turns the boxes of a leaf, as a range of the binary tree's order,
+    /// into a link. Returns whether the tree is flat enough for the kernels; one that is not is incomplete.
+    pub(super) fn fill(
+        &mut self,
+        tree: &BinaryTree,
+        leaf: &mut impl FnMut(std::ops::Range<usize>) -> Link,
+    ) -> bool {
+        self.nodes.clear();
+        self.bounds = tree.nodes.first().map_or(Aabb::EMPTY, |top| top.bounds);
+        let top = if tree.nodes.is_empty() {
+            Some(Link::NONE)
+        } else {
+            self.below(tree, 0, 0, leaf)
+        };
+        self.top = top.unwrap_or(Link::NONE);
+        top.is_some()
+    }
+
+    /// The link to node `k` of the binary tree, or nothing when it leads too deep.
+    fn below(
+        &mut self,
+        tree: &BinaryTree,
+        k: usize,
+        depth: usize,
+        leaf: &mut impl FnMut(std::ops::Range<usize>) -> Link,
+    ) -> Option<Link> {
+        let node = &tree.nodes[k];
+        let first = node.first as usize;
+        if node.count > 0 {
+            return Some(leaf(first..first + node.count as usize));
+        }
+        if depth == MAX_DEPTH {
+            return None;
+        }
+        // The children of the largest child take its place until there are four.
+        let mut children = [first, first + 1, 0, 0];
+        let mut count = 2;
+        while count < WIDTH {
+            let area = |k: usize| tree.nodes[children[k]].half_area();
+            let inner = (0..count).filter(|k| tree.nodes[children[*k]].count == 0);
+            let Some(largest) = inner.max_by(|a, b| area(*a).total_cmp(&area(*b))) else {
+                break;
+            };
+            let first = tree.nodes[children[largest]].first as usize;
+            children[largest] = first;
+            children[count] = first + 1;
+            count += 1;
+        }
+        let index = self.nodes.len();
+        self.nodes.push(Node::EMPTY);
+        for (place, &k) in children[..count].iter().enumerate() {
+            let link = self.below(tree, k, depth + 1, leaf)?;
+            self.nodes[index].set(place, &tree.nodes[k].bounds, link);
+        }
+        Some(Link::node(index))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::binary::BinaryNode;
+    use super::*;
+    use glam::Vec3;
+
+    /// Each node has a leaf and the next node.
+    fn chain(length: usize) -> BinaryTree {
+        let bounds = Aabb::new(Vec3::ZERO, Vec3::ONE);
+        let mut nodes = vec![BinaryNode {
+            bounds,
+            first: 1,
+            count: 0,
+        }];
+        for k in 1..=length {
+            let last = u32::from(k == length);
+            nodes.push(BinaryNode {
+                bounds,
+                first: 0,
+                count: 1,
+            });
+            nodes.push(BinaryNode {
+                bounds,
+                first: 2 * k as u32 + 1,
+                count: last,
+            });
+        }
+        BinaryTree {
+            nodes,
+            order: vec![0],
+        }
+    }
+
+    #[test]
+    fn only_trees_that_fit_the_stacks_are_taken() {
+        let mut tree = WideTree::default();
+        // Four children take three levels of a chain.
+        assert!(tree.fill(&chain(3 * MAX_DEPTH), &mut |_| Link::leaf(0)));
+        assert_eq!(tree.nodes.len(), MAX_DEPTH);
+        assert!(!tree.fill(&chain(3 * MAX_DEPTH + 1), &mut |_| Link::leaf(0)));
+        assert!(tree.fill(&chain(1), &mut |_| Link::leaf(0)));
+        assert_eq!(tree.nodes.len(), 1);
+    }
+}
