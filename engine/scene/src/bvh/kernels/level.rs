@@ -325,3 +325,91 @@ impl<const N: usize> Visit<N> for OccludedMoving<'_> {
         fan.is_done()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::{Instance, PacketHits, RayMask, TriangleBvh, TriangleTag};
+    use crate::random::{Key, Stream};
+    use glam::{Affine3A, Quat, Vec3};
+    use std::sync::Arc;
+
+    fn scraps(stream: &mut Stream, count: usize, size_m: f32) -> TriangleBvh {
+        let mut corner = || stream.direction() * stream.uniform_f32();
+        let middles: Vec<Vec3> = (0..count).map(|_| corner()).collect();
+        let positions: Vec<Vec3> = middles
+            .iter()
+            .flat_map(|middle| [*middle; 3])
+            .map(|middle| middle + corner() * size_m)
+            .collect();
+        let triangles: Vec<[u32; 3]> = (0..count as u32)
+            .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
+            .collect();
+        TriangleBvh::build_tagged(&positions, &triangles, |k| {
+            TriangleTag::new(1 + k as i32 % 9)
+        })
+    }
+
+    fn same_on_all_levels<const N: usize>(scene: &SceneBvh<'_>, key: Key) -> usize {
+        let mut stream = key.stream();
+        let mut met = 0;
+        for round in 0..200 {
+            let mut rays = RayPacket::<N>::new(stream.direction() * 2.0);
+            let ahead = stream.direction() * 0.5 - rays.origin;
+            let spread = [0.01, 0.1, 1.0, 5.0][round % 4];
+            for k in 0..N {
+                let direction = (ahead + stream.direction() * spread).normalize_or_zero();
+                rays.set(k, direction, 0.0, stream.range(0.5, 9.0));
+            }
+            let filter = Filter::new(RayMask::ALL, Some(3));
+            let answer = |level: Level| {
+                let mut hits = PacketHits::<N>::new();
+                scene.closest_packet_at(level, &rays, &filter, &mut hits);
+                let blocked = level.occluded(scene, &rays, &filter);
+                (hits, blocked)
+            };
+            let (hits, blocked) = answer(Level::Portable);
+            met += blocked.count_ones() as usize;
+            for level in Level::available() {
+                let other = answer(level);
+                assert_eq!(
+                    hits.distance_m.map(f32::to_bits),
+                    other.0.distance_m.map(f32::to_bits)
+                );
+                assert_eq!(
+                    (hits.id, hits.triangle, hits.source, blocked),
+                    (other.0.id, other.0.triangle, other.0.source, other.1)
+                );
+            }
+        }
+        met
+    }
+
+    #[test]
+    fn all_instruction_levels_give_the_same_bits() {
+        let key = Key::root(5);
+        let mut stream = key.stream();
+        let fixed = scraps(&mut stream, 2000, 0.1);
+        let instances = (0..6).map(|k| Instance {
+            mesh: Arc::new(scraps(&mut stream, 300, 0.2)),
+            world_from_mesh: Affine3A::from_scale_rotation_translation(
+                Vec3::splat(0.5),
+                Quat::from_rotation_y(k as f32),
+                Vec3::new(0.3, 0.1 * k as f32, 0.0),
+            ),
+            id: 20 + k,
+            mask: RayMask::ALL,
+        });
+        let moving = InstanceSet::new(instances);
+        let scene = SceneBvh {
+            fixed: &fixed,
+            moving: &moving,
+        };
+        assert!(same_on_all_levels::<8>(&scene, key.child("8")) > 300);
+        assert!(same_on_all_levels::<16>(&scene, key.child("16")) > 600);
+        assert!(same_on_all_levels::<32>(&scene, key.child("32")) > 1200);
+        for level in Level::available() {
+            println!("tested on {level:?}");
+        }
+    }
+}

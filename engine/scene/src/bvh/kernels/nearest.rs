@@ -159,3 +159,71 @@ impl Nearest {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Key;
+    use proptest::prelude::*;
+
+    /// Distance and what decides.
+    type Hit = (f32, Claim);
+
+    /// The rule as it is written above.
+    fn plainly(hits: &[Hit]) -> Option<usize> {
+        let nearest = hits.iter().map(|hit| hit.0).fold(f32::INFINITY, f32::min);
+        let coincident = (0..hits.len()).filter(|k| hits[*k].1.reach <= nearest);
+        coincident.min_by_key(|k| (hits[*k].1.id, hits[*k].1.triangle))
+    }
+
+    fn offer_all(nearest: &mut Nearest, hits: &[Hit], order: &[usize]) {
+        for &k in order {
+            // Traversal passes over what lies beyond the limit.
+            if hits[k].0 <= nearest.limit {
+                let place = |slot| Place { source: 0, slot };
+                nearest.offer(hits[k].0, place(k as u32), |p| hits[p.slot as usize].1);
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_winner_does_not_depend_on_the_order(seed in any::<u64>(), count in 0_usize..9) {
+            let mut stream = Key::root(seed).stream();
+            let hits: Vec<Hit> = (0..count)
+                .map(|k| {
+                    // Within a few tolerances of each other, seen straight on and at grazing angles.
+                    let distance = 3.0 + stream.below(12) as f32 * 0.7e-5;
+                    let cosine = [1.0, 0.5, 0.1, 0.001][stream.below(4)];
+                    let id = stream.below(6) as i32;
+                    (distance, Claim { reach: reach(distance, cosine), id, triangle: k as u32 })
+                })
+                .collect();
+            let expected = plainly(&hits);
+            let mut order: Vec<usize> = (0..count).collect();
+            for _ in 0..20 {
+                stream.shuffle(&mut order);
+                let mut nearest = Nearest::new(f32::INFINITY);
+                offer_all(&mut nearest, &hits, &order);
+                if nearest.is_unsure() {
+                    nearest = nearest.again(f32::INFINITY);
+                    stream.shuffle(&mut order);
+                    offer_all(&mut nearest, &hits, &order);
+                    prop_assert!(!nearest.is_unsure());
+                }
+                let found = (nearest.best != Place::NONE).then_some(nearest.best.slot as usize);
+                prop_assert_eq!(found, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_beyond_the_horizon_is_coincident() {
+        for k in 0..2000 {
+            let distance = 1.01_f32.powi(k % 1000) * 1e-3;
+            let beyond = f32::from_bits(horizon(distance).to_bits() + 1);
+            assert!(reach(beyond, 0.0) > distance, "{distance}");
+            assert!(reach(distance, 1.0) < distance);
+        }
+    }
+}
