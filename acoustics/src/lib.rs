@@ -1,1 +1,58 @@
 //! What a microphone hears: rays, band materials, impulse responses.
+//!
+//! An [`AcousticScene`] is a house as sound sees it. Between a [`Source`] and a [`Receiver`] it finds an [`Echogram`] (exact
+//! early paths and a traced energy tail, per octave band), and from that an [`ImpulseResponse`]. A [`Stream`] convolves
+//! sources with them, block by block, in step with a world. [`signals`] and [`ImpactSound`] are what things sound like, and
+//! [`metrics`] what rooms sound like.
+//!
+//! Units: pressure in Pa, energy e = 1/d² for a free path of d metres (amplitude 1/d re 1 m), sample 0 of a response is the
+//! moment of the impulse. Channels: left, right.
+//!
+//! ```
+//! use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source, metrics};
+//! use dwell_scene::{House, ShoeboxMaterials, parallel::Threads, random::Key, rays::RayScene};
+//! use glam::Vec3;
+//! use std::sync::Arc;
+//!
+//! let house = Arc::new(House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default())?);
+//! let (scene, rays) = (AcousticScene::new(house.clone(), AcousticConfig::rl())?, RayScene::new(house));
+//! let (source, ear) = (Source::at(Vec3::new(1.2, 1.4, 1.5)), Receiver::omni(Vec3::new(4.6, 1.2, 3.3)));
+//! let response = scene.impulse_response(&rays, &source, &ear, Key::root(1), Threads::ONE)?;
+//! assert_eq!(response.echogram.paths[0].order(), 0);
+//! assert!(metrics::of_echogram(&response.echogram)[4].t30_s.unwrap() > 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod air;
+pub mod bands;
+mod config;
+mod echogram;
+mod error;
+mod explain;
+mod fft;
+pub mod head;
+mod images;
+mod impact;
+pub mod laws;
+pub mod metrics;
+mod planes;
+mod receiver;
+mod response;
+mod scene;
+pub mod signals;
+mod stream;
+mod synthesis;
+mod tail;
+
+pub use air::Air;
+pub use config::AcousticConfig;
+pub use echogram::{Bin, Echogram, Histogram, Path, TraceStatistics};
+pub use error::AcousticsError;
+pub use explain::{Explanation, MaterialRow};
+pub use images::NEAREST_M;
+pub use impact::ImpactSound;
+pub use planes::{NO_PLANE, Plane, PlaneTable};
+pub use receiver::{Receiver, Source};
+pub use response::ImpulseResponse;
+pub use scene::AcousticScene;
+pub use stream::{ActiveSource, BlockReport, Stream, StreamConfig};

@@ -1,0 +1,154 @@
+//! How finely sound is computed.
+
+use crate::air::Air;
+use crate::error::{AcousticsError, range};
+use serde::{Deserialize, Serialize};
+
+/// Settings of an [`AcousticScene`](crate::AcousticScene).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AcousticConfig {
+    /// Sample rate of impulse responses, Hz; 8,000 to 192,000.
+    pub rate_hz: u32,
+    /// Rays of the energy tail; 0 (no tail) to 10,000,000.
+    pub rays: usize,
+    /// Longest time that a ray travels, s; 0.02 to 20.
+    pub max_duration_s: f64,
+    /// Width of the histogram's bins, s; 0.0005 to 0.05.
+    pub bin_s: f64,
+    /// Highest order of the image sources; 0 (direct sound only) to 4. Specular paths of higher orders belong to the tail.
+    pub image_order: usize,
+    /// How many of the largest planes are combined exhaustively, as long as that makes at most 20,000 sequences an order; 0 to 200.
+    pub image_planes: usize,
+    /// Rays from the receiver that discover further sequences of planes; 0 to 100,000.
+    pub discovery_rays: usize,
+    /// Radius of the sphere on which paths with specular last reflections are counted, m; 0.05 to 2. Walls make it smaller.
+    pub receiver_radius_m: f64,
+    /// Temperature, humidity, pressure.
+    pub air: Air,
+    /// Whether air absorbs.
+    pub air_absorption: bool,
+    /// Whether the direct sound passes through walls and doors by their materials' transmission loss.
+    pub transmission: bool,
+    /// Radius of the spherical head, m; 0.03 to 0.2.
+    pub head_radius_m: f64,
+}
+
+impl Default for AcousticConfig {
+    /// [`AcousticConfig::full`].
+    fn default() -> Self {
+        Self::full()
+    }
+}
+
+impl AcousticConfig {
+    /// For listening and measuring: 5,000 rays, images to order 3, two seconds.
+    pub fn full() -> Self {
+        Self {
+            rate_hz: 16_000,
+            rays: 5_000,
+            max_duration_s: 2.0,
+            bin_s: 0.004,
+            image_order: 3,
+            image_planes: 40,
+            discovery_rays: 2_000,
+            receiver_radius_m: 0.5,
+            air: Air::default(),
+            air_absorption: true,
+            transmission: true,
+            head_radius_m: 0.0875,
+        }
+    }
+
+    /// For agents that learn: 300 rays, images to order 2, one second.
+    pub fn rl() -> Self {
+        Self {
+            rays: 300,
+            max_duration_s: 1.0,
+            bin_s: 0.008,
+            image_order: 2,
+            image_planes: 16,
+            discovery_rays: 200,
+            ..Self::full()
+        }
+    }
+
+    /// The settings called `name`: `"full"` or `"rl"`.
+    pub fn preset(name: &str) -> Option<Self> {
+        match name {
+            "full" => Some(Self::full()),
+            "rl" => Some(Self::rl()),
+            _ => None,
+        }
+    }
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Range`] names the field.
+    pub fn check(&self) -> Result<(), AcousticsError> {
+        const AT: &str = "acoustics";
+        let whole = |field, value: usize, high: usize, allowed| {
+            range(AT, field, value as f64, (0.0, high as f64), allowed)
+        };
+        let rate = f64::from(self.rate_hz);
+        range(AT, "rate_hz", rate, (8_000.0, 192_000.0), "8000 to 192000")?;
+        whole("rays", self.rays, 10_000_000, "0 to 10000000")?;
+        range(
+            AT,
+            "max_duration_s",
+            self.max_duration_s,
+            (0.02, 20.0),
+            "0.02 to 20",
+        )?;
+        range(AT, "bin_s", self.bin_s, (0.0005, 0.05), "0.0005 to 0.05")?;
+        whole("image_order", self.image_order, 4, "0 to 4")?;
+        whole("image_planes", self.image_planes, 200, "0 to 200")?;
+        whole(
+            "discovery_rays",
+            self.discovery_rays,
+            100_000,
+            "0 to 100000",
+        )?;
+        range(
+            AT,
+            "receiver_radius_m",
+            self.receiver_radius_m,
+            (0.05, 2.0),
+            "0.05 to 2",
+        )?;
+        range(
+            AT,
+            "head_radius_m",
+            self.head_radius_m,
+            (0.03, 0.2),
+            "0.03 to 0.2",
+        )?;
+        self.air.check()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_in_range_and_bad_numbers_are_named() {
+        for name in ["full", "rl"] {
+            AcousticConfig::preset(name).unwrap().check().unwrap();
+        }
+        let bad = AcousticConfig {
+            rate_hz: 4_000,
+            ..AcousticConfig::rl()
+        };
+        assert_eq!(
+            bad.check().unwrap_err().to_string(),
+            "acoustics: rate_hz is 4000; allowed are 8000 to 192000"
+        );
+        let bad = AcousticConfig {
+            bin_s: f64::NAN,
+            ..AcousticConfig::rl()
+        };
+        assert!(bad.check().unwrap_err().to_string().contains("bin_s"));
+    }
+}

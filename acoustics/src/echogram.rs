@@ -1,0 +1,126 @@
+//! Energies over time: what arrives when, in which band, from where.
+
+use crate::bands::{BAND_COUNT, Banded};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// One deterministic path from source to receiver.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Path {
+    /// The planes it is reflected by, from the source on. Shape (order,).
+    pub planes: Vec<u32>,
+    /// Its length, m.
+    pub length_m: f64,
+    /// Energy at the receiver re 1/d² of a free path, air included. Shape (band,).
+    pub energy: Banded,
+    /// Where it comes from at the receiver, unit length, world.
+    pub arrival: Vec3,
+    /// Where it leaves the source to, unit length, world.
+    pub departure: Vec3,
+    /// How many walls it passes through.
+    pub walls: u32,
+}
+
+impl Path {
+    /// The number of reflections; 0 is the direct sound.
+    pub fn order(&self) -> usize {
+        self.planes.len()
+    }
+}
+
+/// One bin of a [`Histogram`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bin {
+    /// Energy re 1/d² of a free path, air included. Shape (band,).
+    pub energy: [f64; BAND_COUNT],
+    /// Mean of the unit vectors towards where the energy comes from, weighted with it over all bands, world: length 0 for
+    /// sound from all sides, 1 for sound from one.
+    pub arrival: Vec3,
+}
+
+/// Energy of the tail over time.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Histogram {
+    /// Width of a bin, s.
+    pub bin_s: f64,
+    /// The bins from the moment of the impulse on. Shape (bin,).
+    pub bins: Vec<Bin>,
+}
+
+impl Histogram {
+    /// Sum over all bins. Shape (band,).
+    pub fn total(&self) -> [f64; BAND_COUNT] {
+        let mut sum = [0.0; BAND_COUNT];
+        for bin in &self.bins {
+            for (total, energy) in sum.iter_mut().zip(bin.energy) {
+                *total += energy;
+            }
+        }
+        sum
+    }
+
+    /// Time span, s.
+    pub fn duration_s(&self) -> f64 {
+        self.bin_s * self.bins.len() as f64
+    }
+}
+
+/// How the rays fared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TraceStatistics {
+    /// Rays that started.
+    pub rays: u64,
+    /// Straight pieces that ended on a surface.
+    pub segments: u64,
+    /// Rays that left the house.
+    pub escaped: u64,
+    /// Mean length of the pieces, m: 4 V / S in a closed room with scattering walls.
+    pub mean_free_path_m: f64,
+    /// Radius of the receiver's sphere that was used, m.
+    pub receiver_radius_m: f64,
+    /// Volume that the receiver sees, m³: that of a convex room, and an underestimate behind corners.
+    pub seen_volume_m3: f64,
+}
+
+/// All energies between one source and one receiver, without any noise realisation.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Echogram {
+    /// Direct sound and low-order reflections, by length.
+    pub paths: Vec<Path>,
+    /// Everything else.
+    pub tail: Histogram,
+    /// How the rays fared.
+    pub trace: TraceStatistics,
+    /// The straight distance from source to receiver, m, whatever stands between: nothing is heard before that.
+    pub direct_length_m: f64,
+    /// Speed of sound, m/s.
+    pub speed_m_s: f64,
+}
+
+impl Echogram {
+    /// The direct path, if sound gets through.
+    pub fn direct(&self) -> Option<&Path> {
+        self.paths.iter().find(|path| path.planes.is_empty())
+    }
+
+    /// When a path arrives, s.
+    pub fn delay_s(&self, path: &Path) -> f64 {
+        path.length_m / self.speed_m_s
+    }
+
+    /// Energy of paths and tail together. Shape (band,).
+    pub fn total(&self) -> [f64; BAND_COUNT] {
+        let mut sum = self.tail.total();
+        for path in &self.paths {
+            for (total, energy) in sum.iter_mut().zip(path.energy) {
+                *total += f64::from(energy);
+            }
+        }
+        sum
+    }
+
+    /// Whether nothing at all is heard.
+    pub fn is_silent(&self) -> bool {
+        self.total().iter().all(|energy| *energy == 0.0)
+    }
+}

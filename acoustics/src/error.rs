@@ -1,0 +1,107 @@
+//! What can go wrong.
+
+/// Why an acoustic call was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AcousticsError {
+    /// A number of a configuration is out of range.
+    #[error("{at}: {field} is {found}; allowed are {allowed}")]
+    Range {
+        /// Where the number stands.
+        at: &'static str,
+        /// The field.
+        field: &'static str,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A source or receiver is nowhere.
+    #[error("{what} stands at {found:?}; coordinates must be finite")]
+    Position {
+        /// Source or receiver.
+        what: &'static str,
+        /// The coordinates, m.
+        found: [f32; 3],
+    },
+    /// The rays go through another house than the scene was made for.
+    #[error("the rays belong to house {rays:?}, the acoustic scene to {scene:?}")]
+    OtherHouse {
+        /// The house of the rays.
+        rays: String,
+        /// The house of the scene.
+        scene: String,
+    },
+    /// A signal that does not exist.
+    #[error("no signal {name:?}; there are {known:?}")]
+    UnknownSignal {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<&'static str>,
+    },
+    /// A buffer has the wrong length.
+    #[error("{at}: expected {expected} samples, found {found}")]
+    Buffer {
+        /// Whose buffer.
+        at: &'static str,
+        /// The length it must have.
+        expected: usize,
+        /// The length it has.
+        found: usize,
+    },
+    /// Bytes that are no snapshot of this stream.
+    #[error("snapshot of a sound stream: {0}")]
+    Snapshot(String),
+}
+
+/// Refuses `value` unless it lies in `low..=high`.
+pub(crate) fn range(
+    at: &'static str,
+    field: &'static str,
+    value: f64,
+    (low, high): (f64, f64),
+    allowed: &'static str,
+) -> Result<(), AcousticsError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    let found = value.to_string();
+    Err(AcousticsError::Range {
+        at,
+        field,
+        found,
+        allowed,
+    })
+}
+
+/// Refuses a point that is nowhere.
+pub(crate) fn finite(what: &'static str, point: glam::Vec3) -> Result<(), AcousticsError> {
+    if point.is_finite() && point.abs().max_element() < 1e6 {
+        return Ok(());
+    }
+    Err(AcousticsError::Position {
+        what,
+        found: point.to_array(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_say_what_was_found_and_what_is_allowed() {
+        let message = range("air", "humidity_pct", 120.0, (0.0, 100.0), "0 to 100")
+            .unwrap_err()
+            .to_string();
+        assert_eq!(message, "air: humidity_pct is 120; allowed are 0 to 100");
+        let message = finite("the source", glam::Vec3::new(f32::NAN, 0.0, 1.0))
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            message,
+            "the source stands at [NaN, 0.0, 1.0]; coordinates must be finite"
+        );
+    }
+}

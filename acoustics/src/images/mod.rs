@@ -1,0 +1,59 @@
+//! Early sound: the direct path and mirror images up to a low order, each checked against the geometry.
+
+mod sequences;
+mod transmission;
+mod validate;
+
+use crate::bands::BAND_COUNT;
+use crate::echogram::Path;
+use crate::scene::AcousticScene;
+use dwell_scene::rays::RayScene;
+use glam::{DVec3, Vec3};
+use validate::Validator;
+
+/// The closest that source and receiver count as being, m: nearer, 1/d has no meaning for real sources.
+pub const NEAREST_M: f64 = 0.1;
+
+/// All audible paths of order 0 to the configured order, by length.
+pub(crate) fn find(
+    scene: &AcousticScene,
+    rays: &RayScene,
+    source: Vec3,
+    receiver: Vec3,
+) -> Vec<Path> {
+    let validator = Validator::new(scene, rays, source, receiver);
+    let mut paths: Vec<(Path, DVec3)> = Vec::new();
+    paths.extend(
+        transmission::direct(scene, rays, source, receiver).map(|path| (path, source.as_dvec3())),
+    );
+    sequences::for_each(scene, rays, source, receiver, |planes, images| {
+        if let Some(path) = validator.path(planes, images) {
+            paths.push((path, *images.last().unwrap_or(&DVec3::ZERO)));
+        }
+    });
+    paths.sort_by(|(a, _), (b, _)| {
+        let order = a.length_m.total_cmp(&b.length_m);
+        order.then_with(|| a.planes.cmp(&b.planes))
+    });
+    // Two orders of the same mirrors have one image; both pass the check only where the path meets the very edge.
+    let mut kept: Vec<(Path, DVec3)> = Vec::with_capacity(paths.len());
+    for (path, image) in paths {
+        let same = |other: &(Path, DVec3)| {
+            other.0.order() == path.order() && other.1.distance_squared(image) < 1e-10
+        };
+        let near = kept.iter().rev();
+        let mut near = near.take_while(|other| path.length_m - other.0.length_m < 1e-4);
+        if !near.any(same) {
+            kept.push((path, image));
+        }
+    }
+    kept.into_iter().map(|(path, _)| path).collect()
+}
+
+/// Energy of a free path: 1/d² and what air leaves of it.
+fn spread(scene: &AcousticScene, length_m: f64) -> [f64; BAND_COUNT] {
+    let distance = length_m.max(NEAREST_M);
+    scene
+        .air_decay_per_m()
+        .map(|m| libm::exp(-m * length_m) / (distance * distance))
+}

@@ -1,0 +1,211 @@
+//! The planes of a house: side tables over its triangles, made once and shared by all worlds.
+
+mod cluster;
+
+pub use cluster::Plane;
+
+use dwell_scene::bvh::Hit;
+use dwell_scene::{Aabb, House, Id, PartId, Pose, State};
+use glam::Vec3;
+
+/// The plane of a triangle that has none: it reflects rays, but has no images.
+pub const NO_PLANE: u32 = u32::MAX;
+
+/// The planes of one moving part.
+#[derive(Clone, Debug)]
+struct Moving {
+    part: PartId,
+    /// Its first plane among all; the others follow.
+    first: usize,
+    /// In part space.
+    planes: Vec<Plane>,
+    /// The box around the part, in part space, m.
+    bounds: Aabb,
+}
+
+/// Which plane every triangle of a house lies in.
+#[derive(Clone, Debug)]
+pub struct PlaneTable {
+    /// Planes of everything that never moves, then of the moving parts where they stand at the start.
+    pub(crate) at_start: Vec<Plane>,
+    /// Position of the first triangle of each placed mesh in `of_triangle`. Shape (placed,).
+    first_triangle: Vec<u32>,
+    of_triangle: Vec<u32>,
+    moving: Vec<Moving>,
+    /// Planes of everything that never moves, the largest first.
+    largest: Vec<u32>,
+}
+
+impl PlaneTable {
+    /// Clusters the triangles of `house`.
+    pub fn new(house: &House) -> Self {
+        let geometry = house.geometry();
+        let mut first_triangle = Vec::with_capacity(geometry.placed.len());
+        let mut total = 0;
+        for placed in &geometry.placed {
+            first_triangle.push(total as u32);
+            total += house.meshes[placed.mesh].triangles.len();
+        }
+        let corners_of = |placed: usize, triangle: u32| {
+            let placed = &geometry.placed[placed];
+            let corners = house.meshes[placed.mesh].corners(triangle as usize);
+            corners.map(|p| placed.world_from_mesh.transform_point3(p))
+        };
+        let fixed: Vec<[Vec3; 3]> = geometry
+            .static_triangles
+            .iter()
+            .map(|source| corners_of(source.placed as usize, source.triangle))
+            .collect();
+        let (mut at_start, planes) = cluster::cluster(&fixed);
+        let mut of_triangle = vec![NO_PLANE; total];
+        for (source, plane) in geometry.static_triangles.iter().zip(planes) {
+            let place = first_triangle[source.placed as usize] + source.triangle;
+            of_triangle[place as usize] = plane;
+        }
+        let mut largest: Vec<u32> = (0..at_start.len() as u32).collect();
+        largest.sort_by(|a, b| {
+            let area = |k: &u32| at_start[*k as usize].area_m2;
+            area(b).total_cmp(&area(a)).then(a.cmp(b))
+        });
+        // Nobody asks for more than the configuration's upper limit.
+        largest.truncate(200);
+
+        let structures = house.structure.len();
+        let mut moving = Vec::with_capacity(geometry.movable.len());
+        for part in geometry.movable.iter().copied() {
+            let placed = geometry.placed_part(part);
+            let mesh = &house.meshes[placed.mesh];
+            let corners: Vec<[Vec3; 3]> = (0..mesh.triangles.len())
+                .map(|k| {
+                    let corners = mesh.corners(k);
+                    corners.map(|p| placed.part_from_mesh.transform_point3(p))
+                })
+                .collect();
+            let (planes, of_part) = cluster::cluster(&corners);
+            let base = first_triangle[structures + part.index()] as usize;
+            for (k, plane) in of_part.into_iter().enumerate() {
+                if plane != NO_PLANE {
+                    of_triangle[base + k] = at_start.len() as u32 + plane;
+                }
+            }
+            let first = at_start.len();
+            let pose = house.parts[part].world_from_part;
+            at_start.extend(planes.iter().map(|plane| moved(plane, &pose)));
+            let bounds = Aabb::from_points(corners.into_iter().flatten());
+            moving.push(Moving {
+                part,
+                first,
+                planes,
+                bounds,
+            });
+        }
+        Self {
+            at_start,
+            first_triangle,
+            of_triangle,
+            moving,
+            largest,
+        }
+    }
+
+    /// The number of planes.
+    pub fn len(&self) -> usize {
+        self.at_start.len()
+    }
+
+    /// Whether nothing reflects.
+    pub fn is_empty(&self) -> bool {
+        self.at_start.is_empty()
+    }
+
+    /// The largest planes of what never moves, largest first, at most 200.
+    pub(crate) fn largest(&self) -> &[u32] {
+        &self.largest
+    }
+
+    /// The plane that a hit lies in; [`NO_PLANE`] where it has none.
+    pub(crate) fn of_hit(&self, house: &House, hit: &Hit) -> u32 {
+        let geometry = house.geometry();
+        let place = if let Some(instance) = hit.instance {
+            let part = geometry.movable.get(instance as usize);
+            part.map(|part| (house.structure.len() + part.index(), hit.triangle))
+        } else {
+            let source = geometry.static_triangles.get(hit.triangle as usize);
+            source.map(|source| (source.placed as usize, source.triangle))
+        };
+        place
+            .and_then(|(placed, triangle)| {
+                let first = self.first_triangle.get(placed)?;
+                self.of_triangle.get((first + triangle) as usize).copied()
+            })
+            .unwrap_or(NO_PLANE)
+    }
+
+    /// Moves the planes of the moving parts to where `state` has them.
+    pub(crate) fn update(&self, planes: &mut [Plane], state: &State) {
+        for moving in &self.moving {
+            let Some(pose) = state.part_pose.get(moving.part) else {
+                continue;
+            };
+            let places = planes[moving.first..].iter_mut();
+            for (plane, in_part) in places.zip(&moving.planes) {
+                *plane = moved(in_part, pose);
+            }
+        }
+    }
+
+    /// The moving parts whose box measures at least `size_m` from corner to corner: those that change what is heard.
+    pub(crate) fn parts_larger_than(&self, size_m: f32) -> impl Iterator<Item = PartId> + '_ {
+        self.moving
+            .iter()
+            .filter(move |moving| moving.bounds.size().length() >= size_m)
+            .map(|moving| moving.part)
+    }
+}
+
+fn moved(plane: &Plane, world_from_part: &Pose) -> Plane {
+    let rotation = world_from_part.rotation.as_dquat().normalize();
+    let normal = rotation * plane.normal;
+    Plane {
+        normal,
+        offset_m: plane.offset_m + normal.dot(world_from_part.position.as_dvec3()),
+        area_m2: plane.area_m2,
+        bounds: plane.bounds.transformed(&world_from_part.to_affine()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::ShoeboxMaterials;
+
+    #[test]
+    fn a_shoebox_has_six_planes() {
+        let house = House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
+        let table = PlaneTable::new(&house);
+        assert_eq!(table.len(), 6);
+        let area: f64 = table.at_start.iter().map(|plane| plane.area_m2).sum();
+        assert!((area - 126.0).abs() < 1e-4);
+        assert!((table.at_start[table.largest()[0] as usize].area_m2 - 30.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_moved_plane_goes_through_its_moved_points() {
+        let plane = Plane {
+            normal: glam::DVec3::X,
+            offset_m: 2.0,
+            area_m2: 1.0,
+            bounds: Aabb::new(Vec3::new(2.0, 0.0, 0.0), Vec3::new(2.0, 1.0, 1.0)),
+        };
+        let pose = Pose::from_position_yaw(Vec3::new(5.0, 1.0, -3.0), 0.6);
+        let there = moved(&plane, &pose);
+        for point in [Vec3::new(2.0, 0.3, 0.9), Vec3::new(2.0, -4.0, 7.0)] {
+            assert!(
+                there
+                    .distance_m(pose.transform_point(point).as_dvec3())
+                    .abs()
+                    < 1e-5
+            );
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Appliances, water, clocks, bells, steps.
+
+use super::canvas::{Canvas, Tone, edges, peak, rise};
+use std::f64::consts::TAU;
+
+/// Three beeps of half a second and a pause (the temporal pattern of ISO 8201) at 3.1 kHz, as smoke alarms have it.
+pub(super) fn alarm(canvas: &mut Canvas) {
+    for beep in 0..3 {
+        for (harmonic, amplitude) in [(1.0, 1.0), (2.0, 0.2)] {
+            canvas.tone(Tone {
+                start_s: f64::from(beep),
+                duration_s: 0.5,
+                frequency_hz: 3100.0 * harmonic,
+                amplitude,
+                edge_s: 0.01,
+            });
+        }
+    }
+}
+
+/// A tick and a lower tock, each a few short resonances.
+pub(super) fn clock(canvas: &mut Canvas) {
+    for (start_s, pitch) in [(0.1, 1.0), (1.1, 0.86)] {
+        for (frequency_hz, amplitude) in
+            [(1200.0, 0.4), (2400.0, 1.0), (3900.0, 0.8), (5600.0, 0.4)]
+        {
+            canvas.ring(start_s, frequency_hz * pitch, 0.03, amplitude);
+        }
+    }
+}
+
+/// Broad noise that falls off above 500 Hz, and the tone of the blades.
+pub(super) fn fan(canvas: &mut Canvas) {
+    let air = canvas.noise("air", |f| 1.0 / (1.0 + (f / 500.0) * (f / 500.0)).sqrt());
+    canvas.lay(&air, 1.0);
+    for (harmonic, amplitude) in [(1.0, 0.25), (2.0, 0.15), (3.0, 0.08)] {
+        canvas.drone(117.0 * harmonic, amplitude);
+    }
+}
+
+/// Two steps a second: a dull thud of the heel, and the roll of the sole.
+pub(super) fn footsteps(canvas: &mut Canvas) {
+    let sole = canvas.noise("sole", |f| peak(f, 900.0, 1200.0));
+    let mut stream = canvas.key.child("steps").stream();
+    for step in 0..8 {
+        let start_s = 0.5 * f64::from(step) + 0.03 * stream.uniform();
+        let weight = 0.8 + 0.4 * stream.uniform();
+        let pitch = 0.92 + 0.16 * stream.uniform();
+        for (frequency_hz, decay_s, amplitude) in
+            [(75.0, 0.12, 1.0), (160.0, 0.07, 0.6), (420.0, 0.04, 0.25)]
+        {
+            canvas.ring(start_s, frequency_hz * pitch, decay_s, weight * amplitude);
+        }
+        canvas.add_noise(&sole, start_s + 0.01, 0.12, |t| {
+            0.08 * weight * edges(t, 0.12, 0.05)
+        });
+    }
+}
+
+/// A compressor on 50 Hz mains: even harmonics, and a little air.
+pub(super) fn fridge(canvas: &mut Canvas) {
+    for (frequency_hz, amplitude) in [
+        (50.0, 0.5),
+        (100.0, 1.0),
+        (150.0, 0.2),
+        (200.0, 0.45),
+        (300.0, 0.2),
+        (400.0, 0.12),
+    ] {
+        canvas.drone(frequency_hz, amplitude);
+    }
+    let air = canvas.noise("air", |f| peak(f, 250.0, 500.0));
+    canvas.lay(&air, 0.15);
+}
+
+/// Harmonics of 100 Hz, as a transformer on 50 Hz mains gives them.
+pub(super) fn hum(canvas: &mut Canvas) {
+    for harmonic in 1..=8 {
+        canvas.drone(100.0 * f64::from(harmonic), 1.0 / f64::from(harmonic));
+    }
+}
+
+/// The rush of heating water, and bubbles that pop at random.
+pub(super) fn kettle(canvas: &mut Canvas) {
+    let rush = canvas.noise("rush", |f| {
+        peak(f, 700.0, 900.0) + 0.3 * peak(f, 2500.0, 3000.0)
+    });
+    canvas.lay(&rush, 1.0);
+    bubbles(canvas, 240, (350.0, 1400.0), 1.2);
+}
+
+/// Equal power in every octave from 40 Hz up.
+pub(super) fn pink(canvas: &mut Canvas) {
+    let noise = canvas.noise("pink", |f| if f < 40.0 { 0.0 } else { 1.0 / f.sqrt() });
+    canvas.lay(&noise, 1.0);
+}
+
+/// 440 and 480 Hz, two seconds on and four off (ANSI/TIA's ringing tone), with the clatter of a bell above.
+pub(super) fn phone(canvas: &mut Canvas) {
+    for (frequency_hz, amplitude) in [
+        (440.0, 1.0),
+        (480.0, 1.0),
+        (1320.0, 0.5),
+        (1440.0, 0.5),
+        (2200.0, 0.25),
+    ] {
+        canvas.add(0.2, 2.0, |t| {
+            let shake = 0.6 + 0.4 * libm::sin(TAU * 20.0 * t);
+            amplitude * shake * edges(t, 2.0, 0.01) * libm::sin(TAU * frequency_hz * t)
+        });
+    }
+}
+
+/// A jet of water on steel: broad noise with a rise at high frequencies, and drops.
+pub(super) fn tap(canvas: &mut Canvas) {
+    let jet = canvas.noise("jet", |f| {
+        0.5 * peak(f, 400.0, 500.0) + peak(f, 3500.0, 5000.0)
+    });
+    canvas.lay(&jet, 1.0);
+    bubbles(canvas, 400, (500.0, 2600.0), 0.8);
+}
+
+/// A drum that turns 0.8 times a second with wet clothes, a motor, and water.
+pub(super) fn washer(canvas: &mut Canvas) {
+    let (motor, slosh) = (
+        canvas.noise("motor", |f| peak(f, 120.0, 80.0)),
+        canvas.noise("slosh", |f| peak(f, 500.0, 700.0)),
+    );
+    canvas.lay(&motor, 0.4);
+    for (harmonic, amplitude) in [(1.0, 0.4), (2.0, 0.3), (4.0, 0.15)] {
+        canvas.drone(100.0 * harmonic, amplitude);
+    }
+    let turns = (0.8 * canvas.loop_s()).round();
+    let period_s = canvas.loop_s() / turns;
+    for turn in 0..turns as usize {
+        let start_s = turn as f64 * period_s;
+        canvas.add_noise(&slosh, start_s, 0.7, |t| 0.9 * edges(t, 0.7, 0.3));
+        canvas.ring(start_s + 0.35, 62.0, 0.25, 2.0);
+    }
+}
+
+/// Adds bubbles at random times: short tones that rise a little while they fade.
+///
+/// # Source
+/// K. van den Doel, ACM Trans. Appl. Percept. 2, 534 (2005): a bubble is a decaying sine whose pitch rises.
+fn bubbles(canvas: &mut Canvas, count: usize, (low_hz, high_hz): (f64, f64), amplitude: f64) {
+    let mut stream = canvas.key.child("bubbles").stream();
+    for _ in 0..count {
+        let start_s = canvas.loop_s() * stream.uniform();
+        let frequency_hz = low_hz * libm::pow(high_hz / low_hz, stream.uniform());
+        let size = amplitude * (0.2 + 0.8 * stream.uniform() * stream.uniform());
+        let decay = 0.13 * frequency_hz + 0.0072 * libm::pow(frequency_hz, 1.5);
+        canvas.add(start_s, (8.0 / decay).min(0.1), |t| {
+            let phase = TAU * frequency_hz * (t + 0.05 * decay * t * t);
+            size * rise(t, 0.0008) * libm::exp(-decay * t) * libm::sin(phase)
+        });
+    }
+}

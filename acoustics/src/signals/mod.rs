@@ -1,0 +1,315 @@
+//! Sounds that things make: deterministic loops by name, at any rate.
+//!
+//! Every signal repeats after its loop without a seam, and has a root mean square of 1 Pa over the loop at 1 m: the caller
+//! multiplies by [`pa_from_db_spl`](dwell_scene::units::pa_from_db_spl) of the source's level. Any sample can be asked for:
+//! blocks of any size give the same signal.
+
+mod canvas;
+mod household;
+mod music;
+mod speech;
+
+use crate::error::AcousticsError;
+use canvas::Canvas;
+use dwell_scene::random::Key;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What is known about a signal.
+#[derive(Clone, Copy, Debug)]
+pub struct SignalInfo {
+    /// The name, as a [`SoundEmitter`](dwell_scene::SoundEmitter) gives it.
+    pub name: &'static str,
+    /// What it sounds like.
+    pub description: &'static str,
+    /// After how long it repeats, s.
+    pub loop_s: f64,
+    /// A usual level at 1 m, dB SPL.
+    pub usual_level_db: f32,
+    paint: fn(&mut Canvas),
+}
+
+const fn signal(
+    name: &'static str,
+    description: &'static str,
+    loop_s: f64,
+    usual_level_db: f32,
+    paint: fn(&mut Canvas),
+) -> SignalInfo {
+    SignalInfo {
+        name,
+        description,
+        loop_s,
+        usual_level_db,
+        paint,
+    }
+}
+
+/// All signals, by name.
+pub fn list() -> &'static [SignalInfo] {
+    const ALL: [SignalInfo; 14] = [
+        signal(
+            "alarm",
+            "a smoke alarm: three beeps and a pause",
+            4.0,
+            85.0,
+            household::alarm,
+        ),
+        signal(
+            "clock",
+            "a clock that ticks every second",
+            2.0,
+            35.0,
+            household::clock,
+        ),
+        signal(
+            "fan",
+            "a fan or a hood: broad noise with a blade tone",
+            4.0,
+            55.0,
+            household::fan,
+        ),
+        signal(
+            "footsteps",
+            "steps of a walking person",
+            4.0,
+            55.0,
+            household::footsteps,
+        ),
+        signal(
+            "fridge",
+            "the hum of a compressor",
+            4.0,
+            40.0,
+            household::fridge,
+        ),
+        signal(
+            "hum",
+            "mains hum of a transformer",
+            2.0,
+            35.0,
+            household::hum,
+        ),
+        signal(
+            "kettle",
+            "water that heats up",
+            4.0,
+            60.0,
+            household::kettle,
+        ),
+        signal(
+            "noise",
+            "pink noise, for measuring",
+            4.0,
+            70.0,
+            household::pink,
+        ),
+        signal(
+            "phone",
+            "a telephone that rings two seconds of six",
+            6.0,
+            75.0,
+            household::phone,
+        ),
+        signal("radio", "music with a beat", 16.0, 65.0, music::radio),
+        signal(
+            "speech",
+            "one voice without words",
+            8.0,
+            62.0,
+            speech::speech,
+        ),
+        signal(
+            "tap",
+            "water that runs into a sink",
+            4.0,
+            60.0,
+            household::tap,
+        ),
+        signal(
+            "television",
+            "two voices over music",
+            16.0,
+            62.0,
+            speech::television,
+        ),
+        signal(
+            "washer",
+            "a washing machine: drum, motor, water",
+            6.0,
+            58.0,
+            household::washer,
+        ),
+    ];
+    &ALL
+}
+
+/// What is known about the signal called `name`.
+///
+/// # Errors
+/// [`AcousticsError::UnknownSignal`] lists the names there are.
+pub fn info(name: &str) -> Result<&'static SignalInfo, AcousticsError> {
+    let found = list().iter().find(|signal| signal.name == name);
+    found.ok_or_else(|| AcousticsError::UnknownSignal {
+        name: name.to_owned(),
+        known: list().iter().map(|signal| signal.name).collect(),
+    })
+}
+
+/// One loop of a signal, prepared for one rate.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    samples: Arc<[f32]>,
+}
+
+impl Signal {
+    /// The signal called `name` at `rate_hz` samples a second, 1,000 to 192,000. Loops are made once a process and rate, and shared.
+    ///
+    /// # Errors
+    /// [`AcousticsError::UnknownSignal`], [`AcousticsError::Range`] for the rate.
+    pub fn open(name: &str, rate_hz: u32) -> Result<Self, AcousticsError> {
+        type Loops = BTreeMap<(&'static str, u32), Arc<[f32]>>;
+        static LOOPS: Mutex<Loops> = Mutex::new(BTreeMap::new());
+        let info = info(name)?;
+        let rate = f64::from(rate_hz);
+        crate::error::range("signals", "rate_hz", rate, (1e3, 192e3), "1000 to 192000")?;
+        let mut loops = LOOPS.lock().unwrap_or_else(PoisonError::into_inner);
+        let samples = loops.entry((info.name, rate_hz)).or_insert_with(|| {
+            let mut canvas = Canvas::new(
+                rate,
+                info.loop_s,
+                Key::root(0).child("signals").child(info.name),
+            );
+            (info.paint)(&mut canvas);
+            canvas.normalized().into()
+        });
+        Ok(Self {
+            samples: samples.clone(),
+        })
+    }
+
+    /// Samples of one loop, root mean square 1 Pa. Shape (sample,).
+    pub fn samples(&self) -> &[f32] {
+        &self.samples
+    }
+
+    /// Writes the samples from `start_sample` on, Pa at 1 m for a level of 94 dB SPL.
+    pub fn read(&self, start_sample: u64, out: &mut [f32]) {
+        let length = self.samples.len();
+        let mut place = (start_sample % length as u64) as usize;
+        let mut done = 0;
+        while done < out.len() {
+            let count = (length - place).min(out.len() - done);
+            out[done..done + count].copy_from_slice(&self.samples[place..place + count]);
+            done += count;
+            place = 0;
+        }
+    }
+}
+
+/// Writes the samples from `start_sample` on of the signal called `name`: root mean square 1 Pa at 1 m over its loop.
+///
+/// # Errors
+/// As [`Signal::open`].
+///
+/// # Determinism
+/// The samples depend on name, rate and position alone.
+pub fn synthesize(
+    name: &str,
+    rate_hz: u32,
+    start_sample: u64,
+    out: &mut [f32],
+) -> Result<(), AcousticsError> {
+    Signal::open(name, rate_hz)?.read(start_sample, out);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn power(samples: &[f32]) -> f64 {
+        samples.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / samples.len() as f64
+    }
+
+    #[test]
+    fn every_signal_is_finite_and_has_one_pascal_at_any_rate() {
+        for signal in list() {
+            for rate_hz in [8_000, 16_000, 44_100] {
+                let samples = Signal::open(signal.name, rate_hz).unwrap();
+                assert_eq!(
+                    samples.samples().len(),
+                    (signal.loop_s * f64::from(rate_hz)) as usize
+                );
+                assert!(
+                    samples.samples().iter().all(|x| x.is_finite()),
+                    "{}",
+                    signal.name
+                );
+                let found = power(samples.samples());
+                assert!(
+                    (found - 1.0).abs() < 1e-4,
+                    "{} at {rate_hz}: {found}",
+                    signal.name
+                );
+            }
+        }
+        let names: Vec<_> = list().iter().map(|signal| signal.name).collect();
+        assert!(names.is_sorted());
+    }
+
+    #[test]
+    fn blocks_of_any_size_give_the_same_samples() {
+        for name in ["radio", "clock", "speech"] {
+            let mut whole = vec![0.0; 40_000];
+            synthesize(name, 16_000, 250_000, &mut whole).unwrap();
+            let mut pieces = Vec::new();
+            for size in [1, 799, 800, 3_000, 35_400] {
+                let mut block = vec![0.0; size];
+                synthesize(name, 16_000, 250_000 + pieces.len() as u64, &mut block).unwrap();
+                pieces.extend(block);
+            }
+            assert_eq!(whole, pieces);
+        }
+    }
+
+    /// Where a loop begins again, the step is no larger than steps inside of it are.
+    #[test]
+    fn loops_have_no_seam() {
+        for signal in list() {
+            let opened = Signal::open(signal.name, 16_000).unwrap();
+            let samples = opened.samples();
+            let largest = samples
+                .windows(2)
+                .map(|w| (w[1] - w[0]).abs())
+                .fold(0.0, f32::max);
+            let seam = (samples[0] - samples[samples.len() - 1]).abs();
+            assert!(seam <= largest, "{}: {seam} > {largest}", signal.name);
+        }
+    }
+
+    #[test]
+    fn signals_differ_and_unknown_names_are_answered_with_the_known() {
+        let opened: Vec<Signal> = list()
+            .iter()
+            .map(|signal| Signal::open(signal.name, 8_000).unwrap())
+            .collect();
+        for (k, a) in opened.iter().enumerate() {
+            for b in &opened[..k] {
+                let n = a.samples().len().min(b.samples().len());
+                let together: f64 = (0..n)
+                    .map(|i| f64::from(a.samples()[i]) * f64::from(b.samples()[i]))
+                    .sum::<f64>()
+                    / n as f64;
+                assert!(together.abs() < 0.95);
+            }
+        }
+        let message = synthesize("gramophone", 16_000, 0, &mut [])
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains("gramophone") && message.contains("television"),
+            "{message}"
+        );
+    }
+}

@@ -1,0 +1,475 @@
+//! Sound in step with a world: blocks of pressure at one receiver while sources, listener and doors move.
+
+mod convolver;
+mod voice;
+
+use crate::error::{AcousticsError, finite, range};
+use crate::fft::RealFft;
+use crate::laws::microphone_noise;
+use crate::receiver::{Receiver, Source};
+use crate::scene::AcousticScene;
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{PartId, State};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use voice::{Change, Memory, Situation, Threshold, Voice};
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Parts whose box is smaller than this from corner to corner do not change what is heard, m.
+const LARGE_PART_M: f32 = 0.7;
+const VERSION: u32 = 1;
+
+/// Settings of a [`Stream`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct StreamConfig {
+    /// Samples of a block; 16 to 65,536. At 16 kHz and 20 control steps a second: 800.
+    pub block_samples: usize,
+    /// Source or listener must have moved this far for a new impulse response, m; 0 to 10. 0: whenever one moved at all.
+    pub update_distance_m: f32,
+    /// The head must have turned this far for a new impulse response, rad; 0 to 3.2.
+    pub update_angle_rad: f32,
+    /// A door or another large part must have moved this far, m (or turned as many rad); 0 to 10.
+    pub update_part_m: f32,
+    /// Sources that are followed at once; the first in the list win. 1 to 1,000.
+    pub max_sources: usize,
+}
+
+impl Default for StreamConfig {
+    /// [`StreamConfig::full`].
+    fn default() -> Self {
+        Self::full()
+    }
+}
+
+impl StreamConfig {
+    /// For listening: follows movements of 5 cm and 2 degrees.
+    pub fn full() -> Self {
+        Self {
+            block_samples: 800,
+            update_distance_m: 0.05,
+            update_angle_rad: 0.035,
+            update_part_m: 0.03,
+            max_sources: 64,
+        }
+    }
+
+    /// For agents that learn: follows movements of 25 cm and 10 degrees.
+    pub fn rl() -> Self {
+        Self {
+            update_distance_m: 0.25,
+            update_angle_rad: 0.175,
+            update_part_m: 0.15,
+            max_sources: 8,
+            ..Self::full()
+        }
+    }
+
+    /// The settings called `name`: `"full"` or `"rl"`.
+    pub fn preset(name: &str) -> Option<Self> {
+        match name {
+            "full" => Some(Self::full()),
+            "rl" => Some(Self::rl()),
+            _ => None,
+        }
+    }
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Range`] names the field.
+    pub fn check(&self) -> Result<(), AcousticsError> {
+        const AT: &str = "sound stream";
+        let number = |field, value: f32, high, allowed| {
+            range(AT, field, f64::from(value), (0.0, high), allowed)
+        };
+        range(
+            AT,
+            "block_samples",
+            self.block_samples as f64,
+            (16.0, 65_536.0),
+            "16 to 65536",
+        )?;
+        number("update_distance_m", self.update_distance_m, 10.0, "0 to 10")?;
+        number("update_angle_rad", self.update_angle_rad, 3.2, "0 to 3.2")?;
+        number("update_part_m", self.update_part_m, 10.0, "0 to 10")?;
+        range(
+            AT,
+            "max_sources",
+            self.max_sources as f64,
+            (1.0, 1000.0),
+            "1 to 1000",
+        )
+    }
+}
+
+/// A source that sounds during a block.
+#[derive(Clone, Copy, Debug)]
+pub struct ActiveSource<'a> {
+    /// Tells sources apart from block to block.
+    pub id: u64,
+    /// Where it is at the end of the block, m.
+    pub position: Vec3,
+    /// Pressure at 1 m in the free field, Pa. Shape (block,).
+    pub signal: &'a [f32],
+}
+
+/// What a block cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BlockReport {
+    /// Impulse responses for which rays were traced.
+    pub traced: usize,
+    /// Impulse responses that were only turned.
+    pub turned: usize,
+    /// Sources that sounded or still rang.
+    pub heard: usize,
+    /// Sources that were left out because there are more than [`StreamConfig::max_sources`].
+    pub left_out: usize,
+}
+
+/// What one receiver hears, block after block.
+///
+/// Each source is convolved with its impulse response; when that changes, the old and the new one are crossfaded over one
+/// block, so that nothing clicks, and successive delays give the Doppler shift. A source that is no longer named rings out.
+#[derive(Debug)]
+pub struct Stream {
+    scene: AcousticScene,
+    config: StreamConfig,
+    key: Key,
+    threads: Threads,
+    partitions: usize,
+    large_parts: Vec<PartId>,
+    fft: RealFft,
+    fade: Vec<f32>,
+    block: u64,
+    /// By id.
+    voices: Vec<Voice>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Snapshot {
+    version: u32,
+    block_samples: u64,
+    partitions: u64,
+    block: u64,
+    voices: Vec<Memory>,
+}
+
+impl Stream {
+    /// A silent stream. `key` names what is random in it: the tails' details and microphones' noise.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Range`] for a setting out of range.
+    pub fn new(
+        scene: AcousticScene,
+        config: StreamConfig,
+        key: Key,
+        threads: Threads,
+    ) -> Result<Self, AcousticsError> {
+        config.check()?;
+        let settings = scene.config();
+        let longest_s = settings.max_duration_s + 0.02;
+        let longest = (longest_s * f64::from(settings.rate_hz)).ceil() as usize;
+        let large_parts = scene.table().parts_larger_than(LARGE_PART_M).collect();
+        Ok(Self {
+            partitions: longest.div_ceil(config.block_samples).max(1),
+            fft: RealFft::new(2 * config.block_samples),
+            fade: fade(config.block_samples),
+            large_parts,
+            scene,
+            config,
+            key,
+            threads,
+            block: 0,
+            voices: Vec::new(),
+        })
+    }
+
+    /// The scene that is heard.
+    pub fn scene(&self) -> &AcousticScene {
+        &self.scene
+    }
+
+    /// The settings.
+    pub fn config(&self) -> &StreamConfig {
+        &self.config
+    }
+
+    /// Blocks so far.
+    pub fn blocks(&self) -> u64 {
+        self.block
+    }
+
+    /// Silence, and block 0 again.
+    pub fn reset(&mut self) {
+        self.voices.clear();
+        self.block = 0;
+    }
+
+    /// Writes the next block of pressure at `receiver`, Pa, and applies the state's laws of microphones.
+    ///
+    /// `rays` and `state`: the world at the end of the block. `out`: shape (channel, sample), one channel after the other;
+    /// overwritten. A source's signals of equal id are added up.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Buffer`] for signals that are not one block long or an `out` that is not one block for each channel;
+    /// those of [`AcousticScene::echogram`]. The stream is unchanged then.
+    ///
+    /// # Determinism
+    /// The samples depend on the calls so far alone, not on the number of threads.
+    pub fn block(
+        &mut self,
+        rays: &RayScene,
+        state: &State,
+        sources: &[ActiveSource<'_>],
+        receiver: &Receiver,
+        out: &mut [f32],
+    ) -> Result<BlockReport, AcousticsError> {
+        let size = self.config.block_samples;
+        check_length("out", size * receiver.channels(), out.len())?;
+        finite("the receiver", receiver.position())?;
+        for source in sources {
+            check_length("a source's signal", size, source.signal.len())?;
+            finite("a source", source.position)?;
+        }
+        self.scene.update(state);
+        let mut report = BlockReport::default();
+        // What can fail comes first, so that an error leaves the stream as it was.
+        let planned = self.plan(rays, state, sources, receiver, &mut report)?;
+        out.fill(0.0);
+        let (mut old, mut new) = (vec![0.0; out.len()], vec![0.0; out.len()]);
+        let mut signal = vec![0.0; size];
+        for (id, news) in planned {
+            let place = self.voices.binary_search_by_key(&id, |voice| voice.id);
+            let place = place.unwrap_or_else(|place| {
+                let voice = Voice::new(id, size, self.partitions);
+                self.voices.insert(place, voice);
+                place
+            });
+            let voice = &mut self.voices[place];
+            signal.fill(0.0);
+            for source in sources.iter().filter(|source| source.id == id) {
+                for (sum, x) in signal.iter_mut().zip(source.signal) {
+                    *sum += x;
+                }
+            }
+            let fresh = voice.input.is_silent() || voice.heard.is_none();
+            voice.input.push(&mut self.fft, &signal);
+            if let Some((situation, response)) = news {
+                let same_channels = voice
+                    .heard
+                    .as_ref()
+                    .is_some_and(|(_, old)| old.channels == response.channels);
+                old.fill(0.0);
+                if !fresh && same_channels {
+                    voice.input.convolve(&mut self.fft, &voice.filter, &mut old);
+                }
+                voice.hear(&mut self.fft, situation, response, self.partitions);
+                voice.input.convolve(&mut self.fft, &voice.filter, &mut new);
+                if fresh {
+                    add(out, &new);
+                } else {
+                    crossfade(out, &old, &new, &self.fade);
+                }
+            } else {
+                voice.input.convolve(&mut self.fft, &voice.filter, &mut new);
+                add(out, &new);
+            }
+        }
+        self.voices.retain(|voice| {
+            !voice.input.is_silent() || sources.iter().any(|source| source.id == voice.id)
+        });
+        let noise = self.key.child("microphone").child(self.block);
+        microphone_noise::apply(&state.laws, noise, out);
+        self.block += 1;
+        Ok(report)
+    }
+
+    /// The sources that are heard in this block, by id, with new impulse responses where they need them.
+    #[expect(
+        clippy::type_complexity,
+        reason = "the plan of one block, used in one place"
+    )]
+    fn plan(
+        &self,
+        rays: &RayScene,
+        state: &State,
+        sources: &[ActiveSource<'_>],
+        receiver: &Receiver,
+        report: &mut BlockReport,
+    ) -> Result<Vec<(u64, Option<(Situation, crate::ImpulseResponse)>)>, AcousticsError> {
+        let mut ids: Vec<(u64, Option<Vec3>)> = Vec::new();
+        let mut seen = 0;
+        for source in sources {
+            if ids.iter().any(|(id, _)| *id == source.id) {
+                continue;
+            }
+            let sounds = sources
+                .iter()
+                .filter(|other| other.id == source.id)
+                .any(|other| other.signal.iter().any(|x| *x != 0.0));
+            let rings = self
+                .voices
+                .iter()
+                .any(|voice| voice.id == source.id && !voice.input.is_silent());
+            if sounds || rings {
+                seen += 1;
+                if seen <= self.config.max_sources {
+                    ids.push((source.id, Some(source.position)));
+                } else {
+                    report.left_out += 1;
+                }
+            }
+        }
+        for voice in &self.voices {
+            if !voice.input.is_silent() && !ids.iter().any(|(id, _)| *id == voice.id) {
+                ids.push((voice.id, None));
+            }
+        }
+        ids.sort_by_key(|(id, _)| *id);
+        report.heard = ids.len();
+        let threshold = Threshold {
+            distance_m: self.config.update_distance_m,
+            angle_rad: self.config.update_angle_rad,
+            part_m: self.config.update_part_m,
+        };
+        let mut planned = Vec::with_capacity(ids.len());
+        for (id, position) in ids {
+            let place = self.voices.binary_search_by_key(&id, |voice| voice.id);
+            let heard = place
+                .ok()
+                .and_then(|place| self.voices[place].heard.as_ref());
+            // What is no longer named rings out where it was last.
+            let Some(position) = position.or_else(|| heard.map(|(situation, _)| situation.source))
+            else {
+                continue;
+            };
+            let now = Situation {
+                source: position,
+                receiver: *receiver,
+                parts: self
+                    .large_parts
+                    .iter()
+                    .map(|part| state.part_pose[*part])
+                    .collect(),
+                overrides: state.overrides.clone(),
+            };
+            let change = heard.map_or(Change::Moved, |(then, _)| then.change(&now, &threshold));
+            let key = self.key.child("source").child(id);
+            let response = match (change, heard) {
+                (Change::None, _) => None,
+                (Change::Turned, Some((_, response))) => {
+                    report.turned += 1;
+                    Some(self.scene.respond(response.echogram.clone(), receiver, key))
+                }
+                _ => {
+                    report.traced += 1;
+                    let source = Source::at(position);
+                    Some(
+                        self.scene
+                            .impulse_response(rays, &source, receiver, key, self.threads)?,
+                    )
+                }
+            };
+            planned.push((id, response.map(|response| (now, response))));
+        }
+        Ok(planned)
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        let snapshot = Snapshot {
+            version: VERSION,
+            block_samples: self.config.block_samples as u64,
+            partitions: self.partitions as u64,
+            block: self.block,
+            voices: self.voices.iter().map(Voice::memory).collect(),
+        };
+        postcard::to_stdvec(&snapshot)
+            .expect("a snapshot is plain data that postcard can always write to memory")
+    }
+
+    /// What the stream remembers, as bytes: with them an equal stream continues bit for bit.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let body = self.bytes();
+        let mut bytes = xxh3_64(&body).to_le_bytes().to_vec();
+        bytes.extend_from_slice(&body);
+        bytes
+    }
+
+    /// Remembers what [`Stream::snapshot`] wrote. The stream must have been made with the same scene, settings and key.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Snapshot`] for damaged bytes or those of a stream with other blocks; the stream is unchanged then.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), AcousticsError> {
+        let refuse = |why: String| Err(AcousticsError::Snapshot(why));
+        let Some((sum, body)) = bytes.split_first_chunk::<8>() else {
+            return refuse(format!("{} bytes are too few", bytes.len()));
+        };
+        if u64::from_le_bytes(*sum) != xxh3_64(body) {
+            return refuse("its check sum does not fit: it is damaged".to_owned());
+        }
+        let snapshot: Snapshot = match postcard::from_bytes(body) {
+            Ok(snapshot) => snapshot,
+            Err(error) => return refuse(error.to_string()),
+        };
+        if snapshot.version != VERSION {
+            return refuse(format!(
+                "version {}; this build reads {VERSION}",
+                snapshot.version
+            ));
+        }
+        let (size, partitions) = (self.config.block_samples as u64, self.partitions as u64);
+        if (snapshot.block_samples, snapshot.partitions) != (size, partitions) {
+            return refuse(format!(
+                "{} blocks of {} samples; this stream has {partitions} of {size}",
+                snapshot.partitions, snapshot.block_samples
+            ));
+        }
+        let voices = snapshot.voices.into_iter();
+        self.voices = voices
+            .map(|memory| Voice::restore(&mut self.fft, memory, self.partitions))
+            .collect();
+        self.block = snapshot.block;
+        Ok(())
+    }
+
+    /// A number that changes with anything that will be heard of what was played so far.
+    pub fn hash(&self) -> u64 {
+        xxh3_64(&self.bytes())
+    }
+}
+
+fn check_length(at: &'static str, expected: usize, found: usize) -> Result<(), AcousticsError> {
+    if expected == found {
+        return Ok(());
+    }
+    Err(AcousticsError::Buffer {
+        at,
+        expected,
+        found,
+    })
+}
+
+fn add(out: &mut [f32], samples: &[f32]) {
+    for (y, x) in out.iter_mut().zip(samples) {
+        *y += x;
+    }
+}
+
+/// The weight of the new over one block: a raised cosine, so that neither level nor slope has a step. Shape (sample,).
+fn fade(size: usize) -> Vec<f32> {
+    (1..=size)
+        .map(|k| 0.5 - 0.5 * libm::cos(std::f64::consts::PI * k as f64 / size as f64))
+        .map(|weight| weight as f32)
+        .collect()
+}
+
+/// Adds a passage from `old` to `new` within each channel's block.
+fn crossfade(out: &mut [f32], old: &[f32], new: &[f32], fade: &[f32]) {
+    let weights = fade.iter().cycle();
+    for ((y, weight), (a, b)) in out.iter_mut().zip(weights).zip(old.iter().zip(new)) {
+        *y += a + (b - a) * weight;
+    }
+}

@@ -1,0 +1,134 @@
+//! One source in a stream: what it has played, and how it was last heard.
+
+use super::convolver::{Filter, Input};
+use crate::fft::RealFft;
+use crate::receiver::Receiver;
+use crate::response::ImpulseResponse;
+use dwell_scene::{Address, Pose};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The situation for which an impulse response was computed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Situation {
+    pub(super) source: Vec3,
+    pub(super) receiver: Receiver,
+    /// Poses of the parts that are large enough to be heard. Shape (large part,).
+    pub(super) parts: Vec<Pose>,
+    pub(super) overrides: BTreeMap<Address, f64>,
+}
+
+/// How a situation differs from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Change {
+    /// Not so that it could be heard.
+    None,
+    /// The head turned.
+    Turned,
+    /// Something moved: new rays are needed.
+    Moved,
+}
+
+/// How large differences must be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Threshold {
+    pub(super) distance_m: f32,
+    pub(super) angle_rad: f32,
+    pub(super) part_m: f32,
+}
+
+fn angle(a: glam::Quat, b: glam::Quat) -> f32 {
+    2.0 * dwell_scene::math::acos(a.dot(b).abs().min(1.0))
+}
+
+impl Situation {
+    pub(super) fn change(&self, now: &Self, threshold: &Threshold) -> Change {
+        let far = |a: Vec3, b: Vec3, limit: f32| {
+            // Not "farther than", so that a limit of 0 asks for any movement at all.
+            a != b && a.distance(b) >= limit
+        };
+        let (here, there) = (self.receiver, now.receiver);
+        let parts = self.parts.iter().zip(&now.parts);
+        let mut parts = parts.map(|(a, b)| {
+            // A part that turns by an angle moves its far edge about as many metres.
+            far(a.position, b.position, threshold.part_m)
+                || (a.rotation != b.rotation && angle(a.rotation, b.rotation) >= threshold.part_m)
+        });
+        if here.channels() != there.channels()
+            || self.overrides != now.overrides
+            || self.parts.len() != now.parts.len()
+            || far(self.source, now.source, threshold.distance_m)
+            || far(here.position(), there.position(), threshold.distance_m)
+            || parts.any(|moved| moved)
+        {
+            return Change::Moved;
+        }
+        let (a, b) = (here.rotation(), there.rotation());
+        if a != b && angle(a, b) >= threshold.angle_rad {
+            return Change::Turned;
+        }
+        Change::None
+    }
+}
+
+/// What must be remembered of a source so that it goes on bit for bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Memory {
+    pub(super) id: u64,
+    pub(super) heard: Option<(Situation, ImpulseResponse)>,
+    pub(super) history: Vec<f32>,
+}
+
+/// One source.
+#[derive(Clone, Debug)]
+pub(super) struct Voice {
+    pub(super) id: u64,
+    pub(super) heard: Option<(Situation, ImpulseResponse)>,
+    pub(super) input: Input,
+    pub(super) filter: Filter,
+}
+
+impl Voice {
+    pub(super) fn new(id: u64, block: usize, partitions: usize) -> Self {
+        Self {
+            id,
+            heard: None,
+            input: Input::new(block, partitions),
+            filter: Filter::default(),
+        }
+    }
+
+    pub(super) fn memory(&self) -> Memory {
+        Memory {
+            id: self.id,
+            heard: self.heard.clone(),
+            history: self.input.history().to_vec(),
+        }
+    }
+
+    pub(super) fn restore(fft: &mut RealFft, memory: Memory, partitions: usize) -> Self {
+        let mut voice = Self {
+            id: memory.id,
+            heard: None,
+            input: Input::restore(fft, &memory.history, partitions),
+            filter: Filter::default(),
+        };
+        if let Some((situation, response)) = memory.heard {
+            voice.hear(fft, situation, response, partitions);
+        }
+        voice
+    }
+
+    /// From now on the source is heard like this.
+    pub(super) fn hear(
+        &mut self,
+        fft: &mut RealFft,
+        situation: Situation,
+        response: ImpulseResponse,
+        partitions: usize,
+    ) {
+        self.filter = Filter::new(fft, &response.samples, response.channels, partitions);
+        self.heard = Some((situation, response));
+    }
+}

@@ -1,0 +1,146 @@
+//! Short causal filters with given energies per band.
+
+use crate::bands::{self, BAND_COUNT, Banded};
+use crate::fft::RealFft;
+use realfft::num_complex::Complex;
+
+/// Energies below this fraction of a path's strongest band are raised to it: -120 dB.
+const FLOOR: f32 = 1e-12;
+
+/// Minimum-phase spectra for energies per band: the logarithm of the gain is interpolated between the bands.
+///
+/// The logarithm of a minimum-phase spectrum is linear in the logarithm of the gain, so that a spectrum is one
+/// exponential of a sum of eight tabulated rows.
+#[derive(Debug)]
+pub(crate) struct PathFilters {
+    fft: RealFft,
+    /// Logarithmic spectrum of a band whose gain is e, others 1. Shape (band, bin).
+    basis: Vec<Vec<Complex<f32>>>,
+}
+
+impl PathFilters {
+    /// Filters for `rate_hz`; their transforms span 32 ms.
+    pub(crate) fn new(rate_hz: f64) -> Self {
+        let mut fft = RealFft::new(((0.032 * rate_hz) as usize).next_power_of_two());
+        let (length, bins) = (fft.len(), fft.bins());
+        let basis = (0..BAND_COUNT)
+            .map(|band| {
+                let mut gain: Vec<Complex<f32>> = (0..bins)
+                    .map(|bin| {
+                        let frequency_hz = bin as f64 * rate_hz / length as f64;
+                        let share = bands::power_shares(frequency_hz, 1.0)[band];
+                        Complex::new(share as f32, 0.0)
+                    })
+                    .collect();
+                // The causal half of the cepstrum, doubled, is that of the minimum-phase spectrum
+                // (Oppenheim, Schafer, Discrete-Time Signal Processing, section 13.5).
+                let mut cepstrum = fft.inverse(&mut gain);
+                for (k, value) in cepstrum.iter_mut().enumerate() {
+                    *value *= match (k, k.cmp(&(length / 2))) {
+                        (0, _) | (_, std::cmp::Ordering::Equal) => 1.0,
+                        (_, std::cmp::Ordering::Less) => 2.0,
+                        (_, std::cmp::Ordering::Greater) => 0.0,
+                    };
+                }
+                fft.forward(&cepstrum)
+            })
+            .collect();
+        Self { fft, basis }
+    }
+
+    /// Values of a spectrum.
+    pub(crate) fn bins(&self) -> usize {
+        self.fft.bins()
+    }
+
+    /// The spectrum for `energy`, and the amplitude that it still has to be multiplied by.
+    pub(crate) fn spectrum(&self, energy: &Banded) -> (Vec<Complex<f32>>, f32) {
+        let strongest = energy.iter().copied().fold(0.0, f32::max);
+        let mut sum = vec![Complex::new(0.0_f32, 0.0); self.bins()];
+        if strongest <= 0.0 {
+            return (sum, 0.0);
+        }
+        for (row, e) in self.basis.iter().zip(energy) {
+            let half_log = 0.5 * libm::logf((e / strongest).max(FLOOR));
+            if half_log < -1e-7 {
+                for (total, value) in sum.iter_mut().zip(row) {
+                    *total += value * half_log;
+                }
+            }
+        }
+        for value in &mut sum {
+            let (s, c) = libm::sincosf(value.im);
+            let size = libm::expf(value.re);
+            *value = Complex::new(size * c, size * s);
+        }
+        (sum, strongest.sqrt())
+    }
+
+    /// The transform that [`Self::impulse_response`] works with.
+    pub(crate) fn fft(&self) -> RealFft {
+        self.fft.clone()
+    }
+
+    /// The first half of the impulse response of a spectrum, its end faded out; `lead` samples late. Destroys `spectrum`.
+    pub(crate) fn impulse_response(
+        fft: &mut RealFft,
+        spectrum: &mut [Complex<f32>],
+        lead: usize,
+    ) -> Vec<f32> {
+        let length = fft.len();
+        if lead > 0 {
+            for (bin, value) in spectrum.iter_mut().enumerate() {
+                let turn = std::f64::consts::TAU * ((bin * lead) % length) as f64 / length as f64;
+                *value *= Complex::new(libm::cos(turn) as f32, -libm::sin(turn) as f32);
+            }
+        }
+        let taps = length / 2;
+        let mut response = fft.inverse_ref(spectrum)[..taps].to_vec();
+        let fade = taps / 4;
+        for (k, x) in response[taps - fade..].iter_mut().enumerate() {
+            let half_turn = std::f32::consts::FRAC_PI_2 * k as f32 / fade as f32;
+            *x *= libm::cosf(half_turn) * libm::cosf(half_turn);
+        }
+        response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_energies_are_one_sample() {
+        let filters = PathFilters::new(16_000.0);
+        let (mut spectrum, amplitude) = filters.spectrum(&[0.25; 8]);
+        let response = PathFilters::impulse_response(&mut filters.fft(), &mut spectrum, 0);
+        assert!((amplitude - 0.5).abs() < 1e-7);
+        assert!((response[0] - 1.0).abs() < 1e-6);
+        assert!(response[1..].iter().all(|x| x.abs() < 1e-6));
+    }
+
+    #[test]
+    fn energies_are_met_at_the_centres_and_nothing_comes_early() {
+        let rate_hz = 16_000.0;
+        let filters = PathFilters::new(rate_hz);
+        let energy = [1.0, 0.9, 0.8, 0.7, 0.5, 0.3, 0.1, 0.03];
+        let (mut spectrum, amplitude) = filters.spectrum(&energy);
+        let response = PathFilters::impulse_response(&mut filters.fft(), &mut spectrum, 0);
+        for (band, wanted) in energy.iter().enumerate().skip(2).take(5) {
+            let omega = std::f64::consts::TAU * bands::exact_centre_hz(band) / rate_hz;
+            let sum: Complex<f64> = response
+                .iter()
+                .enumerate()
+                .map(|(k, x)| Complex::from_polar(f64::from(*x), -omega * k as f64))
+                .sum();
+            let found = sum.norm_sqr() * f64::from(amplitude).powi(2);
+            assert!(
+                (10.0 * (found / f64::from(*wanted)).log10()).abs() < 0.3,
+                "{band}: {found}"
+            );
+        }
+        // Minimum phase: the energy stands at the beginning.
+        let power = |x: &[f32]| x.iter().map(|v| v * v).sum::<f32>();
+        assert!(power(&response[..8]) / power(&response) > 0.99);
+    }
+}

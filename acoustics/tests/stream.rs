@@ -1,0 +1,352 @@
+//! Blocks of sound in step with a world.
+
+mod common;
+
+use common::{Hall, dry, material};
+use dwell_acoustics::{
+    AcousticConfig, ActiveSource, Receiver, Source, Stream, StreamConfig, signals,
+};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use dwell_scene::{House, HouseData, LawSpec, Pose, State};
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+const BLOCK: usize = 800;
+const SOURCE: Vec3 = Vec3::new(1.2, 1.5, 1.4);
+
+fn room() -> Hall {
+    let config = AcousticConfig {
+        max_duration_s: 0.7,
+        image_order: 2,
+        ..dry(300)
+    };
+    Hall::shoebox([6.0, 3.0, 5.0], &material(0.25, 0.5), config)
+}
+
+fn nowhere() -> Hall {
+    Hall::new(
+        House::new(HouseData::default()).unwrap(),
+        AcousticConfig {
+            max_duration_s: 0.2,
+            ..dry(0)
+        },
+    )
+}
+
+fn stream(hall: &Hall, config: StreamConfig) -> Stream {
+    Stream::new(hall.scene.clone(), config, Key::root(8), Threads::ONE).unwrap()
+}
+
+fn head(position: Vec3, yaw_rad: f32) -> Receiver {
+    Receiver::binaural(Pose::from_position_yaw(position, yaw_rad))
+}
+
+/// Plays `signal` block by block; `place(block)` says where the source is and who listens. Returns the channels.
+fn play(
+    hall: &Hall,
+    stream: &mut Stream,
+    signal: &[f32],
+    place: impl Fn(usize) -> (Vec3, Receiver),
+) -> Vec<Vec<f32>> {
+    let state = State::new(&hall.house);
+    let channels = place(0).1.channels();
+    let mut heard = vec![Vec::new(); channels];
+    for (k, block) in signal.chunks_exact(BLOCK).enumerate() {
+        let (position, receiver) = place(k);
+        let source = ActiveSource {
+            id: 5,
+            position,
+            signal: block,
+        };
+        let mut out = vec![0.0; channels * BLOCK];
+        stream
+            .block(&hall.rays, &state, &[source], &receiver, &mut out)
+            .unwrap();
+        for (all, channel) in heard.iter_mut().zip(out.chunks_exact(BLOCK)) {
+            all.extend_from_slice(channel);
+        }
+    }
+    heard
+}
+
+fn radio(samples: usize) -> Vec<f32> {
+    let mut signal = vec![0.0; samples];
+    signals::synthesize("radio", 16_000, 0, &mut signal).unwrap();
+    signal
+}
+
+/// A scene in which nothing moves gives the convolution with its impulse response, within 1e-5.
+#[test]
+fn a_still_scene_is_a_convolution() {
+    let hall = room();
+    let receiver = head(Vec3::new(4.6, 1.2, 3.3), 0.7);
+    let signal = radio(16 * BLOCK);
+    let heard = play(
+        &hall,
+        &mut stream(&hall, StreamConfig::full()),
+        &signal,
+        |_| (SOURCE, receiver),
+    );
+    let key = Key::root(8).child("source").child(5);
+    let response = hall
+        .scene
+        .impulse_response(
+            &hall.rays,
+            &Source::at(SOURCE),
+            &receiver,
+            key,
+            Threads::ONE,
+        )
+        .unwrap();
+    for (channel, found) in heard.iter().enumerate() {
+        let h = response.channel(channel);
+        assert!(h.len() > 4 * BLOCK);
+        let peak = found.iter().fold(0.0_f32, |peak, x| peak.max(x.abs()));
+        for (n, y) in found.iter().enumerate().step_by(7) {
+            let wanted: f64 = (0..h.len().min(n + 1))
+                .map(|k| f64::from(h[k]) * f64::from(signal[n - k]))
+                .sum();
+            assert!(
+                (f64::from(*y) - wanted).abs() < 1e-5 * f64::from(peak.max(1.0)),
+                "{n}: {y} {wanted}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_source_that_stops_rings_out_and_is_forgotten() {
+    let hall = room();
+    let state = State::new(&hall.house);
+    let receiver = Receiver::omni(Vec3::new(4.6, 1.2, 3.3));
+    let mut stream = stream(&hall, StreamConfig::rl());
+    let signal = radio(BLOCK);
+    let source = ActiveSource {
+        id: 1,
+        position: SOURCE,
+        signal: &signal,
+    };
+    let mut out = vec![0.0; BLOCK];
+    let report = stream
+        .block(&hall.rays, &state, &[source], &receiver, &mut out)
+        .unwrap();
+    assert_eq!((report.traced, report.heard), (1, 1));
+    let silent = stream.hash();
+    let mut levels = Vec::new();
+    for _ in 0..20 {
+        stream
+            .block(&hall.rays, &state, &[], &receiver, &mut out)
+            .unwrap();
+        levels.push(out.iter().map(|x| x * x).sum::<f32>());
+    }
+    assert!(levels[0] > 0.0 && levels[4] < 0.2 * levels[0] && levels[4] > 0.0);
+    assert_eq!(levels[19], 0.0);
+    assert_ne!(stream.hash(), silent);
+    let report = stream
+        .block(&hall.rays, &state, &[], &receiver, &mut out)
+        .unwrap();
+    assert_eq!(report.heard, 0);
+}
+
+/// V21: a listener walks past a tone of 1 kHz; the frequency is that of Doppler, and no block begins with a step.
+#[test]
+fn a_moving_listener_hears_doppler_and_no_clicks() {
+    let hall = nowhere();
+    let config = StreamConfig {
+        update_distance_m: 0.0,
+        ..StreamConfig::full()
+    };
+    let n = 40 * BLOCK;
+    let omega = std::f64::consts::TAU * 1000.0 / 16_000.0;
+    let tone: Vec<f32> = (0..n).map(|k| (omega * k as f64).sin() as f32).collect();
+    // Straight towards the source at 1 m/s, from 6 m.
+    let walk = |k: usize| {
+        (
+            Vec3::ZERO,
+            Receiver::omni(Vec3::X * (6.0 - 0.05 * (k + 1) as f32)),
+        )
+    };
+    let heard = &play(&hall, &mut stream(&hall, config), &tone, walk)[0];
+    // The phase at the ends of blocks, where no crossfade is under way.
+    let phase = |end: usize| {
+        let (mut re, mut im) = (0.0, 0.0);
+        for k in end - 48..end {
+            let (s, c) = (omega * (k as f64)).sin_cos();
+            re += f64::from(heard[k]) * c;
+            im += f64::from(heard[k]) * s;
+        }
+        re.atan2(im)
+    };
+    let mut turned = 0.0;
+    let blocks: Vec<f64> = (4..=40).map(|k| phase(k * BLOCK)).collect();
+    for pair in blocks.windows(2) {
+        turned += (pair[1] - pair[0] + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
+            - std::f64::consts::PI;
+    }
+    let shift_hz = turned / std::f64::consts::TAU / (36.0 * 0.05);
+    assert!((shift_hz - 1000.0 / 343.2).abs() < 0.1, "{shift_hz} Hz");
+    // A sine follows x[n] = 2 cos(omega) x[n-1] - x[n-2]; a click does not.
+    let peak = heard.iter().fold(0.0_f32, |peak, x| peak.max(x.abs()));
+    for k in 2 * BLOCK..n {
+        let residual = f64::from(heard[k]) - 2.0 * omega.cos() * f64::from(heard[k - 1])
+            + f64::from(heard[k - 2]);
+        // Within a block the crossfade turns the phase gently; between blocks there must be nothing.
+        let allowed = if k % BLOCK < 3 { 1e-4 } else { 2e-3 };
+        let at = format!("sample {} of block {}: {residual}", k % BLOCK, k / BLOCK);
+        assert!(residual.abs() < allowed * f64::from(peak), "{at}");
+    }
+}
+
+#[test]
+fn turning_the_head_needs_no_rays_and_swaps_the_ears() {
+    let hall = room();
+    let place = Vec3::new(1.7, 1.5, 1.8);
+    // The source is to the left at first, then to the right.
+    let towards = dwell_scene::space::yaw_from_forward(SOURCE - place);
+    let half = std::f32::consts::FRAC_PI_2;
+    let state = State::new(&hall.house);
+    let mut stream = stream(&hall, StreamConfig::rl());
+    let mut signal = vec![0.0; BLOCK];
+    signals::synthesize("tap", 16_000, 0, &mut signal).unwrap();
+    let mut levels = Vec::new();
+    for k in 0..12 {
+        let yaw = if k < 6 {
+            towards - half
+        } else {
+            towards + half
+        };
+        let source = ActiveSource {
+            id: 1,
+            position: SOURCE,
+            signal: &signal,
+        };
+        let mut out = vec![0.0; 2 * BLOCK];
+        let report = stream
+            .block(&hall.rays, &state, &[source], &head(place, yaw), &mut out)
+            .unwrap();
+        assert_eq!(report.traced, usize::from(k == 0));
+        assert_eq!(report.turned, usize::from(k == 6));
+        levels.push([0, 1].map(|c| {
+            out[c * BLOCK..(c + 1) * BLOCK]
+                .iter()
+                .map(|x| x * x)
+                .sum::<f32>()
+        }));
+    }
+    assert!(
+        levels[4][0] > 1.2 * levels[4][1] && levels[11][1] > 1.2 * levels[11][0],
+        "{levels:?}"
+    );
+}
+
+/// Snapshots hold everything: a restored stream goes on bit for bit, also where the next impulse response is another.
+#[test]
+fn a_restored_stream_continues_bit_for_bit() {
+    let hall = room();
+    let signal = radio(12 * BLOCK);
+    let walk = |k: usize| {
+        (
+            SOURCE,
+            head(Vec3::new(4.6, 1.2, 3.3 - 0.1 * k as f32), 0.1 * k as f32),
+        )
+    };
+    let mut first = stream(&hall, StreamConfig::rl());
+    play(&hall, &mut first, &signal[..6 * BLOCK], walk);
+    let bytes = first.snapshot();
+    let mut second = stream(&hall, StreamConfig::rl());
+    second.restore(&bytes).unwrap();
+    assert_eq!(first.hash(), second.hash());
+    let on = |stream: &mut Stream| play(&hall, stream, &signal[6 * BLOCK..], |k| walk(k + 6));
+    let (a, b) = (on(&mut first), on(&mut second));
+    assert_eq!(a, b);
+    assert_eq!(first.hash(), second.hash());
+
+    for k in [0, 9, bytes.len() / 2, bytes.len() - 1] {
+        let mut damaged = bytes.clone();
+        damaged[k] ^= 1;
+        assert!(second.restore(&damaged).is_err());
+    }
+    assert!(second.restore(&[]).is_err());
+    let mut other = stream(
+        &hall,
+        StreamConfig {
+            block_samples: 400,
+            ..StreamConfig::rl()
+        },
+    );
+    assert!(
+        other
+            .restore(&bytes)
+            .unwrap_err()
+            .to_string()
+            .contains("800")
+    );
+}
+
+#[test]
+fn microphones_are_silent_unless_a_law_says_otherwise() {
+    let hall = nowhere();
+    let mut state = State::new(&hall.house);
+    let mut stream = stream(&hall, StreamConfig::rl());
+    let mut out = vec![1.0; BLOCK];
+    stream
+        .block(
+            &hall.rays,
+            &state,
+            &[],
+            &Receiver::omni(Vec3::ZERO),
+            &mut out,
+        )
+        .unwrap();
+    assert!(out.iter().all(|x| *x == 0.0));
+    state.laws.push(LawSpec {
+        id: "microphone_noise".into(),
+        version: 1,
+        target: None,
+        params: BTreeMap::from([("sigma_pa".to_owned(), 0.01)]),
+    });
+    let mut blocks = Vec::new();
+    for _ in 0..2 {
+        stream
+            .block(
+                &hall.rays,
+                &state,
+                &[],
+                &Receiver::omni(Vec3::ZERO),
+                &mut out,
+            )
+            .unwrap();
+        let power = out.iter().map(|x| x * x).sum::<f32>() / BLOCK as f32;
+        assert!((power / 1e-4 - 1.0).abs() < 0.3);
+        blocks.push(out.clone());
+    }
+    assert_ne!(blocks[0], blocks[1]);
+}
+
+#[test]
+fn wrong_buffers_are_refused_and_change_nothing() {
+    let hall = nowhere();
+    let state = State::new(&hall.house);
+    let mut stream = stream(&hall, StreamConfig::rl());
+    let before = stream.hash();
+    let short = [0.5; 10];
+    let source = ActiveSource {
+        id: 1,
+        position: Vec3::X,
+        signal: &short,
+    };
+    let ear = Receiver::omni(Vec3::ZERO);
+    let mut out = vec![0.0; BLOCK];
+    let message = stream
+        .block(&hall.rays, &state, &[source], &ear, &mut out)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(message, "a source's signal: expected 800 samples, found 10");
+    let message = stream
+        .block(&hall.rays, &state, &[], &head(Vec3::ZERO, 0.0), &mut out)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(message, "out: expected 1600 samples, found 800");
+    assert_eq!(stream.hash(), before);
+}

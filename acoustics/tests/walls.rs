@@ -1,0 +1,267 @@
+//! What stands between source and receiver.
+
+mod common;
+
+use common::{Hall, box_sides, dry, material, pieces, rectangle};
+use dwell_acoustics::{AcousticConfig, Receiver, Source, metrics};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{
+    Bands, Category, House, Id, LevelId, Material, Mesh, MeshId, Mobility, Object, ObjectId, Part,
+    PartId, Pose, State,
+};
+use glam::{Affine3A, Vec3};
+use std::sync::Arc;
+
+const SOURCE: Vec3 = Vec3::new(1.0, 1.2, 1.0);
+const EAR: Vec3 = Vec3::new(7.0, 1.2, 3.0);
+
+/// A material through which sound passes with a loss of so many dB.
+fn leaky(loss_db: f32) -> Material {
+    Material {
+        transmission_loss_db: Bands::constant(loss_db),
+        ..material(0.2, 0.4)
+    }
+}
+
+/// Two rooms, 4 x 2.5 x 4 m each, with a solid wall between and a door in it that can be moved (part 0).
+fn two_rooms(wall: &Material, door: &Material) -> House {
+    let shell = box_sides(Vec3::new(8.0, 2.5, 4.0), 1);
+    let mut items: Vec<_> = shell.map(|side| (side, material(0.2, 0.4))).into();
+    // Both faces of a wall 0.1 m thick, with an opening of 1 x 2 m, and its three inner sides.
+    for x in [3.95, 4.05] {
+        let at = |y, z| Vec3::new(x, y, z);
+        items.push((
+            rectangle(at(0.0, 0.0), Vec3::Y * 2.5, Vec3::Z * 1.5, 1),
+            wall.clone(),
+        ));
+        items.push((
+            rectangle(at(0.0, 2.5), Vec3::Y * 2.5, Vec3::Z * 1.5, 1),
+            wall.clone(),
+        ));
+        items.push((
+            rectangle(at(2.0, 1.5), Vec3::Y * 0.5, Vec3::Z, 1),
+            wall.clone(),
+        ));
+    }
+    let depth = Vec3::X * 0.1;
+    items.push((
+        rectangle(Vec3::new(3.95, 0.0, 1.5), Vec3::Y * 2.0, depth, 1),
+        wall.clone(),
+    ));
+    items.push((
+        rectangle(Vec3::new(3.95, 0.0, 2.5), Vec3::Y * 2.0, depth, 1),
+        wall.clone(),
+    ));
+    items.push((
+        rectangle(Vec3::new(3.95, 2.0, 1.5), Vec3::Z, depth, 1),
+        wall.clone(),
+    ));
+    let mut data = pieces(items).data().clone();
+    let mesh: MeshId = data.meshes.push(Arc::new(Mesh::cuboid(
+        Vec3::new(-0.02, 0.0, -0.01),
+        Vec3::new(0.02, 2.01, 1.01),
+    )));
+    let material = data.materials.push(Material {
+        name: "door".into(),
+        ..door.clone()
+    });
+    data.objects.push(Object {
+        name: "door".into(),
+        source_id: "door".into(),
+        model: "door".into(),
+        category: Category::default(),
+        level: LevelId(0),
+        room: None,
+        mobility: Mobility::Movable,
+        pickable: false,
+        switch: None,
+        first_part: PartId(0),
+        part_count: 1,
+    });
+    data.parts.push(Part {
+        object: ObjectId(0),
+        name: "leaf".into(),
+        fixed: false,
+        world_from_part: Pose::from_position(Vec3::new(4.0, 0.0, 1.5)),
+        mesh,
+        part_from_mesh: Affine3A::IDENTITY,
+        materials: vec![material],
+        colliders: Vec::new(),
+        mass_kg: None,
+        density_kg_m3: 500.0,
+    });
+    House::new(data).unwrap()
+}
+
+/// V13: nothing, exactly, gets into a closed box, nor out of it.
+#[test]
+fn a_closed_box_is_silent() {
+    let mut items: Vec<_> = box_sides(Vec3::new(8.0, 2.5, 4.0), 1)
+        .map(|side| (side, material(0.2, 0.4)))
+        .into();
+    items.push((
+        Mesh::cuboid(EAR - Vec3::splat(0.4), EAR + Vec3::splat(0.4)),
+        material(0.1, 0.5),
+    ));
+    // With transmission asked for, too: these materials let nothing through.
+    for transmission in [false, true] {
+        let hall = Hall::new(
+            pieces(items.clone()),
+            AcousticConfig {
+                transmission,
+                ..dry(2000)
+            },
+        );
+        for (from, to) in [(SOURCE, EAR), (EAR, SOURCE)] {
+            let found = hall.echogram(from, to, Key::root(1));
+            assert!(found.is_silent() && found.paths.is_empty());
+            let receiver = Receiver::binaural(Pose::from_position(to));
+            let heard = hall
+                .scene
+                .impulse_response(
+                    &hall.rays,
+                    &Source::at(from),
+                    &receiver,
+                    Key::root(1),
+                    Threads::ONE,
+                )
+                .unwrap();
+            assert!(heard.samples.iter().all(|x| *x == 0.0));
+        }
+        assert!(
+            !hall
+                .echogram(SOURCE, Vec3::new(3.0, 1.0, 3.0), Key::root(1))
+                .is_silent()
+        );
+    }
+}
+
+/// A door that moves changes what is heard: closed exact silence, ajar less than wide open.
+#[test]
+fn a_closed_door_silences_and_an_open_one_does_not() {
+    let wall = material(0.1, 0.3);
+    let house = Arc::new(two_rooms(&wall, &wall));
+    let mut hall = Hall::new(House::clone(&house), dry(4000));
+    let mut state = State::new(&hall.house);
+    let mut level_at = |yaw_rad: f32, far: f32| {
+        let hinge = Vec3::new(4.0, 0.0, 1.5) + Vec3::X * far;
+        state.part_pose[PartId(0)] = Pose::from_position_yaw(hinge, yaw_rad);
+        hall.rays.update(&state);
+        hall.scene.update(&state);
+        let found = hall.echogram(SOURCE, EAR, Key::root(4));
+        found.total()[4]
+    };
+    assert_eq!(level_at(0.0, 0.0), 0.0);
+    let (ajar, open) = (level_at(-0.35, 0.0), level_at(-1.5, 0.0));
+    assert!(ajar > 0.0 && open > 1.5 * ajar, "{ajar} {open}");
+    assert_eq!(level_at(0.0, 0.0), 0.0);
+}
+
+/// Mirrors move with the parts that carry them.
+#[test]
+fn a_moved_plate_mirrors_from_its_new_place() {
+    let wall = material(0.1, 0.0);
+    let hall = Hall::new(two_rooms(&wall, &wall), dry(0));
+    let (mut scene, mut rays) = (hall.scene.clone(), RayScene::new(hall.house.clone()));
+    let mut state = State::new(&hall.house);
+    // The leaf stands free in the first room, parallel to the wall at x = 0, and mirrors what comes from x below 2.98.
+    state.part_pose[PartId(0)] = Pose::from_position(Vec3::new(3.0, 0.0, 1.0));
+    rays.update(&state);
+    scene.update(&state);
+    let (source, ear) = (Vec3::new(1.0, 1.0, 1.5), Vec3::new(2.0, 1.4, 1.6));
+    let found = scene
+        .echogram(&rays, &Source::at(source), ear, Key::root(0), Threads::ONE)
+        .unwrap();
+    let wanted = Vec3::new(2.0 * 2.98 - 1.0, 1.0, 1.5).distance(ear);
+    let path = found
+        .paths
+        .iter()
+        .find(|path| path.order() == 1 && (path.length_m - f64::from(wanted)).abs() < 1e-4);
+    assert!(
+        path.is_some_and(|path| path.arrival.x > 0.9),
+        "{:?}",
+        found.paths
+    );
+}
+
+#[test]
+fn direct_sound_passes_a_solid_wall_once() {
+    let direct = |loss_db: f32, transmission: bool| {
+        let house = two_rooms(&leaky(loss_db), &leaky(loss_db));
+        let hall = Hall::new(
+            house,
+            AcousticConfig {
+                transmission,
+                ..dry(0)
+            },
+        );
+        // Through the wall beside the door: two faces, one wall.
+        let found = hall.echogram(
+            Vec3::new(1.0, 1.2, 0.7),
+            Vec3::new(7.0, 1.2, 0.7),
+            Key::root(0),
+        );
+        found.direct().cloned()
+    };
+    let path = direct(30.0, true).unwrap();
+    assert_eq!(path.walls, 1);
+    assert!((f64::from(path.energy[4]) * 36.0 / 1e-3 - 1.0).abs() < 1e-5);
+    assert!(direct(30.0, false).is_none() && direct(Material::OPAQUE_TO_SOUND_DB, true).is_none());
+}
+
+#[test]
+fn sound_passes_three_walls_and_no_more() {
+    for (walls, expected) in [(1, true), (3, true), (4, false)] {
+        let screens = (0..walls).map(|k| {
+            let origin = Vec3::new(1.0 + k as f32, -5.0, -5.0);
+            (
+                rectangle(origin, Vec3::Y * 10.0, Vec3::Z * 10.0, 1),
+                leaky(10.0),
+            )
+        });
+        let hall = Hall::new(
+            pieces(screens.collect()),
+            AcousticConfig {
+                transmission: true,
+                image_order: 0,
+                ..dry(0)
+            },
+        );
+        let found = hall.echogram(Vec3::ZERO, Vec3::X * 8.0, Key::root(0));
+        assert_eq!(found.direct().is_some(), expected);
+        if let Some(path) = found.direct() {
+            assert_eq!(path.walls, walls);
+            let wanted = 10.0_f64.powi(-(walls as i32)) / 64.0;
+            assert!((f64::from(path.energy[4]) / wanted - 1.0).abs() < 1e-5);
+        }
+    }
+}
+
+/// Absorption at an address: the band that is changed decays faster, the others stay as they were bit for bit.
+#[test]
+fn an_overridden_band_decays_faster_and_alone() {
+    let mut hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.1, 1.0), dry(1000));
+    let before =
+        metrics::of_echogram(&hall.echogram(SOURCE, Vec3::new(4.0, 1.2, 3.0), Key::root(0)));
+    let mut state = State::new(&hall.house);
+    for side in ["floor", "ceiling"] {
+        for hz in [500, 1000, 2000] {
+            let value = if hz == 1000 { 0.6 } else { 0.1 };
+            let address = format!("material/{side}/absorption/{hz}").parse().unwrap();
+            state.set_parameter(&hall.house, &address, value).unwrap();
+        }
+    }
+    hall.scene.update(&state);
+    let after =
+        metrics::of_echogram(&hall.echogram(SOURCE, Vec3::new(4.0, 1.2, 3.0), Key::root(0)));
+    assert!(after[4].t30_s.unwrap() < 0.5 * before[4].t30_s.unwrap());
+    for band in [1, 2, 3, 5, 6] {
+        assert!(
+            (after[band].t30_s.unwrap() / before[band].t30_s.unwrap() - 1.0).abs() < 0.02,
+            "{band}"
+        );
+    }
+    assert_eq!(PartId(0).index(), 0);
+}
