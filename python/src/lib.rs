@@ -1,1 +1,36 @@
-//! The border to Python: conversions only.
+//! The border to Python: conversions only. The typed package around it is `python/dwell`.
+
+mod acoustics;
+mod batch;
+mod bench;
+mod calibrate;
+mod doorway;
+mod errors;
+mod facts;
+mod house;
+mod world;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    errors::register(module)?;
+    module.add_class::<house::PyHouse>()?;
+    module.add_class::<world::PyWorld>()?;
+    module.add_class::<batch::PyBatch>()?;
+    module.add_class::<acoustics::PyAcousticScene>()?;
+    module.add_function(wrap_pyfunction!(facts::actions, module)?)?;
+    module.add_function(wrap_pyfunction!(facts::tasks_json, module)?)?;
+    module.add_function(wrap_pyfunction!(facts::sensors_json, module)?)?;
+    module.add_function(wrap_pyfunction!(facts::laws_json, module)?)?;
+    module.add_function(wrap_pyfunction!(facts::vocabulary, module)?)?;
+    module.add_function(wrap_pyfunction!(facts::charset, module)?)?;
+    module.add_function(wrap_pyfunction!(facts::max_text_length, module)?)?;
+    module.add_function(wrap_pyfunction!(facts::doctor_json, module)?)?;
+    module.add_function(wrap_pyfunction!(acoustics::synthesize, module)?)?;
+    module.add_function(wrap_pyfunction!(calibrate::calibrate, module)?)?;
+    module.add_function(wrap_pyfunction!(calibrate::calibration_example, module)?)?;
+    module.add_function(wrap_pyfunction!(bench::bench_json, module)?)?;
+    Ok(())
+}

@@ -1,1 +1,32 @@
-//! Time: worlds, agents, sensors, tasks, batches; joins the engines.
+//! Time: worlds, agents, sensors, tasks and batches over a shared house; joins the engines.
+//!
+//! A [`World`] is stepped at the control rate. An [`Env`] adds a task and sensors; a [`Batch`] steps several and renders
+//! all their views in one submission.
+
+mod action;
+mod batch;
+pub mod bench;
+mod config;
+mod engines;
+mod env;
+mod error;
+mod expert;
+mod info;
+pub mod laws;
+pub mod metrics;
+mod requests;
+pub mod sensors;
+mod sound;
+pub mod tasks;
+mod world;
+
+pub use action::{DiscreteAction, Stride};
+pub use batch::Batch;
+pub use config::WorldConfig;
+pub use engines::Engines;
+pub use env::{Env, EnvConfig, Episode, SensorConfig, StepInfo, Verdict};
+pub use error::WorldError;
+pub use expert::{Guide, face};
+pub use info::{ObjectNow, Viewpoint, info, objects_now, viewpoints};
+pub use requests::{Channel, Picture, Requests, Results, ViewRequest};
+pub use world::World;

@@ -1,0 +1,253 @@
+//! Several environments stepped together: all views in one submission, results in the caller's buffers.
+
+use crate::action::DiscreteAction;
+use crate::engines::Engines;
+use crate::env::{Env, StepInfo};
+use crate::error::WorldError;
+use crate::requests::Channel;
+use crate::sensors::{Dtype, Out, SensorSpec};
+use dwell_render::{FrameMut, Job, View};
+use dwell_scene::parallel::Threads;
+use std::sync::Arc;
+
+/// Environments of one make. Shapes and types of their observations are the same.
+#[derive(Debug)]
+pub struct Batch {
+    envs: Vec<Env>,
+    threads: Threads,
+}
+
+/// One environment of a batch, and what its part of a step came to.
+struct Slot<'a, R> {
+    env: &'a mut Env,
+    active: bool,
+    result: Option<Result<R, WorldError>>,
+}
+
+impl Batch {
+    /// Joins environments.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for none, or for environments whose sensors differ.
+    pub fn new(envs: Vec<Env>, threads: Threads) -> Result<Self, WorldError> {
+        let Some(first) = envs.first() else {
+            return Err(WorldError::Usage(
+                "a batch needs at least one environment".to_owned(),
+            ));
+        };
+        let specs = first.specs();
+        if let Some(k) = envs.iter().position(|env| env.specs() != specs) {
+            return Err(WorldError::Usage(format!(
+                "environment {k} has other sensors than environment 0"
+            )));
+        }
+        Ok(Self { envs, threads })
+    }
+
+    /// The environments.
+    pub fn envs(&self) -> &[Env] {
+        &self.envs
+    }
+
+    /// One environment, to look at closely.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for an environment that does not exist.
+    pub fn env(&self, index: usize) -> Result<&Env, WorldError> {
+        let count = self.envs.len();
+        self.envs
+            .get(index)
+            .ok_or_else(|| WorldError::Usage(format!("no environment {index}; there are {count}")))
+    }
+
+    /// What the scripted expert would do now in each environment.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] before the first reset.
+    pub fn expert_actions(&mut self) -> Result<Vec<DiscreteAction>, WorldError> {
+        let all = vec![true; self.envs.len()];
+        let actions = self.for_active(&all, |_, env| env.expert_action())?;
+        Ok(actions.into_iter().flatten().collect())
+    }
+
+    /// What every environment's sensors give.
+    pub fn specs(&self) -> Vec<SensorSpec> {
+        self.envs[0].specs()
+    }
+
+    fn for_active<R: Send>(
+        &mut self,
+        active: &[bool],
+        work: impl Fn(usize, &mut Env) -> Result<R, WorldError> + Sync,
+    ) -> Result<Vec<Option<R>>, WorldError> {
+        let threads = self.threads;
+        let mut slots: Vec<Slot<'_, R>> = self
+            .envs
+            .iter_mut()
+            .zip(active)
+            .map(|(env, active)| Slot {
+                env,
+                active: *active,
+                result: None,
+            })
+            .collect();
+        threads.for_each(&mut slots, |k, slot| {
+            if slot.active {
+                slot.result = Some(work(k, slot.env));
+            }
+        });
+        slots
+            .into_iter()
+            .map(|slot| slot.result.transpose())
+            .collect()
+    }
+
+    fn check_count(&self, what: &str, found: usize) -> Result<(), WorldError> {
+        if found == self.envs.len() {
+            return Ok(());
+        }
+        Err(WorldError::Usage(format!(
+            "{what}: expected one for each of {} environments, found {found}",
+            self.envs.len()
+        )))
+    }
+
+    /// Starts new episodes where `seeds` has one; the others go on.
+    ///
+    /// # Errors
+    /// [`WorldError`] of the first environment that cannot start.
+    pub fn reset(&mut self, seeds: &[Option<u64>]) -> Result<(), WorldError> {
+        self.check_count("seeds", seeds.len())?;
+        let active: Vec<bool> = seeds.iter().map(Option::is_some).collect();
+        self.for_active(&active, |k, env| {
+            env.reset(seeds[k].unwrap_or_default())?;
+            env.listen()
+        })?;
+        Ok(())
+    }
+
+    /// Steps the environments for which `actions` has one.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for an environment whose episode has ended.
+    pub fn step(
+        &mut self,
+        actions: &[Option<DiscreteAction>],
+    ) -> Result<Vec<Option<StepInfo>>, WorldError> {
+        self.check_count("actions", actions.len())?;
+        let active: Vec<bool> = actions.iter().map(Option::is_some).collect();
+        self.for_active(&active, |k, env| {
+            let info = env.step(actions[k].unwrap_or(DiscreteAction::Stop))?;
+            env.listen()?;
+            Ok(info)
+        })
+    }
+
+    /// Writes the observations of the environments in `which`: all their views in one submission.
+    ///
+    /// `outs`: one for each sensor, in order, each with the elements of all environments one after the other (for text:
+    /// use [`Self::texts`], and give an empty buffer).
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for wrong counts or lengths.
+    pub fn observe(&mut self, which: &[bool], outs: &mut [Out<'_>]) -> Result<(), WorldError> {
+        self.check_count("which", which.len())?;
+        let specs = self.specs();
+        if outs.len() != specs.len() {
+            return Err(WorldError::Usage(format!(
+                "observe: {} buffers for {} sensors",
+                outs.len(),
+                specs.len()
+            )));
+        }
+        self.render(which)?;
+        for (k, env) in self.envs.iter().enumerate().filter(|(k, _)| which[*k]) {
+            for (s, (spec, out)) in specs.iter().zip(outs.iter_mut()).enumerate() {
+                let range = k * spec.len()..(k + 1) * spec.len();
+                let fault = || {
+                    WorldError::Usage(format!(
+                        "observe: the buffer of {} is too short or of another type",
+                        spec.name
+                    ))
+                };
+                let part = match (spec.dtype, out) {
+                    (Dtype::Uint8, Out::Uint8(out)) => {
+                        Out::Uint8(out.get_mut(range).ok_or_else(fault)?)
+                    }
+                    (Dtype::Float32, Out::Float32(out)) => {
+                        Out::Float32(out.get_mut(range).ok_or_else(fault)?)
+                    }
+                    (Dtype::Int32, Out::Int32(out)) => {
+                        Out::Int32(out.get_mut(range).ok_or_else(fault)?)
+                    }
+                    (Dtype::Text, _) => continue,
+                    _ => return Err(fault()),
+                };
+                env.observe(s, part)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The text of sensor `sensor` in every environment; empty before its first reset.
+    pub fn texts(&self, sensor: usize) -> Vec<String> {
+        let mut texts = vec![String::new(); self.envs.len()];
+        for (env, text) in self
+            .envs
+            .iter()
+            .zip(&mut texts)
+            .filter(|(env, _)| env.episode().is_some())
+        {
+            if let Err(error) = env.observe(sensor, Out::Text(text)) {
+                tracing::warn!(%error, "no text");
+            }
+        }
+        texts
+    }
+
+    /// Renders all pictures that are asked for: the views of all worlds over one house in one submission.
+    fn render(&mut self, which: &[bool]) -> Result<(), WorldError> {
+        let mut groups: Vec<(Arc<Engines>, Vec<Job<'_>>)> = Vec::new();
+        for (env, _) in self
+            .envs
+            .iter_mut()
+            .zip(which)
+            .filter(|(_, active)| **active)
+        {
+            let (world, requests, results) = env.picture_work();
+            let engines = world.engines();
+            let group = groups
+                .iter()
+                .position(|(other, _)| Arc::ptr_eq(other, engines))
+                .unwrap_or_else(|| {
+                    groups.push((engines.clone(), Vec::new()));
+                    groups.len() - 1
+                });
+            for (request, picture) in requests.views.iter().zip(&mut results.pictures) {
+                let Some(agent) = world.state().agents.get(request.eye.agent) else {
+                    continue;
+                };
+                let wanted = |channel| request.channels.contains(&channel);
+                groups[group].1.push(Job {
+                    scene: world.rays(),
+                    state: world.state(),
+                    view: View {
+                        preset: request.eye.preset,
+                        hide: Some(world.house().entity_of_agent(request.eye.agent)),
+                        ..View::new(request.eye.camera, agent.world_from_eye())
+                    },
+                    frame: FrameMut {
+                        rgb: wanted(Channel::Rgb).then_some(&mut picture.rgb),
+                        depth: wanted(Channel::Depth).then_some(&mut picture.depth),
+                        instance: wanted(Channel::Instance).then_some(&mut picture.instance),
+                        semantic: wanted(Channel::Semantic).then_some(&mut picture.semantic),
+                    },
+                });
+            }
+        }
+        for (engines, jobs) in &mut groups {
+            engines.renderer().render_batch(jobs, self.threads)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,106 @@
+//! How a world runs.
+
+use crate::error::WorldError;
+use dwell_scene::{AgentBody, LawSpec};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Rates, laws and parameters of a world. Every field has a default; unknown fields are refused.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WorldConfig {
+    /// Control steps per second of simulated time; 1 to 1,000, default 20.
+    pub control_rate_hz: f64,
+    /// Physics steps per second; a whole multiple of the control rate, default 120.
+    pub physics_rate_hz: f64,
+    /// Sound samples per second; 8,000 to 192,000, default 16,000; a whole number of samples must fit a control step.
+    pub sound_rate_hz: u32,
+    /// How carefully sound is traced: `"rl"` (fast, default) or `"full"`.
+    pub sound_preset: String,
+    /// The agents' bodies, one for each agent.
+    pub agents: Vec<AgentBody>,
+    /// Laws to install.
+    pub laws: Vec<LawSpec>,
+    /// Parameters that differ from the house's, by address.
+    pub parameters: BTreeMap<String, f64>,
+}
+
+impl Default for WorldConfig {
+    fn default() -> Self {
+        Self {
+            control_rate_hz: 20.0,
+            physics_rate_hz: 120.0,
+            sound_rate_hz: 16_000,
+            sound_preset: "rl".to_owned(),
+            agents: vec![AgentBody::default()],
+            laws: Vec::new(),
+            parameters: BTreeMap::new(),
+        }
+    }
+}
+
+impl WorldConfig {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] names the field, what was found and what is allowed.
+    pub fn check(&self) -> Result<(), WorldError> {
+        let fault = |field: &'static str, found: String, allowed: String| {
+            Err(WorldError::Config {
+                field,
+                found,
+                allowed,
+            })
+        };
+        if !(1.0..=1000.0).contains(&self.control_rate_hz) {
+            return fault(
+                "control_rate_hz",
+                self.control_rate_hz.to_string(),
+                "1 to 1000".into(),
+            );
+        }
+        let substeps = self.physics_rate_hz / self.control_rate_hz;
+        if !(1.0..=1000.0).contains(&substeps) || substeps.fract() != 0.0 {
+            let allowed = format!(
+                "a whole multiple of control_rate_hz = {}, at most 1000 times it",
+                self.control_rate_hz
+            );
+            return fault("physics_rate_hz", self.physics_rate_hz.to_string(), allowed);
+        }
+        if !(8_000..=192_000).contains(&self.sound_rate_hz) {
+            return fault(
+                "sound_rate_hz",
+                self.sound_rate_hz.to_string(),
+                "8000 to 192000".into(),
+            );
+        }
+        let samples = f64::from(self.sound_rate_hz) / self.control_rate_hz;
+        if samples.fract() != 0.0 {
+            let (low, high) = (
+                samples.floor() * self.control_rate_hz,
+                samples.ceil() * self.control_rate_hz,
+            );
+            let allowed = format!(
+                "a whole number of samples a control step; the nearest are {low} and {high} Hz"
+            );
+            return fault("sound_rate_hz", self.sound_rate_hz.to_string(), allowed);
+        }
+        if self.agents.len() > 64 {
+            return fault("agents", self.agents.len().to_string(), "at most 64".into());
+        }
+        for body in &self.agents {
+            body.check()?;
+        }
+        Ok(())
+    }
+
+    /// The length of a control step, s.
+    pub fn step_s(&self) -> f64 {
+        1.0 / self.control_rate_hz
+    }
+
+    /// Sound samples a control step.
+    pub fn samples_per_step(&self) -> usize {
+        (f64::from(self.sound_rate_hz) / self.control_rate_hz) as usize
+    }
+}

@@ -1,0 +1,118 @@
+//! What all worlds over one house share: the house, and each engine's view of it, made at first use.
+
+use crate::error::WorldError;
+use dwell_acoustics::{AcousticConfig, AcousticScene};
+use dwell_physics::PhysicsModel;
+use dwell_render::CpuRenderer;
+use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
+use dwell_scene::{House, State};
+use dwell_semantics::Semantics;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// A house with the engines' shared views of it. A thousand worlds over one house share one of these.
+#[derive(Debug)]
+pub struct Engines {
+    house: Arc<House>,
+    renderer: OnceLock<CpuRenderer>,
+    semantics: OnceLock<Semantics>,
+    physics: OnceLock<Arc<PhysicsModel>>,
+    /// By preset and sample rate.
+    acoustics: Mutex<BTreeMap<(String, u32), AcousticScene>>,
+    /// For the walker whose radius, height and step these are; others get a grid of their own.
+    navigation: OnceLock<(NavConfig, Arc<NavGrid>)>,
+}
+
+impl Engines {
+    /// Shares `house`; nothing is computed yet.
+    pub fn new(house: Arc<House>) -> Arc<Self> {
+        Arc::new(Self {
+            house,
+            renderer: OnceLock::new(),
+            semantics: OnceLock::new(),
+            physics: OnceLock::new(),
+            acoustics: Mutex::default(),
+            navigation: OnceLock::new(),
+        })
+    }
+
+    /// The house.
+    pub fn house(&self) -> &Arc<House> {
+        &self.house
+    }
+
+    /// The renderer with the house's textures and tables.
+    pub fn renderer(&self) -> &CpuRenderer {
+        self.renderer.get_or_init(|| CpuRenderer::new(&self.house))
+    }
+
+    /// What can be said about the house.
+    pub fn semantics(&self) -> &Semantics {
+        self.semantics.get_or_init(|| Semantics::new(&self.house))
+    }
+
+    /// The shapes of the house's bodies.
+    pub fn physics(&self) -> &Arc<PhysicsModel> {
+        self.physics
+            .get_or_init(|| Arc::new(PhysicsModel::new(self.house.clone())))
+    }
+
+    /// The house prepared for sound with the settings called `preset`; what belongs to the house is shared.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] for an unknown preset, [`WorldError::Acoustics`] for a rate out of range.
+    pub fn acoustics(&self, preset: &str, rate_hz: u32) -> Result<AcousticScene, WorldError> {
+        let mut scenes = self
+            .acoustics
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        if let Some(scene) = scenes.get(&(preset.to_owned(), rate_hz)) {
+            return Ok(scene.clone());
+        }
+        let Some(config) = AcousticConfig::preset(preset) else {
+            let allowed = "\"rl\" or \"full\"".to_owned();
+            return Err(WorldError::Config {
+                field: "sound_preset",
+                found: format!("{preset:?}"),
+                allowed,
+            });
+        };
+        let scene = AcousticScene::new(self.house.clone(), AcousticConfig { rate_hz, ..config })?;
+        Ok(scenes
+            .entry((preset.to_owned(), rate_hz))
+            .or_insert(scene)
+            .clone())
+    }
+
+    /// Where a body can walk in the house as it starts, with all doors open. The first body's grid is shared.
+    ///
+    /// # Errors
+    /// [`WorldError::Scene`] for a house too large for the grid.
+    pub fn navigation(&self, body: &dwell_scene::AgentBody) -> Result<Arc<NavGrid>, WorldError> {
+        let config = NavConfig {
+            radius_m: body.radius_m,
+            height_m: body.height_m,
+            step_m: body.step_height_m,
+            doors: Doors::Open,
+            ..NavConfig::default()
+        };
+        if let Some((_, grid)) = self
+            .navigation
+            .get()
+            .filter(|(shared, _)| *shared == config)
+        {
+            return Ok(grid.clone());
+        }
+        let grid = Arc::new(NavGrid::build(
+            &self.house,
+            &State::new(&self.house),
+            &config,
+        )?);
+        let (shared, first) = self.navigation.get_or_init(|| (config, grid.clone()));
+        Ok(if *shared == config {
+            first.clone()
+        } else {
+            grid
+        })
+    }
+}

@@ -1,0 +1,304 @@
+//! One agent's environment: a world, a task and sensors, stepped by discrete actions.
+
+use crate::action::{DiscreteAction, Stride};
+use crate::config::WorldConfig;
+use crate::engines::Engines;
+use crate::error::WorldError;
+use crate::metrics::Progress;
+use crate::requests::{Requests, Results};
+use crate::sensors::{self, Out, Seen, Sensor, SensorSpec, Site};
+use crate::tasks::{self, Task, TaskKind};
+use crate::world::World;
+use dwell_scene::random::Key;
+use dwell_scene::{AgentId, Pose};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// What an environment is made of. Every field has a default; unknown fields are refused.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct EnvConfig {
+    /// The task's name.
+    pub task: String,
+    /// The task's settings.
+    pub task_settings: serde_json::Value,
+    /// Rates, laws, parameters.
+    pub world: WorldConfig,
+    /// How far movement actions go.
+    pub stride: Stride,
+    /// Sensors by name with their settings; `None`: the task's own choice.
+    pub sensors: Option<Vec<SensorConfig>>,
+}
+
+/// A sensor that is asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SensorConfig {
+    /// The kind's name.
+    pub kind: String,
+    /// Its settings.
+    #[serde(default)]
+    pub settings: serde_json::Value,
+}
+
+impl Default for EnvConfig {
+    fn default() -> Self {
+        Self {
+            task: "InstructionFollowing".to_owned(),
+            task_settings: serde_json::Value::Null,
+            world: WorldConfig::default(),
+            stride: Stride::default(),
+            sensors: None,
+        }
+    }
+}
+
+/// What an episode asks for, and how far it has come.
+#[derive(Clone, Debug)]
+pub struct Episode {
+    /// The instruction as text.
+    pub instruction: String,
+    /// The instruction as tokens, padded with 0.
+    pub tokens: Vec<i32>,
+    /// Where the agent started.
+    pub start: Pose,
+    /// Distance, path, collisions.
+    pub progress: Progress,
+}
+
+/// How a step is judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Verdict {
+    /// The reward of the step.
+    pub reward: f64,
+    /// Whether the task has come to its end, well or badly.
+    pub terminated: bool,
+    /// Whether what was asked is done.
+    pub success: bool,
+}
+
+/// What a step reports beside the observation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepInfo {
+    /// Reward, end, success.
+    pub verdict: Verdict,
+    /// Whether the action did what it means.
+    pub action_success: bool,
+    /// Why not, as a sentence; empty when it did.
+    pub action_error: String,
+    /// Distances and path.
+    pub progress: Progress,
+    /// Whether this step was cut short by something in the way.
+    pub collision: bool,
+}
+
+/// An environment with one agent.
+#[derive(Debug)]
+pub struct Env {
+    world: World,
+    task: Box<dyn Task>,
+    kind: &'static TaskKind,
+    stride: Stride,
+    sensors: Vec<Box<dyn Sensor>>,
+    requests: Requests,
+    pub(crate) results: Results,
+    episode: Option<Episode>,
+    episode_key: Key,
+    done: bool,
+}
+
+impl Env {
+    /// Builds world, task and sensors over a house.
+    ///
+    /// # Errors
+    /// [`WorldError`] names the setting or the fault of the house.
+    pub fn new(engines: Arc<Engines>, config: &EnvConfig) -> Result<Self, WorldError> {
+        let kind = tasks::find(&config.task)?;
+        let task = (kind.build)(&config.task_settings)?;
+        config.stride.check()?;
+        let site = Site {
+            config: &config.world,
+        };
+        let defaults: Vec<SensorConfig> = kind
+            .sensors
+            .iter()
+            .map(|name| SensorConfig {
+                kind: (*name).to_owned(),
+                settings: serde_json::Value::Null,
+            })
+            .collect();
+        let wanted = config.sensors.as_ref().unwrap_or(&defaults);
+        let sensors: Vec<_> = wanted
+            .iter()
+            .map(|sensor| sensors::build(&sensor.kind, &sensor.settings, site))
+            .collect::<Result<_, _>>()?;
+        for (k, sensor) in sensors.iter().enumerate() {
+            let name = sensor.spec().name;
+            if sensors[..k].iter().any(|other| other.spec().name == name) {
+                let allowed = "each sensor once".to_owned();
+                return Err(WorldError::Config {
+                    field: "sensors",
+                    found: format!("{name:?} twice"),
+                    allowed,
+                });
+            }
+        }
+        let world = World::new(engines, &config.world)?;
+        let mut requests = Requests::default();
+        for sensor in &sensors {
+            sensor.plan(&world, &mut requests);
+        }
+        Ok(Self {
+            world,
+            task,
+            kind,
+            stride: config.stride,
+            sensors,
+            requests,
+            results: Results::default(),
+            episode: None,
+            episode_key: Key::root(0),
+            done: false,
+        })
+    }
+
+    /// The task's kind.
+    pub fn kind(&self) -> &'static TaskKind {
+        self.kind
+    }
+
+    /// What the sensors give, in order.
+    pub fn specs(&self) -> Vec<SensorSpec> {
+        self.sensors.iter().map(|sensor| sensor.spec()).collect()
+    }
+
+    /// The world.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The world, to look at closely or to change between episodes.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// The episode that runs, if one does.
+    pub fn episode(&self) -> Option<&Episode> {
+        self.episode.as_ref()
+    }
+
+    /// Starts a new episode; everything random in it comes from `seed`.
+    ///
+    /// # Errors
+    /// [`WorldError::Unplayable`] when the house does not hold what the task needs.
+    pub fn reset(&mut self, seed: u64) -> Result<&Episode, WorldError> {
+        let key = Key::root(seed).child("episode");
+        self.world.reset(key)?;
+        let episode = self.task.reset(&mut self.world, key.child("task"))?;
+        self.episode_key = key;
+        self.done = false;
+        Ok(self.episode.insert(episode))
+    }
+
+    /// Makes one control step with `action`, without looking: call [`Self::observe`] afterwards.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] before the first reset and after the end of an episode.
+    pub fn step(&mut self, action: DiscreteAction) -> Result<StepInfo, WorldError> {
+        let Some(episode) = self.episode.as_mut().filter(|_| !self.done) else {
+            let what = if self.done {
+                "the episode has ended"
+            } else {
+                "no episode has begun"
+            };
+            return Err(WorldError::Usage(format!("step: {what}; call reset first")));
+        };
+        let agent = AgentId(0);
+        let outcome = self.world.act_discrete(agent, action, &self.stride)?;
+        let verdict = self.task.judge(&self.world, episode, action);
+        self.done = verdict.terminated;
+        let collision = self
+            .world
+            .state()
+            .agents
+            .get(agent)
+            .is_some_and(|agent| agent.collided);
+        Ok(StepInfo {
+            verdict,
+            action_success: outcome.success,
+            action_error: if outcome.success {
+                String::new()
+            } else {
+                outcome.sentence
+            },
+            progress: episode.progress,
+            collision,
+        })
+    }
+
+    /// What the scripted expert would do now.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] before the first reset.
+    pub fn expert_action(&mut self) -> Result<DiscreteAction, WorldError> {
+        let Some(episode) = &self.episode else {
+            return Err(WorldError::Usage(
+                "expert: no episode has begun; call reset first".to_owned(),
+            ));
+        };
+        Ok(self.task.expert(&mut self.world, episode))
+    }
+
+    /// The world's sound of this step; call once a step, before [`Self::observe`].
+    pub(crate) fn listen(&mut self) -> Result<(), WorldError> {
+        self.world.listen(&self.requests.ears)
+    }
+
+    /// The world, and the buffers for its pictures, at the same time.
+    pub(crate) fn picture_work(&mut self) -> (&World, &Requests, &mut Results) {
+        self.results.prepare(&self.requests);
+        (&self.world, &self.requests, &mut self.results)
+    }
+
+    /// Writes sensor `index`'s observation.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for a wrong index or length, or before the first reset.
+    pub(crate) fn observe(&self, index: usize, out: Out<'_>) -> Result<(), WorldError> {
+        let (Some(sensor), Some(episode)) = (self.sensors.get(index), &self.episode) else {
+            return Err(WorldError::Usage(format!(
+                "observe: no sensor {index}, or no episode has begun"
+            )));
+        };
+        let spec = sensor.spec();
+        let length = match &out {
+            Out::Uint8(out) => out.len(),
+            Out::Float32(out) => out.len(),
+            Out::Int32(out) => out.len(),
+            Out::Text(_) => spec.len(),
+        };
+        if length != spec.len() {
+            return Err(WorldError::Usage(format!(
+                "observe: {} needs a buffer of {} elements, shape {:?}; found {length}",
+                spec.name,
+                spec.len(),
+                spec.shape
+            )));
+        }
+        let key = self
+            .episode_key
+            .child("sensor")
+            .child(spec.name.as_str())
+            .child(self.world.state().step);
+        sensor.finish(
+            Seen {
+                world: &self.world,
+                episode,
+                results: &self.results,
+                key,
+            },
+            out,
+        );
+        Ok(())
+    }
+}

@@ -1,0 +1,61 @@
+//! What can go wrong with a world.
+
+/// A fault of a world, its sensors or its tasks.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WorldError {
+    /// A fault of the scene or its parameters.
+    #[error(transparent)]
+    Scene(#[from] dwell_scene::SceneError),
+    /// A house that cannot be opened.
+    #[error(transparent)]
+    Houses(#[from] dwell_houses::HousesError),
+    /// A fault of physics.
+    #[error(transparent)]
+    Physics(#[from] dwell_physics::PhysicsError),
+    /// A fault of sound.
+    #[error(transparent)]
+    Acoustics(#[from] dwell_acoustics::AcousticsError),
+    /// A fault of language.
+    #[error(transparent)]
+    Semantics(#[from] dwell_semantics::SemanticsError),
+    /// A fault of a picture.
+    #[error(transparent)]
+    Render(#[from] dwell_render::RenderError),
+    /// A setting outside its range.
+    #[error("{field} is {found}; allowed is {allowed}")]
+    Config {
+        /// The field.
+        field: &'static str,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// A name that nothing registered has.
+    #[error("no {kind} {name:?}; there are {known:?}")]
+    Unknown {
+        /// What was looked for.
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// The names that exist.
+        known: Vec<String>,
+    },
+    /// A house in which a task cannot be played.
+    #[error("task {task} cannot be played in house {house:?}: {why}")]
+    Unplayable {
+        /// The task.
+        task: &'static str,
+        /// The house.
+        house: String,
+        /// Why not, and what would help.
+        why: String,
+    },
+    /// A call out of order or with a wrong count.
+    #[error("{0}")]
+    Usage(String),
+    /// A snapshot that cannot be used here.
+    #[error("snapshot refused: {0}")]
+    Snapshot(String),
+}

@@ -1,0 +1,217 @@
+//! A guide who knows the house: follows shortest ways, opens doors, turns to things.
+
+use crate::action::{DiscreteAction, Stride};
+use crate::world::World;
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::math::wrap_angle;
+use dwell_scene::navigation::{Cell, DistanceField, NavGrid};
+use dwell_scene::space::{pitch_from_forward, yaw_from_forward};
+use dwell_scene::{AgentId, Entity, ObjectId};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// How far ahead of itself it looks for closed doors, m: further than a door leaf is wide, nearer than its arm is long.
+const DOOR_AHEAD_M: f32 = 1.4;
+/// How far ahead on the way it aims, m.
+const AIM_AHEAD_M: f32 = 1.0;
+/// A door is open enough to pass from this share on.
+const PASSABLE: f32 = 0.8;
+
+/// A way for one agent to a set of cells.
+#[derive(Clone, Debug)]
+pub struct Guide {
+    agent: AgentId,
+    grid: Arc<NavGrid>,
+    field: DistanceField,
+    stride: Stride,
+    /// How often it was blocked of late.
+    blocked: u32,
+    /// Steps of the manoeuvre that frees it, counted down.
+    escape: u32,
+    /// Manoeuvres so far; they turn left and right by turns.
+    escapes: u32,
+}
+
+impl Guide {
+    /// A guide that leads `agent` to the nearest of `goals`.
+    pub fn new(agent: AgentId, grid: Arc<NavGrid>, goals: &[Cell], stride: Stride) -> Self {
+        let field = grid.distance_field(goals);
+        Self {
+            agent,
+            grid,
+            field,
+            stride,
+            blocked: 0,
+            escape: 0,
+            escapes: 0,
+        }
+    }
+
+    /// The agent that it leads.
+    pub fn agent(&self) -> AgentId {
+        self.agent
+    }
+
+    /// Geodesic distance of the agent to the goals, m; `None` off the grid or without a way.
+    pub fn distance_m(&self, world: &World) -> Option<f64> {
+        let here = world.state().agents.get(self.agent)?.position;
+        self.field.at(self.grid.nearest(here, 0.5)?)
+    }
+
+    /// Geodesic distance of a cell to the goals, m.
+    pub fn at(&self, cell: Cell) -> Option<f64> {
+        self.field.at(cell)
+    }
+
+    /// The next step of the way; `None` when it stands on a goal or there is no way.
+    pub fn walk(&mut self, world: &World) -> Option<DiscreteAction> {
+        let agent = *world.state().agents.get(self.agent)?;
+        let here = self.grid.nearest(agent.position, 0.6)?;
+        if self.field.at(here)? <= 0.0 {
+            return None;
+        }
+        if let Some(door) = self.closed_door_ahead(world, here) {
+            return Some(self.open(world, door));
+        }
+        if let Some(step) = self.escape(agent.collided) {
+            return Some(step);
+        }
+        let aim = self.aim(here, agent.position)?;
+        Some(
+            turn_towards(agent.yaw_rad, aim - agent.position, &self.stride)
+                .unwrap_or(DiscreteAction::MoveForward),
+        )
+    }
+
+    /// Grazing a corner or a door: some turns away from the way and a few steps usually free it.
+    fn escape(&mut self, collided: bool) -> Option<DiscreteAction> {
+        self.blocked = if collided {
+            self.blocked + 1
+        } else {
+            self.blocked.saturating_sub(1)
+        };
+        if self.blocked > 4 && self.escape == 0 {
+            (self.blocked, self.escape, self.escapes) = (0, 8, self.escapes + 1);
+        }
+        self.escape = self.escape.checked_sub(1)?;
+        let turn = if self.escapes % 2 == 0 {
+            DiscreteAction::TurnLeft
+        } else {
+            DiscreteAction::TurnRight
+        };
+        Some(if self.escape >= 3 {
+            turn
+        } else {
+            DiscreteAction::MoveForward
+        })
+    }
+
+    /// The point of the way that it walks to next: the furthest one within reach of the eye.
+    fn aim(&self, here: Cell, position: Vec3) -> Option<Vec3> {
+        let way = self.grid.descend(&self.field, here)?;
+        let near = way
+            .iter()
+            .take_while(|cell| (self.grid.position(**cell) - position).length() <= AIM_AHEAD_M);
+        let ahead: Vec<Cell> = near.copied().collect();
+        let free = ahead
+            .iter()
+            .rev()
+            .find(|cell| self.grid.is_straight_free(here, **cell));
+        let next = way.get(1).or(way.first())?;
+        Some(
+            self.grid
+                .position(*free.filter(|cell| **cell != here).unwrap_or(next)),
+        )
+    }
+
+    /// A jointed thing that stands in the way and is not open.
+    fn closed_door_ahead(&self, world: &World, here: Cell) -> Option<ObjectId> {
+        let way = self.grid.descend(&self.field, here)?;
+        let agent = world.state().agents.get(self.agent)?;
+        let mut from = agent.position;
+        let mut walked = 0.0;
+        for cell in way {
+            let to = self.grid.position(cell);
+            let lift = Vec3::Y * (agent.body.height_m * 0.6);
+            let ray = Ray::segment(from + lift, to + lift, 0.0);
+            if let Some(hit) = world.rays().closest(&ray, RayMask::AGENT)
+                && let Some(Entity::Object(object)) =
+                    world.house().entity(world.rays().surface(&hit).entity)
+                && world
+                    .state()
+                    .openness(world.house(), object)
+                    .is_some_and(|open| open < PASSABLE)
+            {
+                return Some(object);
+            }
+            walked += (to - from).length();
+            if walked > DOOR_AHEAD_M {
+                return None;
+            }
+            from = to;
+        }
+        None
+    }
+
+    /// Turns to a door and opens it; waits while it opens.
+    fn open(&self, world: &World, door: ObjectId) -> DiscreteAction {
+        face(world, self.agent, door, &self.stride).unwrap_or_else(|| {
+            if world.gaze_target(self.agent) == Some(door) {
+                DiscreteAction::Open
+            } else {
+                DiscreteAction::MoveForward
+            }
+        })
+    }
+}
+
+/// The turn that brings `direction` ahead; `None` when it already is, within half a turn's step.
+fn turn_towards(yaw_rad: f32, direction: Vec3, stride: &Stride) -> Option<DiscreteAction> {
+    let error = wrap_angle(yaw_from_forward(direction) - yaw_rad);
+    if error.abs() <= stride.turn_deg.to_radians() * 0.51 {
+        return None;
+    }
+    Some(if error > 0.0 {
+        DiscreteAction::TurnLeft
+    } else {
+        DiscreteAction::TurnRight
+    })
+}
+
+/// The turn or nod that brings a point into the middle of an agent's view; `None` when it already is there.
+fn face_point(
+    world: &World,
+    agent: AgentId,
+    target: Vec3,
+    stride: &Stride,
+) -> Option<DiscreteAction> {
+    let agent = world.state().agents.get(agent)?;
+    let direction = target - agent.eye_position();
+    if let Some(turn) = turn_towards(agent.yaw_rad, direction, stride) {
+        return Some(turn);
+    }
+    let error = pitch_from_forward(direction) - agent.pitch_rad;
+    if error.abs() <= stride.look_deg.to_radians() * 0.51 {
+        return None;
+    }
+    Some(if error > 0.0 {
+        DiscreteAction::LookUp
+    } else {
+        DiscreteAction::LookDown
+    })
+}
+
+/// The turn or nod that brings an object into the middle of an agent's view; `None` when it already is there.
+pub fn face(
+    world: &World,
+    agent: AgentId,
+    object: ObjectId,
+    stride: &Stride,
+) -> Option<DiscreteAction> {
+    face_point(
+        world,
+        agent,
+        world.house().object_bounds(world.state(), object).center(),
+        stride,
+    )
+}

@@ -1,0 +1,41 @@
+//! The instruction of the episode as text.
+
+use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site};
+use crate::error::WorldError;
+
+const ABOUT: &str =
+    "The instruction as text; its characters are dwell_semantics::instruct::CHARSET.";
+
+pub(super) const KIND: SensorKind = SensorKind {
+    name: "instruction",
+    about: ABOUT,
+    build,
+};
+
+#[derive(Debug)]
+struct Instruction;
+
+fn build(_: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    Ok(Box::new(Instruction))
+}
+
+impl Sensor for Instruction {
+    fn spec(&self) -> SensorSpec {
+        SensorSpec {
+            name: "instruction".to_owned(),
+            shape: Vec::new(),
+            dtype: Dtype::Text,
+            unit: "1",
+            low: 0.0,
+            high: dwell_semantics::instruct::MAX_TEXT_LEN as f64,
+            about: ABOUT,
+        }
+    }
+
+    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
+        if let Out::Text(out) = out {
+            out.clear();
+            out.push_str(&seen.episode.instruction);
+        }
+    }
+}

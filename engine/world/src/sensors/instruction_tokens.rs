@@ -1,0 +1,40 @@
+//! The instruction of the episode as numbers of a versioned vocabulary.
+
+use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site};
+use crate::error::WorldError;
+
+const ABOUT: &str =
+    "The instruction as tokens of the versioned vocabulary; shape (tokens,), 0 = padding.";
+
+pub(super) const KIND: SensorKind = SensorKind {
+    name: "instruction_tokens",
+    about: ABOUT,
+    build,
+};
+
+#[derive(Debug)]
+struct InstructionTokens;
+
+fn build(_: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    Ok(Box::new(InstructionTokens))
+}
+
+impl Sensor for InstructionTokens {
+    fn spec(&self) -> SensorSpec {
+        SensorSpec {
+            name: "instruction_tokens".to_owned(),
+            shape: vec![dwell_semantics::tokens::LENGTH],
+            dtype: Dtype::Int32,
+            unit: "token",
+            low: 0.0,
+            high: dwell_semantics::tokens::count() as f64,
+            about: ABOUT,
+        }
+    }
+
+    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
+        if let Out::Int32(out) = out {
+            out.copy_from_slice(&seen.episode.tokens);
+        }
+    }
+}

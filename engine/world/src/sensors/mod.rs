@@ -1,0 +1,175 @@
+//! Sensors: what an agent observes. One file each, and one line in [`all`].
+//!
+//! A sensor works in two strokes. In the first it says what it needs ([`Sensor::plan`]); the engines then run once for
+//! all sensors of all worlds; in the second it writes into a buffer that the caller owns ([`Sensor::finish`]).
+
+mod audio;
+mod camera;
+mod compass;
+mod depth;
+mod gps;
+mod instance;
+mod instruction;
+mod instruction_tokens;
+mod rgb;
+mod semantic;
+
+pub use camera::{CameraConfig, EyeCamera};
+
+use crate::env::Episode;
+use crate::error::WorldError;
+use crate::requests::{Requests, Results};
+use crate::world::World;
+use dwell_scene::random::Key;
+use serde::Serialize;
+use std::fmt::Debug;
+
+/// The type of an observation's elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Dtype {
+    /// Bytes.
+    Uint8,
+    /// 32-bit floats.
+    Float32,
+    /// 32-bit integers, each from 0 to below the spec's `high`.
+    Int32,
+    /// A string; `high` is its greatest length.
+    Text,
+}
+
+/// What a sensor's observation looks like.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SensorSpec {
+    /// The key in the observation.
+    pub name: String,
+    /// The shape; empty for text.
+    pub shape: Vec<usize>,
+    /// The element type.
+    pub dtype: Dtype,
+    /// The unit; `"1"` for none.
+    pub unit: &'static str,
+    /// The lowest value.
+    pub low: f64,
+    /// The highest value (for text: the greatest length; for tokens: the vocabulary's size).
+    pub high: f64,
+    /// One sentence about it.
+    pub about: &'static str,
+}
+
+impl SensorSpec {
+    /// The number of elements.
+    pub fn len(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// Whether the observation has no elements.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Where a sensor writes.
+#[derive(Debug)]
+pub enum Out<'a> {
+    /// For [`Dtype::Uint8`].
+    Uint8(&'a mut [u8]),
+    /// For [`Dtype::Float32`].
+    Float32(&'a mut [f32]),
+    /// For [`Dtype::Int32`].
+    Int32(&'a mut [i32]),
+    /// For [`Dtype::Text`].
+    Text(&'a mut String),
+}
+
+/// What a sensor may look at when it finishes.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// The world after the step.
+    pub world: &'a World,
+    /// The episode.
+    pub episode: &'a Episode,
+    /// What the engines computed.
+    pub results: &'a Results,
+    /// The sensor's random stream in this step.
+    pub key: Key,
+}
+
+/// A sensor on one agent.
+pub trait Sensor: Debug + Send + Sync {
+    /// Shape, type, unit and range of the observation.
+    fn spec(&self) -> SensorSpec;
+
+    /// Says what the engines must compute; most sensors that read the state need nothing.
+    fn plan(&self, _world: &World, _requests: &mut Requests) {}
+
+    /// Writes the observation. `out` has the type and length of [`Sensor::spec`].
+    fn finish(&self, seen: Seen<'_>, out: Out<'_>);
+}
+
+/// What a sensor is built from: the world's fixed numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Site<'a> {
+    /// The world's settings.
+    pub config: &'a crate::config::WorldConfig,
+}
+
+/// A kind of sensor that can be asked for by name.
+#[derive(Clone, Copy, Debug)]
+pub struct SensorKind {
+    /// The name, and the observation's default key.
+    pub name: &'static str,
+    /// One sentence about it.
+    pub about: &'static str,
+    /// Builds one from its settings (a JSON object; `{}` gives the defaults).
+    pub build: fn(&serde_json::Value, Site<'_>) -> Result<Box<dyn Sensor>, WorldError>,
+}
+
+/// All kinds of sensors.
+pub fn all() -> &'static [SensorKind] {
+    &[
+        rgb::KIND,
+        depth::KIND,
+        instance::KIND,
+        semantic::KIND,
+        audio::KIND,
+        instruction::KIND,
+        instruction_tokens::KIND,
+        gps::KIND,
+        compass::KIND,
+    ]
+}
+
+/// Builds the sensor called `name` from `settings`.
+///
+/// # Errors
+/// [`WorldError::Unknown`] lists the names there are; [`WorldError::Config`] names a wrong setting.
+pub fn build(
+    name: &str,
+    settings: &serde_json::Value,
+    site: Site<'_>,
+) -> Result<Box<dyn Sensor>, WorldError> {
+    let Some(kind) = all().iter().find(|kind| kind.name == name) else {
+        let known = all().iter().map(|kind| kind.name.to_owned()).collect();
+        return Err(WorldError::Unknown {
+            kind: "sensor",
+            name: name.to_owned(),
+            known,
+        });
+    };
+    (kind.build)(settings, site)
+}
+
+/// Reads a sensor's settings; `null` counts as `{}`.
+pub(crate) fn settings<T: serde::de::DeserializeOwned + Default>(
+    value: &serde_json::Value,
+) -> Result<T, WorldError> {
+    if value.is_null() {
+        return Ok(T::default());
+    }
+    serde_json::from_value(value.clone()).map_err(|error| WorldError::Config {
+        field: "sensor settings",
+        found: value.to_string(),
+        allowed: error.to_string(),
+    })
+}

@@ -1,0 +1,329 @@
+//! What sounds in a world, and what its agents hear: the one file that turns states and contacts into sound.
+
+use crate::config::WorldConfig;
+use crate::engines::Engines;
+use crate::error::WorldError;
+use dwell_acoustics::{ActiveSource, Stream, StreamConfig};
+use dwell_acoustics::{ImpactSound, Receiver, signals};
+use dwell_physics::{ContactEvent, Toucher};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use dwell_scene::rays::RayScene;
+use dwell_scene::units::pa_from_db_spl;
+use dwell_scene::{AgentId, House, PartId, State};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Blows weaker than this are not heard, N·s.
+const FAINTEST_N_S: f32 = 0.02;
+/// The most blows that sound at once; the hardest win.
+const MOST_BLOWS: usize = 16;
+/// Source ids of blows begin here; those of emitters are their numbers.
+const FIRST_BLOW_ID: u64 = 1 << 32;
+
+/// The sounds of a world and the ears that listen.
+#[derive(Debug)]
+pub(crate) struct Sound {
+    rate_hz: u32,
+    block: usize,
+    preset: String,
+    /// Sample of the first block's start.
+    blocks: u64,
+    blows: Vec<Blow>,
+    next_blow: u64,
+    ears: Vec<Ears>,
+}
+
+/// A blow that still rings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Blow {
+    id: u64,
+    sound: ImpactSound,
+    /// The sample, since the world's start, at which it begins.
+    start: u64,
+}
+
+/// One agent's ears.
+#[derive(Debug)]
+struct Ears {
+    agent: AgentId,
+    stream: Stream,
+    /// The newest samples. Shape (2, length), oldest first.
+    window: Vec<f32>,
+    length: usize,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Memory {
+    blocks: u64,
+    blows: Vec<Blow>,
+    next_blow: u64,
+    ears: Vec<(AgentId, Vec<f32>, Vec<u8>)>,
+}
+
+impl Sound {
+    pub(crate) fn new(config: &WorldConfig) -> Self {
+        Self {
+            rate_hz: config.sound_rate_hz,
+            block: config.samples_per_step(),
+            preset: config.sound_preset.clone(),
+            blocks: 0,
+            blows: Vec::new(),
+            next_blow: FIRST_BLOW_ID,
+            ears: Vec::new(),
+        }
+    }
+
+    /// Silence at time zero; ears are kept.
+    pub(crate) fn reset(&mut self) {
+        self.blocks = 0;
+        self.blows.clear();
+        self.next_blow = FIRST_BLOW_ID;
+        for ears in &mut self.ears {
+            ears.stream.reset();
+            ears.window.fill(0.0);
+        }
+    }
+
+    /// Lets the contacts of the last step sound in the block that ends now.
+    pub(crate) fn take_events(
+        &mut self,
+        house: &House,
+        events: &[ContactEvent],
+        step_start_s: f64,
+    ) {
+        let mut hard: Vec<&ContactEvent> = events
+            .iter()
+            .filter(|event| event.impulse_n_s >= FAINTEST_N_S)
+            .collect();
+        hard.sort_by(|a, b| b.impulse_n_s.total_cmp(&a.impulse_n_s));
+        let size = |toucher: Toucher| match toucher {
+            Toucher::Part(part) => Some(part_size_m(house, part)),
+            _ => None,
+        };
+        for event in hard.into_iter().take(MOST_BLOWS) {
+            let late_s = (event.time_s - step_start_s).max(0.0);
+            let late = ((late_s * f64::from(self.rate_hz)) as u64).min(self.block as u64 - 1);
+            self.blows.push(Blow {
+                id: self.next_blow,
+                sound: ImpactSound {
+                    position: event.position,
+                    impulse_n_s: event.impulse_n_s,
+                    substances: [event.substance_a.to_owned(), event.substance_b.to_owned()],
+                    size_m: [size(event.a), size(event.b)],
+                    key: Key::root(self.next_blow),
+                },
+                start: self.blocks * self.block as u64 + late,
+            });
+            self.next_blow += 1;
+        }
+    }
+
+    /// Computes the block of the last step for the ears of `agents`, each with a window of so many samples.
+    pub(crate) fn block(
+        &mut self,
+        engines: &Engines,
+        rays: &RayScene,
+        state: &State,
+        agents: &[(AgentId, usize)],
+        key: Key,
+    ) -> Result<(), WorldError> {
+        if agents.is_empty() {
+            self.finish_block();
+            return Ok(());
+        }
+        self.prepare_ears(engines, agents, key)?;
+        let sources = self.sources(engines.house(), state)?;
+        let active: Vec<ActiveSource<'_>> = sources
+            .iter()
+            .map(|(id, position, signal)| ActiveSource {
+                id: *id,
+                position: *position,
+                signal,
+            })
+            .collect();
+        let mut heard = vec![0.0; 2 * self.block];
+        for ears in self
+            .ears
+            .iter_mut()
+            .filter(|ears| agents.iter().any(|(agent, _)| *agent == ears.agent))
+        {
+            let Some(agent) = state.agents.get(ears.agent) else {
+                continue;
+            };
+            let receiver = Receiver::binaural(agent.world_from_head());
+            ears.stream
+                .block(rays, state, &active, &receiver, &mut heard)?;
+            for (channel, block) in heard.chunks_exact(self.block).enumerate() {
+                let window = &mut ears.window[channel * ears.length..(channel + 1) * ears.length];
+                let kept = ears.length - self.block;
+                window.copy_within(self.block.., 0);
+                window[kept..].copy_from_slice(block);
+            }
+        }
+        self.finish_block();
+        Ok(())
+    }
+
+    fn finish_block(&mut self) {
+        self.blocks += 1;
+        let now = self.blocks * self.block as u64;
+        let rate = f64::from(self.rate_hz);
+        self.blows
+            .retain(|blow| blow.start as f64 + blow.sound.duration_s() * rate > now as f64);
+    }
+
+    fn prepare_ears(
+        &mut self,
+        engines: &Engines,
+        agents: &[(AgentId, usize)],
+        key: Key,
+    ) -> Result<(), WorldError> {
+        for (agent, samples) in agents {
+            let length = samples.next_multiple_of(self.block).max(self.block);
+            if let Some(ears) = self.ears.iter_mut().find(|ears| ears.agent == *agent) {
+                if ears.length < length {
+                    ears.window = vec![0.0; 2 * length];
+                    ears.length = length;
+                }
+                continue;
+            }
+            let stream = self.stream(engines, *agent, key)?;
+            self.ears.push(Ears {
+                agent: *agent,
+                stream,
+                window: vec![0.0; 2 * length],
+                length,
+            });
+        }
+        Ok(())
+    }
+
+    fn stream(&self, engines: &Engines, agent: AgentId, key: Key) -> Result<Stream, WorldError> {
+        let scene = engines.acoustics(&self.preset, self.rate_hz)?;
+        let Some(config) = StreamConfig::preset(&self.preset) else {
+            let allowed = "\"rl\" or \"full\"".to_owned();
+            return Err(WorldError::Config {
+                field: "sound_preset",
+                found: self.preset.clone(),
+                allowed,
+            });
+        };
+        let config = StreamConfig {
+            block_samples: self.block,
+            ..config
+        };
+        Ok(Stream::new(
+            scene,
+            config,
+            key.child("ears").child(u64::from(agent.0)),
+            Threads::ONE,
+        )?)
+    }
+
+    /// What sounds in this block: emitters that are on, and blows that ring. Pressure at 1 m, Pa.
+    fn sources(
+        &self,
+        house: &House,
+        state: &State,
+    ) -> Result<Vec<(u64, Vec3, Vec<f32>)>, WorldError> {
+        let start = self.blocks * self.block as u64;
+        let mut sources = Vec::new();
+        for (k, emitter) in house.emitters.iter().enumerate() {
+            if !state.is_on(house, emitter.object) {
+                continue;
+            }
+            let mut signal = vec![0.0; self.block];
+            signals::synthesize(&emitter.signal, self.rate_hz, start, &mut signal)?;
+            let pressure = pa_from_db_spl(emitter.level_db);
+            signal.iter_mut().for_each(|sample| *sample *= pressure);
+            sources.push((
+                k as u64,
+                state.part_pose[emitter.part].transform_point(emitter.position),
+                signal,
+            ));
+        }
+        for blow in &self.blows {
+            let mut signal = vec![0.0; self.block];
+            let (skip, elapsed) = (
+                blow.start.saturating_sub(start) as usize,
+                start.saturating_sub(blow.start),
+            );
+            blow.sound
+                .synthesize(self.rate_hz, elapsed, &mut signal[skip.min(self.block)..]);
+            sources.push((blow.id, blow.sound.position, signal));
+        }
+        Ok(sources)
+    }
+
+    /// The newest samples at an ear, Pa; zeros before it listened that long, and for who never listened.
+    pub(crate) fn heard(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
+        out.fill(0.0);
+        if let Some(ears) = self
+            .ears
+            .iter()
+            .find(|ears| ears.agent == agent && channel < 2)
+        {
+            let window = &ears.window[channel * ears.length..(channel + 1) * ears.length];
+            let count = out.len().min(window.len());
+            let first = out.len() - count;
+            out[first..].copy_from_slice(&window[window.len() - count..]);
+        }
+    }
+
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        let ears = self
+            .ears
+            .iter()
+            .map(|ears| (ears.agent, ears.window.clone(), ears.stream.snapshot()));
+        let memory = Memory {
+            blocks: self.blocks,
+            blows: self.blows.clone(),
+            next_blow: self.next_blow,
+            ears: ears.collect(),
+        };
+        postcard::to_stdvec(&memory).expect("plain data can always be written to memory")
+    }
+
+    /// The sounds that [`Sound::to_bytes`] wrote, for a world of these settings.
+    pub(crate) fn from_bytes(
+        config: &WorldConfig,
+        engines: &Engines,
+        key: Key,
+        bytes: &[u8],
+    ) -> Result<Self, WorldError> {
+        let memory: Memory =
+            postcard::from_bytes(bytes).map_err(|error| WorldError::Snapshot(error.to_string()))?;
+        let mut sound = Self::new(config);
+        (sound.blocks, sound.blows, sound.next_blow) =
+            (memory.blocks, memory.blows, memory.next_blow);
+        for (agent, window, stream) in memory.ears {
+            let length = window.len() / 2;
+            if length == 0 || length % sound.block != 0 || window.len() != 2 * length {
+                return Err(WorldError::Snapshot(format!(
+                    "a window of {} samples",
+                    window.len()
+                )));
+            }
+            let mut ears = Ears {
+                agent,
+                stream: sound.stream(engines, agent, key)?,
+                window,
+                length,
+            };
+            ears.stream.restore(&stream)?;
+            sound.ears.push(ears);
+        }
+        Ok(sound)
+    }
+}
+
+/// The largest edge of a part's mesh, m.
+fn part_size_m(house: &House, part: PartId) -> f32 {
+    let part = &house.parts[part];
+    house.meshes[part.mesh]
+        .bounds()
+        .transformed(&part.part_from_mesh)
+        .size()
+        .max_element()
+}

@@ -1,0 +1,261 @@
+//! Do what the instruction says: go to a room, or find a thing; then stop.
+//!
+//! Reward: by how much the geodesic distance to the goal fell (m), minus 0.01 a step, plus 2.5 for stopping where the
+//! instruction is fulfilled. The episode ends with `stop`.
+
+use super::{Task, TaskKind};
+use crate::action::{DiscreteAction, Stride};
+use crate::env::{Episode, Verdict};
+use crate::error::WorldError;
+use crate::expert::{Guide, face};
+use crate::metrics::Progress;
+use crate::world::World;
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::navigation::{Cell, NavGrid};
+use dwell_scene::random::Key;
+use dwell_scene::{AgentId, Pose, State};
+use dwell_semantics::instruct::{self, Instruction, InstructionKind};
+use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+const NAME: &str = "InstructionFollowing";
+/// Reward for success, and for every step (habitat-lab's defaults for navigation).
+const SUCCESS_REWARD: f64 = 2.5;
+const SLACK_REWARD: f64 = -0.01;
+
+pub(super) const KIND: TaskKind = TaskKind {
+    name: NAME,
+    version: 0,
+    about: "Follow an instruction: go to a room or find a thing, then stop.",
+    max_steps: 1000,
+    sensors: &[
+        "rgb",
+        "depth",
+        "semantic",
+        "audio",
+        "instruction",
+        "instruction_tokens",
+    ],
+    build,
+};
+
+/// The task's settings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Settings {
+    /// Kinds of instructions to draw from; default all.
+    kinds: Vec<InstructionKind>,
+    /// The nearest a start may lie to the goal, geodesic m; default 1.
+    min_distance_m: f64,
+    /// The furthest, m; default 30.
+    max_distance_m: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            kinds: InstructionKind::ALL.to_vec(),
+            min_distance_m: 1.0,
+            max_distance_m: 30.0,
+        }
+    }
+}
+
+fn build(value: &serde_json::Value) -> Result<Box<dyn Task>, WorldError> {
+    let settings: Settings = if value.is_null() {
+        Settings::default()
+    } else {
+        serde_json::from_value(value.clone()).map_err(|error| WorldError::Config {
+            field: "task_settings",
+            found: value.to_string(),
+            allowed: error.to_string(),
+        })?
+    };
+    if settings.kinds.is_empty() {
+        let allowed = "at least one of go_to_room, find_object".to_owned();
+        return Err(WorldError::Config {
+            field: "kinds",
+            found: "none".to_owned(),
+            allowed,
+        });
+    }
+    Ok(Box::new(InstructionFollowing {
+        settings,
+        offers: Vec::new(),
+        now: None,
+    }))
+}
+
+/// An instruction that can be played, and the cells where it is fulfilled.
+#[derive(Clone, Debug)]
+struct Offer {
+    instruction: Instruction,
+    goals: Vec<Cell>,
+}
+
+#[derive(Clone, Debug)]
+struct Now {
+    instruction: Instruction,
+    guide: Guide,
+}
+
+#[derive(Debug)]
+struct InstructionFollowing {
+    settings: Settings,
+    /// What the house offers at its start; found once.
+    offers: Vec<Offer>,
+    now: Option<Now>,
+}
+
+impl InstructionFollowing {
+    fn find_offers(&mut self, world: &World, grid: &NavGrid) {
+        let engines = world.engines().clone();
+        let state: &State = world.state();
+        let scene = engines.semantics().scene(state);
+        for kind in &self.settings.kinds {
+            for instruction in instruct::candidates(&scene, *kind) {
+                let goals = goal_cells(world, grid, &instruction);
+                if !goals.is_empty() {
+                    self.offers.push(Offer { instruction, goals });
+                }
+            }
+        }
+    }
+}
+
+/// The walkable cells of the largest island in which an instruction is fulfilled by someone who looks the right way.
+fn goal_cells(world: &World, grid: &NavGrid, instruction: &Instruction) -> Vec<Cell> {
+    let (house, state) = (world.house(), world.state());
+    let scene = world.engines().semantics().scene(state);
+    let eye_m = state
+        .agents
+        .get(AgentId(0))
+        .map_or(1.25, |agent| agent.body.eye_height_m);
+    let on_island = grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
+    on_island
+        .filter(|cell| {
+            let at = grid.position(*cell);
+            let in_room = |dx: f32, dz: f32| {
+                let room = house.room_at(at + Vec3::new(dx, 0.1, dz));
+                room.is_some_and(|room| instruction.goal.rooms.contains(&room))
+            };
+            // All around a cell, so that an agent that stops anywhere on it counts.
+            let edge = grid.config().cell_m;
+            if in_room(-edge, 0.0)
+                && in_room(edge, 0.0)
+                && in_room(0.0, -edge)
+                && in_room(0.0, edge)
+            {
+                return true;
+            }
+            instruction.goal.objects.iter().any(|object| {
+                let extent = scene.extent(*object);
+                // A little nearer than asked, so that an agent that stops on the cell's border still counts.
+                if extent.footprint.distance_to(Vec2::new(at.x, at.z))
+                    > instruction.goal.radius_m * 0.8
+                {
+                    return false;
+                }
+                let eye = at + Vec3::Y * eye_m;
+                let ray = Ray::new(eye, extent.bounds.center() - eye);
+                let hit = world.rays().closest(&ray, RayMask::EYE);
+                hit.is_some_and(|hit| {
+                    world.rays().surface(&hit).entity == house.entity_of_object(*object)
+                })
+            })
+        })
+        .collect()
+}
+
+impl Task for InstructionFollowing {
+    fn reset(&mut self, world: &mut World, key: Key) -> Result<Episode, WorldError> {
+        let agent = AgentId(0);
+        let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
+            return Err(WorldError::Usage(format!(
+                "{NAME} needs a world with one agent"
+            )));
+        };
+        let grid = world.engines().navigation(&body)?;
+        if self.offers.is_empty() {
+            self.find_offers(world, &grid);
+        }
+        let unplayable = |why: &str| WorldError::Unplayable {
+            task: NAME,
+            house: world.house().name.clone(),
+            why: why.to_owned(),
+        };
+        let mut order: Vec<usize> = (0..self.offers.len()).collect();
+        key.child("order").stream().shuffle(&mut order);
+        let found = order.into_iter().find_map(|k| {
+            let offer = &self.offers[k];
+            let guide = Guide::new(agent, grid.clone(), &offer.goals, Stride::default());
+            let range = self.settings.min_distance_m..=self.settings.max_distance_m;
+            let allowed = |cell: Cell| {
+                grid.island(cell) == Some(0) && guide.at(cell).is_some_and(|d| range.contains(&d))
+            };
+            let start = grid.sample(key.child("start"), allowed)?;
+            Some((offer.instruction.clone(), guide, start))
+        });
+        let Some((instruction, guide, start)) = found else {
+            return Err(unplayable(
+                "no instruction has a goal that can be walked to from the asked distance",
+            ));
+        };
+        let instruction =
+            instruct::choose(&[instruction], key).ok_or_else(|| unplayable("no wording fits"))?;
+        let yaw_rad = key
+            .child("yaw")
+            .stream()
+            .range(-std::f32::consts::PI, std::f32::consts::PI);
+        let position = grid.position(start);
+        world.place_agent(agent, position, yaw_rad)?;
+        let distance_m = guide.at(start);
+        let episode = Episode {
+            instruction: instruction.text.clone(),
+            tokens: instruction.tokens()?,
+            start: Pose::from_position_yaw(position, yaw_rad),
+            progress: Progress::new(position, distance_m),
+        };
+        self.now = Some(Now { instruction, guide });
+        Ok(episode)
+    }
+
+    fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict {
+        let (Some(now), Some(agent)) = (&self.now, world.state().agents.get(AgentId(0))) else {
+            return Verdict::default();
+        };
+        let gain =
+            episode
+                .progress
+                .advance(agent.position, now.guide.distance_m(world), agent.collided);
+        let mut verdict = Verdict {
+            reward: gain + SLACK_REWARD,
+            ..Verdict::default()
+        };
+        if action == DiscreteAction::Stop {
+            let scene = world.engines().semantics().scene(world.state());
+            let judged = now
+                .instruction
+                .verify_at_stop(&scene, world.rays(), AgentId(0));
+            verdict.terminated = true;
+            verdict.success = judged == instruct::Progress::Success;
+            if verdict.success {
+                verdict.reward += SUCCESS_REWARD;
+            }
+        }
+        verdict
+    }
+
+    fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {
+        let Some(now) = &mut self.now else {
+            return DiscreteAction::Stop;
+        };
+        if let Some(step) = now.guide.walk(world) {
+            return step;
+        }
+        let Some(object) = now.instruction.goal.objects.first() else {
+            return DiscreteAction::Stop;
+        };
+        face(world, AgentId(0), *object, &Stride::default()).unwrap_or(DiscreteAction::Stop)
+    }
+}

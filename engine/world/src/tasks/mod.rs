@@ -1,0 +1,65 @@
+//! Tasks: what an episode asks for and how it is judged. One file each, and one line in [`all`].
+
+mod instruction_following;
+
+use crate::action::DiscreteAction;
+use crate::env::{Episode, Verdict};
+use crate::error::WorldError;
+use crate::world::World;
+use dwell_scene::random::Key;
+use std::fmt::Debug;
+
+/// A task. One value plays one episode after another in one world.
+pub trait Task: Debug + Send + Sync {
+    /// Puts the agent at a start and says what is asked.
+    ///
+    /// # Determinism
+    /// Everything is drawn from `key`.
+    ///
+    /// # Errors
+    /// [`WorldError::Unplayable`] when the house does not hold what the task needs.
+    fn reset(&mut self, world: &mut World, key: Key) -> Result<Episode, WorldError>;
+
+    /// Judges the step that has just been made with `action`.
+    fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict;
+
+    /// What a scripted expert, who knows the house, would do now.
+    fn expert(&mut self, world: &mut World, episode: &Episode) -> DiscreteAction;
+}
+
+/// A kind of task that can be asked for by name.
+#[derive(Clone, Copy, Debug)]
+pub struct TaskKind {
+    /// The name: the environment is `dwell/<name>-v<version>`.
+    pub name: &'static str,
+    /// Raised whenever an episode would go another way.
+    pub version: u32,
+    /// One sentence about it.
+    pub about: &'static str,
+    /// Control steps after which an episode is cut off.
+    pub max_steps: u64,
+    /// The sensors that its environment has when nobody says otherwise.
+    pub sensors: &'static [&'static str],
+    /// Builds one from its settings (a JSON object; `{}` gives the defaults).
+    pub build: fn(&serde_json::Value) -> Result<Box<dyn Task>, WorldError>,
+}
+
+/// All tasks.
+pub fn all() -> &'static [TaskKind] {
+    &[instruction_following::KIND]
+}
+
+/// The kind called `name`.
+///
+/// # Errors
+/// [`WorldError::Unknown`] lists the names there are.
+pub fn find(name: &str) -> Result<&'static TaskKind, WorldError> {
+    all().iter().find(|kind| kind.name == name).ok_or_else(|| {
+        let known = all().iter().map(|kind| kind.name.to_owned()).collect();
+        WorldError::Unknown {
+            kind: "task",
+            name: name.to_owned(),
+            known,
+        }
+    })
+}

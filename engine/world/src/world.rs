@@ -1,0 +1,279 @@
+//! A running world: state, physics, rays and sound over a shared house.
+
+use crate::config::WorldConfig;
+use crate::engines::Engines;
+use crate::error::WorldError;
+use crate::sound::Sound;
+use dwell_physics::{
+    Action, ActionOutcome, AgentControl, ContactEvent, PhysicsConfig, PhysicsWorld, StartReport,
+};
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::random::Key;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{Address, AgentId, AgentState, Entity, House, Id, ObjectId, State};
+use glam::Vec3;
+use std::sync::Arc;
+use xxhash_rust::xxh3::xxh3_64;
+
+/// A world over a shared house.
+#[derive(Debug)]
+pub struct World {
+    engines: Arc<Engines>,
+    config: WorldConfig,
+    state: State,
+    physics: PhysicsWorld,
+    rays: RayScene,
+    sound: Sound,
+    events: Vec<ContactEvent>,
+    start_report: StartReport,
+    key: Key,
+    /// What [`World::reset`] goes back to.
+    start: (State, Vec<u8>),
+}
+
+impl World {
+    /// Makes a world; its agents stand at the first room's floor until they are placed.
+    ///
+    /// # Errors
+    /// [`WorldError`] names the setting, parameter or law that is wrong.
+    pub fn new(engines: Arc<Engines>, config: &WorldConfig) -> Result<Self, WorldError> {
+        config.check()?;
+        let house = engines.house().clone();
+        let mut state = State::new(&house);
+        for (address, value) in &config.parameters {
+            let address: Address = address.parse()?;
+            state.set_parameter(&house, &address, *value)?;
+        }
+        state.laws = crate::laws::install(&config.laws)?;
+        let physics_config = PhysicsConfig {
+            control_rate_hz: config.control_rate_hz as f32,
+            physics_rate_hz: config.physics_rate_hz as f32,
+            ..PhysicsConfig::default()
+        };
+        let (mut physics, start_report) =
+            PhysicsWorld::over(engines.physics().clone(), &physics_config, &mut state)?;
+        let spot = default_spot(&house);
+        for body in &config.agents {
+            physics.add_agent(&mut state, AgentState::new(*body, spot, 0.0))?;
+        }
+        let mut rays = RayScene::new(house);
+        rays.update(&state);
+        let start = (state.clone(), physics.snapshot());
+        let sound = Sound::new(config);
+        let key = Key::root(0);
+        let events = Vec::new();
+        Ok(Self {
+            engines,
+            config: config.clone(),
+            state,
+            physics,
+            rays,
+            sound,
+            events,
+            start_report,
+            key,
+            start,
+        })
+    }
+
+    /// Goes back to the start; random streams begin anew under `key`.
+    ///
+    /// # Errors
+    /// [`WorldError::Physics`] if physics cannot restore its own start.
+    pub fn reset(&mut self, key: Key) -> Result<(), WorldError> {
+        self.state.clone_from(&self.start.0);
+        self.physics.restore(&mut self.state, &self.start.1)?;
+        self.rays.update(&self.state);
+        self.sound.reset();
+        self.events.clear();
+        self.key = key;
+        Ok(())
+    }
+
+    /// Makes one control step. `controls`: one for each agent; agents without one stand still.
+    ///
+    /// # Errors
+    /// [`WorldError::Physics`] for numbers that are not finite or too many controls.
+    pub fn step(&mut self, controls: &[AgentControl]) -> Result<(), WorldError> {
+        self.events.clear();
+        let began_s = self.physics.time_s();
+        self.physics
+            .step(&mut self.state, controls, &mut self.events)?;
+        self.state.step += 1;
+        self.state.time_s = self.state.step as f64 * self.config.step_s();
+        self.rays.update(&self.state);
+        self.sound
+            .take_events(self.engines.house(), &self.events, began_s);
+        Ok(())
+    }
+
+    /// Lets an agent do something with its hand.
+    pub fn act(&mut self, agent: AgentId, action: &Action) -> ActionOutcome {
+        let outcome = self.physics.act(&mut self.state, &self.rays, agent, action);
+        self.rays.update(&self.state);
+        outcome
+    }
+
+    /// Puts an agent somewhere, at rest.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for an agent that does not exist.
+    pub fn place_agent(
+        &mut self,
+        agent: AgentId,
+        position: Vec3,
+        yaw_rad: f32,
+    ) -> Result<(), WorldError> {
+        if agent.index() >= self.state.agents.len() {
+            let count = self.state.agents.len();
+            return Err(WorldError::Usage(format!(
+                "no agent {}; there are {count}",
+                agent.0
+            )));
+        }
+        self.physics
+            .place_agent(&mut self.state, agent, position, yaw_rad)?;
+        Ok(())
+    }
+
+    /// Computes this step's sound for the agents in `ears`, each with a window of so many samples.
+    ///
+    /// # Errors
+    /// [`WorldError::Acoustics`] for a source or receiver that cannot be simulated.
+    pub fn listen(&mut self, ears: &[(AgentId, usize)]) -> Result<(), WorldError> {
+        self.sound.block(
+            &self.engines,
+            &self.rays,
+            &self.state,
+            ears,
+            self.key.child("sound"),
+        )
+    }
+
+    /// The newest samples at an agent's ear (0 left, 1 right), Pa; zeros before it listened that long.
+    pub fn heard(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
+        self.sound.heard(agent, channel, out);
+    }
+
+    /// The object in the middle of an agent's view, within 10 m.
+    pub fn gaze_target(&self, agent: AgentId) -> Option<ObjectId> {
+        let eye = self.state.agents.get(agent)?.world_from_eye();
+        let ray = Ray::new(eye.position, eye.transform_vector(Vec3::NEG_Z)).between(0.0, 10.0);
+        let hit = self.rays.closest(&ray, RayMask::EYE)?;
+        match self.house().entity(self.rays.surface(&hit).entity)? {
+            Entity::Object(object) => Some(object),
+            _ => None,
+        }
+    }
+
+    /// What all worlds over the house share.
+    pub fn engines(&self) -> &Arc<Engines> {
+        &self.engines
+    }
+
+    /// The house.
+    pub fn house(&self) -> &Arc<House> {
+        self.engines.house()
+    }
+
+    /// The settings.
+    pub fn config(&self) -> &WorldConfig {
+        &self.config
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Surfaces as they stand now.
+    pub fn rays(&self) -> &RayScene {
+        &self.rays
+    }
+
+    /// The contacts that began in the last step.
+    pub fn events(&self) -> &[ContactEvent] {
+        &self.events
+    }
+
+    /// What had to be moved or frozen so that the world could start.
+    pub fn start_report(&self) -> &StartReport {
+        &self.start_report
+    }
+
+    /// Overrides a parameter from now on.
+    ///
+    /// # Errors
+    /// [`WorldError::Scene`] for an unknown address or a value out of range.
+    pub fn set_parameter(&mut self, address: &Address, value: f64) -> Result<(), WorldError> {
+        let house = self.house().clone();
+        self.state.set_parameter(&house, address, value)?;
+        self.physics.apply_parameters(&self.state)?;
+        Ok(())
+    }
+
+    /// A number that changes with any bit of state, physics, sound queues or random streams.
+    pub fn hash(&self) -> u64 {
+        let mut bytes = self.state.hash().to_le_bytes().to_vec();
+        bytes.extend_from_slice(&xxh3_64(&self.physics.snapshot()).to_le_bytes());
+        bytes.extend_from_slice(&xxh3_64(&self.sound.to_bytes()).to_le_bytes());
+        bytes.extend_from_slice(&postcard::to_stdvec(&self.key).unwrap_or_default());
+        xxh3_64(&bytes)
+    }
+
+    /// The whole world as bytes: state, physics with its contact caches, sound queues and the key of the episode.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let parts = Parts {
+            state: self.state.to_bytes(self.house()),
+            physics: self.physics.snapshot(),
+            sound: self.sound.to_bytes(),
+            key: self.key,
+        };
+        postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory")
+    }
+
+    /// Goes to where [`World::snapshot`] was taken; the next steps give the same bits as they did then.
+    ///
+    /// # Errors
+    /// [`WorldError`] with the reason; the world is then as it was before.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        let parts: Parts =
+            postcard::from_bytes(bytes).map_err(|error| WorldError::Snapshot(error.to_string()))?;
+        let mut state = State::from_bytes(self.engines.house(), &parts.state)?;
+        let sound = Sound::from_bytes(
+            &self.config,
+            &self.engines,
+            parts.key.child("sound"),
+            &parts.sound,
+        )?;
+        let before = self.physics.snapshot();
+        if let Err(error) = self.physics.restore(&mut state, &parts.physics) {
+            let mut old = self.state.clone();
+            self.physics.restore(&mut old, &before)?;
+            return Err(error.into());
+        }
+        self.state = state;
+        self.sound = sound;
+        self.key = parts.key;
+        self.events.clear();
+        self.rays.update(&self.state);
+        Ok(())
+    }
+}
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Parts {
+    state: Vec<u8>,
+    physics: Vec<u8>,
+    sound: Vec<u8>,
+    key: Key,
+}
+
+/// The middle of the first room's floor, or the origin.
+fn default_spot(house: &House) -> Vec3 {
+    house.rooms.iter().next().map_or(Vec3::ZERO, |room| {
+        let corners = room.footprint.first().copied().unwrap_or_default();
+        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+        Vec3::new(middle.x, room.floor_y, middle.y)
+    })
+}

@@ -1,0 +1,215 @@
+//! Environments stepped together.
+
+use crate::doorway::Doorway;
+use crate::errors::Fault;
+use crate::house::PyHouse;
+use dwell::sensors::{Dtype, Out};
+use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo};
+use dwell_scene::parallel::Threads;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadwriteArrayDyn};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+/// Environments stepped together; observations are written into arrays of the caller.
+#[pyclass(name = "Batch", module = "dwell._native", frozen)]
+pub(crate) struct PyBatch {
+    batch: std::sync::Mutex<Batch>,
+}
+
+enum Lent<'py> {
+    Uint8(PyReadwriteArrayDyn<'py, u8>),
+    Float32(PyReadwriteArrayDyn<'py, f32>),
+    Int32(PyReadwriteArrayDyn<'py, i32>),
+    Text(String),
+}
+
+fn action(number: i64) -> Result<Option<DiscreteAction>, Fault> {
+    if number == -1 {
+        return Ok(None);
+    }
+    let known = usize::try_from(number)
+        .ok()
+        .and_then(|k| DiscreteAction::ALL.get(k).copied());
+    let last = DiscreteAction::ALL.len() - 1;
+    known.map(Some).ok_or_else(|| {
+        Fault::Config(format!(
+            "action {number}; allowed are 0 to {last}, or -1 for none"
+        ))
+    })
+}
+
+impl PyBatch {
+    /// The batch for one call. A call that found a bug left it poisoned: then it refuses.
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Batch) -> Result<T, Fault> + Send,
+    ) -> PyResult<T> {
+        py.engine(|| {
+            let refuse = |_| {
+                Fault::Usage(
+                    "a bug of the engine stopped these environments; make new ones".to_owned(),
+                )
+            };
+            work(&mut *self.batch.lock().map_err(refuse)?)
+        })
+    }
+}
+
+#[pymethods]
+impl PyBatch {
+    #[new]
+    #[pyo3(signature = (houses, config_json, threads=None))]
+    fn new(
+        py: Python<'_>,
+        houses: Vec<Py<PyHouse>>,
+        config_json: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Self> {
+        let shared: Vec<std::sync::Arc<Engines>> = houses
+            .iter()
+            .map(|house| house.get().engines.clone())
+            .collect();
+        let batch = py.engine(|| -> Result<Batch, Fault> {
+            let config: EnvConfig = serde_json::from_str(config_json)?;
+            let envs = shared
+                .into_iter()
+                .map(|engines| Env::new(engines, &config))
+                .collect::<Result<Vec<_>, _>>()?;
+            Ok(Batch::new(envs, Threads::resolve(threads))?)
+        })?;
+        Ok(Self {
+            batch: batch.into(),
+        })
+    }
+
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        self.with(py, |batch| Ok(batch.envs().len()))
+    }
+
+    fn specs_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |batch| Ok(serde_json::to_string(&batch.specs())?))
+    }
+
+    fn reset(&self, py: Python<'_>, seeds: Vec<Option<u64>>) -> PyResult<()> {
+        self.with(py, |batch| Ok(batch.reset(&seeds)?))
+    }
+
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        actions: PyReadonlyArray1<'py, i64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let numbers = actions.as_slice()?.to_vec();
+        let infos = self.with(py, |batch| {
+            let actions = numbers
+                .iter()
+                .map(|number| action(*number))
+                .collect::<Result<Vec<_>, Fault>>()?;
+            Ok(batch.step(&actions)?)
+        })?;
+        let out = PyDict::new(py);
+        let of = |read: fn(&StepInfo) -> f64| -> Bound<'py, PyArray1<f64>> {
+            infos
+                .iter()
+                .map(|info| info.as_ref().map_or(0.0, read))
+                .collect::<Vec<_>>()
+                .into_pyarray(py)
+        };
+        let is = |read: fn(&StepInfo) -> bool| -> Bound<'py, PyArray1<bool>> {
+            infos
+                .iter()
+                .map(|info| info.as_ref().is_some_and(read))
+                .collect::<Vec<_>>()
+                .into_pyarray(py)
+        };
+        out.set_item("reward", of(|info| info.verdict.reward))?;
+        out.set_item("terminated", is(|info| info.verdict.terminated))?;
+        out.set_item("success", is(|info| info.verdict.success))?;
+        out.set_item("action_success", is(|info| info.action_success))?;
+        out.set_item("collision", is(|info| info.collision))?;
+        out.set_item(
+            "distance_to_goal",
+            of(|info| info.progress.distance_m.unwrap_or(-1.0)),
+        )?;
+        out.set_item("spl", of(|info| info.progress.spl(info.verdict.success)))?;
+        out.set_item("soft_spl", of(|info| info.progress.soft_spl()))?;
+        out.set_item("path_length", of(|info| info.progress.path_m))?;
+        out.set_item("collisions", of(|info| info.progress.collisions as f64))?;
+        let errors: Vec<String> = infos
+            .into_iter()
+            .map(|info| info.map_or(String::new(), |info| info.action_error))
+            .collect();
+        out.set_item("action_error", errors)?;
+        Ok(out)
+    }
+
+    fn observe<'py>(
+        &self,
+        py: Python<'py>,
+        which: PyReadonlyArray1<'py, bool>,
+        outs: Vec<Option<Bound<'py, PyAny>>>,
+    ) -> PyResult<()> {
+        let which = which.as_slice()?.to_vec();
+        let specs = self.with(py, |batch| Ok(batch.specs()))?;
+        let mut lent = Vec::new();
+        for (k, out) in outs.iter().enumerate() {
+            let Some(spec) = specs.get(k) else { break };
+            let array = |what: &str| {
+                let message = format!(
+                    "{}: expected a writeable C-contiguous {what} array",
+                    spec.name
+                );
+                move |_| crate::errors::to_python(Fault::Config(message))
+            };
+            lent.push(match (spec.dtype, out) {
+                (Dtype::Text, _) | (_, None) => Lent::Text(String::new()),
+                (Dtype::Uint8, Some(out)) => Lent::Uint8(out.extract().map_err(array("uint8"))?),
+                (Dtype::Float32, Some(out)) => {
+                    Lent::Float32(out.extract().map_err(array("float32"))?)
+                }
+                (Dtype::Int32, Some(out)) => Lent::Int32(out.extract().map_err(array("int32"))?),
+            });
+        }
+        let mut slices = Vec::new();
+        for array in &mut lent {
+            slices.push(match array {
+                Lent::Uint8(array) => Out::Uint8(array.as_slice_mut()?),
+                Lent::Float32(array) => Out::Float32(array.as_slice_mut()?),
+                Lent::Int32(array) => Out::Int32(array.as_slice_mut()?),
+                Lent::Text(text) => Out::Text(text),
+            });
+        }
+        self.with(py, |batch| Ok(batch.observe(&which, &mut slices)?))
+    }
+
+    fn texts(&self, py: Python<'_>, sensor: usize) -> PyResult<Vec<String>> {
+        self.with(py, |batch| Ok(batch.texts(sensor)))
+    }
+
+    fn expert_actions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let actions = self.with(py, |batch| Ok(batch.expert_actions()?))?;
+        Ok(actions
+            .into_iter()
+            .map(|action| action as i64)
+            .collect::<Vec<_>>()
+            .into_pyarray(py))
+    }
+
+    fn state_hash(&self, py: Python<'_>, env: usize) -> PyResult<u64> {
+        self.with(py, |batch| Ok(batch.env(env)?.world().hash()))
+    }
+
+    fn snapshot<'py>(&self, py: Python<'py>, env: usize) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = self.with(py, |batch| Ok(batch.env(env)?.world().snapshot()))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    fn agents_json(&self, py: Python<'_>, env: usize) -> PyResult<String> {
+        self.with(py, |batch| {
+            Ok(serde_json::to_string(
+                &batch.env(env)?.world().state().agents,
+            )?)
+        })
+    }
+}

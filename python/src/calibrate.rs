@@ -1,0 +1,46 @@
+//! Calibration for Python.
+
+use crate::doorway::Doorway;
+use crate::errors::Fault;
+use pyo3::prelude::*;
+use std::path::Path;
+
+/// Reads a measured bundle and answers the report as one JSON object. `progress`: called with a fraction and a sentence.
+#[pyfunction]
+#[pyo3(signature = (measured, house=None, progress=None))]
+pub(crate) fn calibrate(
+    py: Python<'_>,
+    measured: &str,
+    house: Option<&str>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let mut raised = None;
+    let report = py.engine(|| -> Result<String, Fault> {
+        let options = dwell_calibration::Options {
+            house: house.map(str::to_owned),
+            ..Default::default()
+        };
+        let report =
+            dwell_calibration::calibrate(Path::new(measured), &options, &mut |fraction, what| {
+                Python::attach(|py| {
+                    let called = progress
+                        .as_ref()
+                        .map_or(Ok(()), |call| call.call1(py, (fraction, what)).map(drop));
+                    raised = called
+                        .and_then(|()| py.check_signals())
+                        .err()
+                        .or(raised.take());
+                    raised.is_none()
+                })
+            })?;
+        Ok(report.to_json())
+    });
+    raised.map_or(report, Err)
+}
+
+/// Writes a small measured bundle with a hidden effect and answers what was hidden.
+#[pyfunction]
+#[pyo3(signature = (folder, seed=0))]
+pub(crate) fn calibration_example(py: Python<'_>, folder: &str, seed: u64) -> PyResult<String> {
+    py.engine(|| Ok::<_, Fault>(dwell_calibration::example::write(Path::new(folder), seed)?))
+}

@@ -1,0 +1,208 @@
+//! One tree of exceptions, under `dwell.DwellError`.
+//!
+//! pyo3 makes exceptions with one base; the Python package's names that also derive from a built-in are made in
+//! [`register`] with two.
+
+use dwell::WorldError;
+use dwell_calibration::CalibrationError;
+use dwell_houses::HousesError;
+use dwell_scene::SceneError;
+use pyo3::exceptions::PyException;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyTuple, PyType};
+use pyo3::{PyTypeInfo, create_exception};
+
+create_exception!(
+    dwell,
+    DwellError,
+    PyException,
+    "The base of every error of dwell."
+);
+
+/// What went wrong, with the exception it becomes.
+#[derive(Debug)]
+pub(crate) enum Fault {
+    Scene(String),
+    House(String),
+    HouseNotFound(String),
+    Config(String),
+    Usage(String),
+    Measured(String),
+}
+
+/// The exceptions with two bases, made once.
+static KINDS: PyOnceLock<Vec<(&'static str, Py<PyType>)>> = PyOnceLock::new();
+
+/// (name, the built-in it also is, its dwell base, what it means)
+const TREE: [(&str, &str, &str, &str); 7] = [
+    (
+        "SceneError",
+        "ValueError",
+        "DwellError",
+        "A fault of a scene or its parameters.",
+    ),
+    (
+        "HouseError",
+        "ValueError",
+        "DwellError",
+        "A house that cannot be read.",
+    ),
+    (
+        "HouseNotFoundError",
+        "FileNotFoundError",
+        "HouseError",
+        "A house that does not exist.",
+    ),
+    (
+        "ConfigError",
+        "ValueError",
+        "DwellError",
+        "A setting outside its range.",
+    ),
+    (
+        "UsageError",
+        "RuntimeError",
+        "DwellError",
+        "A call out of order.",
+    ),
+    (
+        "MeasuredDataError",
+        "ValueError",
+        "DwellError",
+        "Measured data that cannot be used.",
+    ),
+    (
+        "EngineBug",
+        "RuntimeError",
+        "DwellError",
+        "A bug of the engine; the object that raised it refuses further use.",
+    ),
+];
+
+fn kinds(py: Python<'_>) -> PyResult<&'static Vec<(&'static str, Py<PyType>)>> {
+    KINDS.get_or_try_init(py, || {
+        let builtins = py.import("builtins")?;
+        let mut made: Vec<(&'static str, Py<PyType>)> =
+            vec![("DwellError", DwellError::type_object(py).unbind())];
+        for (name, built_in, base, about) in TREE {
+            let base = made
+                .iter()
+                .find(|(other, _)| *other == base)
+                .map_or(&made[0].1, |(_, base)| base)
+                .clone_ref(py);
+            let bases = PyTuple::new(
+                py,
+                [base.into_bound(py).into_any(), builtins.getattr(built_in)?],
+            )?;
+            let namespace = PyDict::new(py);
+            namespace.set_item("__module__", "dwell")?;
+            namespace.set_item("__doc__", about)?;
+            let kind = builtins
+                .getattr("type")?
+                .call1((name, bases, namespace))?
+                .cast_into::<PyType>()?;
+            made.push((name, kind.unbind()));
+        }
+        Ok(made)
+    })
+}
+
+fn kind(py: Python<'_>, name: &str, message: String) -> PyErr {
+    match kinds(py) {
+        Ok(kinds) => {
+            let found = kinds
+                .iter()
+                .find(|(other, _)| *other == name)
+                .unwrap_or(&kinds[0]);
+            PyErr::from_type(found.1.bind(py).clone(), (message,))
+        }
+        Err(error) => error,
+    }
+}
+
+/// Adds the tree to the module.
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    for (name, kind) in kinds(module.py())? {
+        module.add(*name, kind.bind(module.py()))?;
+    }
+    Ok(())
+}
+
+/// A bug of the engines.
+pub(crate) struct EngineBug;
+
+impl EngineBug {
+    pub(crate) fn new_err(message: String) -> PyErr {
+        Python::attach(|py| kind(py, "EngineBug", message))
+    }
+}
+
+/// The exception of a fault.
+pub(crate) fn to_python(fault: Fault) -> PyErr {
+    let (name, message) = match fault {
+        Fault::Scene(message) => ("SceneError", message),
+        Fault::House(message) => ("HouseError", message),
+        Fault::HouseNotFound(message) => ("HouseNotFoundError", message),
+        Fault::Config(message) => ("ConfigError", message),
+        Fault::Usage(message) => ("UsageError", message),
+        Fault::Measured(message) => ("MeasuredDataError", message),
+    };
+    Python::attach(|py| kind(py, name, message))
+}
+
+impl From<SceneError> for Fault {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(error.to_string())
+    }
+}
+
+impl From<HousesError> for Fault {
+    fn from(error: HousesError) -> Self {
+        let missing = match &error {
+            HousesError::Io { source, .. } => source.kind() == std::io::ErrorKind::NotFound,
+            HousesError::UnknownHouse { .. } | HousesError::UnknownBuiltin { .. } => true,
+            _ => false,
+        };
+        if missing {
+            Self::HouseNotFound(error.to_string())
+        } else {
+            Self::House(error.to_string())
+        }
+    }
+}
+
+impl From<WorldError> for Fault {
+    fn from(error: WorldError) -> Self {
+        match error {
+            WorldError::Houses(error) => error.into(),
+            WorldError::Scene(error) => error.into(),
+            WorldError::Usage(message) => Self::Usage(message),
+            other => Self::Config(other.to_string()),
+        }
+    }
+}
+
+impl From<dwell_acoustics::AcousticsError> for Fault {
+    fn from(error: dwell_acoustics::AcousticsError) -> Self {
+        Self::Config(error.to_string())
+    }
+}
+
+impl From<dwell_render::RenderError> for Fault {
+    fn from(error: dwell_render::RenderError) -> Self {
+        Self::Config(error.to_string())
+    }
+}
+
+impl From<CalibrationError> for Fault {
+    fn from(error: CalibrationError) -> Self {
+        Self::Measured(error.to_string())
+    }
+}
+
+impl From<serde_json::Error> for Fault {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Config(error.to_string())
+    }
+}

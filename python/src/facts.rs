@@ -1,0 +1,100 @@
+//! What this build knows: actions, tasks, sensors, laws, words, and the machine it runs on.
+
+use dwell::DiscreteAction;
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+
+/// The discrete actions, in the order of their numbers.
+#[pyfunction]
+pub(crate) fn actions() -> Vec<&'static str> {
+    DiscreteAction::ALL.map(DiscreteAction::name).to_vec()
+}
+
+/// The tasks: `[{name, version, about, max_steps, sensors}]`.
+#[pyfunction]
+pub(crate) fn tasks_json() -> String {
+    let tasks = dwell::tasks::all().iter().map(|kind| {
+        json!({
+            "name": kind.name,
+            "version": kind.version,
+            "about": kind.about,
+            "max_steps": kind.max_steps,
+            "sensors": kind.sensors,
+        })
+    });
+    Value::from_iter(tasks).to_string()
+}
+
+/// The sensors: `[{name, about}]`.
+#[pyfunction]
+pub(crate) fn sensors_json() -> String {
+    Value::from_iter(
+        dwell::sensors::all()
+            .iter()
+            .map(|kind| json!({"name": kind.name, "about": kind.about})),
+    )
+    .to_string()
+}
+
+/// The laws with their equations, units, bounds and rivals.
+#[pyfunction]
+pub(crate) fn laws_json() -> PyResult<String> {
+    let laws: Vec<_> = dwell::laws::all().collect();
+    serde_json::to_string(&laws).map_err(|error| crate::errors::to_python(error.into()))
+}
+
+/// The words of instructions; token k is word k - 1, 0 is padding.
+#[pyfunction]
+pub(crate) fn vocabulary() -> Vec<&'static str> {
+    dwell_semantics::tokens::vocabulary().to_vec()
+}
+
+/// The characters of instructions.
+#[pyfunction]
+pub(crate) fn charset() -> &'static str {
+    dwell_semantics::instruct::CHARSET
+}
+
+/// The greatest length of an instruction, characters.
+#[pyfunction]
+pub(crate) fn max_text_length() -> usize {
+    dwell_semantics::instruct::MAX_TEXT_LEN
+}
+
+/// Versions, threads and features: what `dwell doctor` prints.
+#[pyfunction]
+pub(crate) fn doctor_json() -> String {
+    let threads = dwell_scene::parallel::Threads::resolve(None).count();
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "target": format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+        "threads": threads,
+        "available_cores": cores,
+        "cpu_features": cpu_features(),
+        "render_back_ends": ["cpu"],
+        "houses": dwell_houses::builtin::names(),
+    })
+    .to_string()
+}
+
+#[cfg(target_arch = "x86_64")]
+fn cpu_features() -> Vec<&'static str> {
+    let mut found = vec!["sse2"];
+    for (name, there) in [
+        ("avx", std::arch::is_x86_feature_detected!("avx")),
+        ("avx2", std::arch::is_x86_feature_detected!("avx2")),
+        ("fma", std::arch::is_x86_feature_detected!("fma")),
+        ("avx512f", std::arch::is_x86_feature_detected!("avx512f")),
+    ] {
+        if there {
+            found.push(name);
+        }
+    }
+    found
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn cpu_features() -> Vec<&'static str> {
+    Vec::new()
+}

@@ -1,0 +1,184 @@
+//! Houses for Python.
+
+use crate::doorway::Doorway;
+use crate::errors::Fault;
+use dwell::Engines;
+use dwell_scene::material::library;
+use dwell_scene::random::Key;
+use dwell_scene::{Bands, House, Material, ShoeboxMaterials, State};
+use dwell_semantics::graph::scene_graph;
+use dwell_semantics::instruct::{InstructionKind, candidates, choose};
+use dwell_semantics::{Semantics, describe};
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A checked, immutable house, shared by everything that is made from it.
+#[pyclass(name = "House", module = "dwell._native", frozen)]
+pub(crate) struct PyHouse {
+    pub(crate) engines: Arc<Engines>,
+    report: Value,
+}
+
+impl PyHouse {
+    fn from_house(house: House, report: Value) -> Self {
+        Self {
+            engines: Engines::new(Arc::new(house)),
+            report,
+        }
+    }
+
+    fn house(&self) -> &House {
+        self.engines.house()
+    }
+}
+
+#[pymethods]
+impl PyHouse {
+    #[staticmethod]
+    fn open(py: Python<'_>, house: &str) -> PyResult<Self> {
+        py.engine(|| -> Result<_, Fault> {
+            let (house, report) = dwell_houses::open(house)?;
+            Ok(Self::from_house(house, serde_json::to_value(&report)?))
+        })
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (size_m, substance=None, absorption=None, scattering=None))]
+    fn shoebox(
+        py: Python<'_>,
+        size_m: [f32; 3],
+        substance: Option<&str>,
+        absorption: Option<f32>,
+        scattering: Option<f32>,
+    ) -> PyResult<Self> {
+        py.engine(|| -> Result<_, Fault> {
+            let mut materials = ShoeboxMaterials::default();
+            if let Some(name) = substance {
+                let Some(found) = library().get(name) else {
+                    let known: Vec<_> = library()
+                        .iter()
+                        .map(|substance| substance.name.as_str())
+                        .collect();
+                    return Err(Fault::Config(format!(
+                        "no substance {name:?}; there are {known:?}"
+                    )));
+                };
+                materials = ShoeboxMaterials::uniform(&Material::of("wall", found));
+            }
+            let ShoeboxMaterials {
+                floor,
+                ceiling,
+                west,
+                east,
+                north,
+                south,
+            } = &mut materials;
+            for side in [floor, ceiling, west, east, north, south] {
+                side.absorption =
+                    absorption.map_or_else(|| side.absorption.clone(), Bands::constant);
+                side.scattering =
+                    scattering.map_or_else(|| side.scattering.clone(), Bands::constant);
+            }
+            Ok(Self::from_house(
+                House::shoebox(size_m, &materials)?,
+                json!([]),
+            ))
+        })
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.house().name
+    }
+
+    fn info_json(&self, py: Python<'_>) -> PyResult<String> {
+        py.engine(|| Ok::<_, Fault>(dwell::info(&self.engines, &self.report).to_string()))
+    }
+
+    fn rooms_json(&self, py: Python<'_>) -> PyResult<String> {
+        py.engine(|| Ok::<_, Fault>(serde_json::to_string(&dwell::viewpoints(&self.engines)?)?))
+    }
+
+    #[pyo3(signature = (level, key=None))]
+    fn describe(&self, py: Python<'_>, level: &str, key: Option<u64>) -> PyResult<Vec<String>> {
+        py.engine(|| {
+            describe_level(
+                self.engines.semantics(),
+                &State::new(self.house()),
+                level,
+                key,
+            )
+        })
+    }
+
+    fn semantic_classes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        py.engine(|| Ok::<_, Fault>(dwell_render::semantic_classes(self.house())))
+    }
+
+    fn write(&self, py: Python<'_>, path: &str, form: &str) -> PyResult<Vec<String>> {
+        py.engine(|| -> Result<Vec<String>, Fault> {
+            let (house, path) = (self.house(), Path::new(path));
+            match form {
+                "dwell" => dwell_houses::native::write(house, path)
+                    .map(|()| Vec::new())
+                    .map_err(Fault::from),
+                "suncg" => {
+                    let losses = dwell_houses::suncg::write(house, path)?;
+                    Ok(losses.iter().map(ToString::to_string).collect())
+                }
+                other => Err(Fault::Config(format!(
+                    "form is {other:?}; allowed are \"dwell\" and \"suncg\""
+                ))),
+            }
+        })
+    }
+}
+
+/// Sentences or JSON lines about a house as it stands in a state.
+pub(crate) fn describe_level(
+    semantics: &Semantics,
+    state: &State,
+    level: &str,
+    key: Option<u64>,
+) -> Result<Vec<String>, Fault> {
+    let scene = semantics.scene(state);
+    let house = semantics.house();
+    Ok(match level {
+        "house" => vec![describe::describe_house(&scene)],
+        "room" => house
+            .rooms
+            .ids()
+            .map(|room| describe::describe_room(&scene, room))
+            .collect(),
+        "object" => house
+            .objects
+            .ids()
+            .map(|object| describe::caption(&scene, object))
+            .collect(),
+        "graph" => vec![serde_json::to_string(&scene_graph(&scene, None))?],
+        "instructions" => {
+            let mut lines = Vec::new();
+            for kind in InstructionKind::ALL {
+                for (k, instruction) in candidates(&scene, kind).into_iter().enumerate() {
+                    let worded = key.and_then(|seed| {
+                        choose(
+                            std::slice::from_ref(&instruction),
+                            Key::root(seed).child(k as u64),
+                        )
+                    });
+                    let instruction = worded.unwrap_or(instruction);
+                    lines.push(json!({"kind": kind.name(), "text": instruction.text, "goal": instruction.goal}).to_string());
+                }
+            }
+            lines
+        }
+        other => {
+            let allowed = "object, room, house, graph, instructions";
+            return Err(Fault::Config(format!(
+                "level is {other:?}; allowed are {allowed}"
+            )));
+        }
+    })
+}

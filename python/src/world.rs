@@ -1,0 +1,559 @@
+//! Worlds for Python.
+
+use crate::doorway::Doorway;
+use crate::errors::Fault;
+use crate::house::{PyHouse, describe_level};
+use dwell::{DiscreteAction, Guide, Stride, World, WorldConfig};
+use dwell_physics::{Action, ActionOutcome, AgentControl};
+use dwell_render::{Camera, Channels, Frame, FrameMut, Job, Map, Preset, View};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use dwell_scene::space::{rotation_from_forward, rotation_from_yaw_pitch};
+use dwell_scene::{Address, AgentId, Id, LevelId, ObjectId, Pose};
+use glam::Vec3;
+use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use serde::Deserialize;
+use serde_json::json;
+use std::sync::Mutex;
+
+/// A running world with its own state over a shared house.
+#[pyclass(name = "World", module = "dwell._native", frozen)]
+pub(crate) struct PyWorld {
+    world: Mutex<Running>,
+}
+
+struct Running {
+    world: World,
+    guide: Option<([u32; 3], Guide)>,
+}
+
+/// A picture that is asked for.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct ViewSettings {
+    width: u32,
+    height: u32,
+    fov_deg: f32,
+    near_m: f32,
+    far_m: f32,
+    preset: Preset,
+    agent: Option<u32>,
+    position: [f32; 3],
+    yaw_deg: f32,
+    pitch_deg: f32,
+    forward: Option<[f32; 3]>,
+}
+
+impl Default for ViewSettings {
+    fn default() -> Self {
+        Self {
+            width: 128,
+            height: 128,
+            fov_deg: 90.0,
+            near_m: 0.05,
+            far_m: 50.0,
+            preset: Preset::Lit,
+            agent: None,
+            position: [0.0; 3],
+            yaw_deg: 0.0,
+            pitch_deg: 0.0,
+            forward: None,
+        }
+    }
+}
+
+/// An action of the hand, with the object by name or id.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ActionSettings {
+    kind: String,
+    #[serde(default)]
+    object: Option<serde_json::Value>,
+}
+
+impl Running {
+    fn object(&self, named: &serde_json::Value) -> Result<ObjectId, Fault> {
+        let house = self.world.house();
+        let by_id = named
+            .as_i64()
+            .and_then(|id| house.entity(dwell_scene::EntityId(i32::try_from(id).ok()?)));
+        let found = match by_id {
+            Some(dwell_scene::Entity::Object(object)) => Some(object),
+            _ => named.as_str().and_then(|name| house.object_named(name)),
+        };
+        found.ok_or_else(|| {
+            let first: Vec<_> = house
+                .objects
+                .iter()
+                .take(12)
+                .map(|object| object.name.as_str())
+                .collect();
+            Fault::Config(format!(
+                "no object {named}; there are {} such as {first:?}",
+                house.objects.len()
+            ))
+        })
+    }
+
+    fn agent(&self, agent: usize) -> Result<AgentId, Fault> {
+        let count = self.world.state().agents.len();
+        if agent < count {
+            Ok(AgentId::from_index(agent))
+        } else {
+            Err(Fault::Usage(format!("no agent {agent}; there are {count}")))
+        }
+    }
+
+    fn action(&self, text: &str) -> Result<Action, Fault> {
+        let settings: ActionSettings = serde_json::from_str(text)?;
+        let object = || self.object(settings.object.as_ref().unwrap_or(&serde_json::Value::Null));
+        Ok(match settings.kind.as_str() {
+            "drop" => Action::Drop,
+            "pick" => Action::Pick { object: object()? },
+            "open" => Action::Open { object: object()? },
+            "close" => Action::Close { object: object()? },
+            "toggle" => Action::Toggle { object: object()? },
+            "place" => Action::Place { on: object()? },
+            other => {
+                return Err(Fault::Config(format!(
+                    "kind is {other:?}; allowed are pick, drop, place, open, close, toggle"
+                )));
+            }
+        })
+    }
+
+    fn outcome_json(&self, outcome: &ActionOutcome) -> Result<String, Fault> {
+        let object = outcome
+            .object
+            .map(|object| self.world.house().objects[object].name.clone());
+        let code = serde_json::to_value(outcome.code)?;
+        Ok(json!({"success": outcome.success, "code": code, "sentence": outcome.sentence, "object": object}).to_string())
+    }
+}
+
+impl PyWorld {
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Running) -> Result<T, Fault> + Send,
+    ) -> PyResult<T> {
+        py.engine(|| {
+            let refuse = |_| {
+                Fault::Usage("a bug of the engine stopped this world; make a new one".to_owned())
+            };
+            work(&mut *self.world.lock().map_err(refuse)?)
+        })
+    }
+}
+
+#[pymethods]
+impl PyWorld {
+    #[new]
+    #[pyo3(signature = (house, config_json="{}", seed=0))]
+    fn new(
+        py: Python<'_>,
+        house: &Bound<'_, PyHouse>,
+        config_json: &str,
+        seed: u64,
+    ) -> PyResult<Self> {
+        let engines = house.get().engines.clone();
+        let world = py.engine(|| -> Result<World, Fault> {
+            let config: WorldConfig = serde_json::from_str(config_json)?;
+            let mut world = World::new(engines, &config)?;
+            world.reset(Key::root(seed))?;
+            Ok(world)
+        })?;
+        Ok(Self {
+            world: Mutex::new(Running { world, guide: None }),
+        })
+    }
+
+    fn step(&self, py: Python<'_>, controls: PyReadonlyArray2<'_, f32>) -> PyResult<()> {
+        let controls = controls.as_array();
+        if controls.ncols() != 4 {
+            let message = format!(
+                "controls: expected shape (agent, 4), found (_, {})",
+                controls.ncols()
+            );
+            return Err(crate::errors::to_python(Fault::Config(message)));
+        }
+        let controls: Vec<AgentControl> = controls
+            .rows()
+            .into_iter()
+            .map(|row| AgentControl {
+                forward_m_s: row[0],
+                right_m_s: row[1],
+                yaw_rate_rad_s: row[2],
+                pitch_rate_rad_s: row[3],
+            })
+            .collect();
+        self.with(py, |running| Ok(running.world.step(&controls)?))
+    }
+
+    fn act(&self, py: Python<'_>, agent: usize, action_json: &str) -> PyResult<String> {
+        self.with(py, |running| {
+            let (agent, action) = (running.agent(agent)?, running.action(action_json)?);
+            let outcome = running.world.act(agent, &action);
+            running.outcome_json(&outcome)
+        })
+    }
+
+    fn act_discrete(&self, py: Python<'_>, agent: usize, action: usize) -> PyResult<String> {
+        self.with(py, |running| {
+            let agent = running.agent(agent)?;
+            let last = DiscreteAction::ALL.len() - 1;
+            let known = DiscreteAction::ALL.get(action).copied();
+            let action = known.ok_or_else(|| {
+                Fault::Config(format!("action {action}; allowed are 0 to {last}"))
+            })?;
+            let outcome = running
+                .world
+                .act_discrete(agent, action, &Stride::default())?;
+            running.outcome_json(&outcome)
+        })
+    }
+
+    fn place_agent(
+        &self,
+        py: Python<'_>,
+        agent: usize,
+        position: [f32; 3],
+        yaw_deg: f32,
+    ) -> PyResult<()> {
+        self.with(py, |running| {
+            let agent = running.agent(agent)?;
+            Ok(running.world.place_agent(
+                agent,
+                Vec3::from_array(position),
+                yaw_deg.to_radians(),
+            )?)
+        })
+    }
+
+    fn agents_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            Ok(serde_json::to_string(&running.world.state().agents)?)
+        })
+    }
+
+    fn objects_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            Ok(serde_json::to_string(&dwell::objects_now(&running.world))?)
+        })
+    }
+
+    fn events_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            Ok(serde_json::to_string(running.world.events())?)
+        })
+    }
+
+    fn start_report_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            Ok(serde_json::to_string(running.world.start_report())?)
+        })
+    }
+
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        view_json: &str,
+        channels: Vec<String>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let known = ["rgb", "depth", "instance", "semantic"];
+        if let Some(other) = channels
+            .iter()
+            .find(|channel| !known.contains(&channel.as_str()))
+        {
+            let message = format!("no image {other:?}; there are {known:?}");
+            return Err(crate::errors::to_python(Fault::Config(message)));
+        }
+        let wanted = |channel: &str| channels.iter().any(|other| other == channel);
+        let (height, width, rgb, depth, instance, semantic) = self.with(py, |running| {
+            let settings: ViewSettings = serde_json::from_str(view_json)?;
+            let ViewSettings {
+                width,
+                height,
+                fov_deg,
+                near_m,
+                far_m,
+                preset,
+                ..
+            } = settings;
+            let camera = Camera::from_fov(width, height, fov_deg)?.with_range(near_m, far_m)?;
+            let (world_from_camera, hide) = running.eye(&settings)?;
+            let pixels = camera.pixels();
+            let room = |channel, each| if wanted(channel) { pixels * each } else { 0 };
+            let mut rgb = vec![0_u8; room("rgb", 3)];
+            let mut depth = vec![0.0_f32; room("depth", 1)];
+            let mut instance = vec![0_i32; room("instance", 1)];
+            let mut semantic = vec![0_i32; room("semantic", 1)];
+            let world = &running.world;
+            world.engines().renderer().render_batch(
+                &mut [Job {
+                    scene: world.rays(),
+                    state: world.state(),
+                    view: View {
+                        camera,
+                        world_from_camera,
+                        preset,
+                        hide,
+                    },
+                    frame: FrameMut {
+                        rgb: wanted("rgb").then_some(&mut rgb[..]),
+                        depth: wanted("depth").then_some(&mut depth[..]),
+                        instance: wanted("instance").then_some(&mut instance[..]),
+                        semantic: wanted("semantic").then_some(&mut semantic[..]),
+                    },
+                }],
+                Threads::resolve(None),
+            )?;
+            Ok((
+                height as usize,
+                width as usize,
+                rgb,
+                depth,
+                instance,
+                semantic,
+            ))
+        })?;
+        let images = PyDict::new(py);
+        if wanted("rgb") {
+            images.set_item("rgb", rgb.into_pyarray(py).reshape([height, width, 3])?)?;
+        }
+        if wanted("depth") {
+            images.set_item("depth", depth.into_pyarray(py).reshape([height, width, 1])?)?;
+        }
+        if wanted("instance") {
+            images.set_item(
+                "instance",
+                instance.into_pyarray(py).reshape([height, width, 1])?,
+            )?;
+        }
+        if wanted("semantic") {
+            images.set_item(
+                "semantic",
+                semantic.into_pyarray(py).reshape([height, width, 1])?,
+            )?;
+        }
+        Ok(images)
+    }
+
+    fn map<'py>(
+        &self,
+        py: Python<'py>,
+        longest_edge: u32,
+    ) -> PyResult<(Bound<'py, PyArray3<u8>>, f32, f32, f32)> {
+        let (rgb, height, width, corner, scale) = self.with(py, |running| {
+            let world = &running.world;
+            let map = Map::new(world.house(), LevelId(0), longest_edge)?;
+            let mut frame = Frame::new(
+                &map.view.camera,
+                Channels {
+                    rgb: true,
+                    depth: false,
+                    instance: false,
+                    semantic: false,
+                },
+            );
+            let threads = Threads::resolve(None);
+            world.engines().renderer().render(
+                world.rays(),
+                world.state(),
+                &[map.view],
+                &mut [frame.as_mut()],
+                threads,
+            )?;
+            let camera = &map.view.camera;
+            Ok((
+                frame.rgb,
+                camera.height() as usize,
+                camera.width() as usize,
+                map.corner,
+                map.pixels_per_m,
+            ))
+        })?;
+        Ok((
+            rgb.into_pyarray(py).reshape([height, width, 3])?,
+            corner.x,
+            corner.y,
+            scale,
+        ))
+    }
+
+    fn listen<'py>(
+        &self,
+        py: Python<'py>,
+        agent: usize,
+        samples: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let heard = self.with(py, |running| {
+            if samples == 0 || samples > 10 * running.world.config().sound_rate_hz as usize {
+                return Err(Fault::Config(format!(
+                    "samples is {samples}; allowed are 1 to ten seconds' worth"
+                )));
+            }
+            let agent = running.agent(agent)?;
+            running.world.listen(&[(agent, samples)])?;
+            let mut heard = vec![0.0; 2 * samples];
+            for (channel, out) in heard.chunks_exact_mut(samples).enumerate() {
+                running.world.heard(agent, channel, out);
+            }
+            Ok(heard)
+        })?;
+        heard.into_pyarray(py).reshape([2, samples])
+    }
+
+    fn path(
+        &self,
+        py: Python<'_>,
+        agent: usize,
+        goal: [f32; 3],
+    ) -> PyResult<Option<Vec<[f32; 3]>>> {
+        self.with(py, |running| {
+            let agent = running.agent(agent)?;
+            let state = &running.world.state().agents[agent];
+            let grid = running.world.engines().navigation(&state.body)?;
+            let ends = (
+                grid.nearest(state.position, 0.6),
+                grid.nearest(Vec3::from_array(goal), 0.6),
+            );
+            let (Some(start), Some(end)) = ends else {
+                return Ok(None);
+            };
+            let way = grid.path(start, end).map(|way| grid.corners(&way));
+            Ok(way.map(|way| {
+                way.into_iter()
+                    .map(|cell| grid.position(cell).to_array())
+                    .collect()
+            }))
+        })
+    }
+
+    fn guide(&self, py: Python<'_>, agent: usize, goal: [f32; 3]) -> PyResult<Option<usize>> {
+        self.with(py, |running| {
+            let id = running.agent(agent)?;
+            let bits = goal.map(f32::to_bits);
+            let body = running.world.state().agents[id].body;
+            if running
+                .guide
+                .as_ref()
+                .is_none_or(|(old, guide)| *old != bits || guide.agent() != id)
+            {
+                let grid = running.world.engines().navigation(&body)?;
+                let Some(cell) = grid.nearest(Vec3::from_array(goal), 0.6) else {
+                    return Err(Fault::Config(format!(
+                        "nobody can stand within 0.6 m of {goal:?}"
+                    )));
+                };
+                running.guide = Some((bits, Guide::new(id, grid, &[cell], Stride::default())));
+            }
+            let Running { world, guide } = running;
+            Ok(guide
+                .as_mut()
+                .and_then(|(_, guide)| guide.walk(world))
+                .map(|action| action as usize))
+        })
+    }
+
+    fn face(&self, py: Python<'_>, agent: usize, object: &str) -> PyResult<Option<usize>> {
+        self.with(py, |running| {
+            let agent = running.agent(agent)?;
+            let object = running.object(&json!(object))?;
+            Ok(
+                dwell::face(&running.world, agent, object, &Stride::default())
+                    .map(|action| action as usize),
+            )
+        })
+    }
+
+    fn gaze_target(&self, py: Python<'_>, agent: usize) -> PyResult<Option<String>> {
+        self.with(py, |running| {
+            let target = running.world.gaze_target(running.agent(agent)?);
+            Ok(target.map(|object| running.world.house().objects[object].name.clone()))
+        })
+    }
+
+    fn parameter_json(&self, py: Python<'_>, address: &str) -> PyResult<String> {
+        self.with(py, |running| {
+            let address: Address = address.parse()?;
+            Ok(serde_json::to_string(
+                &running
+                    .world
+                    .state()
+                    .parameter(running.world.house(), &address)?,
+            )?)
+        })
+    }
+
+    fn set_parameter(&self, py: Python<'_>, address: &str, value: f64) -> PyResult<()> {
+        self.with(py, |running| {
+            Ok(running.world.set_parameter(&address.parse()?, value)?)
+        })
+    }
+
+    fn describe(&self, py: Python<'_>, level: &str) -> PyResult<Vec<String>> {
+        self.with(py, |running| {
+            describe_level(
+                running.world.engines().semantics(),
+                running.world.state(),
+                level,
+                None,
+            )
+        })
+    }
+
+    fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = self.with(py, |running| Ok(running.world.snapshot()))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
+        self.with(py, |running| Ok(running.world.restore(snapshot)?))
+    }
+
+    fn hash(&self, py: Python<'_>) -> PyResult<u64> {
+        self.with(py, |running| Ok(running.world.hash()))
+    }
+
+    #[getter]
+    fn time_s(&self, py: Python<'_>) -> PyResult<f64> {
+        self.with(py, |running| Ok(running.world.state().time_s))
+    }
+
+    #[getter]
+    fn step_count(&self, py: Python<'_>) -> PyResult<u64> {
+        self.with(py, |running| Ok(running.world.state().step))
+    }
+}
+
+impl Running {
+    fn eye(&self, settings: &ViewSettings) -> Result<(Pose, Option<dwell_scene::EntityId>), Fault> {
+        if let Some(agent) = settings.agent {
+            let agent = self.agent(agent as usize)?;
+            let eye = self.world.state().agents[agent].world_from_eye();
+            return Ok((eye, Some(self.world.house().entity_of_agent(agent))));
+        }
+        let rotation = match settings.forward {
+            Some(forward) => rotation_from_forward(Vec3::from_array(forward)).ok_or_else(|| {
+                Fault::Config(format!(
+                    "forward is {forward:?}; allowed is a direction that is not zero"
+                ))
+            })?,
+            None => rotation_from_yaw_pitch(
+                settings.yaw_deg.to_radians(),
+                settings.pitch_deg.to_radians(),
+            ),
+        };
+        let pose = Pose::new(Vec3::from_array(settings.position), rotation);
+        if pose.is_valid() {
+            Ok((pose, None))
+        } else {
+            Err(Fault::Config(
+                "position and angles must be finite".to_owned(),
+            ))
+        }
+    }
+}
