@@ -1,0 +1,53 @@
+//! Houses that are made at run time by parametric code: nothing is stored but code and small tables.
+//!
+//! - `shapes`: closed primitives with convex collision pieces,
+//! - `textures`, `finish`: procedural images, and what surfaces are made of,
+//! - `model`, `models`: parametric things with parts, joints, lights, sounds, and places that hold other things,
+//! - `assembly`, `plan`, `wall`, `site`: tables of the house, rooms, walls, ways to put things in their place,
+//! - `apartment`: a home of six rooms.
+
+mod apartment;
+mod assembly;
+mod finish;
+mod model;
+mod models;
+mod plan;
+mod shapes;
+mod site;
+mod textures;
+mod wall;
+
+#[cfg(test)]
+mod tests;
+
+use dwell_scene::House;
+
+/// The names that [`build`] knows, as in `builtin:NAME`.
+pub fn names() -> &'static [&'static str] {
+    &["apartment"]
+}
+
+/// Makes the built-in house `name`; `None` when there is none of that name.
+///
+/// # Determinism
+/// The same bytes every time, for any number of threads.
+///
+/// ```
+/// let house = dwell_houses::builtin::build("apartment").ok_or("no apartment")?;
+/// assert!(house.rooms.len() >= 5 && house.objects.len() >= 60);
+/// # Ok::<(), &str>(())
+/// ```
+pub fn build(name: &str) -> Option<House> {
+    let data = match name {
+        "apartment" => apartment::build(),
+        _ => return None,
+    };
+    match House::new(data) {
+        Ok(house) => Some(house),
+        Err(error) => {
+            // The tests build every house, so that nobody should ever read this.
+            tracing::error!(name, %error, "a built-in house contradicts itself");
+            None
+        }
+    }
+}

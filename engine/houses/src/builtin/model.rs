@@ -1,0 +1,350 @@
+//! A model: one kind of thing with its parts, before a house holds it.
+//!
+//! Model space: metres, +Y up, the front towards +Z. Things that stand have the middle of their foot at the origin; things
+//! on a wall have the wall's face at z = 0; things on a ceiling hang down from y = 0.
+
+use super::finish::Finish;
+use super::shapes::Solid;
+use dwell_scene::{Aabb, Collider, Holding, JointKind, LightShape, Mesh, Mobility, Pose};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// One kind of thing.
+#[derive(Clone, Debug)]
+pub(crate) struct Model {
+    /// The model's name: `"dining_chair"`.
+    pub(crate) name: &'static str,
+    /// A row of `assets/categories.csv`; its name is what instances are called.
+    pub(crate) category: &'static str,
+    /// How instances move.
+    pub(crate) mobility: Mobility,
+    /// Whether a hand can take it.
+    pub(crate) pickable: bool,
+    /// Whether it is on at the start; `None` without a switch.
+    pub(crate) switch: Option<bool>,
+    /// The root first.
+    pub(crate) parts: Vec<ModelPart>,
+    pub(crate) joints: Vec<ModelJoint>,
+    pub(crate) lights: Vec<ModelLight>,
+    pub(crate) sounds: Vec<ModelSound>,
+    pub(crate) spaces: Vec<ModelSpace>,
+}
+
+/// A rigid part; its space is the model's while all joints are at 0.
+#[derive(Clone, Debug)]
+pub(crate) struct ModelPart {
+    pub(crate) name: &'static str,
+    pub(crate) mesh: Arc<Mesh>,
+    /// One for each slot of the mesh.
+    pub(crate) finishes: Vec<Finish>,
+    pub(crate) colliders: Vec<Collider>,
+    pub(crate) mass_kg: f32,
+    pub(crate) density_kg_m3: f32,
+}
+
+/// A joint between two parts.
+#[derive(Clone, Debug)]
+pub(crate) struct ModelJoint {
+    pub(crate) name: &'static str,
+    pub(crate) kind: JointKind,
+    /// Indices of parts.
+    pub(crate) parent: usize,
+    pub(crate) child: usize,
+    /// A point on the axis, m.
+    pub(crate) position: Vec3,
+    /// Unit length; positive positions open.
+    pub(crate) axis: Vec3,
+    /// The position at which it is fully open, rad or m; 0 is closed.
+    pub(crate) open: f32,
+    /// The position at the start.
+    pub(crate) initial: f32,
+}
+
+/// A light of a part.
+#[derive(Clone, Debug)]
+pub(crate) struct ModelLight {
+    pub(crate) part: usize,
+    pub(crate) position: Vec3,
+    pub(crate) shape: LightShape,
+    pub(crate) power_w: f32,
+}
+
+/// A sound of a part.
+#[derive(Clone, Debug)]
+pub(crate) struct ModelSound {
+    pub(crate) part: usize,
+    pub(crate) position: Vec3,
+    pub(crate) signal: &'static str,
+    pub(crate) level_db: f32,
+}
+
+/// A place that holds things.
+#[derive(Clone, Debug)]
+pub(crate) struct ModelSpace {
+    pub(crate) part: usize,
+    pub(crate) name: &'static str,
+    pub(crate) holding: Holding,
+    pub(crate) space: Aabb,
+}
+
+impl Model {
+    /// A thing that stands loose: it can be pushed.
+    pub(crate) fn movable(name: &'static str, category: &'static str) -> Self {
+        Self::new(name, category, Mobility::Movable)
+    }
+
+    /// A small thing that a hand can take.
+    pub(crate) fn pickable(name: &'static str, category: &'static str) -> Self {
+        Self {
+            pickable: true,
+            ..Self::movable(name, category)
+        }
+    }
+
+    /// A thing that never moves.
+    pub(crate) fn fixed(name: &'static str, category: &'static str) -> Self {
+        Self::new(name, category, Mobility::Fixed)
+    }
+
+    /// A thing that stands firm but has doors or drawers.
+    pub(crate) fn articulated(name: &'static str, category: &'static str) -> Self {
+        Self::new(name, category, Mobility::Articulated)
+    }
+
+    fn new(name: &'static str, category: &'static str, mobility: Mobility) -> Self {
+        Self {
+            name,
+            category,
+            mobility,
+            pickable: false,
+            switch: None,
+            parts: Vec::new(),
+            joints: Vec::new(),
+            lights: Vec::new(),
+            sounds: Vec::new(),
+            spaces: Vec::new(),
+        }
+    }
+
+    /// The same model with a switch.
+    #[must_use]
+    pub(crate) fn switched(mut self, on: bool) -> Self {
+        self.switch = Some(on);
+        self
+    }
+
+    /// The same model with one more part.
+    #[must_use]
+    pub(crate) fn part(mut self, part: Part) -> Self {
+        self.parts.push(part.finish());
+        self
+    }
+
+    /// The same model; its newest part turns about `axis` through `position`, from closed at 0 to `open_rad`.
+    #[must_use]
+    pub(crate) fn hinged(
+        self,
+        name: &'static str,
+        position: [f32; 3],
+        axis: Vec3,
+        open_rad: f32,
+    ) -> Self {
+        self.joint(name, JointKind::Hinge, position, axis, open_rad)
+    }
+
+    /// The same model; its newest part slides along `axis` by up to `open_m`.
+    #[must_use]
+    pub(crate) fn sliding(self, name: &'static str, axis: Vec3, open_m: f32) -> Self {
+        self.joint(name, JointKind::Slide, [0.0; 3], axis, open_m)
+    }
+
+    fn joint(
+        mut self,
+        name: &'static str,
+        kind: JointKind,
+        position: [f32; 3],
+        axis: Vec3,
+        open: f32,
+    ) -> Self {
+        let child = self.parts.len() - 1;
+        let position = Vec3::from(position);
+        self.joints.push(ModelJoint {
+            name,
+            kind,
+            parent: 0,
+            child,
+            position,
+            axis,
+            open,
+            initial: 0.0,
+        });
+        self
+    }
+
+    /// The same model, its first joint open by `fraction` (0 to 1) at the start.
+    #[must_use]
+    pub(crate) fn ajar(mut self, fraction: f32) -> Self {
+        if let Some(joint) = self.joints.first_mut() {
+            joint.initial = joint.open * fraction;
+        }
+        self
+    }
+
+    /// The same model; its newest part shines in all directions.
+    #[must_use]
+    pub(crate) fn shining(self, position: [f32; 3], power_w: f32) -> Self {
+        self.light(position, LightShape::Point, power_w)
+    }
+
+    /// The same model; its newest part has a light.
+    #[must_use]
+    pub(crate) fn light(mut self, position: [f32; 3], shape: LightShape, power_w: f32) -> Self {
+        let part = self.parts.len() - 1;
+        self.lights.push(ModelLight {
+            part,
+            position: position.into(),
+            shape,
+            power_w,
+        });
+        self
+    }
+
+    /// The same model; its newest part sounds.
+    #[must_use]
+    pub(crate) fn sounding(
+        mut self,
+        position: [f32; 3],
+        signal: &'static str,
+        level_db: f32,
+    ) -> Self {
+        let part = self.parts.len() - 1;
+        self.sounds.push(ModelSound {
+            part,
+            position: position.into(),
+            signal,
+            level_db,
+        });
+        self
+    }
+
+    /// The same model; things can stand on its newest part, in the free space between two corners.
+    #[must_use]
+    pub(crate) fn top(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
+        self.space(name, Holding::On, min, max)
+    }
+
+    /// The same model; things can lie inside its newest part, in the free space between two corners.
+    #[must_use]
+    pub(crate) fn inside(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
+        self.space(name, Holding::In, min, max)
+    }
+
+    fn space(mut self, name: &'static str, holding: Holding, min: [f32; 3], max: [f32; 3]) -> Self {
+        let part = self.parts.len() - 1;
+        self.spaces.push(ModelSpace {
+            part,
+            name,
+            holding,
+            space: Aabb::new(min.into(), max.into()),
+        });
+        self
+    }
+
+    /// The box around it with all joints closed, model space.
+    pub(crate) fn bounds(&self) -> Aabb {
+        self.parts.iter().fold(Aabb::EMPTY, |bounds, part| {
+            bounds.union(&part.mesh.bounds())
+        })
+    }
+
+    /// Where a part stands at the start.
+    pub(crate) fn model_from_part(&self, part: usize) -> Pose {
+        let Some(joint) = self.joints.iter().find(|joint| joint.child == part) else {
+            return Pose::IDENTITY;
+        };
+        let to_axis = Pose::from_position(joint.position);
+        let motion = match joint.kind {
+            JointKind::Hinge => {
+                Pose::new(Vec3::ZERO, super::shapes::turn(joint.axis, joint.initial))
+            }
+            JointKind::Slide => Pose::from_position(joint.axis * joint.initial),
+        };
+        self.model_from_part(joint.parent) * to_axis * motion * to_axis.inverse()
+    }
+}
+
+/// A part under construction.
+#[derive(Debug)]
+pub(crate) struct Part {
+    name: &'static str,
+    mesh: Mesh,
+    finishes: Vec<Finish>,
+    colliders: Vec<Collider>,
+    collider_volume_m3: f32,
+    mass_kg: f32,
+}
+
+impl Part {
+    /// A part without a shape.
+    pub(crate) fn new(name: &'static str) -> Self {
+        Self {
+            name,
+            mesh: Mesh::default(),
+            finishes: Vec::new(),
+            colliders: Vec::new(),
+            collider_volume_m3: 0.0,
+            mass_kg: 0.0,
+        }
+    }
+
+    /// The same part with one more shape, solid of its finish's substance.
+    #[must_use]
+    pub(crate) fn with(self, finish: &Finish, solid: Solid) -> Self {
+        self.with_filled(finish, solid, 1.0)
+    }
+
+    /// The same part with one more shape of which `fill` (0 to 1) is substance and the rest air.
+    #[must_use]
+    pub(crate) fn with_filled(mut self, finish: &Finish, mut solid: Solid, fill: f32) -> Self {
+        let slot = self
+            .finishes
+            .iter()
+            .position(|known| known == finish)
+            .unwrap_or_else(|| {
+                self.finishes.push(finish.clone());
+                self.finishes.len() - 1
+            });
+        let volume = solid.mesh.enclosed_volume_m3() as f32;
+        self.mass_kg += volume * finish.substance().density_kg_m3 * fill;
+        self.collider_volume_m3 += solid.collider_volume_m3();
+        if finish.tile_m > 0.0 {
+            for uv in &mut solid.mesh.uvs {
+                *uv /= finish.tile_m;
+            }
+        }
+        self.mesh.append(&solid.mesh, slot as u16);
+        self.colliders.append(&mut solid.colliders);
+        self
+    }
+
+    /// The same part with each of `solids`.
+    #[must_use]
+    pub(crate) fn with_all(self, finish: &Finish, solids: impl IntoIterator<Item = Solid>) -> Self {
+        solids
+            .into_iter()
+            .fold(self, |part, solid| part.with(finish, solid))
+    }
+
+    fn finish(self) -> ModelPart {
+        let mass_kg = self.mass_kg.max(1e-3);
+        let density_kg_m3 = (mass_kg / self.collider_volume_m3.max(1e-6)).clamp(1.0, 20_000.0);
+        ModelPart {
+            name: self.name,
+            mesh: Arc::new(self.mesh),
+            finishes: self.finishes,
+            colliders: self.colliders,
+            mass_kg,
+            density_kg_m3,
+        }
+    }
+}

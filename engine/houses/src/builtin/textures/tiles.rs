@@ -1,0 +1,43 @@
+//! Things laid with joints: tiles and bricks.
+
+use super::Paint;
+use super::canvas::{Canvas, mix, shade, smooth_step};
+
+/// Two by two square tiles; colours: tile, joint, cloud in the tile.
+pub(super) fn tile(canvas: &mut Canvas, paint: &Paint) {
+    let [tile, joint, cloud] = paint.colors;
+    canvas.fill(|u, v| {
+        let (x, y) = (u * 2.0, v * 2.0);
+        let (dx, dy) = (x - x.floor(), y - y.floor());
+        let tone = paint.noise.cell(x as i32 + 3, y as i32 * 2 + 5);
+        let veil = paint.noise.cloud(u, v, 6, 6, 3);
+        let edge = dx.min(1.0 - dx).min(dy).min(1.0 - dy);
+        let body = shade(
+            mix(tile, cloud, 0.7 * smooth_step(0.45, 0.8, veil)),
+            0.95 + 0.08 * tone,
+        );
+        mix(joint, body, smooth_step(0.012, 0.022, edge))
+    });
+}
+
+/// Bricks in running bond, four courses of two; colours: brick, joint, burnt brick.
+pub(super) fn brick(canvas: &mut Canvas, paint: &Paint) {
+    let [brick, joint, burnt] = paint.colors;
+    canvas.fill(|u, v| {
+        let y = v * 4.0;
+        let course = y.floor();
+        let x = u * 2.0 + if course as i32 % 2 == 0 { 0.0 } else { 0.5 };
+        let (dx, dy) = (x - x.floor(), y - course);
+        let tone = paint
+            .noise
+            .cell((x.floor() as i32).rem_euclid(2) * 3 + 1, course as i32 * 7);
+        let rough = paint.noise.cloud(u, v, 16, 16, 3);
+        let edge = (dx.min(1.0 - dx) * 2.0).min(dy.min(1.0 - dy));
+        let body = shade(mix(brick, burnt, 0.6 * tone), 0.85 + 0.3 * rough);
+        mix(
+            joint,
+            body,
+            smooth_step(0.05, 0.09, edge + 0.03 * (rough - 0.5)),
+        )
+    });
+}
