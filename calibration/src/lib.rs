@@ -1,1 +1,66 @@
 //! Measured data against the simulation: residuals, causes, extensions, gain.
+//!
+//! [`calibrate`] reads a measured [`bundle`], simulates the same situation with the engines, and reports what is left;
+//! it names the cause out of the engines' laws and parameters where the data allow it, says so where they do not, and
+//! measures the gain on episodes that were held out from all fitting.
+//!
+//! ```
+//! let folder = tempfile::tempdir()?;
+//! let hidden = dwell_calibration::example::write(folder.path(), 3)?;
+//! let report = dwell_calibration::calibrate(folder.path(), &Default::default(), &mut |_, _| true)?;
+//! assert!(matches!(&report.verdict, dwell_calibration::Verdict::Named { law, .. } if law == "drag"));
+//! println!("{hidden} / {}", report.sentence);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod bundle;
+mod error;
+pub mod example;
+mod fit;
+mod options;
+mod progress;
+mod report;
+mod select;
+mod twin;
+mod words;
+
+pub use error::CalibrationError;
+pub use options::Options;
+pub use report::{Candidate, Effect, Fitted, Found, Nuisance, Plot, Report, Verdict};
+pub use select::{Agreement, ChannelResidual, Gain, Remainder};
+
+use bundle::file::Kind;
+use progress::{Progress, Tell as _};
+use std::path::Path;
+use twin::{FlightTwin, RoomTwin, ServoTwin, Twin};
+
+/// Compares the measured bundle in the folder `path` with its simulation and reports what the simulation lacks.
+///
+/// `progress` is told a fraction (0 to 1) and what is being done, and answers whether to go on.
+///
+/// # Errors
+/// [`CalibrationError`] for a bundle that cannot be read, options out of range, a situation that cannot be simulated, and
+/// [`CalibrationError::Interrupted`] when `progress` answers no.
+///
+/// # Determinism
+/// Equal bundle and options give the same bits for any number of threads.
+pub fn calibrate(
+    path: &Path,
+    options: &Options,
+    progress: &mut dyn FnMut(f32, &str) -> bool,
+) -> Result<Report, CalibrationError> {
+    options.check()?;
+    let progress = Progress::new(progress);
+    progress.stage(0.0, "reading the measured data")?;
+    let bundle = bundle::read(path)?;
+    progress.stage(0.05, "building the simulation")?;
+    let mut twin: Box<dyn Twin> = match bundle.kind() {
+        Kind::Trajectory => Box::new(FlightTwin::new(&bundle, options)?),
+        Kind::Servo => Box::new(ServoTwin::new(&bundle, options)?),
+        Kind::ImpulseResponse => Box::new(RoomTwin::new(&bundle, options)?),
+    };
+    let findings = select::explain(twin.as_mut(), options, &progress)?;
+    let report = report::build(&bundle, twin.as_ref(), &findings)?;
+    progress.stage(1.0, "done")?;
+    Ok(report)
+}

@@ -1,0 +1,408 @@
+//! Whether a bundle says what it must, in ranges that make sense.
+
+use super::file::{Kind, Manifest, Surface, VERSION};
+use super::{Bundle, limits};
+use crate::error::CalibrationError;
+use dwell_scene::material::library;
+use std::collections::BTreeMap;
+
+type Checked = Result<(), CalibrationError>;
+
+/// The sides of a box-shaped room, as scene's shoebox names them.
+pub(crate) const SIDES: [&str; 6] = ["floor", "ceiling", "west", "east", "north", "south"];
+/// Episodes below which nothing can be held out.
+const FEWEST_EPISODES: usize = 4;
+
+/// Names of a manifest by position.
+pub(super) struct Names {
+    entities: BTreeMap<String, usize>,
+    channels: BTreeMap<String, usize>,
+}
+
+impl Names {
+    pub(super) fn new(manifest: &Manifest) -> Self {
+        let scene = &manifest.scene;
+        let bodies = scene.bodies.iter().map(|body| body.name.clone());
+        let joints = scene.joints.iter().map(|joint| joint.name.clone());
+        let channels = manifest.channels.iter().map(|channel| channel.name.clone());
+        Self {
+            entities: bodies
+                .chain(joints)
+                .enumerate()
+                .map(|(k, name)| (name, k))
+                .collect(),
+            channels: channels.enumerate().map(|(k, name)| (name, k)).collect(),
+        }
+    }
+
+    pub(super) fn entity(
+        &self,
+        at: &str,
+        field: &str,
+        name: &str,
+    ) -> Result<usize, CalibrationError> {
+        find(&self.entities, at, field, name)
+    }
+
+    pub(super) fn channel(&self, at: &str, name: &str) -> Result<usize, CalibrationError> {
+        find(&self.channels, at, "channel", name)
+    }
+}
+
+fn find(
+    names: &BTreeMap<String, usize>,
+    at: &str,
+    field: &str,
+    name: &str,
+) -> Result<usize, CalibrationError> {
+    names.get(name).copied().ok_or_else(|| {
+        let known: Vec<_> = names.keys().take(12).collect();
+        CalibrationError::field(
+            at,
+            field,
+            format!("{name:?}"),
+            format!("one of the manifest's: {known:?}"),
+        )
+    })
+}
+
+/// A name of 1 to 128 printable characters.
+pub(super) fn name(at: &str, field: &str, name: &str) -> Checked {
+    let fits = (1..=limits::NAME_CHARS).contains(&name.chars().count())
+        && !name.chars().any(char::is_control);
+    if fits {
+        return Ok(());
+    }
+    let shown: String = name.chars().take(40).collect();
+    Err(CalibrationError::field(
+        at,
+        field,
+        format!("{shown:?}"),
+        "1 to 128 printable characters",
+    ))
+}
+
+/// A finite number of at most `limit`.
+pub(super) fn finite(at: &str, field: &str, value: f64, limit: f64) -> Checked {
+    range(at, field, value, -limit, limit)
+}
+
+/// A time on a clock, s.
+pub(super) fn time(at: &str, t_s: f64) -> Checked {
+    range(at, "t_s", t_s, -1e6, 1e6)
+}
+
+fn range(at: &str, field: &str, value: f64, low: f64, high: f64) -> Checked {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(CalibrationError::field(
+        at,
+        field,
+        value,
+        format!("{low} to {high}"),
+    ))
+}
+
+/// A point in the room.
+pub(super) fn place(at: &str, field: &str, point: [f64; 3], manifest: &Manifest) -> Checked {
+    for (k, axis) in ["x", "y", "z"].iter().enumerate() {
+        let field = format!("{field}_{axis}");
+        match &manifest.scene.room {
+            Some(room) => range(at, &field, point[k], 0.01, room.size_m[k] - 0.01)?,
+            None => finite(at, &field, point[k], 1e4)?,
+        }
+    }
+    Ok(())
+}
+
+/// The manifest's own ranges.
+pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
+    if manifest.version != VERSION {
+        let allowed = format!("{VERSION}, the version this build reads");
+        return Err(CalibrationError::field(
+            at,
+            "version",
+            manifest.version,
+            allowed,
+        ));
+    }
+    let scene = &manifest.scene;
+    for (what, count) in [
+        ("bodies", scene.bodies.len()),
+        ("joints", scene.joints.len()),
+        ("channels", manifest.channels.len()),
+    ] {
+        if count as u64 > limits::THINGS {
+            let (found, limit) = (count as u64, limits::THINGS);
+            return Err(CalibrationError::TooLarge {
+                at: at.to_owned(),
+                what,
+                found,
+                limit,
+            });
+        }
+    }
+    let air = &scene.environment;
+    for (field, value, low, high) in [
+        ("temperature_c", air.temperature_c, -40.0, 60.0),
+        ("humidity_pct", air.humidity_pct, 0.0, 100.0),
+        ("pressure_pa", air.pressure_pa, 3e4, 2e5),
+        ("g_m_s2", air.g_m_s2, 0.0, 100.0),
+    ] {
+        if let Some(value) = value {
+            range(at, &format!("scene.environment.{field}"), value, low, high)?;
+        }
+    }
+    for (k, body) in scene.bodies.iter().enumerate() {
+        let of = |field: &str| format!("scene.bodies[{k}].{field}");
+        name(at, &of("name"), &body.name)?;
+        range(at, &of("mass_kg"), body.mass_kg, 1e-6, 1e4)?;
+        range(at, &of("radius_m"), body.radius_m, 1e-3, 10.0)?;
+    }
+    for (k, joint) in scene.joints.iter().enumerate() {
+        let of = |field: &str| format!("scene.joints[{k}].{field}");
+        name(at, &of("name"), &joint.name)?;
+        range(at, &of("inertia_kg_m2"), joint.inertia_kg_m2, 1e-7, 1e3)?;
+        range(
+            at,
+            &of("stiffness_n_m_rad"),
+            joint.stiffness_n_m_rad,
+            1e-3,
+            1e6,
+        )?;
+        range(
+            at,
+            &of("damping_n_m_s_rad"),
+            joint.damping_n_m_s_rad,
+            0.0,
+            1e5,
+        )?;
+        range(at, &of("max_torque_n_m"), joint.max_torque_n_m, 1e-4, 1e6)?;
+        range(at, &of("friction_n_m"), joint.friction_n_m, 0.0, 1e5)?;
+    }
+    if let Some(room) = &scene.room {
+        for edge in room.size_m {
+            range(at, "scene.room.size_m", edge, 0.5, 200.0)?;
+        }
+        for side in SIDES {
+            let Some(surface) = room.surfaces.get(side) else {
+                return Err(missing(
+                    at,
+                    &format!("scene.room.surfaces.{side}"),
+                    "all six sides must be described",
+                ));
+            };
+            surface_of(at, side, surface)?;
+        }
+        if let Some(other) = room
+            .surfaces
+            .keys()
+            .find(|name| !SIDES.contains(&name.as_str()))
+        {
+            return Err(CalibrationError::field(
+                at,
+                "scene.room.surfaces",
+                format!("{other:?}"),
+                format!("{SIDES:?}"),
+            ));
+        }
+    }
+    channels(at, manifest)
+}
+
+fn surface_of(at: &str, side: &str, surface: &Surface) -> Checked {
+    let of = |field: &str| format!("scene.room.surfaces.{side}.{field}");
+    if let Some(substance) = &surface.substance
+        && library().get(substance).is_none()
+    {
+        let allowed = "a substance of the engine's table, such as plaster, carpet or parquet";
+        return Err(CalibrationError::field(
+            at,
+            of("substance"),
+            format!("{substance:?}"),
+            allowed,
+        ));
+    }
+    if surface.substance.is_none() && surface.absorption.is_none() {
+        return Err(missing(
+            at,
+            &of("absorption"),
+            "a surface needs its absorption or a substance",
+        ));
+    }
+    if let Some(bands) = &surface.absorption {
+        let rising = bands.centres_hz.windows(2).all(|pair| pair[0] < pair[1]);
+        if bands.centres_hz.is_empty()
+            || bands.centres_hz.len() != bands.values.len()
+            || !rising
+            || bands.values.len() > 64
+        {
+            let found = format!(
+                "{} centres and {} values",
+                bands.centres_hz.len(),
+                bands.values.len()
+            );
+            return Err(CalibrationError::field(
+                at,
+                of("absorption"),
+                found,
+                "1 to 64 rising centres with a value each",
+            ));
+        }
+        for (centre, value) in bands.centres_hz.iter().zip(&bands.values) {
+            range(at, &of("absorption.centres_hz"), *centre, 10.0, 1e5)?;
+            range(at, &of("absorption.values"), *value, 0.0, 1.0)?;
+        }
+    }
+    if let Some(scattering) = surface.scattering {
+        range(at, &of("scattering"), scattering, 0.0, 1.0)?;
+    }
+    Ok(())
+}
+
+fn channels(at: &str, manifest: &Manifest) -> Checked {
+    let (allowed, unit): (&[&str], &str) = match manifest.kind {
+        Kind::Trajectory => (&["x", "y", "z"], "m"),
+        Kind::Servo => (&["position"], "rad"),
+        Kind::ImpulseResponse => return Ok(()),
+    };
+    for (k, channel) in manifest.channels.iter().enumerate() {
+        let of = |field: &str| format!("channels[{k}].{field}");
+        if !allowed.contains(&channel.name.as_str()) {
+            return Err(CalibrationError::field(
+                at,
+                of("name"),
+                format!("{:?}", channel.name),
+                format!("one of {allowed:?}"),
+            ));
+        }
+        if manifest.channels[..k]
+            .iter()
+            .any(|other| other.name == channel.name)
+        {
+            return Err(CalibrationError::field(
+                at,
+                of("name"),
+                format!("{:?} again", channel.name),
+                "each name once",
+            ));
+        }
+        if channel.unit != unit {
+            return Err(CalibrationError::field(
+                at,
+                of("unit"),
+                format!("{:?}", channel.unit),
+                format!("{unit:?}"),
+            ));
+        }
+        name(at, &of("clock"), &channel.clock)?;
+        if let Some(sd) = channel.noise_sd {
+            range(at, &of("noise_sd"), sd, 1e-9, 10.0)?;
+        }
+    }
+    Ok(())
+}
+
+fn missing(at: &str, what: &str, needed: &str) -> CalibrationError {
+    CalibrationError::Missing {
+        at: at.to_owned(),
+        what: what.to_owned(),
+        needed: needed.to_owned(),
+    }
+}
+
+/// Whether there is enough to work with.
+pub(super) fn complete(bundle: &Bundle) -> Checked {
+    let scene = &bundle.manifest.scene;
+    let at = format!("{}/manifest.json", bundle.name);
+    match bundle.kind() {
+        Kind::Trajectory if scene.bodies.is_empty() => {
+            return Err(missing(
+                &at,
+                "scene.bodies",
+                "a trajectory needs the body that flew",
+            ));
+        }
+        Kind::Servo if scene.joints.len() != 1 || !scene.bodies.is_empty() => {
+            return Err(CalibrationError::field(
+                at,
+                "scene.joints",
+                scene.joints.len(),
+                "exactly one joint, and no bodies",
+            ));
+        }
+        Kind::Trajectory | Kind::Servo if bundle.manifest.channels.is_empty() => {
+            return Err(missing(
+                &at,
+                "channels",
+                "what the numbers mean must be said",
+            ));
+        }
+        _ => {}
+    }
+    let found = bundle.episodes.len();
+    if found < FEWEST_EPISODES {
+        let (at, needed) = (bundle.name.clone(), FEWEST_EPISODES);
+        return Err(CalibrationError::TooFew {
+            at,
+            what: "episodes",
+            found,
+            needed,
+        });
+    }
+    for episode in &bundle.episodes {
+        let at = format!("{}, episode {}", bundle.name, episode.name);
+        match bundle.kind() {
+            Kind::ImpulseResponse if episode.responses.is_empty() => {
+                return Err(missing(
+                    &at,
+                    "a row of ir.csv",
+                    "every episode needs an impulse response",
+                ));
+            }
+            Kind::Trajectory | Kind::Servo if episode.samples.len() < 6 => {
+                let (what, found, needed) = ("rows of trajectory.csv", episode.samples.len(), 6);
+                return Err(CalibrationError::TooFew {
+                    at,
+                    what,
+                    found,
+                    needed,
+                });
+            }
+            Kind::Trajectory
+                if episode
+                    .samples
+                    .iter()
+                    .any(|s| s.entity != episode.samples[0].entity) =>
+            {
+                return Err(CalibrationError::field(
+                    at,
+                    "entity",
+                    "more than one",
+                    "one body an episode",
+                ));
+            }
+            Kind::Servo if episode.commands.is_empty() => {
+                return Err(missing(
+                    &at,
+                    "a row of command.csv",
+                    "a servo's episode needs its commands",
+                ));
+            }
+            _ => {}
+        }
+        let span =
+            |f: fn(f64, f64) -> f64, from: f64| episode.samples.iter().map(|s| s.t_s).fold(from, f);
+        let duration = span(f64::max, f64::NEG_INFINITY) - span(f64::min, f64::INFINITY);
+        if duration > 600.0 {
+            return Err(CalibrationError::field(
+                at,
+                "the time from first to last sample",
+                duration,
+                "at most 600 s",
+            ));
+        }
+    }
+    Ok(())
+}

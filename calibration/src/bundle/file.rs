@@ -1,0 +1,212 @@
+//! The bundle's files as they are written: plain structs without meaning.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The version of the bundle's form that this build reads.
+pub const VERSION: u32 = 1;
+
+/// `manifest.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// The version of the form, [`VERSION`].
+    pub version: u32,
+    /// What was measured, in a line.
+    pub title: String,
+    /// The licence of the data.
+    pub licence: String,
+    /// What kind of measurement it is.
+    pub kind: Kind,
+    /// The situation.
+    pub scene: Scene,
+    /// What the numbers of `trajectory.csv` mean.
+    #[serde(default)]
+    pub channels: Vec<Channel>,
+    /// Anything else.
+    #[serde(default)]
+    pub notes: String,
+}
+
+/// What kind of measurement a bundle holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Bodies in free flight.
+    Trajectory,
+    /// A joint that is driven by a position servo.
+    Servo,
+    /// Impulse responses of a room.
+    ImpulseResponse,
+}
+
+/// The situation in which was measured.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// The air and the place.
+    #[serde(default)]
+    pub environment: Environment,
+    /// Bodies that are tracked.
+    #[serde(default)]
+    pub bodies: Vec<Body>,
+    /// Joints that are tracked.
+    #[serde(default)]
+    pub joints: Vec<Joint>,
+    /// The room of impulse responses.
+    #[serde(default)]
+    pub room: Option<Room>,
+}
+
+/// Air and place; `null` where it was not measured.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Environment {
+    /// Degrees Celsius; `null`: 20 is taken.
+    pub temperature_c: Option<f64>,
+    /// Relative humidity, percent; `null`: 50 is taken.
+    pub humidity_pct: Option<f64>,
+    /// Static pressure, Pa; `null`: 101,325 is taken.
+    pub pressure_pa: Option<f64>,
+    /// Local acceleration of free fall, m/s²; `null`: standard gravity is taken.
+    pub g_m_s2: Option<f64>,
+}
+
+/// A body that is tracked: a sphere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Body {
+    /// The name that `trajectory.csv` uses as its entity.
+    pub name: String,
+    /// kg.
+    pub mass_kg: f64,
+    /// m.
+    pub radius_m: f64,
+}
+
+/// A joint that is tracked and driven: a hinge about the vertical, on which gravity does nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Joint {
+    /// The name that `trajectory.csv` uses as its entity and `command.csv` as its actuator.
+    pub name: String,
+    /// Moment of inertia of all that turns, about the axis, kg·m².
+    pub inertia_kg_m2: f64,
+    /// Servo's stiffness, N·m/rad.
+    pub stiffness_n_m_rad: f64,
+    /// Servo's damping, N·m·s/rad.
+    pub damping_n_m_s_rad: f64,
+    /// Servo's strongest torque, N·m.
+    pub max_torque_n_m: f64,
+    /// Coulomb friction that is known, N·m.
+    #[serde(default)]
+    pub friction_n_m: f64,
+}
+
+/// A box-shaped room from the origin to `size_m`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Room {
+    /// Lengths along x, y (up) and z, m.
+    pub size_m: [f64; 3],
+    /// `floor` (y = 0), `ceiling`, `west` (x = 0), `east`, `north` (z = 0), `south`.
+    pub surfaces: BTreeMap<String, Surface>,
+}
+
+/// What is known about a surface of the room.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Surface {
+    /// A substance of the engine's table, from which comes what is not given here.
+    pub substance: Option<String>,
+    /// Absorption of energy at band centres in Hz.
+    pub absorption: Option<BandValues>,
+    /// Scattering of energy, the same in all bands.
+    pub scattering: Option<f64>,
+}
+
+/// A quantity by frequency.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BandValues {
+    /// Band centres, Hz, rising.
+    pub centres_hz: Vec<f64>,
+    /// The value at each.
+    pub values: Vec<f64>,
+}
+
+/// What the numbers of a channel mean.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Channel {
+    /// `x`, `y`, `z` of a body in m, or `position` of a joint in rad.
+    pub name: String,
+    /// The SI unit: `m` or `rad`.
+    pub unit: String,
+    /// Whose clock stamps it; channels of one clock share its offset.
+    pub clock: String,
+    /// Standard deviation of its noise in `unit`; `null`: it is estimated.
+    pub noise_sd: Option<f64>,
+}
+
+/// A row of `episodes.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EpisodeRow {
+    /// The name that other files use.
+    pub episode: String,
+    /// Episodes of one group (session, object, room) are held out together.
+    pub split_group: String,
+    /// What was special, in words.
+    pub conditions: String,
+}
+
+/// A row of `trajectory.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrajectoryRow {
+    /// The episode.
+    pub episode: String,
+    /// Time on the channel's clock, s.
+    pub t_s: f64,
+    /// The body or joint.
+    pub entity: String,
+    /// The channel.
+    pub channel: String,
+    /// The value in the channel's unit.
+    pub value: f64,
+}
+
+/// A row of `command.csv`; a command holds until the next one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CommandRow {
+    /// The episode.
+    pub episode: String,
+    /// Time on the controller's clock, s.
+    pub t_s: f64,
+    /// The joint.
+    pub actuator: String,
+    /// What is commanded: `position`.
+    pub kind: String,
+    /// The target, rad.
+    pub value: f64,
+}
+
+/// A row of `ir.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "coordinates in m, documented once at the head of `bundle`"
+)]
+pub struct ResponseRow {
+    /// The episode.
+    pub episode: String,
+    /// The WAV file, relative to the bundle, such as `ir/03.wav`.
+    pub file: String,
+    pub source_x: f64,
+    pub source_y: f64,
+    pub source_z: f64,
+    pub receiver_x: f64,
+    pub receiver_y: f64,
+    pub receiver_z: f64,
+    /// Sample rate, Hz; the WAV file's own must be the same.
+    pub rate_hz: u32,
+}

@@ -1,0 +1,75 @@
+//! The measured bundle: a folder `NAME.measured/` with what was measured and in which situation.
+//!
+//! | file | columns or content |
+//! | --- | --- |
+//! | `manifest.json` | [`file::Manifest`] |
+//! | `episodes.csv` | `episode, split_group, conditions` |
+//! | `trajectory.csv` | `episode, t_s, entity, channel, value` (kinds trajectory and servo) |
+//! | `command.csv` | `episode, t_s, actuator, kind, value` (kind servo) |
+//! | `ir.csv` | `episode, file, source_x, source_y, source_z, receiver_x, receiver_y, receiver_z, rate_hz` (kind impulse_response) |
+//! | `ir/*.wav` | the responses that `ir.csv` names |
+//!
+//! Everything is SI; axes are the engine's (right-handed, y up).
+
+pub mod file;
+
+mod check;
+mod limits;
+mod read;
+mod wav;
+
+use file::{CommandRow, Kind, Manifest};
+
+/// A bundle that was read and checked.
+#[derive(Clone, Debug)]
+pub(crate) struct Bundle {
+    /// The folder, as it is printed.
+    pub(crate) name: String,
+    pub(crate) manifest: Manifest,
+    /// In the order of the file.
+    pub(crate) episodes: Vec<Episode>,
+}
+
+/// One recording.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Episode {
+    pub(crate) name: String,
+    /// Episodes of one group are held out together.
+    pub(crate) group: String,
+    /// By entity, then channel, each by time.
+    pub(crate) samples: Vec<Sample>,
+    /// By actuator, each by time.
+    pub(crate) commands: Vec<CommandRow>,
+    pub(crate) responses: Vec<Response>,
+}
+
+/// One measured number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sample {
+    /// Position in the manifest's bodies or joints.
+    pub(crate) entity: usize,
+    /// Position in the manifest's channels.
+    pub(crate) channel: usize,
+    pub(crate) t_s: f64,
+    pub(crate) value: f64,
+}
+
+/// One measured impulse response.
+#[derive(Clone, Debug)]
+pub(crate) struct Response {
+    pub(crate) source_m: [f64; 3],
+    pub(crate) receiver_m: [f64; 3],
+    pub(crate) rate_hz: u32,
+    /// Pressure, in the recording's own scale.
+    pub(crate) samples: Vec<f32>,
+}
+
+impl Bundle {
+    /// What kind of measurement it is.
+    pub(crate) fn kind(&self) -> Kind {
+        self.manifest.kind
+    }
+}
+
+pub(crate) use check::SIDES;
+pub(crate) use read::read;

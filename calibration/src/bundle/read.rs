@@ -1,0 +1,283 @@
+//! From files to a checked [`Bundle`].
+
+use super::check::{self, Names};
+use super::file::{CommandRow, EpisodeRow, Kind, Manifest, ResponseRow, TrajectoryRow};
+use super::limits;
+use super::{Bundle, Episode, Response, Sample, wav};
+use crate::error::CalibrationError;
+use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{BufReader, Read as _};
+use std::path::{Component, Path, PathBuf};
+
+/// Reads and checks a bundle.
+pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
+    let name = folder.display().to_string();
+    let manifest = manifest(folder)?;
+    check::manifest(&format!("{name}/manifest.json"), &manifest)?;
+    let mut bundle = Bundle {
+        episodes: episodes(folder)?,
+        name,
+        manifest,
+    };
+    let by_name: BTreeMap<String, usize> = bundle
+        .episodes
+        .iter()
+        .enumerate()
+        .map(|(k, episode)| (episode.name.clone(), k))
+        .collect();
+    let names = Names::new(&bundle.manifest);
+    match bundle.kind() {
+        Kind::Trajectory => trajectory(folder, &names, &by_name, &mut bundle.episodes)?,
+        Kind::Servo => {
+            trajectory(folder, &names, &by_name, &mut bundle.episodes)?;
+            commands(folder, &names, &by_name, &mut bundle.episodes)?;
+        }
+        Kind::ImpulseResponse => {
+            responses(folder, &bundle.manifest, &by_name, &mut bundle.episodes)?
+        }
+    }
+    check::complete(&bundle)?;
+    Ok(bundle)
+}
+
+/// Opens a file of the bundle that lies inside its folder and is not too large.
+fn open(folder: &Path, relative: &str, limit: u64) -> Result<(fs::File, String), CalibrationError> {
+    let at = folder.join(relative).display().to_string();
+    let inside = Path::new(relative)
+        .components()
+        .all(|part| matches!(part, Component::Normal(_)));
+    if !inside || relative.is_empty() || relative.len() > 1024 {
+        let allowed = "a path inside the bundle, without ..";
+        return Err(CalibrationError::field(
+            folder.display().to_string(),
+            "file",
+            format!("{relative:?}"),
+            allowed,
+        ));
+    }
+    let fault = |path: PathBuf| move |source| CalibrationError::Read { path, source };
+    let path = folder.join(relative);
+    // A link could lead out of the folder.
+    let root = fs::canonicalize(folder).map_err(fault(folder.to_owned()))?;
+    let real = fs::canonicalize(&path).map_err(fault(path.clone()))?;
+    if !real.starts_with(&root) {
+        return Err(CalibrationError::field(
+            at,
+            "file",
+            "a link out of the bundle",
+            "a file inside the bundle",
+        ));
+    }
+    let file = fs::File::open(&real).map_err(fault(path.clone()))?;
+    let facts = file.metadata().map_err(fault(path))?;
+    if !facts.is_file() {
+        return Err(CalibrationError::field(
+            at,
+            "file",
+            "no plain file",
+            "a plain file",
+        ));
+    }
+    if facts.len() > limit {
+        let found = facts.len();
+        return Err(CalibrationError::TooLarge {
+            at,
+            what: "bytes",
+            found,
+            limit,
+        });
+    }
+    Ok((file, at))
+}
+
+fn manifest(folder: &Path) -> Result<Manifest, CalibrationError> {
+    let (file, at) = open(folder, "manifest.json", limits::MANIFEST_BYTES)?;
+    let mut text = String::new();
+    file.take(limits::MANIFEST_BYTES)
+        .read_to_string(&mut text)
+        .map_err(|source| CalibrationError::Read {
+            path: folder.join("manifest.json"),
+            source,
+        })?;
+    serde_json::from_str(&text).map_err(|error| CalibrationError::Syntax {
+        at: format!("{at} line {}", error.line()),
+        what: error.to_string(),
+    })
+}
+
+/// Calls `row` with every row of a table and its place.
+fn table<T: DeserializeOwned>(
+    folder: &Path,
+    name: &str,
+    mut row: impl FnMut(T, &str) -> Result<(), CalibrationError>,
+) -> Result<(), CalibrationError> {
+    let (file, at) = open(folder, name, limits::TABLE_BYTES)?;
+    let limited = BufReader::new(file).take(limits::TABLE_BYTES);
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_reader(limited);
+    for (count, record) in reader.deserialize().enumerate() {
+        // Line 1 is the head.
+        let here = format!("{at} line {}", count + 2);
+        if count as u64 >= limits::TABLE_ROWS {
+            let (found, limit) = (count as u64 + 1, limits::TABLE_ROWS);
+            return Err(CalibrationError::TooLarge {
+                at,
+                what: "rows",
+                found,
+                limit,
+            });
+        }
+        let record = record.map_err(|error| CalibrationError::Syntax {
+            at: here.clone(),
+            what: error.to_string(),
+        })?;
+        row(record, &here)?;
+    }
+    Ok(())
+}
+
+fn episodes(folder: &Path) -> Result<Vec<Episode>, CalibrationError> {
+    let mut found: Vec<Episode> = Vec::new();
+    let mut names = BTreeMap::new();
+    table(folder, "episodes.csv", |row: EpisodeRow, at| {
+        check::name(at, "episode", &row.episode)?;
+        check::name(at, "split_group", &row.split_group)?;
+        if names.insert(row.episode.clone(), ()).is_some() {
+            return Err(CalibrationError::field(
+                at,
+                "episode",
+                format!("{:?} again", row.episode),
+                "each name once",
+            ));
+        }
+        if found.len() as u64 >= limits::EPISODES {
+            let limit = limits::EPISODES;
+            return Err(CalibrationError::TooLarge {
+                at: at.to_owned(),
+                what: "episodes",
+                found: limit + 1,
+                limit,
+            });
+        }
+        found.push(Episode {
+            name: row.episode,
+            group: row.split_group,
+            ..Episode::default()
+        });
+        Ok(())
+    })?;
+    Ok(found)
+}
+
+/// The position of an episode.
+fn episode(
+    at: &str,
+    by_name: &BTreeMap<String, usize>,
+    name: &str,
+) -> Result<usize, CalibrationError> {
+    by_name.get(name).copied().ok_or_else(|| {
+        CalibrationError::field(
+            at,
+            "episode",
+            format!("{name:?}"),
+            "a name that stands in episodes.csv",
+        )
+    })
+}
+
+fn trajectory(
+    folder: &Path,
+    names: &Names,
+    by_name: &BTreeMap<String, usize>,
+    episodes: &mut [Episode],
+) -> Result<(), CalibrationError> {
+    table(folder, "trajectory.csv", |row: TrajectoryRow, at| {
+        check::time(at, row.t_s)?;
+        check::finite(at, "value", row.value, 1e6)?;
+        let sample = Sample {
+            entity: names.entity(at, "entity", &row.entity)?,
+            channel: names.channel(at, &row.channel)?,
+            t_s: row.t_s,
+            value: row.value,
+        };
+        episodes[episode(at, by_name, &row.episode)?]
+            .samples
+            .push(sample);
+        Ok(())
+    })?;
+    for episode in episodes {
+        let order = |s: &Sample| (s.entity, s.channel);
+        episode
+            .samples
+            .sort_by(|a, b| order(a).cmp(&order(b)).then(a.t_s.total_cmp(&b.t_s)));
+    }
+    Ok(())
+}
+
+fn commands(
+    folder: &Path,
+    names: &Names,
+    by_name: &BTreeMap<String, usize>,
+    episodes: &mut [Episode],
+) -> Result<(), CalibrationError> {
+    table(folder, "command.csv", |row: CommandRow, at| {
+        check::time(at, row.t_s)?;
+        check::finite(at, "value", row.value, 1e3)?;
+        names.entity(at, "actuator", &row.actuator)?;
+        if row.kind != "position" {
+            return Err(CalibrationError::field(
+                at,
+                "kind",
+                format!("{:?}", row.kind),
+                "position",
+            ));
+        }
+        episodes[episode(at, by_name, &row.episode)?]
+            .commands
+            .push(row);
+        Ok(())
+    })?;
+    for episode in episodes {
+        episode.commands.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+    }
+    Ok(())
+}
+
+fn responses(
+    folder: &Path,
+    manifest: &Manifest,
+    by_name: &BTreeMap<String, usize>,
+    episodes: &mut [Episode],
+) -> Result<(), CalibrationError> {
+    let mut count = 0;
+    table(folder, "ir.csv", |row: ResponseRow, at| {
+        count += 1;
+        if count > limits::RESPONSES {
+            let limit = limits::RESPONSES;
+            return Err(CalibrationError::TooLarge {
+                at: at.to_owned(),
+                what: "responses",
+                found: count,
+                limit,
+            });
+        }
+        let source_m = [row.source_x, row.source_y, row.source_z];
+        let receiver_m = [row.receiver_x, row.receiver_y, row.receiver_z];
+        check::place(at, "source", source_m, manifest)?;
+        check::place(at, "receiver", receiver_m, manifest)?;
+        let (file, wav_at) = open(folder, &row.file, limits::WAV_BYTES)?;
+        let samples = wav::samples(file, &wav_at, row.rate_hz)?;
+        episodes[episode(at, by_name, &row.episode)?]
+            .responses
+            .push(Response {
+                source_m,
+                receiver_m,
+                rate_hz: row.rate_hz,
+                samples,
+            });
+        Ok(())
+    })
+}

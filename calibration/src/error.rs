@@ -1,0 +1,115 @@
+//! What can go wrong in calibration.
+
+use std::path::PathBuf;
+
+/// A fault of calibration, with its place.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CalibrationError {
+    /// A file or folder that cannot be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A file that cannot be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Text that is no JSON, CSV or WAV.
+    #[error("{at}: {what}")]
+    Syntax {
+        /// File and line.
+        at: String,
+        /// What is wrong.
+        what: String,
+    },
+    /// A field with a value that is not allowed.
+    #[error("{at}: {field} is {found}; allowed is {allowed}")]
+    Field {
+        /// File and line.
+        at: String,
+        /// The field's name.
+        field: String,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// A bundle that lacks something.
+    #[error("{at}: {what} is missing; {needed}")]
+    Missing {
+        /// File and line, or the folder.
+        at: String,
+        /// What is missing.
+        what: String,
+        /// What must be there.
+        needed: String,
+    },
+    /// More than this build takes in.
+    #[error("{at}: {what}: {found}, at most {limit} are read")]
+    TooLarge {
+        /// The file.
+        at: String,
+        /// What is counted, with its unit.
+        what: &'static str,
+        /// How much was found.
+        found: u64,
+        /// How much is allowed.
+        limit: u64,
+    },
+    /// Too little data for any verdict.
+    #[error("{at}: {found} {what}, at least {needed} are needed")]
+    TooFew {
+        /// The bundle.
+        at: String,
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// A simulation that could not be made or left the world of numbers.
+    #[error("simulation of {at}: {what}")]
+    Simulation {
+        /// The episode or the scene.
+        at: String,
+        /// What the engine says.
+        what: String,
+    },
+    /// The caller asked to stop.
+    #[error("calibration was stopped")]
+    Interrupted,
+}
+
+impl CalibrationError {
+    /// A field with a value that is not allowed.
+    pub(crate) fn field(
+        at: impl Into<String>,
+        field: impl Into<String>,
+        found: impl ToString,
+        allowed: impl Into<String>,
+    ) -> Self {
+        Self::Field {
+            at: at.into(),
+            field: field.into(),
+            found: found.to_string(),
+            allowed: allowed.into(),
+        }
+    }
+
+    /// A simulation that failed.
+    pub(crate) fn simulation(at: impl Into<String>, what: impl ToString) -> Self {
+        Self::Simulation {
+            at: at.into(),
+            what: what.to_string(),
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! The damped Gauss-Newton iteration.
+
+use super::normal::{self, Block};
+use super::robust::Loss;
+use crate::error::CalibrationError;
+use crate::progress::Tell;
+use crate::twin::{Point, Slot, Twin, range_of};
+use dwell_scene::parallel::Threads;
+use nalgebra::{DMatrix, DVector};
+
+const MOST_ITERATIONS: usize = 12;
+/// Iterations of the second stage, in which outliers count less.
+const MOST_ROBUST_ITERATIONS: usize = 4;
+const MOST_DAMPINGS: usize = 6;
+/// Relative fall of the sum of squares at which the iteration ends.
+const TOLERANCE: f64 = 1e-5;
+
+/// Which causes are fitted, by position; nuisances always are.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Model {
+    pub(crate) causes: Vec<usize>,
+}
+
+/// What a fit works on.
+pub(crate) struct Task<'a> {
+    pub(crate) twin: &'a dyn Twin,
+    /// The episodes, by position.
+    pub(crate) set: &'a [usize],
+    pub(crate) threads: Threads,
+    pub(crate) robust: bool,
+    pub(crate) progress: &'a dyn Tell,
+}
+
+/// Where a fit ended.
+#[derive(Clone, Debug)]
+pub(crate) struct Fit {
+    pub(crate) point: Point,
+    /// Weighted sum of squares (or of the robust loss).
+    pub(crate) loss: f64,
+    /// Data, and parameters that all episodes share.
+    pub(crate) data: usize,
+    pub(crate) parameters: usize,
+    /// (measured - simulated) / sd. Shape (episode of the set, datum).
+    pub(crate) residuals: Vec<Vec<f64>>,
+    /// Inverse of the reduced normal matrix of the shared parameters: nuisances, then causes.
+    pub(crate) inverse: DMatrix<f64>,
+    /// The slots that `inverse` belongs to.
+    pub(crate) slots: Vec<Slot>,
+}
+
+struct Evaluation {
+    residuals: Vec<Vec<f64>>,
+    predictions: Vec<Vec<f64>>,
+}
+
+impl Task<'_> {
+    /// Fits the model's causes and all nuisances from `start` on.
+    pub(crate) fn fit(&self, model: &Model, start: &Point) -> Result<Fit, CalibrationError> {
+        let causes = model
+            .causes
+            .iter()
+            .flat_map(|cause| range_of(self.twin, *cause))
+            .map(Slot::Cause);
+        let shared = (0..self.twin.shared().len()).map(Slot::Shared);
+        self.run(shared.chain(causes).collect(), start)
+    }
+
+    /// Fits the episodes' own nuisances alone.
+    pub(crate) fn fit_own(&self, start: &Point) -> Result<Fit, CalibrationError> {
+        self.run(Vec::new(), start)
+    }
+
+    /// The sum of squares at a point, nothing fitted.
+    pub(crate) fn loss_at(&self, point: &Point) -> Result<f64, CalibrationError> {
+        Ok(total(&self.evaluate(point)?.residuals, Loss::SQUARE))
+    }
+
+    fn run(&self, global: Vec<Slot>, start: &Point) -> Result<Fit, CalibrationError> {
+        let mut point = start.clone();
+        let mut now = self.evaluate(&point)?;
+        let blocks = self.iterate(&global, &mut point, &mut now, Loss::SQUARE, MOST_ITERATIONS)?;
+        let (mut blocks, mut loss) = (blocks, Loss::SQUARE);
+        if self.robust {
+            loss = Loss::huber(now.residuals.iter().flatten());
+            blocks = self.iterate(&global, &mut point, &mut now, loss, MOST_ROBUST_ITERATIONS)?;
+        }
+        Ok(Fit {
+            loss: total(&now.residuals, loss),
+            data: now.residuals.iter().map(Vec::len).sum(),
+            parameters: global.len(),
+            inverse: normal::inverse(&normal::reduced(&blocks)),
+            point,
+            residuals: now.residuals,
+            slots: global,
+        })
+    }
+
+    fn iterate(
+        &self,
+        global: &[Slot],
+        point: &mut Point,
+        now: &mut Evaluation,
+        loss: Loss,
+        most: usize,
+    ) -> Result<Vec<Block>, CalibrationError> {
+        let mut damping = 1e-6;
+        let mut value = total(&now.residuals, loss);
+        let mut blocks = self.blocks(global, point, now, loss)?;
+        for _ in 0..most {
+            self.progress.check()?;
+            let before = value;
+            for _ in 0..MOST_DAMPINGS {
+                let trial = self.moved(global, point, &normal::step(&blocks, damping));
+                // A trial that the engine refuses is a step too far.
+                let there = self
+                    .evaluate(&trial)
+                    .ok()
+                    .map(|there| (total(&there.residuals, loss), there));
+                if let Some((lower, there)) = there.filter(|(lower, _)| *lower < value) {
+                    (*point, *now, value) = (trial, there, lower);
+                    damping = (damping * 0.1).max(1e-9);
+                    break;
+                }
+                damping = (damping * 30.0).max(1e-4);
+            }
+            if before - value <= TOLERANCE * before {
+                // Blocks of the point before the last, tiny, step serve as well.
+                break;
+            }
+            blocks = self.blocks(global, point, now, loss)?;
+        }
+        Ok(blocks)
+    }
+
+    /// The point one step on, inside the bounds.
+    fn moved(&self, global: &[Slot], point: &Point, step: &normal::Step) -> Point {
+        let mut moved = point.clone();
+        let bounded = |slot: Slot, value: f64| {
+            let parameter = self.twin.parameter(slot);
+            value.clamp(parameter.low, parameter.high)
+        };
+        for (slot, change) in global.iter().zip(step.global.iter()) {
+            match *slot {
+                Slot::Shared(k) => moved.shared[k] = bounded(*slot, moved.shared[k] + change),
+                Slot::Cause(k) => moved.causes[k] = bounded(*slot, moved.causes[k] + change),
+                Slot::Own(_) => {}
+            }
+        }
+        for (episode, change) in self.set.iter().zip(&step.own) {
+            for (k, change) in change.iter().enumerate() {
+                let value = &mut moved.own[*episode][k];
+                *value = bounded(Slot::Own(k), *value + change);
+            }
+        }
+        moved
+    }
+
+    fn evaluate(&self, point: &Point) -> Result<Evaluation, CalibrationError> {
+        let (twin, set) = (self.twin, self.set);
+        let done = self.threads.map(set.len(), |k| {
+            let episode = set[k];
+            let measured = &twin.episodes()[episode];
+            let predictions = twin.predict(episode, &point.values(episode))?;
+            if predictions.len() != measured.y.len()
+                || predictions.iter().any(|value| !value.is_finite())
+            {
+                return Err(CalibrationError::simulation(
+                    &measured.name,
+                    "it left the world of numbers",
+                ));
+            }
+            let residuals = measured
+                .y
+                .iter()
+                .zip(&predictions)
+                .zip(&measured.sd)
+                .map(|((y, f), sd)| (y - f) / sd)
+                .collect::<Vec<f64>>();
+            Ok((residuals, predictions))
+        });
+        let (residuals, predictions) = done
+            .into_iter()
+            .collect::<Result<Vec<_>, _>>()?
+            .into_iter()
+            .unzip();
+        Ok(Evaluation {
+            residuals,
+            predictions,
+        })
+    }
+
+    fn blocks(
+        &self,
+        global: &[Slot],
+        point: &Point,
+        now: &Evaluation,
+        loss: Loss,
+    ) -> Result<Vec<Block>, CalibrationError> {
+        let own = self.twin.own().len();
+        let slots: Vec<Slot> = (0..own)
+            .map(Slot::Own)
+            .chain(global.iter().copied())
+            .collect();
+        let (twin, set) = (self.twin, self.set);
+        let done = self.threads.map(set.len(), |k| {
+            let episode = set[k];
+            let sd = &twin.episodes()[episode].sd;
+            let base = &now.predictions[k];
+            let mut jacobian = twin.derivatives(episode, &point.values(episode), base, &slots)?;
+            let mut residual = DVector::from_column_slice(&now.residuals[k]);
+            for (row, sd) in sd.iter().enumerate() {
+                let weight = loss.weight(residual[row]).sqrt();
+                residual[row] *= weight;
+                jacobian.row_mut(row).scale_mut(weight / sd);
+            }
+            Ok(Block::new(&jacobian, &residual, own))
+        });
+        done.into_iter().collect()
+    }
+}
+
+fn total(residuals: &[Vec<f64>], loss: Loss) -> f64 {
+    residuals.iter().flatten().map(|r| loss.of(*r)).sum()
+}
+
+impl Fit {
+    /// The loss of each episode of the set.
+    pub(crate) fn loss_by_episode(&self, robust: Option<&Self>) -> Vec<f64> {
+        let loss = match robust {
+            // Both models that are compared are judged by one loss.
+            Some(other) => Loss::huber(other.residuals.iter().flatten()),
+            None => Loss::SQUARE,
+        };
+        let sums = self
+            .residuals
+            .iter()
+            .map(|episode| episode.iter().map(|r| loss.of(*r)).sum());
+        sums.collect()
+    }
+}

@@ -1,0 +1,8 @@
+//! Fitting: damped Gauss-Newton over shared parameters and each episode's own nuisances.
+
+mod gauss_newton;
+mod normal;
+mod robust;
+
+pub(crate) use gauss_newton::{Fit, Model, Task};
+pub(crate) use robust::median;

@@ -1,0 +1,84 @@
+//! Samples far from the rest count less.
+
+/// From how many robust standard deviations on a residual counts less.
+const TURN: f64 = 3.0;
+
+/// Huber's loss, scaled so that it equals the square inside.
+///
+/// # Source
+/// P. J. Huber, Ann. Math. Stat. 35, 73 (1964).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Loss {
+    /// Where the square turns into a line; infinite: never.
+    turn: f64,
+}
+
+impl Loss {
+    /// Plain least squares.
+    pub(crate) const SQUARE: Self = Self {
+        turn: f64::INFINITY,
+    };
+
+    /// Huber's loss for residuals of this size.
+    pub(crate) fn huber<'a>(residuals: impl Iterator<Item = &'a f64>) -> Self {
+        let mut sizes: Vec<f64> = residuals.map(|r| r.abs()).collect();
+        let scale = 1.4826 * median(&mut sizes);
+        if scale > 0.0 && scale.is_finite() {
+            Self { turn: TURN * scale }
+        } else {
+            Self::SQUARE
+        }
+    }
+
+    /// The loss of a residual.
+    pub(crate) fn of(self, residual: f64) -> f64 {
+        let size = residual.abs();
+        if size <= self.turn {
+            size * size
+        } else {
+            self.turn * (2.0 * size - self.turn)
+        }
+    }
+
+    /// The weight of a residual in the normal equations.
+    pub(crate) fn weight(self, residual: f64) -> f64 {
+        let size = residual.abs();
+        if size <= self.turn {
+            1.0
+        } else {
+            self.turn / size
+        }
+    }
+}
+
+/// The median; 0 of nothing. Puts `values` into another order.
+pub(crate) fn median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_loss_is_the_square_inside_and_a_line_outside() {
+        let loss = Loss { turn: 2.0 };
+        assert!((loss.of(-1.5) - 2.25).abs() < 1e-12);
+        assert!((loss.of(5.0) - loss.of(4.0) - 4.0).abs() < 1e-12);
+        // The weight is half the loss's slope over the residual.
+        let slope = (loss.of(5.0 + 1e-6) - loss.of(5.0 - 1e-6)) / 2e-6;
+        assert!((loss.weight(5.0) - slope / 10.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_scale_does_not_see_outliers() {
+        let mut residuals: Vec<f64> = (0..100).map(|k| f64::from(k) / 50.0 - 1.0).collect();
+        residuals[3] = 1e9;
+        let loss = Loss::huber(residuals.iter());
+        assert!(loss.turn < 3.0, "{loss:?}");
+    }
+}

@@ -1,0 +1,55 @@
+//! How far the work is, and whether it shall stop.
+
+use crate::error::CalibrationError;
+use std::cell::RefCell;
+
+/// Takes a fraction and a sentence, and answers whether to go on.
+type Listener<'a> = &'a mut dyn FnMut(f32, &str) -> bool;
+
+/// Tells the caller how far the work is. A trait, so that what works need not name the caller's lifetime.
+pub(crate) trait Tell {
+    /// Reports a new stage.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Interrupted`] when the caller wants to stop.
+    fn stage(&self, fraction: f32, what: &str) -> Result<(), CalibrationError>;
+
+    /// Asks whether to go on.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Interrupted`] when the caller wants to stop.
+    fn check(&self) -> Result<(), CalibrationError>;
+}
+
+/// The caller, by a function that is told.
+pub(crate) struct Progress<'a> {
+    now: RefCell<(Listener<'a>, f32, String)>,
+}
+
+impl<'a> Progress<'a> {
+    pub(crate) fn new(listener: Listener<'a>) -> Self {
+        Self {
+            now: RefCell::new((listener, 0.0, String::new())),
+        }
+    }
+}
+
+impl Tell for Progress<'_> {
+    fn stage(&self, fraction: f32, what: &str) -> Result<(), CalibrationError> {
+        {
+            let mut now = self.now.borrow_mut();
+            now.1 = fraction;
+            what.clone_into(&mut now.2);
+        }
+        self.check()
+    }
+
+    fn check(&self) -> Result<(), CalibrationError> {
+        let (listener, fraction, what) = &mut *self.now.borrow_mut();
+        if listener(*fraction, what) {
+            Ok(())
+        } else {
+            Err(CalibrationError::Interrupted)
+        }
+    }
+}

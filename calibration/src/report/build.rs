@@ -1,0 +1,362 @@
+//! From findings to the report.
+
+use super::data::{Candidate, Effect, Fitted, Found, Nuisance, Report, Verdict};
+use super::plot::plots;
+use crate::bundle::Bundle;
+use crate::bundle::file::Kind;
+use crate::error::CalibrationError;
+use crate::select::{Decision, Estimate, Findings, Judged, Single, by_channel, estimates, sd_of};
+use crate::twin::{Cause, Experiment, Parameter, Slot, Twin};
+use crate::words::{list, number, percent};
+use dwell_scene::LawSpec;
+
+/// The version of the report's form.
+const VERSION: u32 = 1;
+
+/// Puts findings into a report.
+pub(crate) fn build(
+    bundle: &Bundle,
+    twin: &dyn Twin,
+    findings: &Findings,
+) -> Result<Report, CalibrationError> {
+    let verdict = verdict(twin, findings);
+    let named = matches!(verdict, Verdict::Named { .. });
+    let chosen = if named {
+        &findings.chosen
+    } else {
+        &findings.base
+    };
+    let (set_before, before) = together(findings, &findings.base);
+    let (set_after, after) = together(findings, chosen);
+    let name = |set: &[usize]| {
+        set.iter()
+            .map(|k| twin.episodes()[*k].name.clone())
+            .collect()
+    };
+    let candidates: Vec<Candidate> = findings
+        .singles
+        .iter()
+        .map(|single| candidate(twin, single))
+        .collect();
+    Ok(Report {
+        version: VERSION,
+        title: bundle.manifest.title.clone(),
+        licence: bundle.manifest.licence.clone(),
+        kind: bundle.kind(),
+        sentence: sentence(&verdict, &candidates, twin, findings),
+        fitted_episodes: name(&findings.split.train),
+        held_out_episodes: name(&findings.split.held_out),
+        residuals_before: by_channel(twin, &set_before, &before),
+        residuals_after: by_channel(twin, &set_after, &after),
+        remainder_before: findings.remainder_before,
+        remainder_after: if named {
+            findings.remainder_after
+        } else {
+            findings.remainder_before
+        },
+        agreement: findings.agreement.clone(),
+        nuisances: nuisances(twin, chosen),
+        found: if named {
+            found(twin, findings)
+        } else {
+            Found::default()
+        },
+        plots: plots(
+            twin,
+            (&set_before, &before),
+            named.then_some((&set_after[..], &after[..])),
+        ),
+        notes: notes(bundle, twin, findings),
+        candidates,
+        verdict,
+    })
+}
+
+/// Residuals of all episodes, fitted ones first.
+fn together(findings: &Findings, judged: &Judged) -> (Vec<usize>, Vec<Vec<f64>>) {
+    let set = findings
+        .split
+        .train
+        .iter()
+        .chain(&findings.split.held_out)
+        .copied()
+        .collect();
+    let residuals = judged
+        .fit
+        .residuals
+        .iter()
+        .chain(&judged.held_out.residuals)
+        .cloned()
+        .collect();
+    (set, residuals)
+}
+
+fn fitted(parameter: &Parameter, estimate: &Estimate) -> Fitted {
+    let [low, high] = estimate.interval();
+    Fitted {
+        name: parameter.name.clone(),
+        unit: parameter.unit.clone(),
+        value: estimate.value,
+        interval: [low.max(parameter.low), high.min(parameter.high)],
+        default: parameter.default,
+        plausible: parameter.plausible,
+    }
+}
+
+fn parameters(twin: &dyn Twin, judged: &Judged, cause: usize) -> Vec<Fitted> {
+    let found = estimates(twin, &judged.fit, judged.effective_count, cause);
+    let parameters = twin.causes()[cause].parameters.iter();
+    parameters
+        .zip(&found)
+        .map(|(parameter, estimate)| fitted(parameter, estimate))
+        .collect()
+}
+
+fn candidate(twin: &dyn Twin, single: &Single) -> Candidate {
+    let cause = &twin.causes()[single.cause];
+    Candidate {
+        id: cause.id.clone(),
+        name: cause.name.clone(),
+        equation: cause.equation.clone(),
+        parameters: parameters(twin, &single.judged, single.cause),
+        delta_bic: single.against.delta_bic,
+        gain: single.against.gain,
+        passes: single.passes,
+        implausible: single.implausible.clone(),
+        separating_experiment: cause.separating_experiment.clone(),
+    }
+}
+
+fn verdict(twin: &dyn Twin, findings: &Findings) -> Verdict {
+    let cause = |index: &usize| &twin.causes()[*index];
+    match (&findings.decision, findings.against_base) {
+        (Decision::Named(causes), Some(against)) if !causes.is_empty() => Verdict::Named {
+            law: cause(&causes[0]).id.clone(),
+            effects: causes
+                .iter()
+                .map(|index| Effect {
+                    law: cause(index).id.clone(),
+                    name: cause(index).name.clone(),
+                    equation: cause(index).equation.clone(),
+                    parameters: parameters(twin, &findings.chosen, *index),
+                })
+                .collect(),
+            gain: against.gain,
+        },
+        (Decision::OneOf(causes), _) => Verdict::OneOf {
+            laws: causes.iter().map(|index| cause(index).id.clone()).collect(),
+            separating_experiments: causes
+                .iter()
+                .map(|index| cause(index).separating_experiment.clone())
+                .collect(),
+        },
+        (Decision::Unexplained(reason), _) => Verdict::Unexplained {
+            reason: reason.clone(),
+        },
+        _ => Verdict::Nothing,
+    }
+}
+
+fn with_unit(unit: &str) -> String {
+    if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    }
+}
+
+/// The parameters of an effect in words: those that the data move, the rest counted.
+fn in_words(parameters: &[Fitted]) -> String {
+    let moved = |p: &&Fitted| !(p.interval[0] <= p.default && p.default <= p.interval[1]);
+    let told: Vec<String> = parameters
+        .iter()
+        .filter(moved)
+        .map(|p| {
+            let [low, high] = p.interval.map(number);
+            format!(
+                "{} = {}{} ({low} to {high})",
+                p.name,
+                number(p.value),
+                with_unit(&p.unit)
+            )
+        })
+        .collect();
+    if told.is_empty() {
+        "within the intervals of what it was".to_owned()
+    } else {
+        list(&told)
+    }
+}
+
+fn sentence(
+    verdict: &Verdict,
+    candidates: &[Candidate],
+    twin: &dyn Twin,
+    findings: &Findings,
+) -> String {
+    let name = |id: &String| {
+        candidates
+            .iter()
+            .find(|c| c.id == *id)
+            .map_or(id.clone(), |c| c.name.clone())
+    };
+    match verdict {
+        Verdict::Nothing => {
+            let limits: Vec<String> = candidates
+                .iter()
+                .filter(|c| c.parameters.len() == 1)
+                .map(|c| {
+                    let p = &c.parameters[0];
+                    let [low, high] = p.interval.map(number);
+                    format!("{} {low} to {high}{}", p.name, with_unit(&p.unit))
+                })
+                .collect();
+            let limits = if limits.is_empty() {
+                String::new()
+            } else {
+                format!(" Limits at 95 %: {}.", list(&limits))
+            };
+            format!("Nothing is missing that this data could show.{limits}")
+        }
+        Verdict::Named { effects, gain, .. } => {
+            let told: Vec<String> = effects
+                .iter()
+                .map(|e| format!("{}, {}", e.name, in_words(&e.parameters)))
+                .collect();
+            let [low, high] = gain.share_interval.map(percent);
+            let rest = if findings.remainder_after.is_structured() {
+                " Something small and systematic is left that has no name here."
+            } else {
+                ""
+            };
+            format!(
+                "What the simulation lacks is {}. It takes away {} ({low} to {high}) of the squared error on episodes \
+                 that no fit has seen.{rest}",
+                told.join("; and "),
+                percent(gain.share)
+            )
+        }
+        Verdict::OneOf {
+            laws,
+            separating_experiments,
+        } => {
+            let names: Vec<String> = laws.iter().map(name).collect();
+            format!(
+                "Something is missing, but this data cannot tell apart {}. What would: {}.",
+                list(&names),
+                separating_experiments.join("; ")
+            )
+        }
+        Verdict::Unexplained { reason } => {
+            let worst = by_channel(twin, &findings.split.train, &findings.base.fit.residuals)
+                .into_iter()
+                .max_by(|a, b| a.chi2_per_count.total_cmp(&b.chi2_per_count));
+            let size = worst.map_or_else(String::new, |w| {
+                format!(
+                    " It is worth {}{} in {}.",
+                    number(w.rms),
+                    with_unit(&w.unit),
+                    w.channel
+                )
+            });
+            format!(
+                "Something is missing that has no name here: {reason}.{size} Nothing was added to the model."
+            )
+        }
+    }
+}
+
+fn nuisances(twin: &dyn Twin, judged: &Judged) -> Vec<Nuisance> {
+    let shared = twin.shared().iter().enumerate();
+    shared
+        .map(|(k, parameter)| Nuisance {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            value: judged.fit.point.shared[k],
+            sd: sd_of(&judged.fit, judged.effective_count, Slot::Shared(k)),
+        })
+        .collect()
+}
+
+fn found(twin: &dyn Twin, findings: &Findings) -> Found {
+    let mut found = Found::default();
+    for index in &findings.chosen.model.causes {
+        let cause: &Cause = &twin.causes()[*index];
+        let values = parameters(twin, &findings.chosen, *index);
+        match &cause.installs_as {
+            Experiment::Law { version, target } => found.laws.push(LawSpec {
+                id: cause.id.clone(),
+                version: *version,
+                target: target.clone(),
+                params: values
+                    .iter()
+                    .map(|p| (p.name.clone(), p.value))
+                    .chain(cause.fixed.clone())
+                    .collect(),
+            }),
+            Experiment::Addresses(addresses) => {
+                let pairs = addresses.iter().zip(&values);
+                found
+                    .parameters
+                    .extend(pairs.map(|(address, p)| (address.clone(), p.value)));
+            }
+            Experiment::Elsewhere => {}
+        }
+    }
+    found
+}
+
+fn notes(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Vec<String> {
+    let mut notes = Vec::new();
+    if !findings.split.by_group {
+        notes.push(
+            "All episodes are of one group: episodes were held out, not groups, so what is common to the session is in \
+             both parts."
+                .to_owned(),
+        );
+    }
+    let air = &bundle.manifest.scene.environment;
+    let missing: Vec<String> = [
+        (
+            "temperature (20 degrees Celsius taken)",
+            air.temperature_c.is_none(),
+        ),
+        (
+            "humidity (50 % taken)",
+            air.humidity_pct.is_none() && bundle.kind() == Kind::ImpulseResponse,
+        ),
+        ("pressure (101325 Pa taken)", air.pressure_pa.is_none()),
+        (
+            "local gravity (standard gravity taken)",
+            air.g_m_s2.is_none() && bundle.kind() == Kind::Trajectory,
+        ),
+    ]
+    .into_iter()
+    .filter(|(_, missing)| *missing && bundle.kind() != Kind::Servo)
+    .map(|(what, _)| what.to_owned())
+    .collect();
+    if !missing.is_empty() {
+        notes.push(format!("Not measured: {}.", list(&missing)));
+    }
+    let own: Vec<String> = twin
+        .own()
+        .iter()
+        .map(|parameter| parameter.name.clone())
+        .collect();
+    if !own.is_empty() {
+        notes.push(format!(
+            "Fitted in every episode, and never an effect: {}.",
+            list(&own)
+        ));
+    }
+    match bundle.kind() {
+        Kind::Trajectory => notes.push(
+            "A time offset is no effect in free flight: a flight that starts earlier starts elsewhere.".to_owned(),
+        ),
+        Kind::ImpulseResponse => notes.push(
+            "Time offsets are taken out by aligning the onsets, gains by a fitted level in every band.".to_owned(),
+        ),
+        Kind::Servo => {}
+    }
+    notes
+}

@@ -1,0 +1,178 @@
+//! The report as data.
+
+use crate::select::{Agreement, ChannelResidual, Gain, Remainder};
+use dwell_scene::LawSpec;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The answer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Verdict {
+    /// Nothing is missing above the limits of the data.
+    Nothing,
+    /// A cause, or two, is named.
+    Named {
+        /// The id of the first, such as `"drag"`.
+        law: String,
+        /// All of them, the strongest first.
+        effects: Vec<Effect>,
+        /// What they gain together on held-out episodes.
+        gain: Gain,
+    },
+    /// Some cause acts, but these cannot be told apart with this data.
+    OneOf {
+        /// Their ids.
+        laws: Vec<String>,
+        /// The experiments that would separate them.
+        separating_experiments: Vec<String>,
+    },
+    /// Something is missing that is not in the library.
+    Unexplained {
+        /// What is known about it.
+        reason: String,
+    },
+}
+
+/// A cause that was named.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Effect {
+    /// Its id.
+    pub law: String,
+    /// Its name in words.
+    pub name: String,
+    /// Its equation.
+    pub equation: String,
+    /// Its parameters.
+    pub parameters: Vec<Fitted>,
+}
+
+/// A parameter with its fitted value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fitted {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// What was fitted.
+    pub value: f64,
+    /// 95 % interval.
+    pub interval: [f64; 2],
+    /// What the simulation had before.
+    pub default: f64,
+    /// What a physicist finds plausible.
+    pub plausible: [f64; 2],
+}
+
+/// A cause that was tried alone.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Candidate {
+    /// Its id.
+    pub id: String,
+    /// Its name in words.
+    pub name: String,
+    /// Its equation.
+    pub equation: String,
+    /// Its parameters, fitted.
+    pub parameters: Vec<Fitted>,
+    /// Fall of the Bayesian information criterion against nuisances alone.
+    pub delta_bic: f64,
+    /// Gain on held-out episodes against nuisances alone.
+    pub gain: Gain,
+    /// Whether both speak for it.
+    pub passes: bool,
+    /// Why it is not plausible; `null` where it is.
+    pub implausible: Option<String>,
+    /// The experiment that separates it from its rivals.
+    pub separating_experiment: String,
+}
+
+/// A nuisance that all episodes share: fitted always, never reported as an effect.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Nuisance {
+    /// What it is.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Fitted together with what was found.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sd: f64,
+}
+
+/// What goes into the simulator: the content of `found.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Found {
+    /// Laws to install.
+    pub laws: Vec<LawSpec>,
+    /// Parameters to override, by address.
+    pub parameters: BTreeMap<String, f64>,
+}
+
+/// What is left over time, before and after, thinned out for a picture.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plot {
+    /// The channel.
+    pub title: String,
+    /// The unit of what is left.
+    pub unit: String,
+    /// (time, what is left with nuisances alone).
+    pub before: Vec<[f64; 2]>,
+    /// (time, what is left with the cause found); empty where none was.
+    pub after: Vec<[f64; 2]>,
+    /// Standard deviation of the noise.
+    pub noise_sd: f64,
+}
+
+/// The report of a calibration.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// The version of this form.
+    pub version: u32,
+    /// The bundle's title.
+    pub title: String,
+    /// The bundle's licence.
+    pub licence: String,
+    /// The bundle's kind.
+    pub kind: crate::bundle::file::Kind,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The verdict as a sentence.
+    pub sentence: String,
+    /// Episodes that were fitted, and episodes that were held out from all fitting.
+    pub fitted_episodes: Vec<String>,
+    /// See `fitted_episodes`.
+    pub held_out_episodes: Vec<String>,
+    /// What is left with nuisances alone, on all episodes.
+    pub residuals_before: Vec<ChannelResidual>,
+    /// What is left with what was found.
+    pub residuals_after: Vec<ChannelResidual>,
+    /// Whether that is more than noise, before.
+    pub remainder_before: Remainder,
+    /// And after.
+    pub remainder_after: Remainder,
+    /// Whether the cause has one size where it is weak and where it is strong; `null` where that was not asked.
+    pub agreement: Option<Agreement>,
+    /// All causes that were tried.
+    pub candidates: Vec<Candidate>,
+    /// Nuisances that all episodes share.
+    pub nuisances: Vec<Nuisance>,
+    /// What goes into the simulator.
+    pub found: Found,
+    /// What is left over time.
+    pub plots: Vec<Plot>,
+    /// What a reader must know.
+    pub notes: Vec<String>,
+}
+
+impl Report {
+    /// The laws to install in a world: nothing unless the verdict names an engine's law.
+    pub fn found_laws(&self) -> Vec<LawSpec> {
+        self.found.laws.clone()
+    }
+
+    /// The parameters to override in a world, by address: nothing unless the verdict names a parameter of the scene.
+    pub fn found_parameters(&self) -> BTreeMap<String, f64> {
+        self.found.parameters.clone()
+    }
+}

@@ -1,0 +1,12 @@
+//! The report: what was measured against what was simulated, in numbers, words and pictures.
+
+mod build;
+mod data;
+mod html;
+mod plot;
+mod svg;
+mod write;
+
+pub(crate) use build::build;
+pub use data::{Candidate, Effect, Fitted, Found, Nuisance, Plot, Report, Verdict};
+pub(crate) use write::whole;

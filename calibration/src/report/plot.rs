@@ -1,0 +1,54 @@
+//! What is left over time, thinned out.
+
+use super::data::Plot;
+use crate::twin::Twin;
+
+/// Points of a picture.
+const MOST_POINTS: usize = 1200;
+
+type Left<'a> = (&'a [usize], &'a [Vec<f64>]);
+
+/// A picture for each channel.
+pub(super) fn plots(
+    twin: &dyn Twin,
+    before: (&Vec<usize>, &Vec<Vec<f64>>),
+    after: Option<Left<'_>>,
+) -> Vec<Plot> {
+    let channels = twin.channels().iter().enumerate();
+    channels
+        .map(|(channel, info)| Plot {
+            title: info.name.clone(),
+            unit: info.unit.to_owned(),
+            before: points(twin, (before.0, before.1), channel),
+            after: after.map_or_else(Vec::new, |after| points(twin, after, channel)),
+            noise_sd: noise_sd(twin, channel),
+        })
+        .collect()
+}
+
+fn points(twin: &dyn Twin, (set, residuals): Left<'_>, channel: usize) -> Vec<[f64; 2]> {
+    let mut all = Vec::new();
+    for (episode, residual) in set.iter().zip(residuals) {
+        let measured = &twin.episodes()[*episode];
+        let here = (0..residual.len()).filter(|k| measured.channel[*k] == channel);
+        all.extend(here.map(|k| [measured.t_s[k], residual[k] * measured.sd[k]]));
+    }
+    let stride = all.len().div_ceil(MOST_POINTS).max(1);
+    all.into_iter().step_by(stride).collect()
+}
+
+fn noise_sd(twin: &dyn Twin, channel: usize) -> f64 {
+    let (mut square, mut count) = (0.0, 0.0_f64);
+    for measured in twin.episodes() {
+        for (sd, _) in measured
+            .sd
+            .iter()
+            .zip(&measured.channel)
+            .filter(|(_, c)| **c == channel)
+        {
+            square += sd * sd;
+            count += 1.0;
+        }
+    }
+    (square / count.max(1.0)).sqrt()
+}

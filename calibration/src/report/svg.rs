@@ -1,0 +1,209 @@
+//! Small pictures as SVG text.
+
+use super::data::{Candidate, Plot};
+use crate::words::number;
+use std::fmt::Write as _;
+
+const WIDTH: f64 = 640.0;
+const HEIGHT: f64 = 220.0;
+const LEFT: f64 = 64.0;
+const RIGHT: f64 = 12.0;
+const TOP: f64 = 12.0;
+const BOTTOM: f64 = 34.0;
+
+/// A scale from data to the page.
+struct Scale {
+    low: f64,
+    high: f64,
+    from: f64,
+    to: f64,
+}
+
+impl Scale {
+    fn at(&self, value: f64) -> f64 {
+        let span = self.high - self.low;
+        let share = if span > 0.0 {
+            (value - self.low) / span
+        } else {
+            0.5
+        };
+        self.from + share.clamp(-0.02, 1.02) * (self.to - self.from)
+    }
+
+    /// Round values on it: 1, 2 or 5 times a power of ten apart.
+    fn ticks(&self) -> Vec<f64> {
+        let span = self.high - self.low;
+        if span <= 0.0 || !span.is_finite() {
+            return vec![self.low];
+        }
+        let rough = span / 5.0;
+        let power = 10.0_f64.powf(rough.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0]
+            .iter()
+            .map(|f| f * power)
+            .find(|s| *s >= rough)
+            .unwrap_or(power);
+        let first = (self.low / step).ceil() as i64;
+        let last = (self.high / step).floor() as i64;
+        (first..=last.min(first + 20))
+            .map(|k| k as f64 * step)
+            .collect()
+    }
+}
+
+fn frame(x: &Scale, y: &Scale, x_name: &str, y_name: &str) -> String {
+    let mut out = String::new();
+    for tick in y.ticks() {
+        let at = y.at(tick);
+        let _ = write!(
+            out,
+            "<line class=\"grid\" x1=\"{:.1}\" y1=\"{at:.1}\" x2=\"{:.1}\" y2=\"{at:.1}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+            x.from,
+            x.to,
+            x.from - 6.0,
+            at + 4.0,
+            number(tick)
+        );
+    }
+    for tick in x.ticks() {
+        let at = x.at(tick);
+        let _ = write!(
+            out,
+            "<line class=\"grid\" x1=\"{at:.1}\" y1=\"{:.1}\" x2=\"{at:.1}\" y2=\"{:.1}\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+            y.from,
+            y.to,
+            y.from + 15.0,
+            number(tick)
+        );
+    }
+    let _ = write!(
+        out,
+        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{x_name}</text><text x=\"12\" y=\"{:.1}\" transform=\"rotate(-90 12 {:.1})\" text-anchor=\"middle\">{y_name}</text>",
+        x.to,
+        HEIGHT - 4.0,
+        HEIGHT / 2.0,
+        HEIGHT / 2.0
+    );
+    out
+}
+
+/// What is left over time: before and after.
+pub(super) fn residuals(plot: &Plot, name: &str) -> String {
+    let points = || plot.before.iter().chain(&plot.after);
+    let far = |k: usize| points().map(|p| p[k].abs()).fold(0.0, f64::max);
+    let low_t = points().map(|p| p[0]).fold(0.0, f64::min);
+    let size = far(1).max(2.0 * plot.noise_sd).max(f64::MIN_POSITIVE);
+    let x = Scale {
+        low: low_t,
+        high: far(0).max(1e-9),
+        from: LEFT,
+        to: WIDTH - RIGHT,
+    };
+    let y = Scale {
+        low: -size,
+        high: size,
+        from: HEIGHT - BOTTOM,
+        to: TOP,
+    };
+    let mut out = open(HEIGHT, name);
+    let (top, bottom) = (y.at(2.0 * plot.noise_sd), y.at(-2.0 * plot.noise_sd));
+    let _ = write!(
+        out,
+        "<rect class=\"noise\" x=\"{:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"/>",
+        x.from,
+        x.to - x.from,
+        bottom - top
+    );
+    out.push_str(&frame(&x, &y, "time, s", &format!("left, {}", plot.unit)));
+    for (class, points) in [("before", &plot.before), ("after", &plot.after)] {
+        let _ = write!(out, "<path class=\"{class}\" d=\"");
+        for [t, r] in points {
+            let _ = write!(out, "M{:.1} {:.1}h0", x.at(*t), y.at(*r));
+        }
+        out.push_str("\"/>");
+    }
+    out.push_str("</svg>");
+    out
+}
+
+/// The held-out gain of every cause with its interval.
+pub(super) fn gains(candidates: &[Candidate]) -> String {
+    let row = 24.0;
+    let height = TOP + BOTTOM + row * candidates.len() as f64;
+    let left = 170.0;
+    let ends = candidates.iter().flat_map(|c| c.gain.share_interval);
+    let low = ends.fold(-0.05, f64::min).max(-1.0);
+    let x = Scale {
+        low: 100.0 * low,
+        high: 100.0,
+        from: left,
+        to: WIDTH - RIGHT,
+    };
+    let mut out = open(height, "held-out gain of every cause");
+    for tick in x.ticks() {
+        let at = x.at(tick);
+        let _ = write!(
+            out,
+            "<line class=\"grid\" x1=\"{at:.1}\" y1=\"{TOP}\" x2=\"{at:.1}\" y2=\"{:.1}\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{} %</text>",
+            height - BOTTOM,
+            height - BOTTOM + 16.0,
+            number(tick)
+        );
+    }
+    for (k, candidate) in candidates.iter().enumerate() {
+        let y = TOP + row * (k as f64 + 0.5);
+        let class = if candidate.passes { "yes" } else { "no" };
+        let [a, b] = candidate
+            .gain
+            .share_interval
+            .map(|share| x.at(100.0 * share));
+        let _ = write!(
+            out,
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text><line class=\"{class}\" x1=\"{a:.1}\" y1=\"{y:.1}\" x2=\"{b:.1}\" y2=\"{y:.1}\"/><circle class=\"{class}\" cx=\"{:.1}\" cy=\"{y:.1}\" r=\"4\"/>",
+            left - 10.0,
+            y + 4.0,
+            super::html::escape(&candidate.id),
+            x.at(100.0 * candidate.gain.share)
+        );
+    }
+    out.push_str("</svg>");
+    out
+}
+
+fn open(height: f64, label: &str) -> String {
+    format!(
+        "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"{}\">",
+        super::html::escape(label)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        let scale = Scale {
+            low: -0.013,
+            high: 0.021,
+            from: 0.0,
+            to: 1.0,
+        };
+        let ticks = scale.ticks();
+        assert!(
+            ticks.len() >= 3 && ticks.iter().all(|t| (-0.013..=0.021).contains(t)),
+            "{ticks:?}"
+        );
+        assert!(ticks.iter().any(|t| t.abs() < 1e-12));
+        assert_eq!(
+            Scale {
+                low: 1.0,
+                high: 1.0,
+                from: 0.0,
+                to: 1.0
+            }
+            .ticks(),
+            [1.0]
+        );
+    }
+}

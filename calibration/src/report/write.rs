@@ -1,0 +1,55 @@
+//! The report as files.
+
+use super::data::Report;
+use crate::error::CalibrationError;
+use serde_json::Value;
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+
+impl Report {
+    /// The report as one JSON object; its key `html` holds the page.
+    pub fn to_json(&self) -> String {
+        let mut value = self.value();
+        if let Value::Object(object) = &mut value {
+            object.insert("html".to_owned(), Value::String(self.to_html()));
+        }
+        value.to_string()
+    }
+
+    fn value(&self) -> Value {
+        // A report is plain data; numbers that are not finite become null.
+        serde_json::to_value(self).unwrap_or(Value::Null)
+    }
+
+    /// Writes `report.json` (without the page), `report.html` and `found.json` into `folder`, which is made where it is
+    /// missing. Each file appears whole or not at all.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Write`] names the file.
+    pub fn write(&self, folder: &Path) -> Result<(), CalibrationError> {
+        fs::create_dir_all(folder).map_err(|source| CalibrationError::Write {
+            path: folder.to_owned(),
+            source,
+        })?;
+        let pretty = |value: &Value| format!("{value:#}\n");
+        let found = serde_json::to_value(&self.found).unwrap_or(Value::Null);
+        whole(folder, "report.json", pretty(&self.value()).as_bytes())?;
+        whole(folder, "report.html", self.to_html().as_bytes())?;
+        whole(folder, "found.json", pretty(&found).as_bytes())
+    }
+}
+
+/// Writes a file beside its place and moves it there.
+pub(crate) fn whole(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), CalibrationError> {
+    let path = folder.join(name);
+    let beside = folder.join(format!(".{name}.{}.part", std::process::id()));
+    let written = fs::File::create(&beside)
+        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&beside, &path));
+    written.map_err(|source| {
+        // What is left of a failed attempt is of no use to anyone.
+        let _ = fs::remove_file(&beside);
+        CalibrationError::Write { path, source }
+    })
+}

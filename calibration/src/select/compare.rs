@@ -1,0 +1,158 @@
+//! One model against the model without it.
+
+use super::gain::{Gain, gain};
+use super::residual::effective_count;
+use super::split::Split;
+use crate::error::CalibrationError;
+use crate::fit::{Fit, Model, Task};
+use crate::options::Options;
+use crate::progress::Tell;
+use crate::twin::{Point, Slot, Twin, range_of};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+
+/// What comparisons share.
+pub(crate) struct Comparison<'a> {
+    pub(crate) twin: &'a dyn Twin,
+    pub(crate) split: &'a Split,
+    pub(crate) options: &'a Options,
+    pub(crate) threads: Threads,
+    pub(crate) progress: &'a dyn Tell,
+}
+
+/// A model, fitted where fitting is allowed and judged where it is not.
+#[derive(Clone, Debug)]
+pub(crate) struct Judged {
+    pub(crate) model: Model,
+    pub(crate) fit: Fit,
+    /// The held-out episodes with only their own nuisances fitted.
+    pub(crate) held_out: Fit,
+    /// Independent numbers among those fitted.
+    pub(crate) effective_count: f64,
+}
+
+/// A model against a smaller one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Against {
+    /// Fall of the information criterion.
+    pub(crate) delta_bic: f64,
+    pub(crate) gain: Gain,
+}
+
+/// A value with the 95 % interval of its fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Estimate {
+    pub(crate) value: f64,
+    pub(crate) sd: f64,
+}
+
+impl Estimate {
+    pub(crate) fn interval(&self) -> [f64; 2] {
+        [self.value - 1.96 * self.sd, self.value + 1.96 * self.sd]
+    }
+}
+
+impl Comparison<'_> {
+    fn task<'b>(&'b self, set: &'b [usize], robust: bool) -> Task<'b> {
+        Task {
+            twin: self.twin,
+            set,
+            threads: self.threads,
+            robust: robust && self.options.robust,
+            progress: self.progress,
+        }
+    }
+
+    /// Fits a model on some of the episodes.
+    pub(crate) fn fit_on(
+        &self,
+        set: &[usize],
+        model: &Model,
+        from: &Point,
+    ) -> Result<Fit, CalibrationError> {
+        self.task(set, true).fit(model, from)
+    }
+
+    /// Fits a model and judges it on the held-out episodes. Of several starts the best is taken.
+    pub(crate) fn judge(&self, model: &Model, from: &Point) -> Result<Judged, CalibrationError> {
+        let train = self.task(&self.split.train, true);
+        let mut start = from.clone();
+        if let Some(cause) = model.causes.last() {
+            let first = range_of(self.twin, *cause).start;
+            let mut best = train.loss_at(from)?;
+            for value in &self.twin.causes()[*cause].starts {
+                let mut there = from.clone();
+                there.causes[first] = *value;
+                let loss = train.loss_at(&there).unwrap_or(f64::INFINITY);
+                if loss < best {
+                    (best, start) = (loss, there);
+                }
+            }
+        }
+        let fit = train.fit(model, &start)?;
+        let held_out = self.task(&self.split.held_out, false).fit_own(&fit.point)?;
+        let effective_count = effective_count(self.twin, &self.split.train, &fit.residuals);
+        Ok(Judged {
+            model: model.clone(),
+            fit,
+            held_out,
+            effective_count,
+        })
+    }
+
+    /// How much better `larger` is than `smaller`.
+    ///
+    /// # Source
+    /// G. Schwarz, Ann. Stat. 6, 461 (1978), with a noise scale that is fitted and the effective count of data.
+    pub(crate) fn against(&self, larger: &Judged, smaller: &Judged) -> Against {
+        let n = larger.effective_count.max(2.0);
+        let more = larger.fit.parameters as f64 - smaller.fit.parameters as f64;
+        let ratio =
+            smaller.fit.loss.max(f64::MIN_POSITIVE) / larger.fit.loss.max(f64::MIN_POSITIVE);
+        let robust = self.options.robust.then_some(&larger.held_out);
+        let key = Key::root(self.options.seed).child("gain");
+        Against {
+            delta_bic: n * ratio.ln() - more * n.ln(),
+            gain: gain(
+                &smaller.held_out.loss_by_episode(robust),
+                &larger.held_out.loss_by_episode(robust),
+                larger.fit.loss / larger.fit.data.max(1) as f64,
+                n / larger.fit.data.max(1) as f64,
+                self.options.bootstrap_draws,
+                key,
+            ),
+        }
+    }
+
+    /// Whether a comparison speaks for the larger model.
+    pub(crate) fn passes(&self, against: &Against) -> bool {
+        against.delta_bic > self.options.min_delta_bic
+            && against.gain.log_density_interval[0] > 0.0
+            && against.gain.share >= self.options.min_gain_share
+    }
+}
+
+/// The estimates of a cause's parameters.
+pub(crate) fn estimates(
+    twin: &dyn Twin,
+    fit: &Fit,
+    effective_count: f64,
+    cause: usize,
+) -> Vec<Estimate> {
+    let range = range_of(twin, cause);
+    range
+        .map(|slot| Estimate {
+            value: fit.point.causes[slot],
+            sd: sd_of(fit, effective_count, Slot::Cause(slot)),
+        })
+        .collect()
+}
+
+/// The standard deviation of a fitted parameter.
+pub(crate) fn sd_of(fit: &Fit, effective_count: f64, slot: Slot) -> f64 {
+    let Some(k) = fit.slots.iter().position(|other| *other == slot) else {
+        return 0.0;
+    };
+    let variance = fit.loss / (effective_count - fit.parameters as f64).max(1.0);
+    (variance * fit.inverse[(k, k)].max(0.0)).sqrt()
+}

@@ -1,0 +1,16 @@
+//! Selection: which cause the data ask for, and whether they name it.
+
+mod agreement;
+mod compare;
+mod gain;
+mod residual;
+mod split;
+mod verdict;
+
+pub use agreement::Agreement;
+pub use gain::Gain;
+pub use residual::{ChannelResidual, Remainder};
+
+pub(crate) use compare::{Estimate, Judged, estimates, sd_of};
+pub(crate) use residual::by_channel;
+pub(crate) use verdict::{Decision, Findings, Single, explain};

@@ -1,0 +1,307 @@
+//! What is left between measurement and simulation.
+
+use crate::fit::median;
+use crate::twin::{Structure, Twin};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What is left in one channel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChannelResidual {
+    /// The channel.
+    pub channel: String,
+    /// Its unit.
+    pub unit: String,
+    /// How many numbers.
+    pub count: usize,
+    /// How many independent numbers they are worth, by the autocorrelation of what is left.
+    pub effective_count: f64,
+    /// Correlation of what is left with itself one sample later.
+    pub autocorrelation: f64,
+    /// Mean of measured minus simulated, in the unit.
+    pub bias: f64,
+    /// Root of the mean square, in the unit.
+    pub rms: f64,
+    /// Standard deviation of the noise, in the unit: declared, or estimated from differences of neighbours.
+    pub noise_sd: f64,
+    /// Whether the bundle (or theory) says the noise.
+    pub noise_known: bool,
+    /// Mean square over the noise's: 1 for noise alone.
+    pub chi2_per_count: f64,
+}
+
+/// Sequences of neighbours: the positions of an episode's data by channel, in order.
+fn sequences(channel: &[usize]) -> Vec<std::ops::Range<usize>> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    for k in 1..=channel.len() {
+        if k == channel.len() || channel[k] != channel[start] {
+            found.push(start..k);
+            start = k;
+        }
+    }
+    found
+}
+
+/// Correlation of neighbours, pooled over sequences.
+fn autocorrelation(sequences: &[&[f64]]) -> f64 {
+    let (mut product, mut square) = (0.0, 0.0);
+    for sequence in sequences {
+        product += sequence
+            .windows(2)
+            .map(|pair| pair[0] * pair[1])
+            .sum::<f64>();
+        square += sequence.iter().map(|r| r * r).sum::<f64>();
+    }
+    if square > 0.0 { product / square } else { 0.0 }
+}
+
+/// How many independent numbers `count` autocorrelated ones are worth.
+///
+/// # Source
+/// G. V. Bayley, J. M. Hammersley, Suppl. J. R. Stat. Soc. 8, 184 (1946), for an autoregression of first order.
+pub(super) fn effective(count: usize, autocorrelation: f64) -> f64 {
+    let rho = autocorrelation.clamp(0.0, 0.98);
+    // Correlations within chance count as none.
+    if rho < 2.0 / (count.max(1) as f64).sqrt() {
+        return count as f64;
+    }
+    (count as f64 * (1.0 - rho) / (1.0 + rho)).max(1.0)
+}
+
+/// The noise of a residual from its third differences, in which what is smooth cancels; robust against jumps. `None` for
+/// fewer than 12 differences.
+///
+/// # Source
+/// Variance of third differences of white noise: 1 + 9 + 9 + 1 = 20 times its own.
+pub(crate) fn noise(sequences: &[&[f64]]) -> Option<f64> {
+    let mut differences: Vec<f64> = sequences
+        .iter()
+        .flat_map(|sequence| {
+            sequence
+                .windows(4)
+                .map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs())
+        })
+        .collect();
+    if differences.len() < 12 {
+        return None;
+    }
+    Some(1.4826 * median(&mut differences) / 20.0_f64.sqrt())
+}
+
+/// Splits residuals of a set by channel. `residuals`: in standard deviations, shape (episode of the set, datum).
+fn by_sequence<'a>(
+    twin: &dyn Twin,
+    set: &[usize],
+    residuals: &'a [Vec<f64>],
+) -> BTreeMap<usize, Vec<&'a [f64]>> {
+    let mut all: BTreeMap<usize, Vec<&[f64]>> = BTreeMap::new();
+    for (episode, residual) in set.iter().zip(residuals) {
+        let channel = &twin.episodes()[*episode].channel;
+        for range in sequences(channel) {
+            all.entry(channel[range.start])
+                .or_default()
+                .push(&residual[range]);
+        }
+    }
+    all
+}
+
+/// The residual report.
+pub(crate) fn by_channel(
+    twin: &dyn Twin,
+    set: &[usize],
+    residuals: &[Vec<f64>],
+) -> Vec<ChannelResidual> {
+    let mut report = Vec::new();
+    for (index, info) in twin.channels().iter().enumerate() {
+        let mut values = Vec::new();
+        let mut normalised = Vec::new();
+        let mut squares_of_sd = 0.0;
+        for (episode, residual) in set.iter().zip(residuals) {
+            let measured = &twin.episodes()[*episode];
+            for (k, r) in residual
+                .iter()
+                .enumerate()
+                .filter(|(k, _)| measured.channel[*k] == index)
+            {
+                values.push(r * measured.sd[k]);
+                normalised.push(*r);
+                squares_of_sd += measured.sd[k].powi(2);
+            }
+        }
+        if values.is_empty() {
+            continue;
+        }
+        let sequences = by_sequence(twin, set, residuals)
+            .remove(&index)
+            .unwrap_or_default();
+        let n = values.len() as f64;
+        let rho = autocorrelation(&sequences);
+        report.push(ChannelResidual {
+            channel: info.name.clone(),
+            unit: info.unit.to_owned(),
+            count: values.len(),
+            effective_count: effective(values.len(), rho),
+            autocorrelation: rho,
+            bias: values.iter().sum::<f64>() / n,
+            rms: (values.iter().map(|r| r * r).sum::<f64>() / n).sqrt(),
+            noise_sd: (squares_of_sd / n).sqrt(),
+            noise_known: info.noise_known,
+            chi2_per_count: normalised.iter().map(|r| r * r).sum::<f64>() / n,
+        });
+    }
+    report
+}
+
+/// How many independent numbers all residuals are worth.
+pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> f64 {
+    match twin.structure() {
+        Structure::InTime => {
+            let all = by_sequence(twin, set, residuals);
+            let counted = all.values().map(|sequences| {
+                let count = sequences.iter().map(|sequence| sequence.len()).sum();
+                effective(count, autocorrelation(sequences))
+            });
+            counted.sum()
+        }
+        Structure::InCells => {
+            // Data of one episode share its geometry and its rays: episodes are clusters.
+            let count: usize = residuals.iter().map(Vec::len).sum();
+            let square: f64 =
+                residuals.iter().flatten().map(|r| r * r).sum::<f64>() / count.max(1) as f64;
+            let clusters: f64 = residuals
+                .iter()
+                .filter(|episode| !episode.is_empty())
+                .map(|episode| episode.iter().sum::<f64>().powi(2) / episode.len() as f64)
+                .sum::<f64>()
+                / residuals.len().max(1) as f64;
+            let effect = if square > 0.0 {
+                (clusters / square).max(1.0)
+            } else {
+                1.0
+            };
+            count as f64 / effect
+        }
+    }
+}
+
+/// Whether something is left that is no noise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Remainder {
+    /// Mean square of what is left over that of its noise: 1 for noise alone.
+    pub ratio: f64,
+    /// The ratio above which noise alone is no explanation.
+    pub threshold: f64,
+}
+
+impl Remainder {
+    /// Whether something systematic is left.
+    pub(crate) fn is_structured(&self) -> bool {
+        self.ratio > self.threshold
+    }
+
+    pub(crate) fn of(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> Self {
+        match twin.structure() {
+            Structure::InTime => Self::in_time(twin, set, residuals),
+            Structure::InCells => Self::in_cells(twin, set, residuals),
+        }
+    }
+
+    fn in_time(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> Self {
+        let (mut sum, mut count) = (0.0, 0);
+        for sequences in by_sequence(twin, set, residuals).values() {
+            let all = || sequences.iter().flat_map(|sequence| sequence.iter());
+            let Some(floor) = noise(sequences).filter(|noise| *noise > 0.0) else {
+                continue;
+            };
+            // A few outliers are no structure.
+            let mut sizes: Vec<f64> = all().map(|r| r.abs()).collect();
+            let limit = 4.5 * median(&mut sizes);
+            sum += all()
+                .map(|r| (r.abs().min(limit) / floor).powi(2))
+                .sum::<f64>();
+            count += sizes.len();
+        }
+        let n = count.max(1) as f64;
+        Self {
+            ratio: if count > 0 { sum / n } else { 1.0 },
+            // The floor's own error by the median of autocorrelated differences is about 2.5/sqrt(n).
+            threshold: 1.25 + 12.0 / n.sqrt(),
+        }
+    }
+
+    fn in_cells(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> Self {
+        let mut cells: BTreeMap<(usize, u64), Vec<f64>> = BTreeMap::new();
+        for (episode, residual) in set.iter().zip(residuals) {
+            let measured = &twin.episodes()[*episode];
+            for (k, r) in residual.iter().enumerate() {
+                cells
+                    .entry((measured.channel[k], measured.t_s[k].to_bits()))
+                    .or_default()
+                    .push(*r);
+            }
+        }
+        let (mut common, mut within, mut freedom) = (0.0, 0.0, 0.0);
+        for values in cells.values() {
+            let n = values.len() as f64;
+            let mean = values.iter().sum::<f64>() / n;
+            common += n * mean * mean;
+            within += values.iter().map(|r| (r - mean).powi(2)).sum::<f64>();
+            freedom += n - 1.0;
+        }
+        let count = cells.len().max(1) as f64;
+        let within = within / f64::max(freedom, 1.0);
+        Self {
+            ratio: if within > 0.0 {
+                common / count / within
+            } else {
+                1.0
+            },
+            // The simulation's own approximations leave common parts of about a third of the chance in a level.
+            threshold: 2.5 + 6.0 * (2.0 / count).sqrt(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::random::Key;
+
+    #[test]
+    fn noise_is_seen_through_a_smooth_misfit() {
+        for seed in 0..5 {
+            let mut stream = Key::root(seed).stream();
+            let values: Vec<f64> = (0..400)
+                .map(|k| 3.0 * (f64::from(k) * 0.02).sin() + 0.1 * stream.normal())
+                .collect();
+            let found = noise(&[&values]).unwrap();
+            assert!((found / 0.1 - 1.0).abs() < 0.25, "{found}");
+        }
+        assert_eq!(noise(&[&[1.0, 2.0, 3.0]]), None);
+    }
+
+    #[test]
+    fn correlated_numbers_are_worth_less() {
+        let mut stream = Key::root(1).stream();
+        let mut last = 0.0;
+        let correlated: Vec<f64> = (0..2000)
+            .map(|_| {
+                last = 0.9 * last + stream.normal();
+                last
+            })
+            .collect();
+        let rho = autocorrelation(&[&correlated]);
+        assert!((rho - 0.9).abs() < 0.05, "{rho}");
+        let worth = effective(2000, rho);
+        assert!(worth > 50.0 && worth < 250.0, "{worth}");
+        let white: Vec<f64> = (0..2000).map(|_| stream.normal()).collect();
+        assert!(effective(2000, autocorrelation(&[&white])) > 1900.0);
+    }
+
+    #[test]
+    fn sequences_end_where_the_channel_changes() {
+        assert_eq!(sequences(&[0, 0, 1, 1, 1]), [0..2, 2..5]);
+    }
+}

@@ -1,0 +1,93 @@
+//! Which episodes are held out from all fitting.
+
+use crate::twin::Measured;
+use dwell_scene::random::Key;
+use std::collections::BTreeSet;
+
+/// Positions of the episodes that are fitted, and of those that judge.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Split {
+    pub(crate) train: Vec<usize>,
+    pub(crate) held_out: Vec<usize>,
+    /// Whether whole groups are held out; else there is one group only, and its episodes are split.
+    pub(crate) by_group: bool,
+}
+
+impl Split {
+    /// Draws groups until `share` of the episodes is held out, leaving at least two on both sides.
+    pub(crate) fn new(episodes: &[Measured], share: f64, seed: u64) -> Self {
+        let groups: BTreeSet<&str> = episodes
+            .iter()
+            .map(|episode| episode.group.as_str())
+            .collect();
+        let by_group = groups.len() > 1;
+        let label = |k: usize| {
+            if by_group {
+                episodes[k].group.as_str()
+            } else {
+                episodes[k].name.as_str()
+            }
+        };
+        let labels: BTreeSet<&str> = (0..episodes.len()).map(label).collect();
+        let mut labels: Vec<&str> = labels.into_iter().collect();
+        Key::root(seed).child("split").stream().shuffle(&mut labels);
+        let members = |label_here: &str| {
+            (0..episodes.len())
+                .filter(|k| label(*k) == label_here)
+                .count()
+        };
+        let wanted =
+            ((share * episodes.len() as f64).round() as usize).clamp(2, episodes.len() - 2);
+        let (mut held, mut count) = (BTreeSet::new(), 0);
+        for label in &labels {
+            let more = members(label);
+            if count < wanted && count + more + 2 <= episodes.len() {
+                held.insert(*label);
+                count += more;
+            }
+        }
+        let (held_out, train) = (0..episodes.len()).partition(|k| held.contains(label(*k)));
+        Self {
+            train,
+            held_out,
+            by_group,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn episodes(groups: &[&str]) -> Vec<Measured> {
+        let named = groups.iter().enumerate();
+        named
+            .map(|(k, group)| Measured {
+                name: format!("e{k}"),
+                group: (*group).to_owned(),
+                ..Measured::default()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn groups_are_never_torn() {
+        for seed in 0..20 {
+            let all = episodes(&["a", "a", "b", "b", "c", "c", "d", "d", "e"]);
+            let split = Split::new(&all, 1.0 / 3.0, seed);
+            assert!(
+                split.by_group && split.train.len() >= 2 && split.held_out.len() >= 2,
+                "{split:?}"
+            );
+            for k in &split.held_out {
+                assert!(split.train.iter().all(|t| all[*t].group != all[*k].group));
+            }
+        }
+        assert_eq!(
+            Split::new(&episodes(&["a"; 9]), 1.0 / 3.0, 3)
+                .held_out
+                .len(),
+            3
+        );
+    }
+}

@@ -1,0 +1,310 @@
+//! From fits to a verdict.
+
+use super::agreement::{Agreement, agreement};
+use super::compare::{Against, Comparison, Judged, estimates};
+use super::residual::{Remainder, noise};
+use super::split::Split;
+use crate::error::CalibrationError;
+use crate::fit::Model;
+use crate::options::Options;
+use crate::progress::Tell;
+use crate::twin::{Parameter, Point, Structure, Twin};
+use dwell_scene::parallel::Threads;
+
+/// Share of the misfit that a name must explain where something systematic is left.
+const LEAST_EXPLAINED: f64 = 0.8;
+
+/// All that was found, before it is put into words.
+pub(crate) struct Findings {
+    pub(crate) split: Split,
+    /// Nuisances alone.
+    pub(crate) base: Judged,
+    /// Each cause alone, in the order of the twin's causes.
+    pub(crate) singles: Vec<Single>,
+    /// The model that is reported: nuisances alone, a cause, or two.
+    pub(crate) chosen: Judged,
+    /// `chosen` against nuisances alone.
+    pub(crate) against_base: Option<Against>,
+    pub(crate) remainder_before: Remainder,
+    pub(crate) remainder_after: Remainder,
+    pub(crate) agreement: Option<Agreement>,
+    pub(crate) decision: Decision,
+}
+
+/// A cause alone.
+pub(crate) struct Single {
+    pub(crate) cause: usize,
+    pub(crate) judged: Judged,
+    pub(crate) against: Against,
+    pub(crate) passes: bool,
+    /// Why it is not plausible, if it is not.
+    pub(crate) implausible: Option<String>,
+}
+
+/// The verdict, by positions of causes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Decision {
+    Nothing,
+    Named(Vec<usize>),
+    OneOf(Vec<usize>),
+    Unexplained(String),
+}
+
+/// Finds what the simulation lacks.
+pub(crate) fn explain(
+    twin: &mut dyn Twin,
+    options: &Options,
+    progress: &dyn Tell,
+) -> Result<Findings, CalibrationError> {
+    let split = Split::new(twin.episodes(), options.held_out_share, options.seed);
+    let threads = Threads::resolve(options.threads);
+    progress.stage(0.1, "fitting starts, offsets and noise")?;
+    let start = estimate_noise(twin, &split, options, threads, progress)?;
+    let all = Comparison {
+        twin,
+        split: &split,
+        options,
+        threads,
+        progress,
+    };
+    let base = all.judge(&Model::default(), &start)?;
+    let mut singles = Vec::new();
+    let count = all.twin.causes().len();
+    for (cause, info) in all.twin.causes().iter().enumerate() {
+        progress.stage(
+            0.2 + 0.5 * cause as f32 / count as f32,
+            &format!("trying {}", info.name),
+        )?;
+        let judged = all.judge(
+            &Model {
+                causes: vec![cause],
+            },
+            &base.fit.point,
+        )?;
+        let against = all.against(&judged, &base);
+        let implausible = implausible(all.twin, &judged, cause);
+        singles.push(Single {
+            cause,
+            passes: all.passes(&against),
+            judged,
+            against,
+            implausible,
+        });
+    }
+    progress.stage(0.7, "comparing causes")?;
+    let remainder = |judged: &Judged| Remainder::of(all.twin, &split.train, &judged.fit.residuals);
+    let remainder_before = remainder(&base);
+    let (decision, chosen) = decide(&all, &base, &singles, &remainder_before)?;
+    let mut decision = decision;
+    let remainder_after = remainder(&chosen);
+    let mut found_agreement = None;
+    if let Decision::Named(causes) = &decision {
+        progress.stage(0.9, "checking that the cause has one size everywhere")?;
+        found_agreement = agreement(&all, &chosen)?;
+        let name = &all.twin.causes()[causes[0]].name;
+        let explained =
+            1.0 - (remainder_after.ratio - 1.0) / (remainder_before.ratio - 1.0).max(1e-9);
+        if let Some(agreement) = found_agreement
+            .as_ref()
+            .filter(|agreement| agreement.refutes())
+        {
+            decision = Decision::Unexplained(format!(
+                "{name} fits best, but it would have to be {} where it acts weakly and {} where it acts strongly, {:.1} \
+                 standard deviations apart: one value does not serve, so it is not the cause",
+                crate::words::number(agreement.weak),
+                crate::words::number(agreement.strong),
+                agreement.z.abs()
+            ));
+        } else if remainder_after.is_structured() && explained < LEAST_EXPLAINED {
+            decision = Decision::Unexplained(format!(
+                "{name} takes away {:.0} % of the misfit, and what is left is still systematic",
+                100.0 * explained.clamp(0.0, 1.0)
+            ));
+        }
+    }
+    let against_base = (!chosen.model.causes.is_empty()).then(|| all.against(&chosen, &base));
+    Ok(Findings {
+        base,
+        singles,
+        chosen,
+        against_base,
+        remainder_before,
+        remainder_after,
+        agreement: found_agreement,
+        decision,
+        split,
+    })
+}
+
+/// Fits the nuisances, and takes the noise of channels that do not say it from what is left.
+fn estimate_noise(
+    twin: &mut dyn Twin,
+    split: &Split,
+    options: &Options,
+    threads: Threads,
+    progress: &dyn Tell,
+) -> Result<Point, CalibrationError> {
+    let start = Point::start(twin);
+    if twin.structure() != Structure::InTime
+        || twin.channels().iter().all(|channel| channel.noise_known)
+    {
+        return Ok(start);
+    }
+    let fit = Comparison {
+        twin,
+        split,
+        options,
+        threads,
+        progress,
+    }
+    .fit_on(&split.train, &Model::default(), &start)?;
+    for channel in 0..twin.channels().len() {
+        if twin.channels()[channel].noise_known {
+            continue;
+        }
+        let residuals: Vec<Vec<f64>> = split
+            .train
+            .iter()
+            .zip(&fit.residuals)
+            .map(|(episode, residual)| {
+                let channels = &twin.episodes()[*episode].channel;
+                (0..residual.len())
+                    .filter(|k| channels[*k] == channel)
+                    .map(|k| residual[k])
+                    .collect()
+            })
+            .collect();
+        let slices: Vec<&[f64]> = residuals.iter().map(Vec::as_slice).collect();
+        let spread = || {
+            let n = residuals.iter().map(Vec::len).sum::<usize>().max(1) as f64;
+            (residuals.iter().flatten().map(|r| r * r).sum::<f64>() / n).sqrt()
+        };
+        let sd = noise(&slices)
+            .filter(|sd| *sd > 0.0)
+            .unwrap_or_else(spread)
+            .max(1e-9);
+        for measured in twin.episodes_mut() {
+            for (sd_here, channel_here) in measured.sd.iter_mut().zip(&measured.channel) {
+                if *channel_here == channel {
+                    *sd_here *= sd;
+                }
+            }
+        }
+    }
+    Ok(fit.point)
+}
+
+/// Why a fitted cause is not plausible: a parameter at its bound, or outside of what a physicist would believe.
+fn implausible(twin: &dyn Twin, judged: &Judged, cause: usize) -> Option<String> {
+    let found = estimates(twin, &judged.fit, judged.effective_count, cause);
+    let parameters = &twin.causes()[cause].parameters;
+    let at_bound = |p: &Parameter, value: f64| {
+        let near = 1e-9 * (1.0 + value.abs());
+        (value - p.low < near || p.high - value < near) && value != p.default
+    };
+    parameters.iter().zip(&found).find_map(|(p, estimate)| {
+        let [low, high] = estimate.interval();
+        let number = crate::words::number;
+        // A parameter that the data leave where it was needs no plausibility.
+        if low <= p.default && p.default <= high {
+            None
+        } else if parameters.len() == 1 && at_bound(p, estimate.value) {
+            Some(format!(
+                "{} ends at its bound {} {}",
+                p.name,
+                number(estimate.value),
+                p.unit
+            ))
+        } else if high < p.plausible[0] || low > p.plausible[1] {
+            let [a, b] = p.plausible.map(number);
+            Some(format!(
+                "{} would be {} {}, plausible are {a} to {b}",
+                p.name,
+                number(estimate.value),
+                p.unit
+            ))
+        } else {
+            None
+        }
+    })
+}
+
+fn decide(
+    all: &Comparison<'_>,
+    base: &Judged,
+    singles: &[Single],
+    remainder: &Remainder,
+) -> Result<(Decision, Judged), CalibrationError> {
+    let mut passing: Vec<&Single> = singles.iter().filter(|single| single.passes).collect();
+    passing.sort_by(|a, b| b.against.delta_bic.total_cmp(&a.against.delta_bic));
+    let causes = all.twin.causes();
+    let Some(best) = passing.first() else {
+        let decision = if remainder.is_structured() {
+            Decision::Unexplained("none of the causes in the library fits it".to_owned())
+        } else {
+            Decision::Nothing
+        };
+        return Ok((decision, base.clone()));
+    };
+    // Rivals count whether or not each passes on its own: what fits as well could be it.
+    let close = |single: &&Single| {
+        best.against.delta_bic - single.against.delta_bic < all.options.rival_delta_bic
+    };
+    let rivals: Vec<&Single> = singles.iter().filter(close).collect();
+    let plausible: Vec<&&Single> = rivals
+        .iter()
+        .filter(|single| single.implausible.is_none())
+        .collect();
+    match plausible[..] {
+        [] => {
+            let why = best.implausible.clone().unwrap_or_default();
+            let name = &causes[best.cause].name;
+            let decision =
+                Decision::Unexplained(format!("{name} fits best, but it is not plausible: {why}"));
+            Ok((decision, best.judged.clone()))
+        }
+        [only] => second(all, only, singles),
+        _ => {
+            let set = plausible.iter().map(|single| single.cause).collect();
+            Ok((Decision::OneOf(set), plausible[0].judged.clone()))
+        }
+    }
+}
+
+/// Looks for a second cause beside the first.
+fn second(
+    all: &Comparison<'_>,
+    first: &Single,
+    singles: &[Single],
+) -> Result<(Decision, Judged), CalibrationError> {
+    let remainder = Remainder::of(all.twin, &all.split.train, &first.judged.fit.residuals);
+    let alone = (Decision::Named(vec![first.cause]), first.judged.clone());
+    // A second cause is looked for only where the first leaves something.
+    if !remainder.is_structured() {
+        return Ok(alone);
+    }
+    let mut best: Option<(f64, Judged)> = None;
+    for other in singles.iter().filter(|single| single.cause != first.cause) {
+        let model = Model {
+            causes: vec![first.cause, other.cause],
+        };
+        let judged = all.judge(&model, &first.judged.fit.point)?;
+        let against = all.against(&judged, &first.judged);
+        let plausible = model
+            .causes
+            .iter()
+            .all(|cause| implausible(all.twin, &judged, *cause).is_none());
+        if plausible
+            && all.passes(&against)
+            && best
+                .as_ref()
+                .is_none_or(|(delta, _)| against.delta_bic > *delta)
+        {
+            best = Some((against.delta_bic, judged));
+        }
+    }
+    Ok(match best {
+        Some((_, judged)) => (Decision::Named(judged.model.causes.clone()), judged),
+        None => alone,
+    })
+}

@@ -1,0 +1,357 @@
+//! Free flight: each episode is a ball that flies through the engine's own physics.
+
+use super::stage::{Stage, Thing, between};
+use super::{Cause, ChannelInfo, Experiment, Measured, Parameter, Slot, Structure, Twin, Values};
+use crate::bundle::{Bundle, Sample};
+use crate::error::CalibrationError;
+use crate::options::Options;
+use dwell_scene::units::STANDARD_GRAVITY_M_S2;
+use dwell_scene::{LawInfo, LawSpec};
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+/// Specific gas constant of dry air, J/(kg K).
+const GAS_CONSTANT: f64 = 287.05;
+/// Samples from which an episode's start is guessed.
+const START_SAMPLES: usize = 8;
+
+/// Free flight of bodies.
+pub(crate) struct FlightTwin {
+    episodes: Vec<Measured>,
+    /// The axis (0 x, 1 y, 2 z) of each channel.
+    axes: Vec<usize>,
+    channels: Vec<ChannelInfo>,
+    causes: Vec<Cause>,
+    own: Vec<Parameter>,
+    /// The axis and whether it is the speed, of each own nuisance.
+    own_axes: Vec<(usize, bool)>,
+    stages: Vec<Stage>,
+    /// The stage of each episode's body.
+    stage_of: Vec<usize>,
+    rate_hz: f64,
+    gravity_m_s2: f64,
+    air_density_kg_m3: f64,
+    drag: &'static LawInfo,
+}
+
+impl FlightTwin {
+    /// Prepares the bodies of a bundle.
+    pub(crate) fn new(bundle: &Bundle, options: &Options) -> Result<Self, CalibrationError> {
+        let manifest = &bundle.manifest;
+        let axes: Vec<usize> = manifest
+            .channels
+            .iter()
+            .map(|channel| match channel.name.as_str() {
+                "x" => 0,
+                "y" => 1,
+                _ => 2,
+            })
+            .collect();
+        let mut own = Vec::new();
+        let mut own_axes = Vec::new();
+        for (axis, letter) in ["x", "y", "z"].iter().enumerate() {
+            if axes.contains(&axis) {
+                own.push(Parameter::nuisance(&format!("start {letter}"), "m", 1e-3));
+                own.push(Parameter::nuisance(
+                    &format!("start speed {letter}"),
+                    "m/s",
+                    2e-2,
+                ));
+                own_axes.extend([(axis, false), (axis, true)]);
+            }
+        }
+        let reach = bundle
+            .episodes
+            .iter()
+            .flat_map(|episode| &episode.samples)
+            .fold(0.0_f64, |reach, sample| reach.max(sample.value.abs()));
+        let size_m = (4.0 * reach + 40.0).min(1000.0) as f32;
+        let mut stages = Vec::new();
+        for body in &manifest.scene.bodies {
+            let ball = Thing::ball(
+                &body.name,
+                body.mass_kg,
+                body.radius_m,
+                Vec3::splat(0.5 * size_m),
+            );
+            stages.push(Stage::new(size_m, &ball, options.physics_rate_hz)?);
+        }
+        let air = &manifest.scene.environment;
+        let kelvin = air.temperature_c.unwrap_or(20.0) + 273.15;
+        let air_density_kg_m3 = air.pressure_pa.unwrap_or(101_325.0) / (GAS_CONSTANT * kelvin);
+        let gravity_m_s2 = air.g_m_s2.unwrap_or(f64::from(STANDARD_GRAVITY_M_S2));
+        let drag = dwell_physics::laws::all()
+            .iter()
+            .find(|law| law.id == "drag");
+        let drag = drag.ok_or_else(|| {
+            CalibrationError::simulation(&bundle.name, "this build has no law of drag")
+        })?;
+        Ok(Self {
+            episodes: bundle
+                .episodes
+                .iter()
+                .map(|episode| measured(bundle, episode))
+                .collect(),
+            channels: channels(bundle),
+            causes: causes(drag, gravity_m_s2, air_density_kg_m3),
+            stage_of: bundle
+                .episodes
+                .iter()
+                .map(|episode| episode.samples[0].entity)
+                .collect(),
+            rate_hz: options.physics_rate_hz,
+            air_density_kg_m3,
+            axes,
+            own,
+            own_axes,
+            stages,
+            gravity_m_s2,
+            drag,
+        })
+    }
+
+    fn laws(&self, causes: &[f64]) -> Vec<LawSpec> {
+        let drag = LawSpec {
+            id: self.drag.id.to_owned(),
+            version: self.drag.version,
+            target: None,
+            params: BTreeMap::from([
+                ("c_d".to_owned(), causes[0]),
+                ("air_density_kg_m3".to_owned(), self.air_density_kg_m3),
+            ]),
+        };
+        if causes[0] > 0.0 {
+            vec![drag]
+        } else {
+            Vec::new()
+        }
+    }
+}
+
+/// The channels as fitting sees them.
+pub(super) fn channels(bundle: &Bundle) -> Vec<ChannelInfo> {
+    let channels = bundle.manifest.channels.iter();
+    channels
+        .map(|channel| ChannelInfo {
+            name: channel.name.clone(),
+            unit: if channel.unit == "m" { "m" } else { "rad" },
+            noise_known: channel.noise_sd.is_some(),
+        })
+        .collect()
+}
+
+/// An episode's numbers, with times from its first sample on.
+pub(super) fn measured(bundle: &Bundle, episode: &crate::bundle::Episode) -> Measured {
+    let first = episode
+        .samples
+        .iter()
+        .map(|s| s.t_s)
+        .fold(f64::INFINITY, f64::min);
+    let column = |f: &dyn Fn(&Sample) -> f64| episode.samples.iter().map(f).collect::<Vec<f64>>();
+    Measured {
+        name: episode.name.clone(),
+        group: episode.group.clone(),
+        y: column(&|s| s.value),
+        channel: episode.samples.iter().map(|s| s.channel).collect(),
+        t_s: column(&|s| s.t_s - first),
+        sd: column(&|s| bundle.manifest.channels[s.channel].noise_sd.unwrap_or(1.0)),
+    }
+}
+
+fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Cause> {
+    let number =
+        |name: &str, unit: &str, default: f64, bounds: [f64; 2], plausible: [f64; 2], step: f64| {
+            Parameter {
+                name: name.to_owned(),
+                unit: unit.to_owned(),
+                default,
+                low: bounds[0],
+                high: bounds[1],
+                plausible,
+                step,
+            }
+        };
+    vec![
+        Cause {
+            id: drag.id.to_owned(),
+            name: drag.name.to_owned(),
+            equation: drag.equation.to_owned(),
+            parameters: Parameter::of_law(drag, "c_d", 0.02).into_iter().collect(),
+            separating_experiment: drag.separating_experiment.to_owned(),
+            installs_as: Experiment::Law {
+                version: drag.version,
+                target: None,
+            },
+            fixed: vec![("air_density_kg_m3".into(), air_density_kg_m3)],
+            starts: vec![0.1, 0.5],
+        },
+        Cause {
+            id: "viscous_damping".into(),
+            name: "drag in proportion to speed".into(),
+            equation: "dv/dt = -c v, with c in 1/s".into(),
+            // Air's viscosity alone gives 0.001 to 0.1 1/s to balls of 1 to 10 cm; more is dust, not indoor air.
+            parameters: vec![number("rate_per_s", "1/s", 0.0, [0.0, 20.0], [1e-4, 2.0], 0.01)],
+            separating_experiment: "throw at speeds that differ by a factor of three or more: the deceleration grows with \
+                                    the speed here, with its square in quadratic drag"
+                .into(),
+            installs_as: Experiment::Elsewhere,
+            fixed: Vec::new(),
+            starts: vec![0.05, 0.3],
+        },
+        Cause {
+            id: "gravity".into(),
+            name: "another acceleration of free fall (or scale of lengths, or of the clock)".into(),
+            equation: "dv/dt = -g, with g in m/s2; a wrong length scale s and clock scale tau look like g s/tau^2".into(),
+            // Between equator and pole, and a percent of length or clock error.
+            parameters: vec![number("gravity_m_s2", "m/s2", gravity_m_s2, [0.0, 30.0], [9.7, 9.9], 0.02)],
+            separating_experiment: "throw flat and steep, slow and fast: gravity changes the vertical motion alone, by the \
+                                    same amount at every speed; time a pendulum of known length"
+                .into(),
+            installs_as: Experiment::Addresses(vec!["world/gravity_m_s2".into()]),
+            fixed: Vec::new(),
+            starts: vec![],
+        },
+    ]
+}
+
+impl Twin for FlightTwin {
+    fn episodes(&self) -> &[Measured] {
+        &self.episodes
+    }
+
+    fn episodes_mut(&mut self) -> &mut [Measured] {
+        &mut self.episodes
+    }
+
+    fn channels(&self) -> &[ChannelInfo] {
+        &self.channels
+    }
+
+    fn structure(&self) -> Structure {
+        Structure::InTime
+    }
+
+    fn causes(&self) -> &[Cause] {
+        &self.causes
+    }
+
+    /// A time offset is none here: a flight that starts earlier starts elsewhere.
+    fn shared(&self) -> &[Parameter] {
+        &[]
+    }
+
+    fn own(&self) -> &[Parameter] {
+        &self.own
+    }
+
+    fn start(&self, episode: usize) -> Vec<f64> {
+        let measured = &self.episodes[episode];
+        self.own_axes
+            .iter()
+            .map(|(axis, speed)| {
+                let fall = if *axis == 1 {
+                    0.5 * self.gravity_m_s2
+                } else {
+                    0.0
+                };
+                let first: Vec<(f64, f64)> = (0..measured.y.len())
+                    .filter(|k| self.axes[measured.channel[*k]] == *axis)
+                    .take(START_SAMPLES)
+                    .map(|k| {
+                        (
+                            measured.t_s[k],
+                            measured.y[k] + fall * measured.t_s[k].powi(2),
+                        )
+                    })
+                    .collect();
+                let (position, rate) = line(&first);
+                if *speed { rate } else { position }
+            })
+            .collect()
+    }
+
+    fn predict(&self, episode: usize, at: &Values<'_>) -> Result<Vec<f64>, CalibrationError> {
+        let measured = &self.episodes[episode];
+        let mut laws = self.laws(at.causes);
+        let overrides = [("world/gravity_m_s2", at.causes[2])];
+        let mut stage =
+            self.stages[self.stage_of[episode]].with(std::mem::take(&mut laws), &overrides)?;
+        let (mut position, mut velocity) = ([0.0; 3], Vec3::ZERO);
+        for ((axis, speed), value) in self.own_axes.iter().zip(at.own) {
+            if *speed {
+                velocity[*axis] = *value as f32;
+            } else {
+                position[*axis] = *value;
+            }
+        }
+        let step_s = 1.0 / self.rate_hz;
+        let duration = measured.t_s.iter().copied().fold(0.0, f64::max);
+        let steps = (duration * self.rate_hz).ceil() as usize + 1;
+        let part = dwell_scene::PartId(0);
+        let start = stage.state.part_pose[part].position;
+        // Viscous damping is no law of the engine: it acts between the steps, half of it before the first.
+        let keep = (-at.causes[1] * step_s).exp() as f32;
+        stage.state.part_velocity[part].linear = velocity * keep.sqrt();
+        stage.adopt()?;
+        let mut tracks: [Vec<(f64, f64)>; 3] =
+            std::array::from_fn(|_| Vec::with_capacity(steps + 1));
+        for axis in 0..3 {
+            tracks[axis].push((position[axis], f64::from(velocity[axis])));
+        }
+        for _ in 0..steps {
+            stage.step()?;
+            let there = stage.state.part_pose[part].position - start;
+            let speed = stage.state.part_velocity[part].linear;
+            for axis in 0..3 {
+                tracks[axis].push((
+                    position[axis] + f64::from(there[axis]),
+                    f64::from(speed[axis]),
+                ));
+            }
+            if keep < 1.0 {
+                stage.state.part_velocity[part].linear = speed * keep;
+                stage.adopt()?;
+            }
+        }
+        let times = measured.t_s.iter().zip(&measured.channel);
+        Ok(times
+            .map(|(t, channel)| between(&tracks[self.axes[*channel]], step_s, *t))
+            .collect())
+    }
+
+    /// Where a flight starts shifts all of it.
+    fn derivative(
+        &self,
+        episode: usize,
+        _at: &Values<'_>,
+        _base: &[f64],
+        slot: Slot,
+    ) -> Option<Vec<f64>> {
+        let Slot::Own(k) = slot else { return None };
+        let (axis, speed) = self.own_axes[k];
+        let channels = self.episodes[episode].channel.iter();
+        (!speed).then(|| {
+            channels
+                .map(|c| f64::from(u8::from(self.axes[*c] == axis)))
+                .collect()
+        })
+    }
+}
+
+/// The line through points (t, y) by least squares: its value at 0 and its slope.
+fn line(points: &[(f64, f64)]) -> (f64, f64) {
+    let n = points.len().max(1) as f64;
+    let mean_t = points.iter().map(|p| p.0).sum::<f64>() / n;
+    let mean_y = points.iter().map(|p| p.1).sum::<f64>() / n;
+    let spread: f64 = points.iter().map(|p| (p.0 - mean_t).powi(2)).sum();
+    let slope = if spread > 0.0 {
+        points
+            .iter()
+            .map(|p| (p.0 - mean_t) * (p.1 - mean_y))
+            .sum::<f64>()
+            / spread
+    } else {
+        0.0
+    };
+    (mean_y - slope * mean_t, slope)
+}

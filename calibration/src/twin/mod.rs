@@ -1,0 +1,235 @@
+//! The simulation of what was measured, as fitting sees it.
+
+mod features;
+mod flight;
+mod parameter;
+mod room;
+mod servo;
+mod stage;
+
+pub(crate) use flight::FlightTwin;
+pub(crate) use parameter::{Cause, Experiment, Parameter};
+pub(crate) use room::RoomTwin;
+pub(crate) use servo::ServoTwin;
+
+use crate::error::CalibrationError;
+use nalgebra::DMatrix;
+
+/// The numbers of one episode, by channel, each by time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Measured {
+    pub(crate) name: String,
+    pub(crate) group: String,
+    pub(crate) y: Vec<f64>,
+    /// Position in [`Twin::channels`]. Shape as `y`.
+    pub(crate) channel: Vec<usize>,
+    /// Time from the start of the episode, s. Shape as `y`.
+    pub(crate) t_s: Vec<f64>,
+    /// Standard deviation of the noise, or of what stands for it until it is estimated. Shape as `y`.
+    pub(crate) sd: Vec<f64>,
+}
+
+/// What a channel means.
+#[derive(Clone, Debug)]
+pub(crate) struct ChannelInfo {
+    pub(crate) name: String,
+    pub(crate) unit: &'static str,
+    /// Whether the bundle, or theory, says how large the noise is.
+    pub(crate) noise_known: bool,
+}
+
+/// How noise is told from what the model lacks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Structure {
+    /// Samples follow each other in time: what the model lacks is smoother than noise.
+    InTime,
+    /// Every episode has the same cells (band and time): what the model lacks is common to the episodes.
+    InCells,
+}
+
+/// Where a model stands: a value for each parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Point {
+    /// Of all causes, one after the other, as in [`Twin::causes`].
+    pub(crate) causes: Vec<f64>,
+    /// Nuisances that all episodes share.
+    pub(crate) shared: Vec<f64>,
+    /// Nuisances of each episode. Shape (episode, nuisance).
+    pub(crate) own: Vec<Vec<f64>>,
+}
+
+/// One parameter of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Slot {
+    /// Position in [`Point::own`] of the episode.
+    Own(usize),
+    /// Position in [`Point::shared`].
+    Shared(usize),
+    /// Position in [`Point::causes`].
+    Cause(usize),
+}
+
+/// The simulation of what was measured.
+pub(crate) trait Twin: Sync {
+    /// The episodes.
+    fn episodes(&self) -> &[Measured];
+    /// The episodes, for estimates of their noise.
+    fn episodes_mut(&mut self) -> &mut [Measured];
+    /// What the channels mean.
+    fn channels(&self) -> &[ChannelInfo];
+    /// How noise is told from structure.
+    fn structure(&self) -> Structure;
+    /// What may be wrong.
+    fn causes(&self) -> &[Cause];
+    /// Nuisances that all episodes share.
+    fn shared(&self) -> &[Parameter];
+    /// Nuisances of each episode.
+    fn own(&self) -> &[Parameter];
+    /// Where an episode's nuisances start.
+    fn start(&self, episode: usize) -> Vec<f64>;
+
+    /// What the simulation says instead of [`Measured::y`].
+    fn predict(&self, episode: usize, at: &Values<'_>) -> Result<Vec<f64>, CalibrationError>;
+
+    /// The derivative by `slot`, where it is known without another simulation.
+    fn derivative(
+        &self,
+        _episode: usize,
+        _at: &Values<'_>,
+        _base: &[f64],
+        _slot: Slot,
+    ) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// The derivatives by `slots`. Shape (datum, slot).
+    fn derivatives(
+        &self,
+        episode: usize,
+        at: &Values<'_>,
+        base: &[f64],
+        slots: &[Slot],
+    ) -> Result<DMatrix<f64>, CalibrationError> {
+        let mut matrix = DMatrix::zeros(base.len(), slots.len());
+        for (k, slot) in slots.iter().enumerate() {
+            let column = match self.derivative(episode, at, base, *slot) {
+                Some(column) => column,
+                None => self.difference(episode, at, base, *slot)?,
+            };
+            matrix.column_mut(k).copy_from_slice(&column);
+        }
+        Ok(matrix)
+    }
+
+    /// The derivative by `slot` from one more simulation.
+    fn difference(
+        &self,
+        episode: usize,
+        at: &Values<'_>,
+        base: &[f64],
+        slot: Slot,
+    ) -> Result<Vec<f64>, CalibrationError> {
+        let parameter = self.parameter(slot);
+        let mut moved = at.owned();
+        let value = moved.slot_mut(slot);
+        // Away from the bound, where there is one.
+        let step = if *value + parameter.step > parameter.high {
+            -parameter.step
+        } else {
+            parameter.step
+        };
+        *value += step;
+        let there = self.predict(episode, &moved.values())?;
+        Ok(there
+            .iter()
+            .zip(base)
+            .map(|(b, a)| (b - a) / step)
+            .collect())
+    }
+
+    /// What is known about a slot's parameter.
+    fn parameter(&self, slot: Slot) -> &Parameter {
+        match slot {
+            Slot::Own(k) => &self.own()[k],
+            Slot::Shared(k) => &self.shared()[k],
+            Slot::Cause(k) => {
+                let mut parameters = self.causes().iter().flat_map(|cause| &cause.parameters);
+                parameters.nth(k).expect("slots are made from the causes")
+            }
+        }
+    }
+}
+
+/// The values that one episode is simulated with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Values<'a> {
+    pub(crate) causes: &'a [f64],
+    pub(crate) shared: &'a [f64],
+    pub(crate) own: &'a [f64],
+}
+
+impl Values<'_> {
+    fn owned(&self) -> OwnedValues {
+        OwnedValues {
+            causes: self.causes.to_vec(),
+            shared: self.shared.to_vec(),
+            own: self.own.to_vec(),
+        }
+    }
+}
+
+struct OwnedValues {
+    causes: Vec<f64>,
+    shared: Vec<f64>,
+    own: Vec<f64>,
+}
+
+impl OwnedValues {
+    fn slot_mut(&mut self, slot: Slot) -> &mut f64 {
+        match slot {
+            Slot::Own(k) => &mut self.own[k],
+            Slot::Shared(k) => &mut self.shared[k],
+            Slot::Cause(k) => &mut self.causes[k],
+        }
+    }
+
+    fn values(&self) -> Values<'_> {
+        Values {
+            causes: &self.causes,
+            shared: &self.shared,
+            own: &self.own,
+        }
+    }
+}
+
+impl Point {
+    /// The values of one episode.
+    pub(crate) fn values(&self, episode: usize) -> Values<'_> {
+        Values {
+            causes: &self.causes,
+            shared: &self.shared,
+            own: &self.own[episode],
+        }
+    }
+
+    /// Where fitting begins: no cause acts.
+    pub(crate) fn start(twin: &dyn Twin) -> Self {
+        let parameters = twin.causes().iter().flat_map(|cause| &cause.parameters);
+        Self {
+            causes: parameters.map(|parameter| parameter.default).collect(),
+            shared: twin
+                .shared()
+                .iter()
+                .map(|parameter| parameter.default)
+                .collect(),
+            own: (0..twin.episodes().len()).map(|k| twin.start(k)).collect(),
+        }
+    }
+}
+
+/// The positions of a cause's parameters in [`Point::causes`].
+pub(crate) fn range_of(twin: &dyn Twin, cause: usize) -> std::ops::Range<usize> {
+    let counts = twin.causes().iter().map(|cause| cause.parameters.len());
+    let first: usize = counts.take(cause).sum();
+    first..first + twin.causes()[cause].parameters.len()
+}

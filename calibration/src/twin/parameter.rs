@@ -1,0 +1,85 @@
+//! Causes and their parameters.
+
+use dwell_scene::LawInfo;
+
+/// A number that is fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Parameter {
+    pub(crate) name: String,
+    pub(crate) unit: String,
+    /// The value at which nothing changes.
+    pub(crate) default: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    /// What a physicist finds plausible.
+    pub(crate) plausible: [f64; 2],
+    /// Step of a finite difference.
+    pub(crate) step: f64,
+}
+
+impl Parameter {
+    /// A nuisance: any value is plausible.
+    pub(crate) fn nuisance(name: &str, unit: &str, step: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            default: 0.0,
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+            plausible: [f64::NEG_INFINITY, f64::INFINITY],
+            step,
+        }
+    }
+
+    /// The same with other bounds, all of them plausible.
+    pub(crate) fn within(mut self, low: f64, high: f64) -> Self {
+        (self.low, self.high) = (low, high);
+        self.plausible = [low, high];
+        self
+    }
+
+    /// A parameter of an engine's law.
+    pub(crate) fn of_law(info: &LawInfo, name: &str, step: f64) -> Option<Self> {
+        let param = info.params.iter().find(|param| param.name == name)?;
+        Some(Self {
+            name: param.name.to_owned(),
+            unit: param.unit.to_owned(),
+            default: param.default,
+            low: param.low,
+            high: param.high,
+            plausible: param.plausible,
+            step,
+        })
+    }
+}
+
+/// How a cause becomes part of a simulation that others run.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Experiment {
+    /// It is a law of an engine.
+    Law {
+        version: u32,
+        target: Option<String>,
+    },
+    /// Each parameter stands at an address of the state.
+    Addresses(Vec<String>),
+    /// It belongs to the measurement or to a controller; worlds do not simulate it.
+    Elsewhere,
+}
+
+/// Something that the simulation may lack or have wrong.
+#[derive(Clone, Debug)]
+pub(crate) struct Cause {
+    pub(crate) id: String,
+    /// As it stands in a sentence.
+    pub(crate) name: String,
+    pub(crate) equation: String,
+    pub(crate) parameters: Vec<Parameter>,
+    /// The experiment that separates it from its rivals.
+    pub(crate) separating_experiment: String,
+    pub(crate) installs_as: Experiment,
+    /// Parameters of a law that are known and not fitted.
+    pub(crate) fixed: Vec<(String, f64)>,
+    /// Values of the first parameter from which fitting is tried.
+    pub(crate) starts: Vec<f64>,
+}

@@ -1,0 +1,254 @@
+//! The tiny houses in which trajectories and servos are simulated, and the physics worlds over them.
+
+use crate::error::CalibrationError;
+use dwell_physics::{PhysicsConfig, PhysicsWorld};
+use dwell_scene::material::library;
+use dwell_scene::{
+    Articulation, Category, Collider, House, HouseData, JointKind, LawSpec, LevelId, Material,
+    Mesh, Mobility, Object, ObjectId, Part, PartId, Pose, Servo, ShoeboxMaterials, State,
+};
+use glam::{Affine3A, Vec3};
+use std::sync::Arc;
+
+/// Half the edge of the box that stands for all that a servo turns, m.
+const ARM_HALF_EDGE_M: f32 = 0.1;
+
+/// A physics world at its start, to be copied for every simulation.
+#[derive(Clone)]
+pub(super) struct Stage {
+    pub(super) house: Arc<House>,
+    pub(super) world: PhysicsWorld,
+    pub(super) state: State,
+}
+
+/// What is simulated.
+pub(super) struct Thing {
+    pub(super) name: String,
+    pub(super) mass_kg: f32,
+    pub(super) collider: Collider,
+    pub(super) at: Vec3,
+    /// The servo and Coulomb friction of its hinge; `None`: it is free.
+    pub(super) hinge: Option<(Servo, f32)>,
+}
+
+impl Thing {
+    /// A ball.
+    pub(super) fn ball(name: &str, mass_kg: f64, radius_m: f64, at: Vec3) -> Self {
+        Self {
+            name: name.to_owned(),
+            mass_kg: mass_kg as f32,
+            collider: Collider::Ball {
+                center: Vec3::ZERO,
+                radius: radius_m as f32,
+            },
+            at,
+            hinge: None,
+        }
+    }
+
+    /// A box on a vertical hinge with this moment of inertia about it.
+    pub(super) fn arm(name: &str, inertia_kg_m2: f64, hinge: (Servo, f32), at: Vec3) -> Self {
+        let half = ARM_HALF_EDGE_M;
+        Self {
+            name: name.to_owned(),
+            // A box about its middle: I = m (a² + c²) / 12 with edges a = c.
+            mass_kg: (inertia_kg_m2 * 12.0 / f64::from(8.0 * half * half)) as f32,
+            collider: Collider::cuboid(Vec3::splat(-half), Vec3::splat(half)),
+            at,
+            hinge: Some(hinge),
+        }
+    }
+}
+
+impl Stage {
+    /// A closed box of `size_m` with one thing in it.
+    pub(super) fn new(size_m: f32, thing: &Thing, rate_hz: f64) -> Result<Self, CalibrationError> {
+        let fault =
+            |error: &dyn std::fmt::Display| CalibrationError::simulation(&thing.name, error);
+        let box_house =
+            House::shoebox([size_m; 3], &ShoeboxMaterials::default()).map_err(|e| fault(&e))?;
+        let mut data = HouseData::clone(&box_house);
+        put(&mut data, thing);
+        let house = Arc::new(House::new(data).map_err(|e| fault(&e))?);
+        let mut state = State::new(&house);
+        let config = PhysicsConfig {
+            control_rate_hz: rate_hz as f32,
+            physics_rate_hz: rate_hz as f32,
+            sleeping: false,
+            ..PhysicsConfig::default()
+        };
+        let (world, report) =
+            PhysicsWorld::new(house.clone(), config, &mut state).map_err(|e| fault(&e))?;
+        if !report.frozen.is_empty() || !report.moved.is_empty() {
+            return Err(fault(&"it does not fit where it should start"));
+        }
+        Ok(Self {
+            house,
+            world,
+            state,
+        })
+    }
+
+    /// Installs laws and overrides into a copy.
+    pub(super) fn with(
+        &self,
+        laws: Vec<LawSpec>,
+        overrides: &[(&str, f64)],
+    ) -> Result<Self, CalibrationError> {
+        let fault = |error: &dyn std::fmt::Display| {
+            CalibrationError::simulation("laws and parameters", error)
+        };
+        let mut stage = self.clone();
+        stage.state.laws = laws;
+        for (address, value) in overrides {
+            let address = address.parse().map_err(|e| fault(&e))?;
+            stage
+                .state
+                .set_parameter(&stage.house, &address, *value)
+                .map_err(|e| fault(&e))?;
+        }
+        stage
+            .world
+            .apply_parameters(&stage.state)
+            .map_err(|e| fault(&e))?;
+        Ok(stage)
+    }
+
+    /// Takes over what was changed in the state.
+    pub(super) fn adopt(&mut self) -> Result<(), CalibrationError> {
+        let adopted = self.world.adopt(&mut self.state);
+        adopted.map_err(|error| CalibrationError::simulation("a start", error))
+    }
+
+    /// One step.
+    pub(super) fn step(&mut self) -> Result<(), CalibrationError> {
+        let mut events = Vec::new();
+        let stepped = self.world.step(&mut self.state, &[], &mut events);
+        stepped.map_err(|error| CalibrationError::simulation("a step", error))
+    }
+}
+
+fn put(data: &mut HouseData, thing: &Thing) {
+    let material = data
+        .materials
+        .push(Material::of("thing", library().get_or_default("rubber")));
+    let mesh = data.meshes.push(Arc::new(octahedron()));
+    let (object, part) = (
+        ObjectId(data.objects.len() as u32),
+        PartId(data.parts.len() as u32),
+    );
+    data.objects.push(Object {
+        name: thing.name.clone(),
+        source_id: String::new(),
+        model: String::new(),
+        category: Category::default(),
+        level: LevelId(0),
+        room: None,
+        mobility: if thing.hinge.is_some() {
+            Mobility::Articulated
+        } else {
+            Mobility::Movable
+        },
+        pickable: false,
+        switch: None,
+        first_part: part,
+        part_count: 1,
+    });
+    data.parts.push(Part {
+        object,
+        name: "part".into(),
+        fixed: false,
+        world_from_part: Pose::from_position(thing.at),
+        mesh,
+        part_from_mesh: Affine3A::from_scale(Vec3::splat(ARM_HALF_EDGE_M)),
+        materials: vec![material],
+        colliders: vec![thing.collider.clone()],
+        mass_kg: Some(thing.mass_kg),
+        density_kg_m3: 1000.0,
+    });
+    if let Some((servo, friction)) = thing.hinge {
+        data.joints.push(Articulation {
+            name: thing.name.clone(),
+            object,
+            parent: None,
+            child: part,
+            kind: JointKind::Hinge,
+            axis: Vec3::Y,
+            parent_from_joint: Pose::from_position(thing.at),
+            child_from_joint: Pose::IDENTITY,
+            limits: [-3.0, 3.0],
+            closed: 0.0,
+            open: 3.0,
+            initial: 0.0,
+            friction,
+            damping: 0.0,
+            servo: Some(servo),
+        });
+    }
+}
+
+/// Something to see, as every part must have.
+fn octahedron() -> Mesh {
+    let axes = [
+        Vec3::X,
+        Vec3::Y,
+        Vec3::Z,
+        Vec3::NEG_X,
+        Vec3::NEG_Y,
+        Vec3::NEG_Z,
+    ];
+    let faces = [
+        [0, 1, 2],
+        [1, 3, 2],
+        [3, 4, 2],
+        [4, 0, 2],
+        [1, 0, 5],
+        [3, 1, 5],
+        [4, 3, 5],
+        [0, 4, 5],
+    ];
+    Mesh {
+        positions: axes.to_vec(),
+        normals: axes.to_vec(),
+        uvs: Vec::new(),
+        triangles: faces.to_vec(),
+        slots: Vec::new(),
+    }
+}
+
+/// A quantity with its rate of change at equal steps, read between them by cubic Hermite interpolation.
+pub(super) fn between(track: &[(f64, f64)], step_s: f64, t_s: f64) -> f64 {
+    let last = track.len() - 1;
+    let place = (t_s / step_s).clamp(0.0, last as f64);
+    let k = (place.floor() as usize).min(last.saturating_sub(1));
+    if last == 0 {
+        return track[0].0;
+    }
+    let (s, h) = (place - k as f64, step_s);
+    let ((p0, v0), (p1, v1)) = (track[k], track[k + 1]);
+    let (s2, s3) = (s * s, s * s * s);
+    (2.0 * s3 - 3.0 * s2 + 1.0) * p0
+        + (s3 - 2.0 * s2 + s) * h * v0
+        + (3.0 * s2 - 2.0 * s3) * p1
+        + (s3 - s2) * h * v1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_read_exactly_between_steps() {
+        let track: Vec<(f64, f64)> = (0..5)
+            .map(|k| f64::from(k) * 0.1)
+            .map(|t| (t * t, 2.0 * t))
+            .collect();
+        for t in [0.0, 0.05, 0.1234, 0.4] {
+            assert!((between(&track, 0.1, t) - t * t).abs() < 1e-12);
+        }
+        assert!(
+            (between(&track, 0.1, -1.0)).abs() < 1e-12
+                && (between(&track, 0.1, 9.0) - 0.16).abs() < 1e-12
+        );
+    }
+}
