@@ -27,6 +27,18 @@ pub struct Format {
 pub fn formats() -> &'static [Format] {
     &[
         Format {
+            name: "builtin",
+            spelling: "builtin:NAME",
+            recognizes: |house| house.starts_with("builtin:"),
+            open: |house, _| open_builtin(house.trim_start_matches("builtin:")),
+        },
+        Format {
+            name: "native",
+            spelling: "a path to a .dwell",
+            recognizes: |house| crate::native::recognizes(Path::new(house)),
+            open: |house, threads| crate::native::open(Path::new(house), threads),
+        },
+        Format {
             name: "suncg",
             spelling: "a path to a house.json, its folder, or a data root with one house",
             recognizes: |house| crate::suncg::recognizes(Path::new(house)),
@@ -45,6 +57,20 @@ pub fn formats() -> &'static [Format] {
             open: |house, threads| crate::obj::open(Path::new(house), threads),
         },
     ]
+}
+
+fn open_builtin(name: &str) -> Opened {
+    let known = || {
+        crate::builtin::names()
+            .iter()
+            .map(|name| (*name).to_owned())
+            .collect()
+    };
+    let house = crate::builtin::build(name).ok_or_else(|| HousesError::UnknownBuiltin {
+        name: name.to_owned(),
+        known: known(),
+    })?;
+    Ok((house, Report::new()))
 }
 
 /// Opens the house that `house` names, on as many threads as the machine gives.

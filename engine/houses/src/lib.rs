@@ -1,10 +1,14 @@
 //! Where houses come from: one folder a format, the built-in house, textures, [`open`].
 
+mod atomic;
 mod build;
+pub mod builtin;
 mod error;
 mod formats;
 pub mod gltf;
 mod limits;
+mod loss;
+pub mod native;
 pub mod obj;
 mod report;
 mod root;
@@ -12,5 +16,6 @@ pub mod suncg;
 
 pub use error::HousesError;
 pub use formats::{Format, Opened, formats, open, open_with};
+pub use loss::Loss;
 pub use report::{At, Damage, Report, Unmapped, Warning};
 pub use root::DataRoot;

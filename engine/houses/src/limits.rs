@@ -6,8 +6,8 @@ pub(crate) const MAX_TEXT_BYTES: u64 = 256 << 20;
 pub(crate) const MAX_MESH_BYTES: u64 = 512 << 20;
 /// Largest image file, bytes.
 pub(crate) const MAX_IMAGE_BYTES: u64 = 64 << 20;
-/// Largest image side, pixels.
-pub(crate) const MAX_IMAGE_SIDE: u32 = 8192;
+/// Largest image side, pixels; the scene's own bound.
+pub(crate) const MAX_IMAGE_SIDE: u32 = 16_384;
 /// Largest image after decoding, pixels (64 Mpx are 256 MiB as RGBA).
 pub(crate) const MAX_IMAGE_PIXELS: u64 = 64 << 20;
 /// Largest binary buffer of glTF and of the native form, bytes.

@@ -14,4 +14,4 @@ pub(crate) use names::Names;
 pub(crate) use pieces::convex_pieces;
 pub(crate) use scene::{Scene, Thing};
 pub(crate) use tables::{CategoryRow, category, room_kind, substance_of};
-pub(crate) use textures::{decode, read_images, texture_name};
+pub(crate) use textures::{decode, encode_png, read_images, texture_name};

@@ -84,3 +84,31 @@ pub(crate) fn read_images(
     }
     textures
 }
+
+/// A texture as a PNG file, exactly.
+///
+/// # Errors
+/// A sentence when its size does not fit its data or exceeds what is read back.
+pub(crate) fn encode_png(texture: &Texture) -> Result<Vec<u8>, String> {
+    use image::ImageEncoder as _;
+    use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+    let pixels = u64::from(texture.width) * u64::from(texture.height);
+    if pixels > MAX_IMAGE_PIXELS {
+        return Err(format!(
+            "texture {:?}: {pixels} pixels; allowed are {MAX_IMAGE_PIXELS}",
+            texture.name
+        ));
+    }
+    let mut bytes = Vec::new();
+    let encoder =
+        PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive);
+    encoder
+        .write_image(
+            &texture.rgba,
+            texture.width,
+            texture.height,
+            image::ExtendedColorType::Rgba8,
+        )
+        .map_err(|error| format!("texture {:?}: {error}", texture.name))?;
+    Ok(bytes)
+}

@@ -15,10 +15,31 @@ pub(super) struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
+    /// Buffers of which only the first exists: the GLB's own.
+    pub(super) fn of_blob(
+        json: &Root,
+        blob: &'a [u8],
+        at: &At,
+        report: &mut Report,
+    ) -> Result<Self, HousesError> {
+        Self::read(json, blob, None, at, report)
+    }
+
+    /// Reads all buffers; files beside the text are read from `root`.
     pub(super) fn load(
         json: &Root,
-        blob: Option<&'a [u8]>,
+        blob: &'a [u8],
         root: &DataRoot,
+        at: &At,
+        report: &mut Report,
+    ) -> Result<Self, HousesError> {
+        Self::read(json, blob, Some(root), at, report)
+    }
+
+    fn read(
+        json: &Root,
+        blob: &'a [u8],
+        root: Option<&DataRoot>,
         at: &At,
         report: &mut Report,
     ) -> Result<Self, HousesError> {
@@ -27,9 +48,8 @@ impl<'a> Buffers<'a> {
             .iter()
             .fold(0, |sum, buffer| sum.saturating_add(buffer.byte_length.0));
         if total > MAX_BUFFER_BYTES {
-            let at = at.field("buffers");
             return Err(HousesError::TooLarge {
-                at,
+                at: at.field("buffers"),
                 what: "buffer bytes",
                 found: total,
                 allowed: MAX_BUFFER_BYTES,
@@ -39,13 +59,17 @@ impl<'a> Buffers<'a> {
         for (k, buffer) in json.buffers.iter().enumerate() {
             let at = at.field(format_args!("buffers[{k}]"));
             let bytes = match &buffer.uri {
-                None => Cow::Borrowed(blob.filter(|_| k == 0).unwrap_or_default()),
-                Some(uri) => Cow::Owned(read_uri(uri, root, MAX_BUFFER_BYTES).unwrap_or_else(
-                    |damage| {
-                        report.warn(at.clone(), damage);
-                        Vec::new()
-                    },
-                )),
+                None => Cow::Borrowed(if k == 0 { blob } else { &[] }),
+                Some(uri) => {
+                    let read = root.map(|root| read_uri(uri, root, MAX_BUFFER_BYTES));
+                    Cow::Owned(
+                        read.unwrap_or_else(|| Ok(Vec::new()))
+                            .unwrap_or_else(|damage| {
+                                report.warn(at.clone(), damage);
+                                Vec::new()
+                            }),
+                    )
+                }
             };
             if (bytes.len() as u64) < buffer.byte_length.0 {
                 let (found, expected) = (

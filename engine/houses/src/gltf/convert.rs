@@ -116,6 +116,7 @@ fn merge(
                 continue;
             }
         };
+        transform_uvs(json, primitive, &mut part);
         // Slots are 16-bit numbers.
         let material = primitive
             .material
@@ -142,6 +143,31 @@ fn merge(
         materials.push(*material);
     }
     (Arc::new(merged), materials)
+}
+
+/// Applies the texture transform of the primitive's material (`KHR_texture_transform`) to the texture coordinates.
+fn transform_uvs(json: &Root, primitive: &Primitive, part: &mut Mesh) {
+    let material = primitive
+        .material
+        .and_then(|index| json.materials.get(index.value()));
+    let info =
+        material.and_then(|material| material.pbr_metallic_roughness.base_color_texture.as_ref());
+    let extension = info.and_then(|info| info.extensions.as_ref()?.texture_transform.as_ref());
+    let Some(transform) = extension else { return };
+    let (offset, scale) = (
+        Vec2::from(transform.offset.0),
+        Vec2::from(transform.scale.0),
+    );
+    let (s, c) = dwell_scene::math::sin_cos(transform.rotation.0);
+    if !(offset.is_finite() && scale.is_finite() && s.is_finite()) {
+        return;
+    }
+    for uv in &mut part.uvs {
+        // In the file v counts downwards, here upwards.
+        let scaled = Vec2::new(uv.x, 1.0 - uv.y) * scale;
+        let turned = Vec2::new(scaled.x * c + scaled.y * s, scaled.y * c - scaled.x * s) + offset;
+        *uv = Vec2::new(turned.x, 1.0 - turned.y);
+    }
 }
 
 /// Gives `part` the attributes that `merged` already has.

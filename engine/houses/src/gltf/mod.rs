@@ -2,9 +2,17 @@
 
 mod accessor;
 mod buffers;
+mod container;
 mod convert;
+mod geometry;
+mod glb;
 mod nodes;
 mod surface;
+mod write;
+
+pub(crate) use geometry::Geometry;
+pub use write::write;
+pub(crate) use write::{MeshAccessors, encode};
 
 use std::path::Path;
 
@@ -56,13 +64,16 @@ pub fn open_bytes(
 ) -> Result<(House, Report), HousesError> {
     let at = At::file(name);
     let mut report = Report::new();
-    let gltf = ::gltf::Gltf::from_slice(bytes).map_err(|error| HousesError::Syntax {
+    let syntax = |message: String| HousesError::Syntax {
         at: at.clone(),
-        message: format!("no valid glTF 2.0: {error}"),
-    })?;
-    let blob = gltf.blob.as_deref();
-    let json = gltf.document.as_json();
-    let buffers = buffers::Buffers::load(json, blob, root, &at, &mut report)?;
-    let house = convert::convert(json, &buffers, root, name, threads, &mut report)?;
+        message,
+    };
+    let (json, blob) = container::split(bytes).map_err(syntax)?;
+    // The crate's document checks every index and required field.
+    let document = ::gltf::Document::from_json(json)
+        .map_err(|error| syntax(format!("no valid glTF 2.0: {error}")))?;
+    let json = document.into_json();
+    let buffers = buffers::Buffers::load(&json, blob, root, &at, &mut report)?;
+    let house = convert::convert(&json, &buffers, root, name, threads, &mut report)?;
     Ok((house, report))
 }

@@ -10,6 +10,7 @@ mod load;
 mod read_mtl;
 mod read_obj;
 mod shape;
+mod write;
 
 pub use convert::open;
 pub(crate) use convert::recognizes;
@@ -18,3 +19,4 @@ pub(crate) use load::read_mesh;
 pub use read_mtl::read_mtl;
 pub use read_obj::read_obj;
 pub(crate) use shape::{PartShape, Slots, shape_of};
+pub(crate) use write::{ObjWriter, mtl_material};

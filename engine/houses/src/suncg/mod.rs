@@ -8,6 +8,7 @@ pub mod metadata;
 mod open;
 mod parse;
 mod read;
+mod write;
 
 pub use binvox::{Voxels, read_binvox};
 pub use convert::convert;
@@ -15,3 +16,4 @@ pub use open::open;
 pub(crate) use open::recognizes;
 pub use parse::parse;
 pub use read::{SuncgFiles, locate};
+pub use write::write;

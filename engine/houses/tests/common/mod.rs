@@ -1,5 +1,7 @@
-//! The real sample house, where it is there.
+//! The real sample house, where it is there, and generated ones.
 #![allow(dead_code, reason = "each test file uses what it needs")]
+
+pub(crate) mod generate;
 
 use std::path::PathBuf;
 use std::sync::OnceLock;

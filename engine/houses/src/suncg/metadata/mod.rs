@@ -10,7 +10,7 @@ mod votes;
 pub use categories::{CategoryEntry, CategoryTable};
 pub use lights::{LightFile, LightTable};
 pub use models::{ModelEntry, ModelTable};
-pub use sounds::{SoundEntry, SoundTable};
+pub use sounds::{OneOrMany, SoundEntry, SoundTable};
 pub use votes::{VoteTable, Votes};
 
 use crate::limits::MAX_TEXT_BYTES;

@@ -1,0 +1,97 @@
+//! GLB and glTF bytes into the JSON tables and the binary chunk.
+//!
+//! Our own because the `gltf` crate (1.4) subtracts the header's size from a length that a file states, which panics.
+
+use ::gltf::json::{Root, deserialize};
+
+/// The tables and the binary chunk, empty when there is none. Text without the GLB header is glTF.
+///
+/// # Errors
+/// A sentence when the bytes are neither.
+pub(super) fn split(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
+    let (text, blob) = if bytes.starts_with(b"glTF") {
+        chunks(bytes)?
+    } else {
+        (bytes, &[][..])
+    };
+    let json =
+        deserialize::from_slice(text).map_err(|error| format!("no valid glTF 2.0: {error}"))?;
+    Ok((json, blob))
+}
+
+fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
+    let word = |at: usize| {
+        let word = bytes.get(at..at + 4).and_then(|word| word.try_into().ok());
+        word.map(u32::from_le_bytes)
+            .ok_or_else(|| format!("ends at byte {}, inside a header", bytes.len()))
+    };
+    if word(4)? != 2 {
+        return Err(format!("GLB version {}; only 2 is read", word(4)?));
+    }
+    let stated = word(8)? as usize;
+    if stated > bytes.len() {
+        return Err(format!(
+            "{} bytes, but the header states {stated}",
+            bytes.len()
+        ));
+    }
+    let chunk = |at: usize, kind: &[u8; 4]| {
+        let length = word(at)? as usize;
+        let found = bytes.get(at + 4..at + 8).unwrap_or_default();
+        if found != kind {
+            return Err(format!(
+                "chunk {:?} at byte {at}, expected {:?}",
+                String::from_utf8_lossy(found),
+                String::from_utf8_lossy(kind)
+            ));
+        }
+        // A length is below 2^32, so the sums fit.
+        bytes
+            .get(at + 8..at + 8 + length)
+            .ok_or_else(|| format!("chunk at byte {at} reaches beyond the file"))
+    };
+    let text = chunk(12, b"JSON")?;
+    let next = (20 + text.len()).next_multiple_of(4);
+    let blob = if next + 8 <= stated {
+        chunk(next, b"BIN\0")?
+    } else {
+        &[]
+    };
+    Ok((text, blob))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn broken_containers_say_what_is_wrong() {
+        let message = |bytes: &[u8]| split(bytes).unwrap_err();
+        assert_eq!(
+            message(b"glTF\x02\0\0\0"),
+            "ends at byte 8, inside a header"
+        );
+        assert_eq!(
+            message(b"glTF\x01\0\0\0\x0c\0\0\0"),
+            "GLB version 1; only 2 is read"
+        );
+        assert_eq!(
+            message(b"glTF\x02\0\0\0\xff\0\0\0"),
+            "12 bytes, but the header states 255"
+        );
+        // A stated length below the header's own makes the crate's reader panic.
+        assert_eq!(
+            message(b"glTF\x02\0\0\0\x04\0\0\0"),
+            "ends at byte 12, inside a header"
+        );
+        assert_eq!(
+            message(b"glTF\x02\0\0\0\x14\0\0\0\x01\0\0\0JSOX"),
+            "chunk \"JSOX\" at byte 12, expected \"JSON\""
+        );
+        assert_eq!(
+            message(b"glTF\x02\0\0\0\x14\0\0\0\x09\0\0\0JSON"),
+            "chunk at byte 12 reaches beyond the file"
+        );
+        assert!(message(b"{").starts_with("no valid glTF 2.0: EOF"));
+    }
+}

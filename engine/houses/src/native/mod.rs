@@ -1,0 +1,25 @@
+//! The native form: `NAME.dwell/` holds a house exactly.
+//!
+//! `house.json` holds every table of the house, `house.glb` its meshes and textures in a form that any viewer opens.
+//! Reading gives back the same bits that were written; `docs/decisions/0002-native-form.md` says why it is so.
+
+mod file;
+mod read;
+mod write;
+
+pub use file::{FORMAT, VERSION};
+pub use read::open;
+pub use write::write;
+
+use std::path::Path;
+
+/// The tables.
+const TABLES: &str = "house.json";
+/// Meshes and textures.
+const GEOMETRY: &str = "house.glb";
+
+/// Whether `path` names a native house.
+pub(crate) fn recognizes(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("dwell"))
+}

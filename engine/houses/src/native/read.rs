@@ -1,0 +1,107 @@
+//! `NAME.dwell/` into a house.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use dwell_scene::parallel::Threads;
+use dwell_scene::{House, Mesh};
+use glam::{Vec2, Vec3};
+
+use super::file::{FORMAT, Head, NativeFile, VERSION};
+use super::{GEOMETRY, TABLES};
+use crate::error::HousesError;
+use crate::gltf::{Geometry, MeshAccessors};
+use crate::limits::{MAX_BUFFER_BYTES, MAX_TEXT_BYTES};
+use crate::report::{At, Report};
+use crate::root::DataRoot;
+
+/// Opens a native house.
+///
+/// # Errors
+/// [`HousesError::Io`] when a file is missing, [`HousesError::Version`] for another version, [`HousesError::Syntax`]
+/// with the line or field for content that is not of this form, [`HousesError::Scene`] when the tables break a rule of the
+/// scene. The form is exact, so nothing is survived and the report stays empty.
+pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+    let root = DataRoot::new(path)?;
+    let text = root.read(TABLES, MAX_TEXT_BYTES)?;
+    let at = At::file(TABLES);
+    let syntax = |error: serde_json::Error| HousesError::Syntax {
+        at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
+        message: error.to_string(),
+    };
+    let head: Head = serde_json::from_slice(&text).map_err(syntax)?;
+    if head.format != FORMAT {
+        let found = format!("{:?}", head.format);
+        return Err(HousesError::Field {
+            at: at.field("format"),
+            expected: "\"dwell-house\"",
+            found,
+        });
+    }
+    if head.version != VERSION {
+        let (found, allowed) = (head.version.to_string(), vec![VERSION.to_string()]);
+        return Err(HousesError::Version {
+            at: at.field("version"),
+            found,
+            allowed,
+        });
+    }
+    let file: NativeFile = serde_json::from_slice(&text).map_err(syntax)?;
+    let bytes = root.read(GEOMETRY, MAX_BUFFER_BYTES)?;
+    let geometry = Geometry::read(&bytes, GEOMETRY)?;
+    let mut data = file.house;
+    let meshes = threads.map(file.mesh_accessors.len(), |k| {
+        read_mesh(&geometry, &file.mesh_accessors[k])
+    });
+    for (k, mesh) in meshes.into_iter().enumerate() {
+        let at = At::file(TABLES).field(format_args!("mesh_accessors[{k}]"));
+        data.meshes.push(Arc::new(
+            mesh.map_err(|message| HousesError::Syntax { at, message })?,
+        ));
+    }
+    let sizes = &file.texture_sizes;
+    let textures = threads.map(sizes.len(), |k| geometry.texture(k, sizes[k]));
+    for (k, texture) in textures.into_iter().enumerate() {
+        let at = At::file(GEOMETRY).field(format_args!("images[{k}]"));
+        data.textures.push(Arc::new(
+            texture.map_err(|message| HousesError::Syntax { at, message })?,
+        ));
+    }
+    let house = House::new(data).map_err(HousesError::scene(&at))?;
+    Ok((house, Report::new()))
+}
+
+fn read_mesh(geometry: &Geometry<'_>, accessors: &MeshAccessors) -> Result<Mesh, String> {
+    let triples =
+        |accessor: Option<usize>| accessor.map_or(Ok(Vec::new()), |k| geometry.floats::<3>(k));
+    let whole = |accessor: Option<usize>| accessor.map_or(Ok(Vec::new()), |k| geometry.indices(k));
+    let indices = whole(accessors.triangles)?;
+    if indices.len() % 3 != 0 {
+        return Err(format!("{} indices make no triangles", indices.len()));
+    }
+    let slots = whole(accessors.slots)?
+        .into_iter()
+        .map(u16::try_from)
+        .collect::<Result<_, _>>();
+    Ok(Mesh {
+        positions: triples(accessors.positions)?
+            .into_iter()
+            .map(Vec3::from)
+            .collect(),
+        normals: triples(accessors.normals)?
+            .into_iter()
+            .map(Vec3::from)
+            .collect(),
+        uvs: accessors
+            .uvs
+            .map_or(Ok(Vec::new()), |k| geometry.floats::<2>(k))?
+            .into_iter()
+            .map(Vec2::from)
+            .collect(),
+        triangles: indices
+            .chunks_exact(3)
+            .map(|t| [t[0], t[1], t[2]])
+            .collect(),
+        slots: slots.map_err(|_| "a slot above 65535".to_owned())?,
+    })
+}

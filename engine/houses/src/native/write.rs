@@ -1,0 +1,55 @@
+//! A house into `NAME.dwell/`.
+
+use std::fs;
+use std::path::Path;
+
+use dwell_scene::{House, HouseData, IdVec};
+
+use super::file::{FORMAT, NativeFile, VERSION};
+use super::{GEOMETRY, TABLES};
+use crate::atomic::write_folder;
+use crate::error::HousesError;
+use crate::gltf::encode;
+
+/// Writes a house so that [`open`](super::open) gives it back bit for bit. An old native house at `path` is replaced.
+///
+/// # Errors
+/// [`HousesError::Unwritable`] when the house holds a number that is not finite outside of its meshes, when its geometry
+/// exceeds 4 GiB, or when something else stands at `path`; [`HousesError::Io`] when the system refuses.
+pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
+    let unwritable = |message: String| HousesError::Unwritable {
+        path: path.to_owned(),
+        message,
+    };
+    let written = encode(house).map_err(unwritable)?;
+    let file = NativeFile {
+        format: FORMAT.to_owned(),
+        version: VERSION,
+        mesh_accessors: written.meshes,
+        texture_sizes: house
+            .textures
+            .iter()
+            .map(|texture| [texture.width, texture.height])
+            .collect(),
+        house: HouseData {
+            meshes: IdVec::new(),
+            textures: IdVec::new(),
+            ..house.data().clone()
+        },
+    };
+    let text = serde_json::to_vec(&file).map_err(|error| unwritable(error.to_string()))?;
+    // JSON has no infinity and no NaN: such a number would come back as something else, so it is refused here.
+    if let Err(error) = serde_json::from_slice::<NativeFile>(&text) {
+        return Err(unwritable(format!(
+            "a table holds a number that is not finite ({error})"
+        )));
+    }
+    let is_ours = |path: &Path| path.join(TABLES).is_file() && path.join(GEOMETRY).is_file();
+    write_folder(path, is_ours, |folder| {
+        for (name, bytes) in [(TABLES, &text), (GEOMETRY, &written.file)] {
+            let path = folder.join(name);
+            fs::write(&path, bytes).map_err(HousesError::io(&path))?;
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,85 @@
+//! What the format cannot hold at all, whatever the house.
+
+use std::collections::BTreeSet;
+
+use dwell_scene::material::library;
+use dwell_scene::{House, Material, Mobility};
+
+use crate::loss::Losses;
+
+/// Losses that follow from the house's tables alone.
+pub(super) fn of_house(house: &House) -> Losses {
+    let mut losses = Losses::default();
+    losses.add(
+        "names of rooms and objects",
+        house.rooms.len() + house.objects.len(),
+    );
+    let moving = house
+        .objects
+        .iter()
+        .filter(|object| object.mobility != Mobility::Fixed)
+        .count();
+    losses.add("masses, densities and colliders of things that move; they follow from category and mesh again", moving);
+    losses.add("names of materials", house.materials.len());
+    let names: BTreeSet<&str> = house
+        .textures
+        .iter()
+        .map(|texture| texture.name.as_str())
+        .collect();
+    losses.add(
+        "names of textures that several share",
+        house.textures.len() - names.len(),
+    );
+    losses.add(
+        "numbers of materials beyond their substance's",
+        house
+            .materials
+            .iter()
+            .filter(|material| has_own_numbers(material))
+            .count(),
+    );
+    losses.add(
+        "parts as bodies of their own; a model is one mesh, or two states of a hinge",
+        {
+            house
+                .objects
+                .iter()
+                .filter(|object| object.part_count > 1)
+                .count()
+        },
+    );
+    losses.add("receptacles", house.receptacles.len());
+    losses.add("levels of sounds", house.emitters.len());
+    let lit = |id| house.lights.iter().any(|light| light.object == id);
+    let off = house
+        .objects
+        .iter_ids()
+        .filter(|(id, object)| object.switch == Some(false) && lit(*id))
+        .count();
+    losses.add("lamps that start switched off; they start switched on", off);
+    losses.add(
+        "outlines of rooms; a floor's mesh is the outline",
+        house.rooms.len(),
+    );
+    losses
+}
+
+/// Whether a material differs from what its substance says where the format has no field.
+fn has_own_numbers(material: &Material) -> bool {
+    let usual = library().get_or_default(&material.substance);
+    let same = material.absorption == usual.absorption
+        && material.scattering == usual.scattering
+        && material.transmission_loss_db == usual.transmission_loss_db
+        && [
+            material.density_kg_m3,
+            material.friction,
+            material.restitution,
+            material.metallic,
+        ] == [
+            usual.density_kg_m3,
+            usual.friction,
+            usual.restitution,
+            usual.metallic,
+        ];
+    !same
+}

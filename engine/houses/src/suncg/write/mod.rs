@@ -1,0 +1,226 @@
+//! Any house as a SUNCG data root.
+//!
+//! The format knows rooms, models, places and colours, and little else: the list of losses says what is left behind.
+
+mod losses;
+mod models;
+mod rooms;
+mod tables;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use dwell_scene::{Aabb, House, LevelId, Material, MaterialId, RoomId, State, TextureId, units};
+use glam::Vec3;
+
+use super::file::{BoundsFile, HouseFile, LevelFile, NodeFile};
+use crate::atomic::write_folder;
+use crate::build::{Names, encode_png};
+use crate::error::HousesError;
+use crate::loss::Loss;
+use crate::obj::mtl_material;
+
+/// Writes `house` as a new SUNCG data root at `path`, as it stands at the start, and returns what it does not hold.
+///
+/// # Errors
+/// [`HousesError::Unwritable`] when something stands at `path` already or a texture cannot be written,
+/// [`HousesError::Io`] when the system refuses.
+pub fn write(house: &House, path: &Path) -> Result<Vec<Loss>, HousesError> {
+    let mut losses = losses::of_house(house);
+    write_folder(
+        path,
+        |_| false,
+        |folder| {
+            let mut writer = Writer::new(house, folder);
+            writer.textures()?;
+            let mut levels: Vec<LevelFile> = Vec::new();
+            for (id, level) in house.levels.iter_ids() {
+                let nodes = writer.nodes(id, &mut losses)?;
+                let (id, bbox) = (Some(level.name.clone()), bounds(&level.bounds));
+                levels.push(LevelFile {
+                    id,
+                    valid: None,
+                    bbox,
+                    nodes,
+                });
+            }
+            writer.finish(levels)
+        },
+    )?;
+    Ok(losses.into_vec())
+}
+
+/// A data root under construction.
+struct Writer<'a> {
+    house: &'a House,
+    folder: PathBuf,
+    scene_id: String,
+    /// File name without ending of each texture.
+    textures: BTreeMap<TextureId, String>,
+    models: models::Models<'a>,
+    /// Where everything starts.
+    start: State,
+}
+
+impl<'a> Writer<'a> {
+    fn new(house: &'a House, folder: &Path) -> Self {
+        let scene_id = plain_name(&house.name);
+        Self {
+            house,
+            folder: folder.to_owned(),
+            scene_id,
+            textures: BTreeMap::new(),
+            models: models::Models::default(),
+            start: State::new(house),
+        }
+    }
+
+    /// Writes a file below the data root.
+    fn file(&self, path: &str, bytes: &[u8]) -> Result<(), HousesError> {
+        let full = self.folder.join(path);
+        if let Some(folder) = full.parent() {
+            fs::create_dir_all(folder).map_err(HousesError::io(folder))?;
+        }
+        fs::write(&full, bytes).map_err(HousesError::io(&full))
+    }
+
+    fn textures(&mut self) -> Result<(), HousesError> {
+        let mut names = Names::default();
+        for (id, texture) in self.house.textures.iter_ids() {
+            let name = names.unique(&plain_name(&texture.name));
+            let path = format!("texture/{name}.png");
+            let bytes = encode_png(texture).map_err(|message| HousesError::Unwritable {
+                path: self.folder.join(&path),
+                message,
+            })?;
+            self.file(&path, &bytes)?;
+            self.textures.insert(id, name);
+        }
+        Ok(())
+    }
+
+    /// The MTL text of materials, each under the name that `slot_name` gives its position.
+    fn mtl(
+        &self,
+        materials: &[MaterialId],
+        slot_name: impl Fn(usize, &Material) -> String,
+    ) -> String {
+        let entries = materials.iter().enumerate().map(|(k, id)| {
+            let material = &self.house.materials[*id];
+            let texture = material
+                .texture
+                .map(|id| format!("../../texture/{}.png", self.textures[&id]));
+            mtl_material(&slot_name(k, material), material, texture.as_deref())
+        });
+        entries.collect::<Vec<_>>().join("\n")
+    }
+
+    /// The nodes of a storey: its rooms, then grounds, then objects.
+    fn nodes(
+        &mut self,
+        level: LevelId,
+        losses: &mut crate::loss::Losses,
+    ) -> Result<Vec<NodeFile>, HousesError> {
+        let mut nodes = Vec::new();
+        let mut node_of_room: BTreeMap<RoomId, usize> = BTreeMap::new();
+        for (id, room) in self
+            .house
+            .rooms
+            .iter_ids()
+            .filter(|(_, room)| room.level == level)
+        {
+            node_of_room.insert(id, nodes.len());
+            nodes.push(self.room_node(level, nodes.len(), Some((id, room)))?);
+        }
+        if self
+            .house
+            .structure
+            .iter()
+            .any(|piece| rooms::is_homeless(piece, level))
+        {
+            nodes.push(self.room_node(level, nodes.len(), None)?);
+        }
+        nodes.extend(self.ground_nodes(level, nodes.len())?);
+        for (id, object) in self
+            .house
+            .objects
+            .iter_ids()
+            .filter(|(_, object)| object.level == level)
+        {
+            let index = nodes.len();
+            nodes.push(self.object_node(id, format!("{}_{index}", level.0), losses)?);
+            let room = object.room.and_then(|room| node_of_room.get(&room));
+            if let Some(room) = room {
+                nodes[*room]
+                    .node_indices
+                    .get_or_insert_default()
+                    .push(index as f64);
+            }
+        }
+        Ok(nodes)
+    }
+
+    fn finish(self, levels: Vec<LevelFile>) -> Result<(), HousesError> {
+        let all = self
+            .house
+            .levels
+            .iter()
+            .fold(Aabb::EMPTY, |all, level| all.union(&level.bounds));
+        let file = HouseFile {
+            version: Some("suncg@1.0.0".to_owned()),
+            id: Some(self.scene_id.clone()),
+            up: Some(vec![0.0, 1.0, 0.0]),
+            front: Some(vec![0.0, 0.0, 1.0]),
+            scale_to_meters: Some(1.0),
+            levels,
+            bbox: bounds(&all),
+            materials: Vec::new(),
+        };
+        let path = format!("house/{}/house.json", self.scene_id);
+        let text = serde_json::to_vec_pretty(&file).map_err(|error| HousesError::Unwritable {
+            path: self.folder.join(&path),
+            message: error.to_string(),
+        })?;
+        self.file(&path, &text)?;
+        self.tables()
+    }
+}
+
+/// A box of the file; `None` for an empty one.
+fn bounds(bounds: &Aabb) -> Option<BoundsFile> {
+    let corner = |p: Vec3| Some(p.to_array().map(f64::from).to_vec());
+    (!bounds.is_empty()).then(|| BoundsFile {
+        min: corner(bounds.min),
+        max: corner(bounds.max),
+    })
+}
+
+/// A name that can be a file's: letters, digits, `_`, `-`, and not the name of a variant (`..._0`).
+fn plain_name(name: &str) -> String {
+    let plain = |c: char| {
+        if c.is_ascii_alphanumeric() || c == '_' || c == '-' {
+            c
+        } else {
+            '-'
+        }
+    };
+    let mut plain: String = name.chars().map(plain).collect();
+    if plain.is_empty() {
+        "unnamed".clone_into(&mut plain);
+    }
+    if super::metadata::base_model(&plain) != plain {
+        plain.push('-');
+    }
+    plain
+}
+
+/// `#rrggbb` of a material's colour.
+fn hex(material: &Material) -> String {
+    let bytes = material
+        .base_color
+        .map(|c| (units::srgb_from_linear(c) * 255.0).round() as u8);
+    bytes
+        .iter()
+        .fold("#".to_owned(), |text, byte| text + &format!("{byte:02x}"))
+}

@@ -1,0 +1,347 @@
+//! Objects as models and places.
+
+use std::collections::BTreeMap;
+
+use dwell_scene::{
+    Articulation, Category, House, JointId, JointKind, MaterialId, Mobility, Object, ObjectId,
+    Part, PartId, Pose,
+};
+use glam::{Affine3A, Mat4, Vec3};
+
+use super::super::file::{Flag, MaterialFile, NodeFile};
+use super::super::metadata::LightFile;
+use super::tables::model_lights;
+use super::{Writer, bounds, hex, plain_name};
+use crate::build::Names;
+use crate::error::HousesError;
+use crate::loss::Losses;
+use crate::obj::ObjWriter;
+
+/// Models written so far.
+#[derive(Default)]
+pub(super) struct Models<'a> {
+    by_key: BTreeMap<String, String>,
+    names: Names,
+    /// What the tables say about each model.
+    pub(super) entries: Vec<ModelRow<'a>>,
+}
+
+/// A model as the tables know it.
+pub(super) struct ModelRow<'a> {
+    pub(super) id: String,
+    pub(super) category: &'a Category,
+    pub(super) slots: usize,
+    pub(super) bounds: dwell_scene::Aabb,
+    pub(super) lights: Vec<LightFile>,
+    pub(super) signals: Vec<&'a str>,
+    /// The materials of its MTL file.
+    materials: Vec<MaterialId>,
+}
+
+/// The hinge that a model's two states can show: the positions of the joint in them.
+struct TwoStates {
+    joint: JointId,
+    /// Where the door starts, or wide open when it starts closed.
+    open: f32,
+    closed: f32,
+    starts_closed: bool,
+}
+
+/// A part with its place in the model.
+struct Piece<'a> {
+    part: &'a Part,
+    model_from_mesh: Affine3A,
+    first_slot: usize,
+}
+
+impl<'a> Writer<'a> {
+    /// The node of an object, its model written when it is new.
+    pub(super) fn object_node(
+        &mut self,
+        object_id: ObjectId,
+        id: String,
+        losses: &mut Losses,
+    ) -> Result<NodeFile, HousesError> {
+        let house = self.house;
+        let object = &house.objects[object_id];
+        let root = &house.parts[object.first_part];
+        let states = two_states(house, object_id);
+        let joints = house.joints_of(object_id).count();
+        if object.mobility == Mobility::Articulated || joints > 0 {
+            losses.add(
+                "joints other than one upright hinge of a leaf on a frame",
+                joints - usize::from(states.is_some()),
+            );
+        }
+        // A single part keeps its mesh as it is; its scale goes into the transform.
+        let single = object.part_count == 1;
+        let world_from_model = if single {
+            root.world_from_part.to_affine() * root.part_from_mesh
+        } else {
+            root.world_from_part.to_affine()
+        };
+        let materials: Vec<MaterialId> = object
+            .parts()
+            .flat_map(|part| house.parts[part].materials.iter().copied())
+            .collect();
+        let row = self.model_row(object_id, &world_from_model, &materials);
+        let model = self.model(object_id, row, states.as_ref(), losses)?;
+        let written = self
+            .models
+            .entries
+            .iter()
+            .find(|row| row.id == model)
+            .map(|row| row.materials.clone())
+            .unwrap_or_default();
+        let overrides = (written != materials).then(|| self.overrides(&materials, losses));
+        let matrix = Mat4::from(world_from_model).to_cols_array().map(f64::from);
+        let mirrored = world_from_model.matrix3.determinant() < 0.0;
+        Ok(NodeFile {
+            id: Some(id),
+            kind: Some("Object".to_owned()),
+            valid: Some(Flag(true)),
+            model_id: Some(model),
+            transform: Some(matrix.to_vec()),
+            bbox: bounds(&house.object_bounds(&self.start, object_id)),
+            is_mirrored: mirrored.then_some(Flag(true)),
+            state: states.filter(|states| states.starts_closed).map(|_| 1.0),
+            materials: overrides,
+            ..NodeFile::default()
+        })
+    }
+
+    /// What the tables must say about the model of `object`.
+    fn model_row(
+        &self,
+        id: ObjectId,
+        world_from_model: &Affine3A,
+        materials: &[MaterialId],
+    ) -> ModelRow<'a> {
+        let house = self.house;
+        let lights = house.lights.iter().filter(|light| light.object == id);
+        let model_from_part = |part: PartId| {
+            world_from_model.inverse() * house.parts[part].world_from_part.to_affine()
+        };
+        ModelRow {
+            id: String::new(),
+            category: &house.objects[id].category,
+            slots: materials.len(),
+            bounds: dwell_scene::Aabb::EMPTY,
+            lights: lights
+                .map(|light| model_lights(light, &model_from_part(light.part)))
+                .collect(),
+            signals: house
+                .emitters
+                .iter()
+                .filter(|emitter| emitter.object == id)
+                .map(|e| e.signal.as_str())
+                .collect(),
+            materials: materials.to_vec(),
+        }
+    }
+
+    /// The id of the object's model, written when it is new.
+    fn model(
+        &mut self,
+        object_id: ObjectId,
+        mut row: ModelRow<'a>,
+        states: Option<&TwoStates>,
+        losses: &mut Losses,
+    ) -> Result<String, HousesError> {
+        let house = self.house;
+        let object = &house.objects[object_id];
+        let key = model_key(house, object_id, &row);
+        if let Some(known) = self.models.by_key.get(&key) {
+            return Ok(known.clone());
+        }
+        let base = if object.model.is_empty() {
+            &object.name
+        } else {
+            &object.model
+        };
+        let id = self.models.names.unique(&plain_name(base));
+        // The name may have become a variant's by its number.
+        let id = if super::super::metadata::base_model(&id) == id {
+            id
+        } else {
+            self.models.names.unique(&format!("{id}-"))
+        };
+        let folder = format!("object/{id}");
+        let positions = match states {
+            Some(states) => vec![(Some(states.open), ""), (Some(states.closed), "_0")],
+            None => vec![(None, "")],
+        };
+        for (position, suffix) in positions {
+            let joint = states.map(|states| &house.joints[states.joint]);
+            let mut obj = ObjWriter::new(&format!("{id}.mtl"));
+            for piece in pieces(house, object, joint.zip(position)) {
+                let mesh = &house.meshes[piece.part.mesh];
+                let slot_name = |slot: u16| {
+                    slot_name(house, &row.materials, piece.first_slot + usize::from(slot))
+                };
+                obj.mesh(None, mesh, &piece.model_from_mesh, slot_name);
+                let of_piece = mesh
+                    .positions
+                    .iter()
+                    .map(|p| piece.model_from_mesh.transform_point3(*p));
+                row.bounds = row.bounds.union(&dwell_scene::Aabb::from_points(of_piece));
+            }
+            self.file(
+                &format!("{folder}/{id}{suffix}.obj"),
+                obj.into_text().as_bytes(),
+            )?;
+        }
+        let mtl = self.mtl(&row.materials, |k, _| slot_name(house, &row.materials, k));
+        self.file(&format!("{folder}/{id}.mtl"), mtl.as_bytes())?;
+        if row.category.fine.is_empty() && row.category.coarse.is_empty() {
+            losses.add("objects without a category stay without one", 1);
+        }
+        row.id.clone_from(&id);
+        self.models.entries.push(row);
+        self.models.by_key.insert(key, id.clone());
+        Ok(id)
+    }
+
+    /// Overrides by position that show `materials`.
+    fn overrides(&self, materials: &[MaterialId], losses: &mut Losses) -> Vec<MaterialFile> {
+        let rounded = |c: f32| {
+            let encoded = dwell_scene::units::srgb_from_linear(c) * 255.0;
+            (encoded - encoded.round()).abs() > 1e-3
+        };
+        let to_file = |id: &MaterialId| {
+            let material = &self.house.materials[*id];
+            if material.base_color.into_iter().any(rounded) {
+                losses.add("colours between the 256 steps of an override", 1);
+            }
+            MaterialFile {
+                name: Some(material.substance.clone()),
+                diffuse: Some(hex(material)),
+                texture: material.texture.map(|id| self.textures[&id].clone()),
+            }
+        };
+        materials.iter().map(to_file).collect()
+    }
+}
+
+/// The name of a slot says what it is made of; the position makes it unique.
+fn slot_name(house: &House, materials: &[MaterialId], slot: usize) -> String {
+    let substance = materials
+        .get(slot)
+        .map_or("material", |id| house.materials[*id].substance.as_str());
+    format!("{substance}_{slot}")
+}
+
+/// Everything that two objects must share to be one model: shape, what the tables say, and what an override cannot change.
+fn model_key(house: &House, id: ObjectId, row: &ModelRow<'_>) -> String {
+    let object = &house.objects[id];
+    let root = house.parts[object.first_part].world_from_part;
+    let shape: Vec<_> = object
+        .parts()
+        .map(|part| {
+            let part = &house.parts[part];
+            let place = if object.part_count == 1 {
+                [0; 19]
+            } else {
+                let pose = root.inverse() * part.world_from_part;
+                let mut bits = [0; 19];
+                let numbers = pose
+                    .position
+                    .to_array()
+                    .into_iter()
+                    .chain(pose.rotation.to_array());
+                let numbers = numbers.chain(part.part_from_mesh.to_cols_array());
+                bits.iter_mut()
+                    .zip(numbers)
+                    .for_each(|(slot, number)| *slot = number.to_bits());
+                bits
+            };
+            (part.mesh, place)
+        })
+        .collect();
+    let ends =
+        |joint: JointId| [house.joints[joint].open, house.joints[joint].closed].map(f32::to_bits);
+    let joints: Vec<_> = house.joints_of(id).map(ends).collect();
+    let fixed: Vec<_> = row
+        .materials
+        .iter()
+        .map(|id| {
+            let m = &house.materials[*id];
+            (
+                m.opacity.to_bits(),
+                m.roughness.to_bits(),
+                m.emission.map(f32::to_bits),
+                &m.substance,
+            )
+        })
+        .collect();
+    format!(
+        "{shape:?}{joints:?}{fixed:?}{:?}{:?}{:?}{}",
+        row.category, row.lights, row.signals, object.model
+    )
+}
+
+/// The parts of an object in the space of its model, with its joint at a position when one is given.
+fn pieces<'a>(
+    house: &'a House,
+    object: &Object,
+    joint: Option<(&Articulation, f32)>,
+) -> Vec<Piece<'a>> {
+    let root = &house.parts[object.first_part];
+    let mut first_slot = 0;
+    object
+        .parts()
+        .map(|id| {
+            let part = &house.parts[id];
+            let world_from_part = match joint {
+                Some((joint, position)) if joint.child == id => {
+                    let parent = joint
+                        .parent
+                        .map_or(Pose::IDENTITY, |parent| house.parts[parent].world_from_part);
+                    joint.world_from_child(&parent, position)
+                }
+                _ => part.world_from_part,
+            };
+            let model_from_mesh = if object.part_count == 1 {
+                Affine3A::IDENTITY
+            } else {
+                (root.world_from_part.inverse() * world_from_part).to_affine() * part.part_from_mesh
+            };
+            let piece = Piece {
+                part,
+                model_from_mesh,
+                first_slot,
+            };
+            first_slot += part.materials.len();
+            piece
+        })
+        .collect()
+}
+
+/// The two states of an object, when its only joint is an upright hinge of a leaf on a frame.
+fn two_states(house: &House, id: ObjectId) -> Option<TwoStates> {
+    let object = &house.objects[id];
+    let mut joints = house.joints_of(id);
+    let (joint_id, None) = (joints.next()?, joints.next()) else {
+        return None;
+    };
+    let joint = &house.joints[joint_id];
+    let axis = joint.parent_from_joint.rotation * joint.axis;
+    let upright = axis.cross(Vec3::Y).length() < 1e-3;
+    let starts_closed = (joint.initial - joint.closed).abs() < 1e-4;
+    let open = if starts_closed {
+        joint.open
+    } else {
+        joint.initial
+    };
+    let fits = joint.kind == JointKind::Hinge
+        && upright
+        && object.part_count > 1
+        && joint.parent == Some(object.first_part);
+    let turns = (open - joint.closed).abs() > 0.06;
+    (fits && turns).then_some(TwoStates {
+        joint: joint_id,
+        open,
+        closed: joint.closed,
+        starts_closed,
+    })
+}

@@ -1,0 +1,188 @@
+//! The metadata tables of a written data root.
+
+use std::collections::BTreeMap;
+
+use dwell_scene::{Light, LightShape, units};
+use glam::{Affine3A, Vec3};
+
+use super::super::metadata::{LightFile, OneOrMany, SoundEntry};
+use super::Writer;
+use crate::error::HousesError;
+
+impl Writer<'_> {
+    /// Writes the tables that the models need.
+    pub(super) fn tables(&self) -> Result<(), HousesError> {
+        let models = &self.models.entries;
+        let unwritable = |path: &str, message: String| HousesError::Unwritable {
+            path: self.folder.join(path),
+            message,
+        };
+        let path = "metadata/ModelCategoryMapping.csv";
+        let rows = models
+            .iter()
+            .filter(|row| !row.category.fine.is_empty() || !row.category.coarse.is_empty());
+        let rows = rows.enumerate().map(|(k, row)| {
+            let category = row.category;
+            let [index, structure] = [k.to_string(), "2".to_owned()];
+            let names = [
+                &category.fine,
+                &category.coarse,
+                &structure,
+                &category.nyu40,
+            ]
+            .map(Clone::clone);
+            [
+                vec![index, row.id.clone()],
+                names.to_vec(),
+                vec![String::new(); 2],
+            ]
+            .concat()
+        });
+        let header = [
+            "index",
+            "model_id",
+            "fine_grained_class",
+            "coarse_grained_class",
+            "empty_struct_obj",
+            "nyuv2_40class",
+            "wnsynsetid",
+            "wnsynsetkey",
+        ];
+        self.file(
+            path,
+            &csv_text(&header, rows).map_err(|message| unwritable(path, message))?,
+        )?;
+
+        let path = "metadata/models.csv";
+        let triple = |v: Vec3| format!("{}, {}, {}", v.x, v.y, v.z);
+        let rows = models
+            .iter()
+            .filter(|row| !row.bounds.is_empty())
+            .enumerate()
+            .map(|(k, row)| {
+                let dims = triple(row.bounds.size() * 100.0);
+                let (min, max) = (triple(row.bounds.min), triple(row.bounds.max));
+                vec![
+                    row.id.clone(),
+                    "0,0,1".to_owned(),
+                    row.slots.to_string(),
+                    min,
+                    max,
+                    dims,
+                    k.to_string(),
+                    String::new(),
+                ]
+            });
+        let header = [
+            "id",
+            "front",
+            "nmaterials",
+            "minPoint",
+            "maxPoint",
+            "aligned.dims",
+            "index",
+            "variantIds",
+        ];
+        self.file(
+            path,
+            &csv_text(&header, rows).map_err(|message| unwritable(path, message))?,
+        )?;
+
+        let lights: BTreeMap<&str, &[LightFile]> = models
+            .iter()
+            .filter(|row| !row.lights.is_empty())
+            .map(|row| (row.id.as_str(), row.lights.as_slice()))
+            .collect();
+        let sounds: Vec<SoundEntry> = models
+            .iter()
+            .filter(|row| !row.signals.is_empty())
+            .map(|row| SoundEntry {
+                category: OneOrMany::One(row.category.coarse.clone()),
+                model_ids: vec![row.id.clone()],
+                sounds: row
+                    .signals
+                    .iter()
+                    .enumerate()
+                    .map(|(k, signal)| (event(k), format!("{signal}.wav")))
+                    .collect(),
+            })
+            .collect();
+        let json = |path: &str, text: Result<Vec<u8>, serde_json::Error>| {
+            text.map_err(|error| unwritable(path, error.to_string()))
+        };
+        let path = "metadata/suncgModelLights.json";
+        self.file(path, &json(path, serde_json::to_vec(&lights))?)?;
+        let path = "metadata/sounds.json";
+        self.file(path, &json(path, serde_json::to_vec_pretty(&sounds))?)
+    }
+}
+
+/// The name of the k-th event of a model.
+fn event(k: usize) -> String {
+    if k == 0 {
+        "on".to_owned()
+    } else {
+        format!("on_{}", k + 1)
+    }
+}
+
+fn csv_text(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Result<Vec<u8>, String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer
+        .write_record(header)
+        .map_err(|error| error.to_string())?;
+    for row in rows {
+        writer
+            .write_record(&row)
+            .map_err(|error| error.to_string())?;
+    }
+    writer.into_inner().map_err(|error| error.to_string())
+}
+
+/// A light in the space of its model.
+pub(super) fn model_lights(light: &Light, model_from_part: &Affine3A) -> LightFile {
+    let point = |p: Vec3| {
+        model_from_part
+            .transform_point3(p)
+            .to_array()
+            .map(f64::from)
+    };
+    let color = light
+        .color
+        .map(|c| (units::srgb_from_linear(c) * 255.0).round() as u8);
+    let [r, g, b] = color;
+    let file = LightFile {
+        power: f64::from(light.power_w),
+        color: format!("#{r:02x}{g:02x}{b:02x}"),
+        position: point(light.position),
+        attenuation: light.attenuation.map(f64::from),
+        ..LightFile::default()
+    };
+    match light.shape {
+        LightShape::Point => LightFile {
+            kind: "PointLight".to_owned(),
+            ..file
+        },
+        LightShape::Spot {
+            direction,
+            cutoff_rad,
+            dropoff_rate,
+        } => LightFile {
+            kind: "SpotLight".to_owned(),
+            direction: Some(
+                model_from_part
+                    .transform_vector3(direction)
+                    .to_array()
+                    .map(f64::from),
+            ),
+            cutoff_angle: Some(f64::from(cutoff_rad)),
+            dropoff_rate: Some(f64::from(dropoff_rate)),
+            ..file
+        },
+        LightShape::Line { end } => LightFile {
+            kind: "LineLight".to_owned(),
+            position2: Some(point(end)),
+            ..file
+        },
+    }
+}
