@@ -93,5 +93,5 @@ pub(crate) fn range_hood() -> Model {
         .switched(false)
         .part(body)
         .light([0.0, -0.01, 0.23], down, 5.0)
-        .sounding([0.0, 0.1, 0.23], "hum", 58.0)
+        .sounding([0.0, 0.1, 0.23], "fan", 58.0)
 }

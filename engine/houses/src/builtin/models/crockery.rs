@@ -67,8 +67,8 @@ pub(crate) fn bowl(radius_m: f32, glaze: &Finish) -> Model {
     let shell = vessel(
         &[
             (0.0, 0.0),
-            (0.45 * r, 0.0),
-            (0.8 * r, 0.25 * r),
+            (0.55 * r, 0.0),
+            (0.85 * r, 0.22 * r),
             (r, 0.62 * r),
         ],
         0.005,

@@ -55,7 +55,7 @@ pub(crate) fn laptop() -> Model {
     Model::pickable("laptop", "laptop")
         .switched(true)
         .part(body)
-        .sounding([0.0, 0.01, 0.0], "hum", 28.0)
+        .sounding([0.0, 0.01, 0.0], "fan", 28.0)
 }
 
 /// A telephone with a receiver on its cradle.
@@ -94,7 +94,7 @@ pub(crate) fn telephone() -> Model {
     Model::pickable("telephone", "telephone")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.03, 0.0], "telephone", 74.0)
+        .sounding([0.0, 0.03, 0.0], "phone", 74.0)
 }
 
 /// A remote control.

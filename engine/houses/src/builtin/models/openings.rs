@@ -11,7 +11,7 @@ const JAMB_M: f32 = 0.04;
 /// Thickness of a door's leaf, m.
 const LEAF_M: f32 = 0.04;
 /// Gap between leaf and floor, m.
-const SILL_M: f32 = 0.006;
+const SILL_M: f32 = 0.012;
 /// Gap between leaf and jambs, m.
 const GAP_M: f32 = 0.003;
 

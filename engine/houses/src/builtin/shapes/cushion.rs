@@ -65,17 +65,11 @@ pub(crate) fn pillow(size_m: [f32; 3]) -> Solid {
         });
     }
     smooth_normals(&mut mesh);
+    // Flat above and below, so that it rests on four corners and others rest on it.
+    let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     let mut points = Vec::new();
-    for side in [1.0, -1.0] {
-        for (s, t) in [
-            (-0.55, -0.55),
-            (0.55, -0.55),
-            (0.55, 0.55),
-            (-0.55, 0.55),
-            (0.0, 0.0),
-        ] {
-            points.push(place(s, t, side));
-        }
+    for (y, side) in [(0.0, -1.0), (height, 1.0)] {
+        points.extend(square.map(|(s, t)| place(0.5 * s, 0.5 * t, side).with_y(y)));
     }
     points.extend(
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(s, t)| place(s, t, 0.0)),

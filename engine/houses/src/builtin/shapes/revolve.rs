@@ -8,16 +8,15 @@ use std::f32::consts::TAU;
 
 /// Two neighbouring lines of a profile whose directions differ by less make one smooth surface: cosine of 50 degrees.
 const SMOOTH_COSINE: f32 = 0.64;
-/// Points around a collision hull.
-const HULL_SIDES: usize = 10;
+/// Most cylinders that stand for a body of revolution, unless they are alike.
+const MOST_CYLINDERS: usize = 4;
 
 /// A body of revolution about +Y. `profile`: (radius, height) in m, so that the body lies to the left of the way along it
 /// (from the lower end of the axis outwards and up to the upper end; or around a closed loop whose last point is its first).
-/// It collides as the convex hull.
+/// It collides as a few
+/// cylinders.
 pub(crate) fn lathe(profile: &[(f32, f32)], segments: usize) -> Solid {
-    let mesh = surface(profile, segments);
-    let points = hull_points(profile, HULL_SIDES);
-    Solid::new(mesh, vec![Collider::Hull { points }])
+    Solid::new(surface(profile, segments), stack(profile))
 }
 
 /// A cylinder that stands on the origin.
@@ -80,23 +79,89 @@ pub(super) fn around((radius, height): (f32, f32), segment: usize, segments: usi
     Vec3::new(radius * sin, height, radius * cos)
 }
 
-/// Corners of the hull: the profile's own points, each ring grown so that the polygon has the circle's area.
-pub(super) fn hull_points(profile: &[(f32, f32)], sides: usize) -> Vec<Vec3> {
-    // At most four rings: those that lie farthest out in one of four directions.
-    let mut rings: Vec<(f32, f32)> = Vec::new();
-    for (r, y) in [(0.3, -1.0), (1.0, -0.4), (1.0, 0.4), (0.3, 1.0)] {
-        let far = |p: &&(f32, f32)| p.0 * r + p.1 * y;
-        if let Some(best) = profile.iter().max_by(|a, b| far(a).total_cmp(&far(b)))
-            && !rings.contains(best)
-        {
-            rings.push(*best);
+/// Cylinders that stand for a body of revolution: each has the volume of the slab that it replaces.
+///
+/// Cylinders, not hulls: contact solvers hold a hull's face by four corners at most, so that a round foot with more
+/// corners tips over.
+pub(super) fn stack(profile: &[(f32, f32)]) -> Vec<Collider> {
+    let mut heights: Vec<f32> = profile.iter().map(|p| p.1).collect();
+    heights.sort_by(f32::total_cmp);
+    heights.dedup_by(|a, b| (*a - *b).abs() < 1e-4);
+    // Mean square of the outer radius between two heights: that of a truncated cone.
+    let outer = |y: f32| {
+        let crossing = |pair: &[(f32, f32)]| {
+            let ([(r0, y0), (r1, y1)], span) = ([pair[0], pair[1]], pair[1].1 - pair[0].1);
+            let inside = (y0.min(y1)..=y0.max(y1)).contains(&y) && span != 0.0;
+            inside.then(|| r0 + (r1 - r0) * (y - y0) / span)
+        };
+        profile
+            .windows(2)
+            .filter_map(crossing)
+            .fold(0.0_f32, f32::max)
+    };
+    let mut slabs: Vec<Slab> = heights
+        .windows(2)
+        .map(|y| {
+            let inset = 0.01 * (y[1] - y[0]);
+            let (a, b) = (outer(y[0] + inset), outer(y[1] - inset));
+            Slab {
+                low: y[0],
+                high: y[1],
+                square: (a * a + a * b + b * b) / 3.0,
+            }
+        })
+        .collect();
+    while slabs.len() > 1 {
+        // The two neighbours that are most alike become one, until few are left that differ.
+        let gap = |k: usize| (slabs[k].square.sqrt() - slabs[k + 1].square.sqrt()).abs();
+        let Some(k) = (0..slabs.len() - 1).min_by(|a, b| gap(*a).total_cmp(&gap(*b))) else {
+            break;
+        };
+        let widest = slabs
+            .iter()
+            .map(|slab| slab.square)
+            .fold(0.0, f32::max)
+            .sqrt();
+        if slabs.len() <= MOST_CYLINDERS && gap(k) > 0.06 * widest {
+            break;
+        }
+        let upper = slabs.remove(k + 1);
+        slabs[k] = slabs[k].with(&upper);
+    }
+    slabs
+        .into_iter()
+        .filter(|slab| slab.square > 0.0)
+        .map(Slab::cylinder)
+        .collect()
+}
+
+/// A level slice of a body of revolution.
+#[derive(Clone, Copy)]
+struct Slab {
+    low: f32,
+    high: f32,
+    /// Mean square of the radius, m².
+    square: f32,
+}
+
+impl Slab {
+    fn with(self, upper: &Self) -> Self {
+        let (a, b) = (self.high - self.low, upper.high - upper.low);
+        let square = (self.square * a + upper.square * b) / (a + b);
+        Self {
+            low: self.low,
+            high: upper.high,
+            square,
         }
     }
-    let corner = |ring: (f32, f32)| {
-        let count = if ring.0 > 0.0 { sides } else { 1 };
-        (0..count).map(move |k| around(ring, k, sides))
-    };
-    rings.into_iter().flat_map(corner).collect()
+
+    fn cylinder(self) -> Collider {
+        Collider::Cylinder {
+            part_from_cylinder: Pose::from_position(Vec3::Y * (0.5 * (self.low + self.high))),
+            half_height: 0.5 * (self.high - self.low),
+            radius: self.square.sqrt(),
+        }
+    }
 }
 
 /// The surface of a body of revolution.

@@ -84,7 +84,7 @@ fn normals_agree_with_the_faces() {
                 .into_iter()
                 .fold(1.0, f32::min);
             // The rim of a pillow turns round within one vertex, and folds are coarse.
-            let allowed = if name == "pillow" { -0.8 } else { 0.0 };
+            let allowed = if name == "pillow" { -0.8 } else { -0.05 };
             assert!(
                 worst > allowed,
                 "{name}: triangle {k} has a normal at {worst} to its face"

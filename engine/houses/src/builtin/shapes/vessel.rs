@@ -2,7 +2,8 @@
 
 use super::Solid;
 use super::revolve::{around, surface};
-use dwell_scene::Collider;
+use dwell_scene::{Collider, Pose};
+use glam::Vec3;
 
 /// Convex pieces around the wall.
 const WALL_PIECES: usize = 8;
@@ -23,9 +24,11 @@ pub(crate) fn vessel(outer: &[(f32, f32)], wall_m: f32, segments: usize) -> Soli
         .iter()
         .filter(|p| p.1 <= floor)
         .fold(0.0_f32, |r, p| r.max(p.0));
-    let ring = |r: f32, y: f32| (0..WALL_PIECES).map(move |k| around((r, y), k, WALL_PIECES));
-    let mut colliders = vec![Collider::Hull {
-        points: ring(foot, outer[0].1).chain(ring(foot, floor)).collect(),
+    let half_height = 0.5 * (floor - outer[0].1);
+    let mut colliders = vec![Collider::Cylinder {
+        part_from_cylinder: Pose::from_position(Vec3::Y * (outer[0].1 + half_height)),
+        half_height,
+        radius: foot,
     }];
     let rings: Vec<_> = outer
         .iter()

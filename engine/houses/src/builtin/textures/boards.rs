@@ -1,14 +1,13 @@
 //! Wood: boards, plank floors, herringbone parquet. The grain runs along u.
 
 use super::canvas::{Canvas, Color, mix, shade, smooth_step};
+use super::noise::floor;
 use super::{Noise, Paint};
-use dwell_scene::math;
-use std::f32::consts::TAU;
 
 /// The colour of wood at a place; `rings` year rings cross the square.
 fn grain(noise: &Noise, [light, dark, _]: [Color; 3], u: f32, v: f32, rings: f32) -> Color {
     let bend = noise.value(u, v, 2, 5) + 0.3 * noise.value(u, v, 3, 11);
-    let ring = 0.5 + 0.5 * math::sin(TAU * (rings * v + 1.1 * bend));
+    let ring = wave(rings * v + 1.1 * bend);
     let (tone, fibre, pore) = (
         noise.value(u, v, 1, 7),
         noise.value(u, v, 5, 96),
@@ -17,6 +16,12 @@ fn grain(noise: &Noise, [light, dark, _]: [Color; 3], u: f32, v: f32, rings: f32
     let dark_share =
         0.25 * tone + 0.3 * ring * ring + 0.3 * fibre + 0.15 * smooth_step(0.72, 0.95, pore);
     mix(light, dark, dark_share)
+}
+
+/// A smooth wave from 0 to 1 and back over each whole step of `x`, quicker than a sine.
+fn wave(x: f32) -> f32 {
+    let t = (2.0 * (x - floor(x) as f32) - 1.0).abs();
+    t * t * (3.0 - 2.0 * t)
 }
 
 /// One board.

@@ -61,8 +61,8 @@ fn recipes() -> &'static [Recipe] {
     }
     const ALL: &[Recipe] = &[
         recipe("wood", 256, 256, boards::wood),
-        recipe("planks", 512, 512, boards::planks),
-        recipe("herringbone", 512, 512, boards::herringbone),
+        recipe("planks", 384, 384, boards::planks),
+        recipe("herringbone", 384, 384, boards::herringbone),
         recipe("tile", 256, 256, tiles::tile),
         recipe("brick", 256, 256, tiles::brick),
         recipe("plaster", 128, 128, stones::plaster),

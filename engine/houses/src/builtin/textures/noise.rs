@@ -4,6 +4,13 @@ use dwell_scene::random::Key;
 
 const TABLE: usize = 256;
 
+/// The largest whole number not above `x`; quicker than `f32::floor`, which is a call on plain x86-64.
+#[inline]
+pub(super) fn floor(x: f32) -> i32 {
+    let cut = x as i32;
+    cut - i32::from(x < cut as f32)
+}
+
 /// Value noise on a lattice.
 pub(super) struct Noise {
     values: [f32; TABLE],
@@ -23,21 +30,29 @@ impl Noise {
     }
 
     /// A value in [0, 1) for an integer place; equal places, equal values.
+    #[inline]
     pub(super) fn cell(&self, x: i32, y: i32) -> f32 {
-        let column = self.order[x.rem_euclid(TABLE as i32) as usize];
-        self.values[(i32::from(column) + y).rem_euclid(TABLE as i32) as usize]
+        // The table's length is a power of two, so that masking is the remainder, of negative numbers too.
+        let mask = TABLE as i32 - 1;
+        let column = self.order[(x & mask) as usize];
+        self.values[((i32::from(column) + y) & mask) as usize]
     }
 
     /// Smooth noise in [0, 1): (`u`, `v`) in 0 to 1, `across` by `up` lattice cells in the square, repeating.
+    #[inline]
     pub(super) fn value(&self, u: f32, v: f32, across: i32, up: i32) -> f32 {
-        let (x, y) = (u * across as f32, v * up as f32);
-        let (x0, y0) = (x.floor(), y.floor());
-        let ease = |t: f32| t * t * (3.0 - 2.0 * t);
-        let (fx, fy) = (ease(x - x0), ease(y - y0));
-        let wrap = |k: i32, period: i32| k.rem_euclid(period);
-        let (i, j) = (x0 as i32, y0 as i32);
-        let (i0, i1) = (wrap(i, across), wrap(i + 1, across));
-        let (j0, j1) = (wrap(j, up), wrap(j + 1, up));
+        let [(i0, i1, fx), (j0, j1, fy)] = [(u, across), (v, up)].map(|(t, period)| {
+            let x = t * period as f32;
+            let cell = floor(x);
+            let first = if (0..period).contains(&cell) {
+                cell
+            } else {
+                cell.rem_euclid(period)
+            };
+            let second = if first + 1 == period { 0 } else { first + 1 };
+            let f = x - cell as f32;
+            (first, second, f * f * (3.0 - 2.0 * f))
+        });
         let low = self.cell(i0, j0) + (self.cell(i1, j0) - self.cell(i0, j0)) * fx;
         let high = self.cell(i0, j1) + (self.cell(i1, j1) - self.cell(i0, j1)) * fx;
         low + (high - low) * fy

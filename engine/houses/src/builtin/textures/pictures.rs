@@ -71,7 +71,7 @@ pub(super) fn branch(canvas: &mut Canvas, paint: &Paint) {
             );
             let length = 0.26 - 0.012 * k as f32;
             let t = along / length;
-            if (0.0..1.0).contains(&t) {
+            if (0.0..1.0).contains(&t) && across.abs() < 0.2 * length {
                 let half = 0.2 * length * math::sin(std::f32::consts::PI * math::pow(t, 0.8));
                 let rib = 1.0 - 0.25 * (1.0 - smooth_step(0.002, 0.006, across.abs()));
                 let inside = 1.0 - smooth_step(half - 0.006, half, across.abs());
