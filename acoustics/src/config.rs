@@ -60,11 +60,11 @@ impl AcousticConfig {
         }
     }
 
-    /// For agents that learn: 300 rays, images to order 2, one second.
+    /// For agents that learn: 150 rays, images to order 2, 0.6 seconds.
     pub fn rl() -> Self {
         Self {
-            rays: 300,
-            max_duration_s: 1.0,
+            rays: 150,
+            max_duration_s: 0.6,
             bin_s: 0.008,
             image_order: 2,
             image_planes: 16,

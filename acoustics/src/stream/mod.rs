@@ -1,9 +1,12 @@
 //! Sound in step with a world: blocks of pressure at one receiver while sources, listener and doors move.
 
+mod config;
 mod convolver;
 mod voice;
 
-use crate::error::{AcousticsError, finite, range};
+pub use config::StreamConfig;
+
+use crate::error::{AcousticsError, finite};
 use crate::fft::RealFft;
 use crate::laws::microphone_noise;
 use crate::receiver::{Receiver, Source};
@@ -20,90 +23,6 @@ use xxhash_rust::xxh3::xxh3_64;
 /// Parts whose box is smaller than this from corner to corner do not change what is heard, m.
 const LARGE_PART_M: f32 = 0.7;
 const VERSION: u32 = 1;
-
-/// Settings of a [`Stream`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct StreamConfig {
-    /// Samples of a block; 16 to 65,536. At 16 kHz and 20 control steps a second: 800.
-    pub block_samples: usize,
-    /// Source or listener must have moved this far for a new impulse response, m; 0 to 10. 0: whenever one moved at all.
-    pub update_distance_m: f32,
-    /// The head must have turned this far for a new impulse response, rad; 0 to 3.2.
-    pub update_angle_rad: f32,
-    /// A door or another large part must have moved this far, m (or turned as many rad); 0 to 10.
-    pub update_part_m: f32,
-    /// Sources that are followed at once; the first in the list win. 1 to 1,000.
-    pub max_sources: usize,
-}
-
-impl Default for StreamConfig {
-    /// [`StreamConfig::full`].
-    fn default() -> Self {
-        Self::full()
-    }
-}
-
-impl StreamConfig {
-    /// For listening: follows movements of 5 cm and 2 degrees.
-    pub fn full() -> Self {
-        Self {
-            block_samples: 800,
-            update_distance_m: 0.05,
-            update_angle_rad: 0.035,
-            update_part_m: 0.03,
-            max_sources: 64,
-        }
-    }
-
-    /// For agents that learn: follows movements of 25 cm and 10 degrees.
-    pub fn rl() -> Self {
-        Self {
-            update_distance_m: 0.25,
-            update_angle_rad: 0.175,
-            update_part_m: 0.15,
-            max_sources: 8,
-            ..Self::full()
-        }
-    }
-
-    /// The settings called `name`: `"full"` or `"rl"`.
-    pub fn preset(name: &str) -> Option<Self> {
-        match name {
-            "full" => Some(Self::full()),
-            "rl" => Some(Self::rl()),
-            _ => None,
-        }
-    }
-
-    /// Checks every range.
-    ///
-    /// # Errors
-    /// [`AcousticsError::Range`] names the field.
-    pub fn check(&self) -> Result<(), AcousticsError> {
-        const AT: &str = "sound stream";
-        let number = |field, value: f32, high, allowed| {
-            range(AT, field, f64::from(value), (0.0, high), allowed)
-        };
-        range(
-            AT,
-            "block_samples",
-            self.block_samples as f64,
-            (16.0, 65_536.0),
-            "16 to 65536",
-        )?;
-        number("update_distance_m", self.update_distance_m, 10.0, "0 to 10")?;
-        number("update_angle_rad", self.update_angle_rad, 3.2, "0 to 3.2")?;
-        number("update_part_m", self.update_part_m, 10.0, "0 to 10")?;
-        range(
-            AT,
-            "max_sources",
-            self.max_sources as f64,
-            (1.0, 1000.0),
-            "1 to 1000",
-        )
-    }
-}
 
 /// A source that sounds during a block.
 #[derive(Clone, Copy, Debug)]
@@ -356,22 +275,30 @@ impl Stream {
                     .collect(),
                 overrides: state.overrides.clone(),
             };
-            let change = heard.map_or(Change::Moved, |(then, _)| then.change(&now, &threshold));
+            let changed = |then: &Situation| then.change(&now, &threshold);
+            let change = heard.map_or(Change::Moved, |(then, _)| changed(then));
             let key = self.key.child("source").child(id);
+            // A blow on the table is heard as the one before it was: other sources' impulse responses serve as well.
+            let known = || {
+                let others = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
+                let mut close = others.filter(|(then, _)| changed(then) == Change::None);
+                close.next().map(|(_, response)| response.clone())
+            };
             let response = match (change, heard) {
                 (Change::None, _) => None,
                 (Change::Turned, Some((_, response))) => {
                     report.turned += 1;
-                    Some(self.scene.respond(response.echogram.clone(), receiver, key))
+                    let echogram = response.echogram.clone();
+                    Some(self.scene.respond(echogram, receiver, key))
                 }
-                _ => {
+                _ => Some(if let Some(response) = known() {
+                    response
+                } else {
                     report.traced += 1;
                     let source = Source::at(position);
-                    Some(
-                        self.scene
-                            .impulse_response(rays, &source, receiver, key, self.threads)?,
-                    )
-                }
+                    let (scene, threads) = (&self.scene, self.threads);
+                    scene.impulse_response(rays, &source, receiver, key, threads)?
+                }),
             };
             planned.push((id, response.map(|response| (now, response))));
         }

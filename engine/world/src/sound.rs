@@ -9,7 +9,7 @@ use dwell_physics::{ContactEvent, Toucher};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
-use dwell_scene::units::pa_from_db_spl;
+use dwell_scene::units::{db_spl_from_pa, pa_from_db_spl};
 use dwell_scene::{AgentId, House, PartId, State};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -20,6 +20,11 @@ const FAINTEST_N_S: f32 = 0.02;
 const MOST_BLOWS: usize = 16;
 /// Source ids of blows begin here; those of emitters are their numbers.
 const FIRST_BLOW_ID: u64 = 1 << 32;
+
+/// What a wall or a closed door takes off when the loudness of a source in another room is estimated, dB.
+const OTHER_ROOM_DB: f32 = 20.0;
+/// Sources estimated below this at the ear are not followed, dB SPL: quieter than a quiet room's own noise.
+const INAUDIBLE_DB: f32 = 15.0;
 
 /// The sounds of a world and the ears that listen.
 #[derive(Debug)]
@@ -134,14 +139,6 @@ impl Sound {
         }
         self.prepare_ears(engines, agents, key)?;
         let sources = self.sources(engines.house(), state)?;
-        let active: Vec<ActiveSource<'_>> = sources
-            .iter()
-            .map(|(id, position, signal)| ActiveSource {
-                id: *id,
-                position: *position,
-                signal,
-            })
-            .collect();
         let mut heard = vec![0.0; 2 * self.block];
         for ears in self
             .ears
@@ -152,6 +149,7 @@ impl Sound {
                 continue;
             };
             let receiver = Receiver::binaural(agent.world_from_head());
+            let active = loudest_first(engines.house(), &sources, agent.eye_position());
             ears.stream
                 .block(rays, state, &active, &receiver, &mut heard)?;
             for (channel, block) in heard.chunks_exact(self.block).enumerate() {
@@ -316,6 +314,39 @@ impl Sound {
         }
         Ok(sound)
     }
+}
+
+/// The sources that can be heard at `ear`, the loudest first: a stream follows only so many.
+fn loudest_first<'a>(
+    house: &House,
+    sources: &'a [(u64, Vec3, Vec<f32>)],
+    ear: Vec3,
+) -> Vec<ActiveSource<'a>> {
+    let room = house.room_at(ear);
+    let mut heard: Vec<(f32, ActiveSource<'a>)> = sources
+        .iter()
+        .map(|(id, position, signal)| {
+            let power = signal.iter().map(|x| x * x).sum::<f32>() / signal.len().max(1) as f32;
+            let spread = (*position - ear).length().max(0.1);
+            let walls = if house.room_at(*position) == room {
+                0.0
+            } else {
+                OTHER_ROOM_DB
+            };
+            let level_db = db_spl_from_pa(power.sqrt() / spread) - walls;
+            (
+                level_db,
+                ActiveSource {
+                    id: *id,
+                    position: *position,
+                    signal,
+                },
+            )
+        })
+        .filter(|(level_db, _)| *level_db > INAUDIBLE_DB)
+        .collect();
+    heard.sort_by(|(a, x), (b, y)| b.total_cmp(a).then(x.id.cmp(&y.id)));
+    heard.into_iter().map(|(_, source)| source).collect()
 }
 
 /// The largest edge of a part's mesh, m.
