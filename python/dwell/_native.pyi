@@ -28,7 +28,12 @@ class House:
     @staticmethod
     def open(house: str) -> House: ...
     @staticmethod
-    def shoebox(size_m: tuple[float, float, float], substance: str | None = ..., absorption: float | None = ..., scattering: float | None = ...) -> House: ...
+    def shoebox(
+        size_m: tuple[float, float, float],
+        substance: str | None = ...,
+        absorption: float | None = ...,
+        scattering: float | None = ...,
+    ) -> House: ...
     @property
     def name(self) -> str: ...
     def info_json(self) -> str:
@@ -50,7 +55,9 @@ class World:
         """One control step; ``controls``: shape (agent, 4): forward m/s, right m/s, yaw rad/s (positive to the left), pitch rad/s (positive up)."""
     def act(self, agent: int, action_json: str) -> str:
         """``{"kind": "pick", "object": "mug_1"}`` and kin; answers ``{success, code, sentence, object}``."""
-    def place_agent(self, agent: int, position: tuple[float, float, float], yaw_deg: float) -> None: ...
+    def place_agent(
+        self, agent: int, position: tuple[float, float, float], yaw_deg: float
+    ) -> None: ...
     def agents_json(self) -> str: ...
     def objects_json(self) -> str:
         """Id, name, category, position, room, held, on, openness of every object now."""
@@ -62,7 +69,9 @@ class World:
         """The lowest storey from above (height, width, 3), with the x and z of the upper left corner and pixels a metre."""
     def listen(self, agent: int, samples: int) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, shape (2, samples), Pa. Call once after each step, for each agent that listens."""
-    def path(self, agent: int, goal: tuple[float, float, float]) -> list[tuple[float, float, float]] | None: ...
+    def path(
+        self, agent: int, goal: tuple[float, float, float]
+    ) -> list[tuple[float, float, float]] | None: ...
     def guide(self, agent: int, goal: tuple[float, float, float]) -> int | None:
         """The next discrete action on the way to a point, doors opened on the way; None on arrival."""
     def act_discrete(self, agent: int, action: int) -> str:
@@ -85,7 +94,9 @@ class World:
 class Batch:
     """Environments stepped together; observations are written into arrays of the caller."""
 
-    def __init__(self, houses: Sequence[House], config_json: str, threads: int | None = ...) -> None: ...
+    def __init__(
+        self, houses: Sequence[House], config_json: str, threads: int | None = ...
+    ) -> None: ...
     def specs_json(self) -> str:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor."""
     def reset(self, seeds: Sequence[int | None]) -> None: ...
@@ -94,6 +105,8 @@ class Batch:
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:
         """``outs``: one C-contiguous array (n, *shape) for each sensor, None for text."""
     def texts(self, sensor: int) -> list[str]: ...
+    def render(self, env: int, view_json: str) -> NDArray[np.uint8]:
+        """What environment ``env``'s agent sees, lit; ``view_json``: as :meth:`World.render`."""
     def expert_actions(self) -> NDArray[np.int64]: ...
     def state_hash(self, env: int) -> int: ...
     def snapshot(self, env: int) -> bytes: ...
@@ -105,9 +118,20 @@ class AcousticScene:
     """Impulse responses in a house as it starts."""
 
     def __init__(self, house: House, config_json: str = ...) -> None: ...
-    def impulse_response(self, source: tuple[float, float, float], mic: tuple[float, float, float], *, yaw_deg: float = ..., ears: bool = ..., seed: int = ..., threads: int | None = ...) -> NDArray[np.float32]:
+    def impulse_response(
+        self,
+        source: tuple[float, float, float],
+        mic: tuple[float, float, float],
+        *,
+        yaw_deg: float = ...,
+        ears: bool = ...,
+        seed: int = ...,
+        threads: int | None = ...,
+    ) -> NDArray[np.float32]:
         """Shape (1 or 2, samples): pressure in Pa for a source of 1 Pa at 1 m; the first sample is time zero."""
-    def metrics_json(self, source: tuple[float, float, float], mic: tuple[float, float, float], seed: int = ...) -> str:
+    def metrics_json(
+        self, source: tuple[float, float, float], mic: tuple[float, float, float], seed: int = ...
+    ) -> str:
         """Band centres and T20, T30, EDT, C50, C80, D50, Ts, DRR by band."""
     def explain_json(self) -> str: ...
     @property
@@ -124,6 +148,8 @@ def doctor_json() -> str: ...
 def synthesize(signal: str, rate_hz: int, samples: int) -> NDArray[np.float32]: ...
 def calibrate(measured: str, house: str | None = ..., progress: Any | None = ...) -> str:
     """Reads a measured bundle and answers the report as one JSON object."""
+
 def calibration_example(folder: str, seed: int = ...) -> str:
     """Writes a small measured bundle with a hidden effect for demos; answers what was hidden."""
+
 def bench_json(what: str, house: str, options_json: str = ...) -> str: ...

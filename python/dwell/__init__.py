@@ -1,0 +1,77 @@
+"""A household that agents see, touch, hear and talk about.
+
+>>> import dwell
+>>> house = dwell.House.open("builtin:apartment")
+>>> world = dwell.World(house)
+>>> image = world.render(agent=0)["rgb"]  # (128, 128, 3) uint8
+
+Environments are registered on import: ``gymnasium.make("dwell/InstructionFollowing-v0")``.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from typing import TYPE_CHECKING, Any
+
+from dwell._native import (
+    ConfigError,
+    DwellError,
+    EngineBug,
+    HouseError,
+    HouseNotFoundError,
+    MeasuredDataError,
+    SceneError,
+    UsageError,
+    __version__,
+)
+
+if TYPE_CHECKING:
+    from dwell.acoustics import AcousticScene
+    from dwell.calibration import calibrate
+    from dwell.envs import register_envs
+    from dwell.house import House
+    from dwell.world import Camera, Outcome, World
+
+# Imported at first use, so that the command line starts fast.
+_LAZY = {
+    "AcousticScene": "dwell.acoustics",
+    "Camera": "dwell.world",
+    "House": "dwell.house",
+    "Outcome": "dwell.world",
+    "World": "dwell.world",
+    "calibrate": "dwell.calibration",
+    "register_envs": "dwell.envs",
+}
+
+__all__ = [
+    "AcousticScene",
+    "Camera",
+    "ConfigError",
+    "DwellError",
+    "EngineBug",
+    "House",
+    "HouseError",
+    "HouseNotFoundError",
+    "MeasuredDataError",
+    "Outcome",
+    "SceneError",
+    "UsageError",
+    "World",
+    "__version__",
+    "calibrate",
+    "register_envs",
+]
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the module holds under the name
+    module = _LAZY.get(name)
+    if module is None:
+        raise AttributeError(f"module 'dwell' has no attribute {name!r}")
+    return getattr(importlib.import_module(module), name)
+
+
+# Importing gymnasium takes longer than most commands: the command line does without.
+if os.path.basename(sys.argv[0] if sys.argv else "") not in ("dwell", "dwell.exe", "-m"):
+    importlib.import_module("dwell.envs").register_envs()

@@ -1,0 +1,80 @@
+"""Impulse responses and room-acoustic measures."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dwell import _native
+from dwell.house import House
+
+
+class AcousticScene:
+    """A house prepared for sound, as it starts. Needs neither physics nor a GPU."""
+
+    def __init__(
+        self,
+        house: House | str,
+        **config: Any,  # noqa: ANN401 - fields of the native AcousticConfig
+    ) -> None:
+        """Prepares a house.
+
+        Args:
+            house: A house or a HOUSE string.
+            **config: ``rate_hz``, ``rays``, ``max_duration_s``, ``image_order``, ...: the fields of
+                ``dwell_acoustics::AcousticConfig``.
+        """
+        self.house = house if isinstance(house, House) else House.open(house)
+        self._native = _native.AcousticScene(self.house.native, json.dumps(config))
+
+    @property
+    def rate_hz(self) -> int:
+        """Samples a second of impulse responses."""
+        return self._native.rate_hz
+
+    def impulse_response(
+        self,
+        source: Sequence[float],
+        mic: Sequence[float],
+        *,
+        ears: bool = False,
+        yaw_deg: float = 0.0,
+        seed: int = 0,
+        threads: int | None = None,
+    ) -> NDArray[np.float32]:
+        """Pressure in Pa for a source that makes an impulse of 1 Pa at 1 m.
+
+        Args:
+            source: Where it is, m.
+            mic: Where the microphone, or the middle of the head, is, m.
+            ears: Two ears on a spherical head (left first) instead of a microphone.
+            yaw_deg: Where the head faces.
+            seed: The seed of the rays and of the tail's details.
+            threads: How many threads to use; the result does not depend on it.
+
+        Returns:
+            Shape (1 or 2, samples). The first sample is the moment of the impulse.
+        """
+        (sx, sy, sz), (mx, my, mz) = source, mic
+        return self._native.impulse_response(
+            (sx, sy, sz), (mx, my, mz), yaw_deg=yaw_deg, ears=ears, seed=seed, threads=threads
+        )
+
+    def metrics(
+        self, source: Sequence[float], mic: Sequence[float], *, seed: int = 0
+    ) -> list[dict[str, Any]]:
+        """T20, T30, EDT, C50, C80, D50, Ts and DRR for each octave band."""
+        (sx, sy, sz), (mx, my, mz) = source, mic
+        metrics: list[dict[str, Any]] = json.loads(
+            self._native.metrics_json((sx, sy, sz), (mx, my, mz), seed)
+        )
+        return metrics
+
+    def explain(self) -> dict[str, Any]:
+        """What sound meets: areas, mean absorption, which materials are guesses."""
+        explained: dict[str, Any] = json.loads(self._native.explain_json())
+        return explained

@@ -1,0 +1,66 @@
+"""The command line: ``dwell COMMAND ...``. One file a command, and one line here."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+
+#: Command and what it does; the file of that name has ``configure(parser)`` and ``run(args)``.
+COMMANDS = {
+    "doctor": "versions, processor, back ends; what is missing and how to get it",
+    "demo": "the whole thing once: see, hear, touch, describe, follow an instruction",
+    "info": "counts, rooms, areas, categories, report of damage",
+    "render": "pictures from a place in a house",
+    "describe": "sentences about houses",
+    "ir": "an impulse response between two points",
+    "calibrate": "measured data against the simulation: what is missing, and what it gains",
+    "bench": "throughput of a stage",
+}
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of all commands; a command's own options are added when it is chosen."""
+    top = argparse.ArgumentParser(
+        prog="dwell", description="A household that agents see, touch, hear and talk about."
+    )
+    top.add_argument("--version", action="store_true", help="print the version and leave")
+    commands = top.add_subparsers(dest="command", metavar="COMMAND")
+    for name, about in COMMANDS.items():
+        command = commands.add_parser(name, help=about, description=about)
+        module = importlib.import_module(f"dwell.cli.{name}")
+        module.configure(command)
+        command.set_defaults(run=module.run)
+    return top
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs a command.
+
+    Returns:
+        0 done, 1 failed with a sentence on standard error, 2 bad usage, 130 interrupted.
+    """
+    from dwell import DwellError, __version__
+
+    top = parser()
+    try:
+        args = top.parse_args(arguments)
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    if args.version:
+        print(__version__)
+        return 0
+    if args.command is None:
+        top.print_usage(sys.stderr)
+        return 2
+    try:
+        return int(args.run(args))
+    except KeyboardInterrupt:
+        print("dwell: interrupted; nothing was left half written", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        return 1
+    except (DwellError, OSError, ValueError, ModuleNotFoundError) as error:
+        print(f"dwell {args.command}: {error}", file=sys.stderr)
+        return 1

@@ -1,0 +1,5 @@
+"""``python -m dwell.cli``."""
+
+from dwell.cli import main
+
+raise SystemExit(main())

@@ -1,0 +1,58 @@
+"""What several commands share: JSON on standard output, atomic files, points, progress."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+
+def print_json(value: Any) -> None:  # noqa: ANN401 - any JSON value
+    """Prints one JSON object and nothing else."""
+    sys.stdout.write(json.dumps(value, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def point(text: str) -> tuple[float, float, float]:
+    """Reads ``X,Y,Z`` in metres."""
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"expected X,Y,Z in metres, found {text!r}") from None
+    return x, y, z
+
+
+@contextmanager
+def atomic(path: Path) -> Iterator[Path]:
+    """A temporary file beside ``path`` that takes its place when all went well."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    os.close(handle)
+    try:
+        yield Path(name)
+        os.chmod(name, 0o644)
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+class Bar:
+    """A progress bar on standard error; silent where that is no terminal."""
+
+    def __init__(self) -> None:
+        """Shows nothing yet."""
+        self._shows = sys.stderr.isatty()
+
+    def __call__(self, fraction: float, what: str) -> None:
+        """Shows a fraction (0 to 1) and what is being done."""
+        if self._shows:
+            done = round(30 * min(max(fraction, 0.0), 1.0))
+            line = f"\r[{'#' * done}{'.' * (30 - done)}] {what[:60]:<60}"
+            end = "\n" if fraction >= 1.0 else ""
+            print(line, end=end, file=sys.stderr, flush=True)

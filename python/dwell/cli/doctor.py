@@ -1,0 +1,50 @@
+"""``dwell doctor``: what this machine and this build have."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import json
+import platform
+import sys
+from typing import Any
+
+from dwell.cli.common import print_json
+
+_EXTRAS = {
+    "gymnasium": ("environments", "pip install gymnasium"),
+    "PIL": ("pictures and the demo", "pip install pillow"),
+    "rerun": (
+        "`dwell demo` writes a recording for the Rerun viewer",
+        "pip install 'dwell[viewer]'",
+    ),
+    "pettingzoo": ("several agents in one house", "pip install 'dwell[multi]'"),
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
+    parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Prints what is there, what is missing, and how to get it."""
+    from dwell import _native
+
+    facts: dict[str, Any] = json.loads(_native.doctor_json())
+    facts["python"] = platform.python_version()
+    facts["extras"] = {name: importlib.util.find_spec(name) is not None for name in _EXTRAS}
+    if args.json:
+        print_json(facts)
+        return 0
+    print(f"dwell {facts['version']} for {facts['target']}, Python {facts['python']}")
+    cores, threads = facts["available_cores"], facts["threads"]
+    print(f"processor: {cores} cores available, {threads} threads used (DWELL_THREADS changes it)")
+    print(f"instructions: {', '.join(facts['cpu_features']) or 'none that are looked for'}")
+    print(f"rendering: {', '.join(facts['render_back_ends'])} (no GPU or driver is needed)")
+    print(f"built-in houses: {', '.join(facts['houses'])}")
+    for name, there in facts["extras"].items():
+        purpose, how = _EXTRAS[name]
+        print(f"{name}: {'there' if there else f'missing ({purpose}): {how}'}")
+    print(f"Python at {sys.executable}")
+    return 0

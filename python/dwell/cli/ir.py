@@ -1,0 +1,72 @@
+"""``dwell ir``: an impulse response between two points."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from dwell.cli.common import atomic, point, print_json
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
+    parser.add_argument("house", metavar="HOUSE")
+    parser.add_argument(
+        "--source", type=point, metavar="X,Y,Z", help="where the impulse is made, m"
+    )
+    parser.add_argument("--mic", type=point, metavar="X,Y,Z", help="where it is heard, m")
+    parser.add_argument("--rate-hz", type=int, default=16_000)
+    parser.add_argument(
+        "--ears", action="store_true", help="two ears on a head instead of a microphone"
+    )
+    parser.add_argument("--yaw-deg", type=float, default=0.0, help="where the head faces")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--rays", type=int, default=5000)
+    parser.add_argument("--out", type=Path, metavar="FILE.wav", help="16 bit, peak at full scale")
+    parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Computes the response, writes it, and prints its measures."""
+    from dwell.acoustics import AcousticScene
+    from dwell.sounds import write_wav
+
+    if str(args.house).endswith(".json") and not str(args.house).endswith("house.json"):
+        raise ValueError(
+            f"{args.house}: measured-room scenes are not read by this version; give a HOUSE"
+        )
+    if args.source is None or args.mic is None:
+        raise ValueError("--source and --mic are needed: two points X,Y,Z in metres")
+    scene = AcousticScene(args.house, rate_hz=args.rate_hz, rays=args.rays)
+    response = scene.impulse_response(
+        args.source, args.mic, ears=args.ears, yaw_deg=args.yaw_deg, seed=args.seed
+    )
+    metrics = scene.metrics(args.source, args.mic, seed=args.seed)
+    peak = float(np.abs(response).max()) if response.size else 0.0
+    if args.out:
+        with atomic(args.out) as path:
+            write_wav(path, response, scene.rate_hz, full_scale_pa=peak or 1.0)
+    if args.json:
+        print_json(
+            {
+                "rate_hz": scene.rate_hz,
+                "channels": response.shape[0],
+                "samples": response.shape[1],
+                "peak_pa": peak,
+                "metrics": metrics,
+                "out": str(args.out) if args.out else None,
+            }
+        )
+        return 0
+    print(
+        f"{response.shape[0]} channels, {response.shape[1]} samples at {scene.rate_hz} Hz, "
+        f"peak {peak:.4g} Pa"
+    )
+    for row in metrics:
+        cells = (
+            f"{key} {value:.3g}" for key, value in row.items() if isinstance(value, int | float)
+        )
+        print("  " + ", ".join(cells))
+    return 0

@@ -1,0 +1,198 @@
+"""Several environments in one call, rendered in one submission."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from dwell.envs.config import Houses, HouseShelf, Laws, Sensors, env_json, house_names
+from dwell.envs.runner import INFO_KEYS, Runner
+from dwell.envs.spaces import action_space, observation_space
+
+
+class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]]):
+    """``num_envs`` environments stepped together; number k plays in house k modulo their number.
+
+    Observations are the environments' own buffers: copy what must outlive the next step, or say
+    ``copy=True``.
+    """
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        task: str = "InstructionFollowing",
+        *,
+        houses: Houses = "builtin:apartment",
+        sensors: Sensors = None,
+        laws: Laws = None,
+        parameters: Mapping[str, float] | None = None,
+        task_settings: Mapping[str, Any] | None = None,
+        stride: Mapping[str, float] | None = None,
+        world: Mapping[str, Any] | None = None,
+        threads: int | None = None,
+        max_episode_steps: int | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        copy: bool = False,
+        render_mode: str | None = None,
+    ) -> None:
+        """Makes the environments; arguments as :class:`dwell.envs.DwellEnv`.
+
+        Args:
+            num_envs: How many.
+            task: The task's name.
+            houses: A HOUSE string or several.
+            sensors: Names of sensors, or settings by name.
+            laws: Laws to install, or the path of a JSON file with them.
+            parameters: Values by address.
+            task_settings: The task's own settings.
+            stride: How far movement actions go.
+            world: Further fields of the native WorldConfig.
+            threads: How many threads to use; results do not depend on it.
+            max_episode_steps: Steps after which an episode is truncated; ``None`` or -1: never.
+            autoreset_mode: ``NextStep``, ``SameStep`` or ``Disabled``.
+            copy: Whether observations are copies.
+            render_mode: ``None``; single environments render.
+        """
+        if num_envs < 1:
+            raise ValueError(f"num_envs: found {num_envs}, allowed is at least 1")
+        if render_mode is not None:
+            raise ValueError(f"render_mode: found {render_mode!r}, allowed is None")
+        self.num_envs = num_envs
+        self.render_mode = render_mode
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self.metadata = {"autoreset_mode": self.autoreset_mode, "render_modes": []}
+        config = env_json(
+            task,
+            sensors=sensors,
+            laws=laws,
+            parameters=parameters,
+            task_settings=task_settings,
+            stride=stride,
+            world=world,
+        )
+        shelf = HouseShelf(house_names(houses))
+        self._runner = Runner([shelf[k] for k in range(num_envs)], config, threads)
+        self._limit = max_episode_steps if max_episode_steps and max_episode_steps > 0 else None
+        self._copy = copy
+        self._streams: list[np.random.Generator | None] = [None] * num_envs
+        self._steps = np.zeros(num_envs, np.int64)
+        self._done = np.ones(num_envs, np.bool_)
+        self.single_observation_space = observation_space(self._runner.specs)
+        self.single_action_space = action_space()
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+
+    def _observation(self) -> dict[str, Any]:
+        now = self._runner.observation()
+        if not self._copy:
+            return now
+        return {
+            key: value if isinstance(value, tuple) else value.copy() for key, value in now.items()
+        }
+
+    def _start(self, which: NDArray[np.bool_]) -> None:
+        seeds = [
+            int(stream.integers(2**63)) if start and stream is not None else None
+            for stream, start in zip(self._streams, which, strict=True)
+        ]
+        self._runner.batch.reset(seeds)
+        self._steps[which] = 0
+        self._done[which] = False
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Starts episodes.
+
+        Args:
+            seed: One seed (then environment k has ``seed + k``), or one for each environment.
+            options: ``reset_mask``: which environments to reset, shape (num_envs,) bool.
+        """
+        mask = (options or {}).get("reset_mask")
+        which = np.ones(self.num_envs, np.bool_) if mask is None else np.asarray(mask)
+        if which.shape != (self.num_envs,) or which.dtype != np.bool_ or not which.any():
+            raise ValueError(
+                f"reset_mask: expected bool of shape ({self.num_envs},) with a true element, "
+                f"found {which.dtype} of shape {which.shape}"
+            )
+        seeds: list[int | None] = [None] * self.num_envs
+        if isinstance(seed, int | np.integer):
+            seeds = [int(seed) + k for k in range(self.num_envs)]
+        elif seed is not None:
+            seeds = list(seed)
+            if len(seeds) != self.num_envs:
+                raise ValueError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
+        for k in np.flatnonzero(which):
+            if seeds[k] is not None or self._streams[k] is None:
+                self._streams[k] = np.random.default_rng(seeds[k])
+        self._start(which)
+        self._runner.observe(which)
+        return self._observation(), {}
+
+    def step(
+        self, actions: NDArray[np.int64]
+    ) -> tuple[
+        dict[str, Any], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]
+    ]:
+        """Makes one control step in every environment."""
+        actions = np.asarray(actions, np.int64)
+        if actions.shape != (self.num_envs,):
+            raise ValueError(f"actions: expected shape ({self.num_envs},), found {actions.shape}")
+        begins = self._done.copy()
+        if begins.any() and self.autoreset_mode is not AutoresetMode.NEXT_STEP:
+            which = np.flatnonzero(begins).tolist()
+            raise RuntimeError(f"environments {which} have ended; reset them with reset_mask first")
+        if begins.any():
+            self._start(begins)
+        answer = self._runner.batch.step(np.where(begins, -1, actions))
+        self._steps[~begins] += 1
+        rewards = np.asarray(answer["reward"], np.float64)
+        terminated = np.asarray(answer["terminated"], np.bool_)
+        truncated = np.zeros(self.num_envs, np.bool_)
+        if self._limit is not None:
+            truncated = (self._steps >= self._limit) & ~terminated & ~begins
+        self._runner.observe(np.ones(self.num_envs, np.bool_))
+        stepped = ~begins
+        infos: dict[str, Any] = {}
+        for key in INFO_KEYS:
+            infos[key] = np.asarray(answer[key])
+            infos[f"_{key}"] = stepped
+        infos["action_error"] = np.array(answer["action_error"], object)
+        infos["_action_error"] = stepped
+        self._done = terminated | truncated
+        if self._done.any() and self.autoreset_mode is AutoresetMode.SAME_STEP:
+            infos |= self._restart()
+        return self._observation(), rewards, terminated, truncated, infos
+
+    def _restart(self) -> dict[str, Any]:
+        """Starts ended environments anew within the step; their last observations go into infos."""
+        ended = self._done.copy()
+        last = self._runner.observation()
+        final = np.full(self.num_envs, None, object)
+        for k in np.flatnonzero(ended):
+            final[k] = {
+                key: value[k] if isinstance(value, tuple) else value[k].copy()
+                for key, value in last.items()
+            }
+        self._start(ended)
+        self._runner.observe(ended)
+        return {"final_obs": final, "_final_obs": ended, "final_info": {}, "_final_info": ended}
+
+    def expert_actions(self) -> NDArray[np.int64]:
+        """What the task's scripted expert would do now, in every environment."""
+        return self._runner.batch.expert_actions()
+
+    def state_hashes(self) -> list[int]:
+        """The state hash of every environment."""
+        return [self._runner.batch.state_hash(k) for k in range(self.num_envs)]
+
+    def close_extras(self, **kwargs: Any) -> None:  # noqa: ANN401 - gymnasium's signature
+        """Nothing to let go of: the worlds go with the object."""

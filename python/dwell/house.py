@@ -1,0 +1,97 @@
+"""Houses: opened once, never changed, shared by everything made from them."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Literal
+
+from dwell import _native
+
+Level = Literal["object", "room", "house", "graph", "instructions"]
+
+
+class House:
+    """A checked, immutable house."""
+
+    def __init__(self, native: _native.House) -> None:
+        """Wraps a native house; use :meth:`open` or :meth:`shoebox`."""
+        self._native = native
+
+    @classmethod
+    def open(cls, house: str | os.PathLike[str]) -> House:
+        """Opens a HOUSE string.
+
+        Args:
+            house: ``builtin:NAME``, or the path of a SUNCG ``house.json``, a ``.dwell`` folder, a
+                ``.glb``, ``.gltf`` or ``.obj`` file.
+
+        Returns:
+            The house; what its reader had to say stands in ``info()["report"]``.
+
+        Raises:
+            HouseNotFoundError: There is nothing of that name.
+            HouseError: It cannot be read; the message names file, node and field.
+        """
+        return cls(_native.House.open(os.fspath(house)))
+
+    @classmethod
+    def shoebox(
+        cls,
+        size_m: tuple[float, float, float],
+        *,
+        substance: str | None = None,
+        absorption: float | None = None,
+        scattering: float | None = None,
+    ) -> House:
+        """A closed rectangular room from the origin to ``size_m`` (x, height, z).
+
+        Args:
+            size_m: Edges, m, 0.1 to 1000 each.
+            substance: What all six sides are made of, by its name in the materials table.
+            absorption: Random-incidence absorption of energy, 0 to 1, at every frequency.
+            scattering: Random-incidence scattering, 0 to 1, at every frequency.
+        """
+        return cls(_native.House.shoebox(size_m, substance, absorption, scattering))
+
+    @property
+    def native(self) -> _native.House:
+        """The built half."""
+        return self._native
+
+    @property
+    def name(self) -> str:
+        """The name: the source's id or the file's name."""
+        return self._native.name
+
+    def info(self) -> dict[str, Any]:
+        """Counts, rooms, categories, and the report of damage."""
+        info: dict[str, Any] = json.loads(self._native.info_json())
+        return info
+
+    def rooms(self) -> list[dict[str, Any]]:
+        """For each room: name, kinds, area_m2, floor_y, a view (eye, yaw_deg), a place to stand."""
+        rooms: list[dict[str, Any]] = json.loads(self._native.rooms_json())
+        return rooms
+
+    def describe(self, level: Level = "house", *, seed: int | None = None) -> list[str]:
+        """Sentences about the house as it starts.
+
+        Args:
+            level: ``house`` (one text), ``room`` (a text each), ``object`` (a caption each),
+                ``graph`` (one JSON object), ``instructions`` (a JSON object each).
+            seed: Draws the wording of instructions; without it each has its first wording.
+        """
+        return self._native.describe(level, seed)
+
+    def semantic_classes(self) -> list[str]:
+        """The names of the numbers in semantic images; 0 is void."""
+        return self._native.semantic_classes()
+
+    def write(self, path: str | os.PathLike[str], form: Literal["dwell", "suncg"]) -> list[str]:
+        """Writes the house into a new folder; returns what the form cannot hold, a sentence each."""
+        return self._native.write(os.fspath(path), form)
+
+    def __repr__(self) -> str:
+        """The name."""
+        return f"House({self.name!r})"

@@ -1,0 +1,209 @@
+"""Worlds: a state that changes, over a shared house."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dwell import _native
+from dwell.house import House
+
+Channel = Literal["rgb", "depth", "instance", "semantic"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Camera:
+    """A pinhole camera.
+
+    Attributes:
+        width: Pixels across, 1 to 8192.
+        height: Pixels down.
+        fov_deg: Horizontal field of view, degrees.
+        near_m: Nearest distance that is seen, m.
+        far_m: Furthest distance, to which depth is clamped, m.
+        preset: ``lit`` (lamps and daylight) or ``flat`` (texture times colour).
+    """
+
+    width: int = 128
+    height: int = 128
+    fov_deg: float = 90.0
+    near_m: float = 0.05
+    far_m: float = 50.0
+    preset: Literal["flat", "lit"] = "lit"
+
+
+@dataclasses.dataclass(frozen=True)
+class Outcome:
+    """What came of an action.
+
+    Attributes:
+        success: Whether it worked, or began to.
+        code: Why, in one word.
+        sentence: The same for a person, with what to do about it.
+        object: The name of the object it was about.
+    """
+
+    success: bool
+    code: str
+    sentence: str
+    object: str | None
+
+
+class World:
+    """A running world with its own state over a shared house."""
+
+    def __init__(
+        self,
+        house: House | str,
+        *,
+        agents: int = 1,
+        seed: int = 0,
+        laws: Sequence[Mapping[str, Any]] = (),
+        parameters: Mapping[str, float] | None = None,
+        **config: Any,  # noqa: ANN401 - further fields of the native WorldConfig
+    ) -> None:
+        """Makes a world.
+
+        Args:
+            house: A house or a HOUSE string.
+            agents: How many agents live in it.
+            seed: The seed of everything random.
+            laws: Laws to install, as ``{"id", "version", "target", "params"}``.
+            parameters: Values by address, such as ``{"world/gravity_m_s2": 1.62}``.
+            **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``.
+        """
+        self.house = house if isinstance(house, House) else House.open(house)
+        settings = {
+            "agents": [{}] * agents,
+            "laws": list(laws),
+            "parameters": dict(parameters or {}),
+            **config,
+        }
+        self._native = _native.World(self.house.native, json.dumps(settings), seed)
+
+    @property
+    def native(self) -> _native.World:
+        """The built half."""
+        return self._native
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time, s."""
+        return self._native.time_s
+
+    def step(self, controls: NDArray[np.float32] | Sequence[Sequence[float]] | None = None) -> None:
+        """Makes one control step.
+
+        Args:
+            controls: Shape (agent, 4): forward m/s, right m/s, yaw rad/s (positive to the left),
+                pitch rad/s (positive up). ``None``: everybody stands still.
+        """
+        if controls is None:
+            controls = np.zeros((len(self.agents()), 4), np.float32)
+        self._native.step(np.ascontiguousarray(controls, np.float32))
+
+    def act(self, kind: str, object: str | int | None = None, *, agent: int = 0) -> Outcome:
+        """Lets an agent do something with its hand, without a step of time.
+
+        Args:
+            kind: ``pick``, ``drop``, ``place``, ``open``, ``close`` or ``toggle``.
+            object: The thing's name or id; not for ``drop``.
+            agent: Who does it.
+        """
+        action: dict[str, Any] = {"kind": kind}
+        if object is not None:
+            action["object"] = object
+        return Outcome(**json.loads(self._native.act(agent, json.dumps(action))))
+
+    def do(self, action: int | str, *, agent: int = 0) -> Outcome:
+        """Makes one control step of a discrete action, by number or name (see :func:`actions`)."""
+        number = _native.actions().index(action) if isinstance(action, str) else action
+        return Outcome(**json.loads(self._native.act_discrete(agent, number)))
+
+    def place_agent(
+        self, position: Sequence[float], yaw_deg: float = 0.0, *, agent: int = 0
+    ) -> None:
+        """Puts an agent somewhere, at rest. ``position``: the point between its feet, m."""
+        x, y, z = position
+        self._native.place_agent(agent, (x, y, z), yaw_deg)
+
+    def agents(self) -> list[dict[str, Any]]:
+        """The agents' states."""
+        agents: list[dict[str, Any]] = json.loads(self._native.agents_json())
+        return agents
+
+    def objects(self) -> list[dict[str, Any]]:
+        """For each object: id, name, category, center, size, room, held_by, on, openness, ..."""
+        objects: list[dict[str, Any]] = json.loads(self._native.objects_json())
+        return objects
+
+    def render(
+        self,
+        *,
+        agent: int | None = None,
+        position: Sequence[float] | None = None,
+        yaw_deg: float = 0.0,
+        pitch_deg: float = 0.0,
+        camera: Camera | None = None,
+        channels: Sequence[Channel] = ("rgb",),
+    ) -> dict[str, NDArray[Any]]:
+        """Renders a view from an agent's eyes, or from a position.
+
+        Returns:
+            ``rgb`` (height, width, 3) uint8 sRGB; ``depth`` (height, width, 1) float32 m;
+            ``instance`` and ``semantic`` (height, width, 1) int32.
+        """
+        view: dict[str, Any] = dataclasses.asdict(camera or Camera())
+        if position is None:
+            view["agent"] = 0 if agent is None else agent
+        else:
+            view |= {"position": list(position), "yaw_deg": yaw_deg, "pitch_deg": pitch_deg}
+        return self._native.render(json.dumps(view), list(channels))
+
+    def map(self, longest_edge: int = 512) -> tuple[NDArray[np.uint8], tuple[float, float], float]:
+        """The lowest storey from above.
+
+        Returns:
+            The image (height, width, 3), the x and z of its upper left corner in m, pixels a metre.
+        """
+        image, x, z, scale = self._native.map(longest_edge)
+        return image, (x, z), scale
+
+    def listen(self, samples: int = 800, *, agent: int = 0) -> NDArray[np.float32]:
+        """The newest samples at an agent's ears, (2, samples), Pa. Call once after each step."""
+        return self._native.listen(agent, samples)
+
+    def describe(self, level: str = "house") -> list[str]:
+        """As :meth:`House.describe`, of the house as it is now."""
+        return self._native.describe(level)
+
+    def parameter(self, address: str) -> dict[str, Any]:
+        """What stands at an address: value, unit, low, high."""
+        parameter: dict[str, Any] = json.loads(self._native.parameter_json(address))
+        return parameter
+
+    def set_parameter(self, address: str, value: float) -> None:
+        """Overrides a parameter from now on."""
+        self._native.set_parameter(address, value)
+
+    def snapshot(self) -> bytes:
+        """The whole world as bytes; no mesh is in them."""
+        return self._native.snapshot()
+
+    def restore(self, snapshot: bytes) -> None:
+        """Goes to where the snapshot was taken; the next steps give the same bits as then."""
+        self._native.restore(snapshot)
+
+    def state_hash(self) -> int:
+        """A number that changes with any bit of state, physics, sound queues or random streams."""
+        return self._native.hash()
+
+
+def actions() -> list[str]:
+    """The discrete actions, in the order of their numbers."""
+    return _native.actions()
