@@ -1,1 +1,49 @@
 //! What moves and touches; rapier stays behind this wall.
+//!
+//! ```
+//! use dwell_physics::{AgentControl, PhysicsConfig, PhysicsWorld};
+//! use dwell_scene::{AgentBody, AgentState, House, ShoeboxMaterials, State};
+//! use std::sync::Arc;
+//!
+//! let house = Arc::new(House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default())?);
+//! let mut state = State::new(&house);
+//! let (mut world, report) = PhysicsWorld::new(house, PhysicsConfig::default(), &mut state)?;
+//! assert!(report.frozen.is_empty());
+//! let start = glam::Vec3::new(3.0, 0.0, 2.5);
+//! let agent = world.add_agent(&mut state, AgentState::new(AgentBody::default(), start, 0.0))?;
+//! let forward = AgentControl { forward_m_s: 1.0, ..AgentControl::default() };
+//! let mut events = Vec::new();
+//! for _ in 0..20 {
+//!     world.step(&mut state, &[forward], &mut events)?;
+//! }
+//! // One second at 1 m/s towards -Z.
+//! assert!((state.agents[agent].position.z - 1.5).abs() < 1e-3);
+//! # Ok::<(), dwell_physics::PhysicsError>(())
+//! ```
+
+mod actions;
+mod agents;
+mod body;
+mod config;
+mod contact;
+mod convert;
+mod engine;
+mod error;
+mod joints;
+pub mod laws;
+mod model;
+mod parameters;
+mod report;
+mod snapshot;
+mod start;
+mod step;
+mod world;
+
+pub use actions::{Action, ActionCode, ActionOutcome, Notice};
+pub use agents::AgentControl;
+pub use config::PhysicsConfig;
+pub use contact::{ContactEvent, Toucher};
+pub use error::PhysicsError;
+pub use model::PhysicsModel;
+pub use report::{FrozenObject, MovedObject, PassingJoint, StartReport};
+pub use world::PhysicsWorld;

@@ -1,0 +1,280 @@
+//! What an agent's body asks of its surroundings.
+//!
+//! For walking, an agent is an upright cylinder whose lower end hovers at the height of the steps it climbs, and a foot
+//! that feels for the ground below. The cylinder is at least as large as the capsule that others see, so that nothing the
+//! cylinder clears can be entered by the capsule.
+
+use crate::body::{Body, Hold};
+use crate::contact::{Entry, Excluded, entry_index};
+use crate::engine::Engine;
+use crate::model::PhysicsModel;
+use dwell_scene::{AgentBody, AgentId};
+use glam::Vec3;
+use rapier3d::geometry::{Ball, Collider, ColliderHandle, Cylinder, Ray};
+use rapier3d::math::Pose as RapierPose;
+use rapier3d::parry::query::ShapeCastOptions;
+use rapier3d::pipeline::QueryFilter;
+
+/// Gap that the cylinder keeps from what it cannot enter, m.
+pub(crate) const SKIN_M: f32 = 0.008;
+/// How far the cylinder hovers above the highest step, m; more than the skin, so that a step never catches it.
+const HOVER_M: f32 = 0.015;
+/// How much slimmer the core is that must never overlap anything, m.
+const CORE_MARGIN_M: f32 = 0.03;
+/// The heaviest free body that is pushed instead of walked around, kg.
+const HEAVIEST_PUSHED_KG: f32 = 30.0;
+/// Height up to which light things are stepped on, m.
+const SOLE_M: f32 = 0.05;
+
+/// Another agent's cylinder.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shell {
+    pub(crate) feet: Vec3,
+    pub(crate) radius_m: f32,
+    pub(crate) height_m: f32,
+}
+
+/// What stops a movement.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hit {
+    /// How much of the motion can be made, 0 to 1.
+    pub(crate) fraction: f32,
+    /// Away from the obstacle, in world space.
+    pub(crate) normal: Vec3,
+    /// Where they touch, m.
+    pub(crate) point: Vec3,
+    /// The light body that is in the way; nothing for what cannot be pushed.
+    pub(crate) light: Option<u32>,
+}
+
+/// The surroundings of one agent.
+pub(crate) struct Probe<'a> {
+    pub(crate) engine: &'a Engine,
+    pub(crate) model: &'a PhysicsModel,
+    pub(crate) entries: &'a [Entry],
+    pub(crate) bodies: &'a [Body],
+    pub(crate) holds: &'a [Hold],
+    pub(crate) excluded: &'a Excluded,
+    pub(crate) others: &'a [Shell],
+    pub(crate) agent: AgentId,
+    pub(crate) body: AgentBody,
+}
+
+impl Probe<'_> {
+    /// Whether a collider exists for this agent at all, and the light body it belongs to.
+    fn sees(&self, collider: &Collider) -> Option<Option<u32>> {
+        let entry = self.entries.get(entry_index(collider))?;
+        if entry.agent().is_some() {
+            return None;
+        }
+        let Some(body) = entry.body else {
+            return Some(None);
+        };
+        if self
+            .excluded
+            .carriers
+            .binary_search(&(body, self.agent))
+            .is_ok()
+        {
+            return None;
+        }
+        let light = self.holds[body as usize] == Hold::Free
+            && (self.model.bodies[body as usize].joint.is_some()
+                || self.mass_kg(body) <= HEAVIEST_PUSHED_KG);
+        Some(light.then_some(body))
+    }
+
+    pub(crate) fn mass_kg(&self, body: u32) -> f32 {
+        let handle = self.bodies[body as usize].handle;
+        self.engine
+            .bodies
+            .get(handle)
+            .map_or(0.0, |rigid| rigid.mass())
+    }
+
+    fn lower_end(&self, light: bool) -> f32 {
+        let solid = (self.body.step_height_m + HOVER_M).min(self.body.height_m - 0.1);
+        if light { solid.min(SOLE_M) } else { solid }
+    }
+
+    /// The cylinder and its centre above the feet.
+    fn cylinder(&self, light: bool) -> (Cylinder, f32) {
+        let low = self.lower_end(light);
+        let half = 0.5 * (self.body.height_m - low);
+        (Cylinder::new(half, self.body.radius_m), low + half)
+    }
+
+    /// The first thing in the way of a motion.
+    pub(crate) fn cast(&self, feet: Vec3, motion: Vec3) -> Option<Hit> {
+        let hits = [
+            self.cast_kind(feet, motion, false),
+            self.cast_kind(feet, motion, true),
+        ];
+        let shells = self
+            .others
+            .iter()
+            .map(|shell| self.cast_shell(feet, motion, shell));
+        hits.into_iter()
+            .chain(shells)
+            .flatten()
+            .min_by(|a, b| a.fraction.total_cmp(&b.fraction))
+    }
+
+    fn cast_kind(&self, feet: Vec3, motion: Vec3, light: bool) -> Option<Hit> {
+        let predicate = |_: ColliderHandle, collider: &Collider| {
+            self.sees(collider)
+                .is_some_and(|body| body.is_some() == light)
+        };
+        let (cylinder, center) = self.cylinder(light);
+        let options = ShapeCastOptions {
+            max_time_of_impact: 1.0,
+            target_distance: SKIN_M,
+            stop_at_penetration: false,
+            compute_impact_geometry_on_penetration: true,
+        };
+        let queries = self
+            .engine
+            .queries(QueryFilter::default().predicate(&predicate));
+        let place = RapierPose::from_translation(feet + Vec3::Y * center);
+        let (handle, hit) = queries.cast_shape(&place, motion, &cylinder, options)?;
+        let collider = self.engine.colliders.get(handle)?;
+        Some(Hit {
+            fraction: hit.time_of_impact.clamp(0.0, 1.0),
+            normal: hit.normal1,
+            point: hit.witness1,
+            light: self.sees(collider).flatten(),
+        })
+    }
+
+    /// Two upright cylinders, one of which moves.
+    fn cast_shell(&self, feet: Vec3, motion: Vec3, shell: &Shell) -> Option<Hit> {
+        let apart =
+            feet.y >= shell.feet.y + shell.height_m || shell.feet.y >= feet.y + self.body.height_m;
+        let from = Vec3::new(feet.x - shell.feet.x, 0.0, feet.z - shell.feet.z);
+        let reach = self.body.radius_m + shell.radius_m + SKIN_M;
+        let (a, b) = (motion.length_squared(), from.dot(motion));
+        let c = from.length_squared() - reach * reach;
+        if apart || b >= 0.0 || a == 0.0 {
+            return None;
+        }
+        let fraction = if c <= 0.0 {
+            0.0
+        } else {
+            let discriminant = b * b - a * c;
+            if discriminant < 0.0 {
+                return None;
+            }
+            (-b - discriminant.sqrt()) / a
+        };
+        let at = from + motion * fraction;
+        (fraction <= 1.0).then(|| Hit {
+            fraction,
+            normal: at.normalize_or(-motion.normalize_or_zero()),
+            point: shell.feet + at * (shell.radius_m / reach),
+            light: None,
+        })
+    }
+
+    /// How far down the cylinder can go, as a fraction of `down_m`.
+    pub(crate) fn sink(&self, feet: Vec3, down_m: f32) -> f32 {
+        let hit = self.cast_kind(feet, Vec3::NEG_Y * down_m, false);
+        hit.map_or(1.0, |hit| hit.fraction)
+    }
+
+    /// Whether the cylinder can rise by `up_m`.
+    pub(crate) fn headroom(&self, feet: Vec3, up_m: f32) -> bool {
+        self.cast_kind(feet, Vec3::Y * up_m, false).is_none()
+    }
+
+    fn core(&self) -> (Cylinder, f32) {
+        let (cylinder, center) = self.cylinder(false);
+        let radius = (cylinder.radius - CORE_MARGIN_M).max(0.5 * cylinder.radius);
+        let half = (cylinder.half_height - CORE_MARGIN_M).max(0.5 * cylinder.half_height);
+        (Cylinder::new(half, radius), center)
+    }
+
+    /// The radius of the core.
+    pub(crate) fn core_radius_m(&self) -> f32 {
+        self.core().0.radius
+    }
+
+    /// Whether the core overlaps something that cannot be pushed.
+    pub(crate) fn is_inside_something(&self, feet: Vec3) -> bool {
+        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider) == Some(None);
+        let queries = self
+            .engine
+            .queries(QueryFilter::default().predicate(&predicate));
+        let (core, center) = self.core();
+        let place = RapierPose::from_translation(feet + Vec3::Y * center);
+        queries.intersect_shape(place, &core).next().is_some()
+    }
+
+    /// The push, at most `most_m` long and level, that leads out of what the core overlaps; nothing if a surface lies on
+    /// the way.
+    pub(crate) fn way_out(&self, feet: Vec3, most_m: f32) -> Option<Vec3> {
+        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider) == Some(None);
+        let queries = self
+            .engine
+            .queries(QueryFilter::default().predicate(&predicate));
+        let (core, center) = self.core();
+        let middle = feet + Vec3::Y * center;
+        let place = RapierPose::from_translation(middle);
+        let mut out = Vec3::ZERO;
+        for (_, collider) in queries.intersect_shape(place, &core) {
+            let contact = queries.dispatcher.contact(
+                &collider.position().inv_mul(&place),
+                collider.shape(),
+                &core,
+                0.0,
+            );
+            if let Ok(Some(contact)) = contact
+                && contact.dist < 0.0
+            {
+                let normal = collider.position().rotation * contact.normal1;
+                let level = Vec3::new(normal.x, 0.0, normal.z).normalize_or_zero();
+                out += level * (-contact.dist + 1e-3);
+            }
+        }
+        let out = out.clamp_length_max(most_m);
+        let ray = Ray::new(middle, out);
+        let free = out != Vec3::ZERO && queries.cast_ray(&ray, 1.0, false).is_none();
+        free.then_some(out)
+    }
+
+    fn foot_radius_m(&self) -> f32 {
+        0.5 * self.body.radius_m
+    }
+
+    /// The height of the ground under the feet, between the highest step above them and `down_m` below, m.
+    pub(crate) fn ground(&self, feet: Vec3, down_m: f32) -> Option<f32> {
+        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider).is_some();
+        let queries = self
+            .engine
+            .queries(QueryFilter::default().predicate(&predicate));
+        let radius = self.foot_radius_m();
+        let start = feet + Vec3::Y * (self.lower_end(false) + radius);
+        let fall = self.lower_end(false) + down_m;
+        let options = ShapeCastOptions {
+            max_time_of_impact: 1.0,
+            target_distance: 0.0,
+            stop_at_penetration: true,
+            compute_impact_geometry_on_penetration: false,
+        };
+        let place = RapierPose::from_translation(start);
+        let (_, hit) =
+            queries.cast_shape(&place, Vec3::NEG_Y * fall, &Ball::new(radius), options)?;
+        Some(start.y - radius - fall * hit.time_of_impact)
+    }
+
+    /// How much the surface right under the middle faces up: 1 level, 0 upright; `None` without one near `height_m`.
+    pub(crate) fn levelness(&self, feet: Vec3, height_m: f32) -> Option<f32> {
+        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider).is_some();
+        let queries = self
+            .engine
+            .queries(QueryFilter::default().predicate(&predicate));
+        let start = Vec3::new(feet.x, height_m + 0.1, feet.z);
+        let ray = Ray::new(start, Vec3::NEG_Y);
+        let (_, hit) = queries.cast_ray_and_get_normal(&ray, 0.2, true)?;
+        (hit.time_of_impact > 0.0).then_some(hit.normal.y.abs())
+    }
+}

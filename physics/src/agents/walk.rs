@@ -1,0 +1,179 @@
+//! Walking: sliding along what is in the way, climbing steps, falling.
+//!
+//! Every movement is cut into pieces shorter than half the body's core, and a piece that would leave the core inside
+//! something solid is not made. So an agent passes no wall, however thin, at any speed.
+
+use super::probe::{Hit, Probe};
+use dwell_scene::AgentState;
+use glam::Vec3;
+
+/// Turns of the slide in one piece of a movement.
+const SLIDES: usize = 4;
+/// A rise that counts as level ground, m.
+const LEVEL_M: f32 = 1e-3;
+/// Highest speed of a fall, m/s.
+const FASTEST_FALL_M_S: f32 = 30.0;
+/// Pieces of one movement, at most.
+const MOST_PIECES: f32 = 256.0;
+/// How far an agent is moved out of something in one step, m.
+const WAY_OUT_M: f32 = 0.02;
+/// Gap that is left before what was hit, besides the skin, m.
+const BACK_M: f32 = 1e-4;
+
+/// A push on a light body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Push {
+    pub(crate) body: u32,
+    pub(crate) point: Vec3,
+    /// Unit length, level.
+    pub(crate) direction: Vec3,
+    /// How fast the agent wants to go that way, m/s.
+    pub(crate) speed_m_s: f32,
+}
+
+/// One agent's movement in one physics step.
+pub(crate) struct Walk<'a> {
+    pub(crate) probe: Probe<'a>,
+    pub(crate) pushes: Vec<Push>,
+    pub(crate) dt_s: f32,
+    pub(crate) gravity_m_s2: f32,
+}
+
+impl Walk<'_> {
+    /// Moves the agent by `motion` (level, m) and lets it stand or fall. `fall_m_s` is its speed downwards.
+    pub(crate) fn step(&mut self, agent: &mut AgentState, fall_m_s: &mut f32, motion: Vec3) {
+        let mut feet = agent.position;
+        if motion.length_squared() > 1e-14 {
+            if self.probe.is_inside_something(feet) {
+                if let Some(out) = self.probe.way_out(feet, WAY_OUT_M) {
+                    feet += out;
+                }
+            } else {
+                let longest = 0.5 * self.probe.core_radius_m();
+                let pieces = (motion.length() / longest).ceil().clamp(1.0, MOST_PIECES);
+                for _ in 0..pieces as u32 {
+                    feet = self.piece(feet, motion / pieces, agent.grounded);
+                }
+            }
+        }
+        self.stand_or_fall(&mut feet, agent, fall_m_s);
+        agent.position = feet;
+    }
+
+    /// One short piece of a movement.
+    fn piece(&mut self, feet: Vec3, motion: Vec3, grounded: bool) -> Vec3 {
+        let mut target = self.slide(feet, motion);
+        if target == feet || self.probe.is_inside_something(target) {
+            return feet;
+        }
+        if !grounded {
+            return target;
+        }
+        let step = self.probe.body.step_height_m;
+        if let Some(ground) = self.probe.ground(target, step) {
+            let rise = ground - feet.y;
+            if rise > step + 1e-3 {
+                return feet;
+            }
+            if rise > LEVEL_M {
+                let slope = self.probe.body.max_slope_rad;
+                let steep = self
+                    .probe
+                    .levelness(target, ground)
+                    .is_some_and(|up| up < dwell_scene::math::cos(slope) - 1e-3 && up > 1e-3);
+                let raised = Vec3::new(target.x, ground, target.z);
+                if steep
+                    || !self.probe.headroom(target, rise)
+                    || self.probe.is_inside_something(raised)
+                {
+                    return feet;
+                }
+            }
+            target.y = ground;
+        }
+        target
+    }
+
+    /// Goes as far as possible, along what is in the way.
+    fn slide(&mut self, feet: Vec3, motion: Vec3) -> Vec3 {
+        let mut at = feet;
+        let mut left = motion;
+        let mut walls: [Vec3; SLIDES] = [Vec3::ZERO; SLIDES];
+        for turn in 0..SLIDES {
+            let length = left.length();
+            if length < 1e-6 {
+                break;
+            }
+            let Some(hit) = self.probe.cast(at, left) else {
+                return at + left;
+            };
+            let go = (hit.fraction * length - BACK_M).max(0.0);
+            at += left * (go / length);
+            left *= 1.0 - go / length;
+            let wall = Vec3::new(hit.normal.x, 0.0, hit.normal.z);
+            // A slope or an edge from below or above is a wall as seen from above.
+            let wall = if wall.length() > 0.05 {
+                wall.normalize_or_zero()
+            } else {
+                -left.normalize_or_zero()
+            };
+            self.note_push(&hit, wall, left);
+            walls[turn] = wall;
+            left -= wall * left.dot(wall).min(0.0);
+            // Between two walls there is no way on.
+            if walls[..turn].iter().any(|wall| left.dot(*wall) < -1e-6) {
+                break;
+            }
+        }
+        at
+    }
+
+    fn note_push(&mut self, hit: &Hit, wall: Vec3, left: Vec3) {
+        let Some(body) = hit.light else { return };
+        let speed = -left.dot(wall) / self.dt_s;
+        if speed > 0.0 && !self.pushes.iter().any(|push| push.body == body) {
+            self.pushes.push(Push {
+                body,
+                point: hit.point,
+                direction: -wall,
+                speed_m_s: speed,
+            });
+        }
+    }
+
+    fn stand_or_fall(&self, feet: &mut Vec3, agent: &mut AgentState, fall_m_s: &mut f32) {
+        let snap = if agent.grounded {
+            self.probe.body.step_height_m
+        } else {
+            LEVEL_M
+        };
+        if *fall_m_s == 0.0
+            && let Some(ground) = self.probe.ground(*feet, snap)
+            && ground - feet.y <= self.probe.body.step_height_m
+        {
+            if ground <= feet.y + LEVEL_M || self.probe.headroom(*feet, ground - feet.y) {
+                feet.y = ground;
+            }
+            agent.grounded = true;
+            return;
+        }
+        *fall_m_s = (*fall_m_s + self.gravity_m_s2 * self.dt_s).min(FASTEST_FALL_M_S);
+        let down = *fall_m_s * self.dt_s;
+        match self.probe.ground(*feet, down) {
+            Some(ground) => {
+                feet.y = ground
+                    .max(feet.y - down)
+                    .min(feet.y + self.probe.body.step_height_m);
+                agent.grounded = true;
+            }
+            None => {
+                let part = self.probe.sink(*feet, down);
+                feet.y -= down * part;
+                agent.grounded = part < 1.0;
+            }
+        }
+        if agent.grounded {
+            *fall_m_s = 0.0;
+        }
+    }
+}

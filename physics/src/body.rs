@@ -1,0 +1,209 @@
+//! The rigid bodies of a world: making them, and reading where they are.
+
+use crate::contact::{ContactTable, Entry};
+use crate::convert::{from_rapier, to_rapier};
+use crate::engine::Engine;
+use crate::model::{BodyPlan, Owner, PhysicsModel, Piece, shapes};
+use dwell_scene::material::PairContact;
+use dwell_scene::{House, ObjectId, PartId, Pose, State, Velocity};
+use rapier3d::dynamics::{
+    CoefficientCombineRule, RigidBodyBuilder, RigidBodyHandle, RigidBodyType,
+};
+use rapier3d::geometry::{Collider, ColliderBuilder, ColliderHandle};
+use rapier3d::math::Pose as RapierPose;
+use rapier3d::pipeline::{ActiveEvents, ActiveHooks};
+
+/// A rigid body of a world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body {
+    pub(crate) handle: RigidBodyHandle,
+}
+
+/// What a body may do at present.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub(crate) enum Hold {
+    /// It moves.
+    Free,
+    /// It could not be freed at the start: it stands for good.
+    Frozen,
+    /// A shut door: it stands until it is opened.
+    Latched,
+}
+
+/// rapier's type for a body under a hold. What stands is kinematic, not fixed: rapier 0.36.1 loses count of its islands
+/// when a body becomes fixed before the first step.
+pub(crate) fn body_type(hold: Hold) -> RigidBodyType {
+    match hold {
+        Hold::Free => RigidBodyType::Dynamic,
+        Hold::Frozen | Hold::Latched => RigidBodyType::KinematicPositionBased,
+    }
+}
+
+/// What is common to all colliders: the pair rule that has the materials table's bits, and who asks for a look-up.
+pub(crate) fn dress(
+    builder: ColliderBuilder,
+    (own, special): (PairContact, bool),
+    filtered: bool,
+    index: usize,
+) -> ColliderBuilder {
+    let mut hooks = ActiveHooks::empty();
+    hooks.set(ActiveHooks::MODIFY_SOLVER_CONTACTS, special);
+    hooks.set(ActiveHooks::FILTER_CONTACT_PAIRS, filtered);
+    builder
+        .friction(own.friction)
+        .restitution(own.restitution)
+        .friction_combine_rule(CoefficientCombineRule::GeometricMean)
+        .restitution_combine_rule(CoefficientCombineRule::GeometricMean)
+        .active_hooks(hooks)
+        .user_data(index as u128)
+}
+
+/// Inserts everything that never moves and returns the entries.
+pub(crate) fn insert_statics(
+    engine: &mut Engine,
+    model: &PhysicsModel,
+    table: &ContactTable,
+) -> Vec<Entry> {
+    let ground = engine.bodies.insert(RigidBodyBuilder::fixed());
+    let mut entries = Vec::with_capacity(model.statics.len() + 1);
+    let (floor, place) = shapes::last_floor(&model.bounds);
+    let last_floor = Piece {
+        owner: Owner::LastFloor,
+        shape: floor,
+        place: to_rapier(&place),
+        density_kg_m3: 0.0,
+        cover: crate::model::Cover::One(None),
+    };
+    for piece in model.statics.iter().chain([&last_floor]) {
+        let surface = table.surface(&piece.cover);
+        let builder = ColliderBuilder::new(piece.shape.clone())
+            .position(piece.place)
+            .density(0.0);
+        let builder = dress(builder, table.rule(&surface), false, entries.len());
+        engine
+            .colliders
+            .insert_with_parent(builder, ground, &mut engine.bodies);
+        entries.push(Entry::new(piece.owner, None, surface));
+    }
+    entries
+}
+
+/// Inserts a rigid body with its colliders.
+pub(crate) fn insert_body(
+    engine: &mut Engine,
+    plan: &BodyPlan,
+    table: &ContactTable,
+    entries: &mut Vec<Entry>,
+    place: BodyPlace,
+) -> Body {
+    let builder = RigidBodyBuilder::new(body_type(place.hold))
+        .pose(place.world_from_body)
+        .can_sleep(place.sleeping_allowed);
+    let handle = engine.bodies.insert(builder);
+    for piece in &plan.pieces {
+        let surface = table.surface(&piece.cover);
+        let builder = ColliderBuilder::new(piece.shape.clone())
+            .position(piece.place)
+            .density(piece.density_kg_m3 * place.mass_factor)
+            .active_events(ActiveEvents::CONTACT_FORCE_EVENTS)
+            .contact_force_event_threshold(place.event_force_n);
+        // Leaves ask which pairs meet; free bodies do so only against agents, who ask themselves.
+        let builder = dress(
+            builder,
+            table.rule(&surface),
+            plan.joint.is_some(),
+            entries.len(),
+        );
+        engine
+            .colliders
+            .insert_with_parent(builder, handle, &mut engine.bodies);
+        entries.push(Entry::new(piece.owner, Some(place.index), surface));
+    }
+    Body { handle }
+}
+
+/// Where and how a body starts.
+#[derive(Clone, Copy)]
+pub(crate) struct BodyPlace {
+    pub(crate) index: u32,
+    pub(crate) world_from_body: RapierPose,
+    pub(crate) hold: Hold,
+    pub(crate) mass_factor: f32,
+    pub(crate) sleeping_allowed: bool,
+    pub(crate) event_force_n: f32,
+}
+
+/// Changes a collider's contact values in place.
+pub(crate) fn redress(collider: &mut Collider, (own, special): (PairContact, bool)) {
+    let mut hooks = collider.active_hooks();
+    hooks.set(ActiveHooks::MODIFY_SOLVER_CONTACTS, special);
+    collider.set_friction(own.friction);
+    collider.set_restitution(own.restitution);
+    collider.set_active_hooks(hooks);
+}
+
+/// What the densities of each body are multiplied with, so that overridden objects weigh what they should. Shape (body,).
+pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<f32> {
+    let house = &model.house;
+    let total = |object: ObjectId| -> f32 {
+        let bodies = model.bodies.iter().filter(|body| body.object == object);
+        bodies.map(|body| body.mass_kg).sum()
+    };
+    model
+        .bodies
+        .iter()
+        .map(|body| match state.object_mass_kg(house, body.object) {
+            Some(mass) if body.mass_kg > 0.0 => mass / total(body.object),
+            _ => 1.0,
+        })
+        .collect()
+}
+
+/// Writes a body's poses and velocities into the state.
+pub(crate) fn write_parts(engine: &Engine, plan: &BodyPlan, body: &Body, state: &mut State) {
+    let Some(rigid) = engine.bodies.get(body.handle) else {
+        return;
+    };
+    let world_from_body = from_rapier(rigid.position());
+    let angular = rigid.angvel();
+    for (part, body_from_part) in &plan.parts {
+        let pose = place_of(&world_from_body, *part, plan.root(), body_from_part);
+        state.part_velocity[*part] = Velocity {
+            linear: rigid.velocity_at_point(pose.position),
+            angular,
+        };
+        state.part_pose[*part] = pose;
+    }
+}
+
+/// A part's pose; the first part's is the body's, bit for bit.
+pub(crate) fn place_of(
+    world_from_body: &Pose,
+    part: PartId,
+    root: PartId,
+    body_from_part: &Pose,
+) -> Pose {
+    if part == root {
+        *world_from_body
+    } else {
+        *world_from_body * *body_from_part
+    }
+}
+
+/// The handles of a body's colliders, in order.
+pub(crate) fn colliders<'a>(engine: &'a Engine, body: &Body) -> &'a [ColliderHandle] {
+    engine
+        .bodies
+        .get(body.handle)
+        .map_or(&[], |rigid| rigid.colliders())
+}
+
+/// What a person calls an object: its finest category, else its name.
+pub(crate) fn name_of(house: &House, object: ObjectId) -> String {
+    let object = &house.objects[object];
+    let category = &object.category;
+    let word = [&category.fine, &category.coarse, &object.name]
+        .into_iter()
+        .find(|word| !word.is_empty());
+    word.map_or_else(|| "thing".to_owned(), |word| word.replace('_', " "))
+}

@@ -1,0 +1,188 @@
+//! How a physics world runs.
+
+use crate::error::PhysicsError;
+use serde::{Deserialize, Serialize};
+
+/// Rates, tolerances and strengths of a physics world. Every field has a default; unknown fields are refused.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PhysicsConfig {
+    /// Control steps per second of simulated time, Hz; 1 to 1,000, default 20.
+    pub control_rate_hz: f32,
+    /// Physics steps per second, Hz; a whole multiple (1 to 1,000) of the control rate, default 120.
+    pub physics_rate_hz: f32,
+    /// Substeps of the contact and joint solver in a physics step; 1 to 64, default 4.
+    pub solver_substeps: u32,
+    /// Whether things at rest sleep until something touches them; default true.
+    pub sleeping: bool,
+    /// Depth up to which two things may overlap at the start without being moved, m; 0 to 0.05, default 0.002. The
+    /// solver pushes such overlaps apart gently.
+    pub overlap_tolerance_m: f32,
+    /// How far a thing may be moved at the start to free it from what it overlaps, m; 0 to 1, default 0.1. What needs
+    /// more is frozen where it stands.
+    pub max_start_shift_m: f32,
+    /// Distance up to which two things count as touching, m; 0 to 0.02, default 0.002.
+    pub touch_distance_m: f32,
+    /// Normal speed from which a contact is an event, m/s; 0.01 to 10, default 0.1.
+    pub event_min_speed_m_s: f32,
+    /// Impulse from which a contact is an event, N·s; 1e-6 to 10, default 0.001.
+    pub event_min_impulse_n_s: f32,
+    /// The strongest push of an agent's body, N; 0 to 10,000, default 100.
+    pub push_force_n: f32,
+    /// The strongest pull of a hand on a door or drawer, N·m or N; 0 to 10,000, default 40.
+    pub hand_effort: f32,
+    /// The largest edge of what a hand carries, m; 0.05 to 5, default 1.
+    pub max_carry_size_m: f32,
+    /// Whether doors and drawers of the building stay shut at their closed position until they are opened; default true.
+    pub latches: bool,
+}
+
+impl Default for PhysicsConfig {
+    fn default() -> Self {
+        Self {
+            control_rate_hz: 20.0,
+            physics_rate_hz: 120.0,
+            solver_substeps: 4,
+            sleeping: true,
+            overlap_tolerance_m: 0.002,
+            max_start_shift_m: 0.1,
+            touch_distance_m: 0.002,
+            event_min_speed_m_s: 0.1,
+            event_min_impulse_n_s: 1e-3,
+            push_force_n: 100.0,
+            hand_effort: 40.0,
+            max_carry_size_m: 1.0,
+            latches: true,
+        }
+    }
+}
+
+/// A checked [`PhysicsConfig`] with what follows from it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Settings {
+    /// The numbers.
+    pub(crate) config: PhysicsConfig,
+    /// Length of a physics step, s.
+    pub(crate) dt_s: f32,
+    /// Physics steps in a control step.
+    pub(crate) steps_per_control: u32,
+}
+
+impl PhysicsConfig {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`PhysicsError::Range`] names the field, what was found and what is allowed.
+    pub fn check(&self) -> Result<(), PhysicsError> {
+        let range =
+            |field: &'static str, value: f32, low: f32, high: f32, allowed: &'static str| {
+                if (low..=high).contains(&value) {
+                    return Ok(());
+                }
+                let (at, found) = ("physics config".to_owned(), value.to_string());
+                Err(PhysicsError::Range {
+                    at,
+                    field,
+                    found,
+                    allowed,
+                })
+            };
+        range(
+            "control_rate_hz",
+            self.control_rate_hz,
+            1.0,
+            1000.0,
+            "1 to 1000",
+        )?;
+        let ratio = self.physics_rate_hz / self.control_rate_hz;
+        let whole = if ratio.fract() == 0.0 { ratio } else { 0.0 };
+        range(
+            "physics_rate_hz over control_rate_hz",
+            whole,
+            1.0,
+            1000.0,
+            "a whole number from 1 to 1000",
+        )?;
+        range(
+            "solver_substeps",
+            self.solver_substeps as f32,
+            1.0,
+            64.0,
+            "1 to 64",
+        )?;
+        range(
+            "overlap_tolerance_m",
+            self.overlap_tolerance_m,
+            0.0,
+            0.05,
+            "0 to 0.05",
+        )?;
+        range(
+            "max_start_shift_m",
+            self.max_start_shift_m,
+            0.0,
+            1.0,
+            "0 to 1",
+        )?;
+        range(
+            "touch_distance_m",
+            self.touch_distance_m,
+            0.0,
+            0.02,
+            "0 to 0.02",
+        )?;
+        range(
+            "event_min_speed_m_s",
+            self.event_min_speed_m_s,
+            0.01,
+            10.0,
+            "0.01 to 10",
+        )?;
+        range(
+            "event_min_impulse_n_s",
+            self.event_min_impulse_n_s,
+            1e-6,
+            10.0,
+            "1e-6 to 10",
+        )?;
+        range("push_force_n", self.push_force_n, 0.0, 1e4, "0 to 10000")?;
+        range("hand_effort", self.hand_effort, 0.0, 1e4, "0 to 10000")?;
+        range(
+            "max_carry_size_m",
+            self.max_carry_size_m,
+            0.05,
+            5.0,
+            "0.05 to 5",
+        )
+    }
+
+    pub(crate) fn build(&self) -> Result<Settings, PhysicsError> {
+        self.check()?;
+        Ok(Settings {
+            config: self.clone(),
+            dt_s: 1.0 / self.physics_rate_hz,
+            steps_per_control: (self.physics_rate_hz / self.control_rate_hz) as u32,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_rates_and_unknown_fields_are_refused_by_name() {
+        let config = PhysicsConfig {
+            physics_rate_hz: 110.0,
+            ..PhysicsConfig::default()
+        };
+        let message = config.check().unwrap_err().to_string();
+        assert!(message.contains("physics_rate_hz"), "{message}");
+        let config = PhysicsConfig {
+            push_force_n: f32::NAN,
+            ..PhysicsConfig::default()
+        };
+        assert!(config.check().is_err());
+        assert!(PhysicsConfig::default().check().is_ok());
+    }
+}

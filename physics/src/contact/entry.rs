@@ -1,0 +1,77 @@
+//! What a collider stands for. A collider's user data is its number in the list of entries.
+
+use crate::model::Owner;
+use dwell_scene::{AgentId, PartId, StructureId};
+use rapier3d::geometry::Collider;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A thing that touches another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Toucher {
+    /// A wall, floor or ceiling.
+    Structure(StructureId),
+    /// A part of an object.
+    Part(PartId),
+    /// An agent's body.
+    Agent(AgentId),
+}
+
+/// The contact class of a piece, or of each of its triangles.
+#[derive(Clone, Debug)]
+pub(crate) enum Surface {
+    One(u16),
+    PerTriangle(Arc<[u16]>),
+}
+
+impl Surface {
+    /// The class at a triangle of the shape; `subshape` is ignored where there is one class.
+    pub(crate) fn class(&self, subshape: u32) -> u16 {
+        match self {
+            Self::One(class) => *class,
+            Self::PerTriangle(classes) => classes
+                .get(subshape as usize)
+                .or(classes.first())
+                .copied()
+                .unwrap_or(0),
+        }
+    }
+}
+
+/// What a collider stands for.
+#[derive(Clone, Debug)]
+pub(crate) struct Entry {
+    /// What it is; `None` for the floor of last resort.
+    pub(crate) toucher: Option<Toucher>,
+    /// The rigid body it moves with, unless it is static or an agent's.
+    pub(crate) body: Option<u32>,
+    pub(crate) surface: Surface,
+}
+
+impl Entry {
+    pub(crate) fn new(owner: Owner, body: Option<u32>, surface: Surface) -> Self {
+        let toucher = match owner {
+            Owner::Structure(id) => Some(Toucher::Structure(id)),
+            Owner::Part(id) => Some(Toucher::Part(id)),
+            Owner::LastFloor => None,
+        };
+        Self {
+            toucher,
+            body,
+            surface,
+        }
+    }
+
+    pub(crate) fn agent(&self) -> Option<AgentId> {
+        match self.toucher {
+            Some(Toucher::Agent(agent)) => Some(agent),
+            _ => None,
+        }
+    }
+}
+
+/// The number of the entry that a collider stands for.
+pub(crate) fn entry_index(collider: &Collider) -> usize {
+    collider.user_data as usize
+}

@@ -1,0 +1,55 @@
+//! What can go wrong in physics.
+
+/// A fault of physics, with its place.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PhysicsError {
+    /// A number outside its range.
+    #[error("{at}: {field} is {found}; allowed is {allowed}")]
+    Range {
+        /// Where it stands.
+        at: String,
+        /// The field's name.
+        field: &'static str,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A state that belongs to another house, or was changed from outside.
+    #[error("the state has {found} {what}, but this physics world has {expected}")]
+    ForeignState {
+        /// What was counted.
+        what: &'static str,
+        /// How many the state has.
+        found: usize,
+        /// How many physics has.
+        expected: usize,
+    },
+    /// An agent that does not exist.
+    #[error("no agent {index}; there are {count}, counted from 0")]
+    UnknownAgent {
+        /// Its number.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A law that acts on something that does not exist.
+    #[error("law {law}: no {kind} {name:?} to act on; there are {known:?}")]
+    LawTarget {
+        /// The law's id.
+        law: &'static str,
+        /// What kind of thing it acts on.
+        kind: &'static str,
+        /// The name that was asked for.
+        name: String,
+        /// The first names that exist.
+        known: Vec<String>,
+    },
+    /// Bytes that are no snapshot of this world.
+    #[error("physics snapshot refused: {0}")]
+    Snapshot(String),
+    /// A fault of the scene.
+    #[error(transparent)]
+    Scene(#[from] dwell_scene::SceneError),
+}

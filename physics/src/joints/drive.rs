@@ -1,0 +1,114 @@
+//! What moves joints: their own servos, or a hand that opens and closes them.
+
+use super::effort::Pull;
+use super::latch::tolerance;
+use dwell_scene::{AgentId, Articulation, JointId, JointKind};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Natural frequency of the hand's pull, rad/s; it is critically damped.
+const HAND_FREQUENCY_RAD_S: f32 = 12.0;
+/// How fast a hand swings a door, rad/s.
+const HAND_SWING_RAD_S: f32 = 1.5;
+/// How fast a hand pulls a drawer, m/s.
+const HAND_PULL_M_S: f32 = 0.5;
+/// How far the hand runs ahead of a joint that does not follow, rad or m.
+const HAND_LEAD: [f32; 2] = [0.3, 0.1];
+/// Speed under which a joint makes no progress, rad/s or m/s.
+const CREEP: f32 = 0.02;
+/// How long a joint may make no progress before the hand gives up, s.
+const PATIENCE_S: f32 = 0.6;
+
+/// A hand that moves a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Drive {
+    /// Where the joint shall go.
+    pub(crate) goal: f32,
+    /// Where the hand is.
+    ramp: f32,
+    /// For how long nothing has moved, s.
+    stalled_s: f32,
+    /// Who pulls, if it is an agent.
+    pub(crate) agent: Option<AgentId>,
+}
+
+/// All hands on joints.
+pub(crate) type Drives = BTreeMap<JointId, Drive>;
+
+/// How a drive stands after a control step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Progress {
+    Moving,
+    Arrived,
+    Blocked,
+}
+
+impl Drive {
+    pub(crate) fn new(goal: f32, position: f32, agent: Option<AgentId>) -> Self {
+        Self {
+            goal,
+            ramp: position,
+            stalled_s: 0.0,
+            agent,
+        }
+    }
+
+    /// Moves the hand on by one control step and judges the joint.
+    fn follow(&mut self, kind: JointKind, position: f32, velocity: f32, step_s: f32) -> Progress {
+        let (rate, lead) = match kind {
+            JointKind::Hinge => (HAND_SWING_RAD_S, HAND_LEAD[0]),
+            JointKind::Slide => (HAND_PULL_M_S, HAND_LEAD[1]),
+        };
+        let left = (position - self.goal).abs();
+        if left <= tolerance(kind) && velocity.abs() < 0.2 {
+            return Progress::Arrived;
+        }
+        self.ramp += (self.goal - self.ramp).clamp(-rate * step_s, rate * step_s);
+        self.ramp = self.ramp.clamp(position - lead, position + lead);
+        if velocity.abs() < CREEP {
+            self.stalled_s += step_s;
+        } else {
+            self.stalled_s = 0.0;
+        }
+        if self.stalled_s >= PATIENCE_S {
+            Progress::Blocked
+        } else {
+            Progress::Moving
+        }
+    }
+}
+
+/// What pulls at a joint during the next control step, and how its hand stands. `target`: where the servo is told to go;
+/// `hand`: the hand that moves a joint without a servo.
+pub(crate) fn advance(
+    kind: JointKind,
+    articulation: &Articulation,
+    target: Option<f32>,
+    hand: Option<&mut Drive>,
+    (position, velocity): (f32, f32),
+    (step_s, hand_effort): (f32, f32),
+) -> (Option<Pull>, Option<Progress>) {
+    if let Some(servo) = &articulation.servo {
+        let [low, high] = articulation.limits;
+        let pull = target.map(|target| Pull {
+            target: target.clamp(low, high),
+            stiffness: servo.stiffness,
+            damping: servo.damping,
+            max_effort: servo.max_effort,
+            by_inertia: false,
+        });
+        return (pull, None);
+    }
+    let Some(hand) = hand else {
+        return (None, None);
+    };
+    let progress = hand.follow(kind, position, velocity, step_s);
+    let pull = (progress == Progress::Moving).then_some(Pull {
+        target: hand.ramp,
+        stiffness: HAND_FREQUENCY_RAD_S * HAND_FREQUENCY_RAD_S,
+        damping: 2.0 * HAND_FREQUENCY_RAD_S,
+        max_effort: hand_effort,
+        by_inertia: true,
+    });
+    (pull, Some(progress))
+}

@@ -1,0 +1,229 @@
+//! Doors, drawers, lids and servos: rapier's impulse joints hold the axis and the limits, efforts are ours.
+
+mod drive;
+mod effort;
+mod latch;
+
+pub(crate) use drive::{Drive, Drives, Progress, advance};
+pub(crate) use effort::{Pull, exert, relax};
+pub(crate) use latch::{release, shut, stands_shut, tolerance};
+
+use crate::body::Body;
+use crate::convert::to_rapier;
+use crate::engine::Engine;
+use crate::model::PhysicsModel;
+use dwell_scene::{Articulation, JointId, JointKind, PartId, Pose, State, math};
+use glam::{Quat, Vec3};
+use rapier3d::dynamics::{GenericJointBuilder, JointAxesMask, JointAxis, RigidBodyHandle};
+use rapier3d::math::Pose as RapierPose;
+use std::f32::consts::TAU;
+
+/// A joint of a world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Joint {
+    pub(crate) id: JointId,
+    pub(crate) kind: JointKind,
+    pub(crate) axis: Vec3,
+    pub(crate) child: u32,
+    child_handle: RigidBodyHandle,
+    parent_handle: RigidBodyHandle,
+    parent_from_joint: RapierPose,
+    child_from_joint: RapierPose,
+    /// Whether it hangs on what never moves and has no servo: then it can be shut for good.
+    pub(crate) latchable: bool,
+    /// Coulomb friction in force, N·m or N.
+    pub(crate) friction: f32,
+    /// Viscous damping in force, N·m·s/rad or N·s/m.
+    pub(crate) damping: f32,
+}
+
+/// Inserts the joints of a house. `anchor` is a fixed body at the origin that carries no collider.
+pub(crate) fn insert(
+    engine: &mut Engine,
+    model: &PhysicsModel,
+    bodies: &[Body],
+    anchor: RigidBodyHandle,
+) -> Vec<Joint> {
+    let mut joints = Vec::with_capacity(model.house.joints.len());
+    for (id, joint) in model.house.joints.iter_ids() {
+        let Some(child) = model.body_of_part[joint.child] else {
+            continue;
+        };
+        let (parent_handle, body_from_parent, standing) = parent(model, bodies, joint, anchor);
+        let child_from_part = offset(model, child, joint.child);
+        let parent_from_joint = to_rapier(&(body_from_parent * joint.parent_from_joint));
+        let child_from_joint = to_rapier(&(child_from_part * joint.child_from_joint));
+        // rapier turns about and slides along the frames' X axes.
+        let arc = Quat::from_rotation_arc(Vec3::X, joint.axis.normalize_or(Vec3::X));
+        let to_x = RapierPose::from_rotation(arc);
+        let (locked, axis) = match joint.kind {
+            JointKind::Hinge => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
+            JointKind::Slide => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
+        };
+        let mut builder = GenericJointBuilder::new(locked)
+            .local_frame1(parent_from_joint * to_x)
+            .local_frame2(child_from_joint * to_x)
+            .contacts_enabled(false);
+        if joint.kind == JointKind::Slide || joint.limits[1] - joint.limits[0] < TAU {
+            builder = builder.limits(axis, joint.limits);
+        }
+        let child_handle = bodies[child as usize].handle;
+        engine
+            .joints
+            .insert(parent_handle, child_handle, builder.build(), false);
+        joints.push(Joint {
+            id,
+            kind: joint.kind,
+            axis: joint.axis,
+            child,
+            child_handle,
+            parent_handle,
+            parent_from_joint,
+            child_from_joint,
+            latchable: standing && joint.servo.is_none(),
+            friction: joint.friction,
+            damping: joint.damping,
+        });
+    }
+    joints
+}
+
+/// For each joint, the bodies that hang on it, its own child first. Shape (joint,).
+pub(crate) fn carried(joints: &[Joint]) -> Vec<Vec<RigidBodyHandle>> {
+    joints
+        .iter()
+        .map(|joint| {
+            let mut bodies = vec![joint.child_handle];
+            let mut next = 0;
+            while let Some(body) = bodies.get(next).copied() {
+                for other in joints {
+                    if other.parent_handle == body && !bodies.contains(&other.child_handle) {
+                        bodies.push(other.child_handle);
+                    }
+                }
+                next += 1;
+            }
+            bodies
+        })
+        .collect()
+}
+
+/// The body that a joint hangs on, the part's place on it, and whether it never moves.
+fn parent(
+    model: &PhysicsModel,
+    bodies: &[Body],
+    joint: &Articulation,
+    anchor: RigidBodyHandle,
+) -> (RigidBodyHandle, Pose, bool) {
+    match joint.parent {
+        None => (anchor, Pose::IDENTITY, true),
+        Some(part) => match model.body_of_part[part] {
+            Some(body) => (
+                bodies[body as usize].handle,
+                offset(model, body, part),
+                false,
+            ),
+            None => (anchor, model.house.parts[part].world_from_part, true),
+        },
+    }
+}
+
+fn offset(model: &PhysicsModel, body: u32, part: PartId) -> Pose {
+    let parts = &model.bodies[body as usize].parts;
+    parts
+        .iter()
+        .find(|(id, _)| *id == part)
+        .map_or(Pose::IDENTITY, |(_, place)| *place)
+}
+
+/// Sets friction and damping from the state's parameters. Returns whether they were others before.
+pub(crate) fn set_resistance(
+    joint: &mut Joint,
+    articulation: &Articulation,
+    state: &State,
+) -> bool {
+    let value = |field: &str, base: f32| {
+        if state.overrides.is_empty() {
+            return base;
+        }
+        let address = format!("joint/{}/{field}", joint.id.0).parse().ok();
+        let found = address.and_then(|address| state.overrides.get(&address));
+        found.map_or(base, |value| *value as f32)
+    };
+    let now = (
+        value("friction", articulation.friction),
+        value("damping", articulation.damping),
+    );
+    let changed = now != (joint.friction, joint.damping);
+    (joint.friction, joint.damping) = now;
+    changed
+}
+
+/// The joint's axis and a point on it, in world space.
+fn line(engine: &Engine, joint: &Joint) -> (Vec3, Vec3) {
+    let parent = engine
+        .bodies
+        .get(joint.parent_handle)
+        .map_or(RapierPose::IDENTITY, |parent| *parent.position());
+    let world_from_joint = parent * joint.parent_from_joint;
+    (
+        world_from_joint.rotation * joint.axis,
+        world_from_joint.translation,
+    )
+}
+
+/// Where a joint stands and how fast it moves, rad or m (and per second). `near` picks the turn of a hinge.
+pub(crate) fn read(engine: &Engine, joint: &Joint, near: f32) -> (f32, f32) {
+    let (Some(parent), Some(child)) = (
+        engine.bodies.get(joint.parent_handle),
+        engine.bodies.get(joint.child_handle),
+    ) else {
+        return (near, 0.0);
+    };
+    let world_from_joint = *parent.position() * joint.parent_from_joint;
+    let relative = world_from_joint.inverse() * (*child.position() * joint.child_from_joint);
+    let axis_in_world = world_from_joint.rotation * joint.axis;
+    match joint.kind {
+        JointKind::Hinge => {
+            let q = relative.rotation;
+            let angle = 2.0 * math::atan2(Vec3::new(q.x, q.y, q.z).dot(joint.axis), q.w);
+            let position = near + math::wrap_angle(angle - near);
+            (
+                position,
+                (child.angvel() - parent.angvel()).dot(axis_in_world),
+            )
+        }
+        JointKind::Slide => {
+            let at = world_from_joint.translation;
+            let velocity = child.velocity_at_point(at) - parent.velocity_at_point(at);
+            (
+                relative.translation.dot(joint.axis),
+                velocity.dot(axis_in_world),
+            )
+        }
+    }
+}
+
+/// Where the child's body stands when the joint is at `position` and its parent where it is.
+pub(crate) fn child_at(
+    engine: &Engine,
+    joint: &Joint,
+    articulation: &Articulation,
+    position: f32,
+) -> RapierPose {
+    let parent = engine
+        .bodies
+        .get(joint.parent_handle)
+        .map_or(RapierPose::IDENTITY, |parent| *parent.position());
+    parent
+        * joint.parent_from_joint
+        * to_rapier(&articulation.motion(position))
+        * joint.child_from_joint.inverse()
+}
+
+/// Wakes the body that a joint moves.
+pub(crate) fn wake(engine: &mut Engine, joint: &Joint) {
+    engine
+        .islands
+        .wake_up(&mut engine.bodies, joint.child_handle, true);
+}

@@ -1,0 +1,154 @@
+//! Quadratic air drag.
+
+use super::{Acts, Law, no_target};
+use crate::body::Body;
+use crate::engine::Engine;
+use crate::error::PhysicsError;
+use crate::model::{BodyPlan, PhysicsModel};
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{LawInfo, LawSpec, State};
+use rapier3d::geometry::{SharedShape, TypedShape};
+use std::f32::consts::PI;
+
+pub(super) const LAW: Law = Law {
+    info: LawInfo {
+        id: "drag",
+        version: 1,
+        name: "quadratic air drag",
+        equation: "F = -1/2 rho c_d A |v| v, with v the velocity of the centre of mass in still air (m/s), rho the air \
+                   density (kg/m3) and A the cross-section (m2); A = 0 takes a quarter of the surface of the collision \
+                   pieces, the mean cross-section of a convex body",
+        source: "L. D. Landau, E. M. Lifshitz, Fluid Mechanics (1987), section 45; mean cross-section: A. Cauchy (1841)",
+        engine: ActsIn::Physics,
+        acts_on: "object",
+        params: &[
+            ParamInfo {
+                name: "c_d",
+                unit: "1",
+                default: 0.0,
+                low: 0.0,
+                high: 20.0,
+                plausible: [0.1, 2.0],
+            },
+            ParamInfo {
+                name: "area_m2",
+                unit: "m2",
+                default: 0.0,
+                low: 0.0,
+                high: 100.0,
+                plausible: [0.0, 4.0],
+            },
+            ParamInfo {
+                name: "air_density_kg_m3",
+                unit: "kg/m3",
+                default: 1.204,
+                low: 0.0,
+                high: 1000.0,
+                plausible: [1.0, 1.4],
+            },
+        ],
+        rivals: &["gravity", "mass", "timestamp_offset", "viscous_damping"],
+        separating_experiment: "drop the object from two heights that differ by a factor of four or more, or drop two \
+                                bodies of the same shape and different mass: drag alone bends the path in proportion \
+                                to v^2/m, gravity and clocks do not",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Drag {
+    /// Body and 1/2 rho c_d A, kg/m.
+    bodies: Vec<(u32, f32)>,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    let value = |name: &str| spec.value(info, name).unwrap_or(0.0) as f32;
+    let (c_d, area, density) = (value("c_d"), value("area_m2"), value("air_density_kg_m3"));
+    let house = &model.house;
+    if let Some(target) = &spec.target
+        && house.object_named(target).is_none()
+    {
+        let names = house.objects.iter().map(|object| object.name.as_str());
+        return Err(no_target(info.id, "object", target, names));
+    }
+    let wanted = |plan: &BodyPlan| {
+        spec.target
+            .as_ref()
+            .is_none_or(|target| house.objects[plan.object].name == *target)
+    };
+    let bodies = model
+        .bodies
+        .iter()
+        .enumerate()
+        .filter(|(_, plan)| plan.joint.is_none() && wanted(plan))
+        .map(|(index, plan)| {
+            let area = if area > 0.0 {
+                area
+            } else {
+                cross_section_m2(plan)
+            };
+            (index as u32, 0.5 * density * c_d * area)
+        })
+        .collect();
+    Ok(Box::new(Drag { bodies }))
+}
+
+/// The mean cross-section of a body's pieces: a quarter of their surface.
+fn cross_section_m2(plan: &BodyPlan) -> f32 {
+    plan.pieces
+        .iter()
+        .map(|piece| surface_m2(&piece.shape))
+        .sum::<f32>()
+        * 0.25
+}
+
+fn surface_m2(shape: &SharedShape) -> f32 {
+    match shape.as_typed_shape() {
+        TypedShape::Ball(ball) => 4.0 * PI * ball.radius * ball.radius,
+        TypedShape::Cuboid(cuboid) => {
+            let h = cuboid.half_extents;
+            8.0 * (h.x * h.y + h.y * h.z + h.z * h.x)
+        }
+        TypedShape::Cylinder(cylinder) => {
+            2.0 * PI * cylinder.radius * (2.0 * cylinder.half_height + cylinder.radius)
+        }
+        TypedShape::ConvexPolyhedron(hull) => {
+            let (points, triangles) = hull.to_trimesh();
+            let area = |t: &[u32; 3]| {
+                let [a, b, c] = t.map(|k| points[k as usize]);
+                0.5 * (b - a).cross(c - a).length()
+            };
+            triangles.iter().map(area).sum()
+        }
+        _ => 0.0,
+    }
+}
+
+impl Acts for Drag {
+    fn half_step(&self, engine: &mut Engine, bodies: &[Body], half_dt_s: f32) {
+        for (body, gain) in &self.bodies {
+            let handle = bodies[*body as usize].handle;
+            let Some(rigid) = engine.bodies.get(handle) else {
+                continue;
+            };
+            if rigid.is_sleeping() || !rigid.is_dynamic() || rigid.mass() <= 0.0 {
+                continue;
+            }
+            // The exact solution of m dv/dt = -k |v| v over the half step; it never turns the velocity round.
+            let velocity = rigid.linvel();
+            let slowed = velocity / (1.0 + gain / rigid.mass() * velocity.length() * half_dt_s);
+            if let Some(rigid) = engine.bodies.get_mut(handle) {
+                rigid.set_linvel(slowed, false);
+            }
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

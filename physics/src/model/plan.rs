@@ -1,0 +1,349 @@
+//! Which parts move together, what they weigh, and what touches.
+
+use super::PhysicsModel;
+use super::shapes::{self, Shaped};
+use crate::convert::to_rapier;
+use dwell_scene::{
+    Aabb, Collider, House, Id, IdVec, JointId, MaterialId, MeshId, Mobility, ObjectId, PartId,
+    Pose, StructureId,
+};
+use glam::Affine3A;
+use rapier3d::geometry::SharedShape;
+use rapier3d::math::Pose as RapierPose;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What a collision piece belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Owner {
+    /// A wall, floor or ceiling.
+    Structure(StructureId),
+    /// A part of an object.
+    Part(PartId),
+    /// The floor of last resort.
+    LastFloor,
+}
+
+/// What a piece is made of.
+#[derive(Clone, Debug)]
+pub(crate) enum Cover {
+    /// One material all over; `None` when the part names none.
+    One(Option<MaterialId>),
+    /// A material for each triangle of the shape.
+    PerTriangle(Arc<[MaterialId]>),
+}
+
+/// A collision piece.
+#[derive(Clone)]
+pub(crate) struct Piece {
+    pub(crate) owner: Owner,
+    pub(crate) shape: SharedShape,
+    /// Where the shape stands on its body, or in the world for a static piece.
+    pub(crate) place: RapierPose,
+    /// kg/m³; 0 for a static piece.
+    pub(crate) density_kg_m3: f32,
+    pub(crate) cover: Cover,
+}
+
+/// A rigid body: one or more parts that move together.
+#[derive(Clone)]
+pub(crate) struct BodyPlan {
+    pub(crate) object: ObjectId,
+    /// The parts with their places on the body; the body's own frame is that of the first.
+    pub(crate) parts: Vec<(PartId, Pose)>,
+    pub(crate) pieces: Vec<Piece>,
+    /// The joint that moves it, if it is not free.
+    pub(crate) joint: Option<JointId>,
+    /// Mass without overrides, kg.
+    pub(crate) mass_kg: f32,
+}
+
+/// Shapes of exact meshes, shared between instances of a model.
+#[derive(Default)]
+struct Meshes {
+    made: BTreeMap<(MeshId, [u32; 12]), Option<(SharedShape, Arc<[u32]>)>>,
+}
+
+impl Meshes {
+    fn exact(
+        &mut self,
+        house: &House,
+        mesh: MeshId,
+        part_from_mesh: &Affine3A,
+    ) -> Option<(SharedShape, Arc<[u32]>)> {
+        let key = part_from_mesh.to_cols_array().map(f32::to_bits);
+        self.made
+            .entry((mesh, key))
+            .or_insert_with(|| {
+                shapes::exact(&house.meshes[mesh], part_from_mesh)
+                    .map(|shaped| (shaped.shape, shaped.triangles.into()))
+            })
+            .clone()
+    }
+}
+
+/// One material, or one for each triangle where substances differ.
+fn cover(house: &House, mesh: MeshId, materials: &[MaterialId], triangles: &[u32]) -> Cover {
+    let mesh = &house.meshes[mesh];
+    let material_of = |triangle: u32| {
+        materials
+            .get(usize::from(mesh.slot(triangle as usize)))
+            .copied()
+    };
+    let first = triangles
+        .first()
+        .and_then(|triangle| material_of(*triangle));
+    let substance = |material: Option<MaterialId>| {
+        material.map(|material| house.materials[material].substance.as_str())
+    };
+    let alike = triangles
+        .iter()
+        .all(|triangle| substance(material_of(*triangle)) == substance(first));
+    let all: Option<Vec<MaterialId>> = triangles.iter().map(|t| material_of(*t)).collect();
+    match all {
+        Some(all) if !alike => Cover::PerTriangle(all.into()),
+        _ => Cover::One(first),
+    }
+}
+
+/// The pieces of a part in part space.
+fn part_pieces(house: &House, meshes: &mut Meshes, id: PartId, density: f32) -> Vec<Piece> {
+    let part = &house.parts[id];
+    let owner = Owner::Part(id);
+    let mut pieces = Vec::with_capacity(part.colliders.len());
+    for collider in &part.colliders {
+        if matches!(collider, Collider::ExactMesh) {
+            if let Some((shape, triangles)) = meshes.exact(house, part.mesh, &part.part_from_mesh) {
+                pieces.push(Piece {
+                    owner,
+                    shape,
+                    place: RapierPose::IDENTITY,
+                    density_kg_m3: 0.0,
+                    cover: cover(house, part.mesh, &part.materials, &triangles),
+                });
+            }
+        } else if let Some(shaped) = shapes::convex(collider) {
+            pieces.push(solid(house, id, shaped, density));
+        }
+    }
+    pieces
+}
+
+fn solid(house: &House, id: PartId, shaped: Shaped, density: f32) -> Piece {
+    Piece {
+        owner: Owner::Part(id),
+        shape: shaped.shape,
+        place: shaped.part_from_shape,
+        density_kg_m3: density,
+        cover: Cover::One(house.parts[id].materials.first().copied()),
+    }
+}
+
+fn moved(mut piece: Piece, by: &RapierPose) -> Piece {
+    piece.place = *by * piece.place;
+    piece
+}
+
+fn volume_m3(pieces: &[Piece]) -> f32 {
+    pieces
+        .iter()
+        .map(|piece| piece.shape.mass_properties(1.0).mass())
+        .sum()
+}
+
+/// The pieces of one moving part with densities that give its mass.
+fn moving_pieces(house: &House, meshes: &mut Meshes, id: PartId) -> Vec<Piece> {
+    let part = &house.parts[id];
+    let mut pieces = part_pieces(house, meshes, id, part.density_kg_m3);
+    pieces.retain(|piece| piece.shape.as_trimesh().is_none());
+    weigh(&mut pieces, part.mass_kg, part.density_kg_m3);
+    pieces
+}
+
+fn weigh(pieces: &mut [Piece], mass_kg: Option<f32>, density_kg_m3: f32) {
+    let volume = volume_m3(pieces);
+    let density = match mass_kg {
+        Some(mass) if volume > 0.0 => mass / volume,
+        _ => density_kg_m3,
+    };
+    for piece in pieces {
+        piece.density_kg_m3 = density;
+    }
+}
+
+pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
+    let mut meshes = Meshes::default();
+    let mut statics = structure_pieces(&house, &mut meshes);
+    let mut joint_of_part = IdVec::filled(None, house.parts.len());
+    for (id, joint) in house.joints.iter_ids() {
+        joint_of_part[joint.child] = Some(id);
+    }
+    let mut bodies = Vec::new();
+    let mut body_of_part = IdVec::filled(None, house.parts.len());
+    let mut stand_ins = Vec::new();
+    for (object_id, object) in house.objects.iter_ids() {
+        let mut root: Option<usize> = None;
+        let first_body = bodies.len();
+        for id in object.parts() {
+            let part = &house.parts[id];
+            let joint = joint_of_part[id];
+            let stands = part.fixed || (joint.is_none() && object.mobility != Mobility::Movable);
+            if stands {
+                let place = to_rapier(&part.world_from_part);
+                let pieces = part_pieces(&house, &mut meshes, id, 0.0);
+                statics.extend(pieces.into_iter().map(|piece| moved(piece, &place)));
+                continue;
+            }
+            let place = match (joint, root) {
+                (None, Some(body)) => {
+                    // Parts without a joint move with the object's first such part.
+                    let plan: &mut BodyPlan = &mut bodies[body];
+                    let frame = house.parts[plan.parts[0].0].world_from_part;
+                    let body_from_part = frame.inverse() * part.world_from_part;
+                    plan.parts.push((id, body_from_part));
+                    body_of_part[id] = Some(body as u32);
+                    Some((body, to_rapier(&body_from_part)))
+                }
+                _ => None,
+            };
+            let pieces = moving_pieces(&house, &mut meshes, id);
+            if let Some((body, body_from_part)) = place {
+                let pieces = pieces
+                    .into_iter()
+                    .map(|piece| moved(piece, &body_from_part));
+                bodies[body].pieces.extend(pieces);
+                continue;
+            }
+            if joint.is_none() {
+                root = Some(bodies.len());
+            }
+            body_of_part[id] = Some(bodies.len() as u32);
+            bodies.push(BodyPlan {
+                object: object_id,
+                parts: vec![(id, Pose::IDENTITY)],
+                pieces,
+                joint,
+                mass_kg: 0.0,
+            });
+        }
+        for body in &mut bodies[first_body..] {
+            if body.pieces.is_empty() {
+                body.pieces = stand_in_pieces(&house, body);
+                stand_ins.push(object_id);
+            }
+            let mass = |piece: &Piece| piece.shape.mass_properties(piece.density_kg_m3).mass();
+            body.mass_kg = body.pieces.iter().map(mass).sum();
+        }
+    }
+    stand_ins.dedup();
+    let bounds = bounds(&house, &statics, &bodies);
+    PhysicsModel {
+        house,
+        statics,
+        bodies,
+        body_of_part,
+        stand_ins,
+        bounds,
+    }
+}
+
+fn structure_pieces(house: &House, meshes: &mut Meshes) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    for (id, structure) in house.structure.iter_ids() {
+        let exact = meshes.exact(house, structure.mesh, &Affine3A::IDENTITY);
+        if let Some((shape, triangles)) = exact {
+            pieces.push(Piece {
+                owner: Owner::Structure(id),
+                shape,
+                place: RapierPose::IDENTITY,
+                density_kg_m3: 0.0,
+                cover: cover(house, structure.mesh, &structure.materials, &triangles),
+            });
+        }
+    }
+    pieces
+}
+
+/// Hulls of what a body's parts look like, for a body that came without collision pieces.
+fn stand_in_pieces(house: &House, body: &BodyPlan) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    for (id, body_from_part) in &body.parts {
+        let part = &house.parts[*id];
+        if let Some(shaped) = shapes::stand_in(&house.meshes[part.mesh], &part.part_from_mesh) {
+            let piece = solid(house, *id, shaped, part.density_kg_m3);
+            let mut own = [moved(piece, &to_rapier(body_from_part))];
+            weigh(&mut own, part.mass_kg, part.density_kg_m3);
+            pieces.extend(own);
+        }
+    }
+    if pieces.is_empty() {
+        // Nothing to see and nothing to touch: a crumb, so that it has a weight.
+        let crumb = Shaped {
+            shape: SharedShape::ball(0.005),
+            part_from_shape: RapierPose::IDENTITY,
+            triangles: Vec::new(),
+        };
+        let density = house.parts[body.root()].density_kg_m3;
+        pieces.push(solid(house, body.root(), crumb, density));
+    }
+    pieces
+}
+
+fn bounds(house: &House, statics: &[Piece], bodies: &[BodyPlan]) -> Aabb {
+    let mut all = Aabb::EMPTY;
+    for piece in statics {
+        all = all.union(&shapes::bounds(&piece.shape, &piece.place));
+    }
+    for body in bodies {
+        let place = to_rapier(&house.parts[body.parts[0].0].world_from_part);
+        for piece in &body.pieces {
+            all = all.union(&shapes::bounds(&piece.shape, &(place * piece.place)));
+        }
+    }
+    if all.is_empty() {
+        Aabb::new(glam::Vec3::ZERO, glam::Vec3::ZERO)
+    } else {
+        all
+    }
+}
+
+impl Owner {
+    /// The part, if it is one.
+    pub(crate) fn part(self) -> Option<PartId> {
+        match self {
+            Self::Part(part) => Some(part),
+            _ => None,
+        }
+    }
+
+    /// A name for reports.
+    pub(crate) fn name(self, house: &House) -> String {
+        match self {
+            Self::Structure(id) => house.structure[id].name.clone(),
+            Self::Part(id) => house.objects[house.parts[id].object].name.clone(),
+            Self::LastFloor => "the floor of last resort".to_owned(),
+        }
+    }
+}
+
+impl BodyPlan {
+    /// The first part, whose frame is the body's.
+    pub(crate) fn root(&self) -> PartId {
+        self.parts[0].0
+    }
+
+    /// The box around its pieces under a pose, m.
+    pub(crate) fn bounds(&self, world_from_body: &RapierPose) -> Aabb {
+        self.pieces.iter().fold(Aabb::EMPTY, |all, piece| {
+            all.union(&shapes::bounds(
+                &piece.shape,
+                &(*world_from_body * piece.place),
+            ))
+        })
+    }
+
+    /// A number that orders bodies: that of the first part.
+    pub(crate) fn order(&self) -> usize {
+        self.root().index()
+    }
+}

@@ -1,0 +1,56 @@
+//! What was found and done when a world started.
+
+use dwell_scene::{JointId, ObjectId};
+use serde::Serialize;
+
+/// An object that overlapped something at the start and was moved free.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MovedObject {
+    /// The object.
+    pub object: ObjectId,
+    /// The deepest overlap that was found, m.
+    pub overlap_m: f32,
+    /// How far it was moved, m.
+    pub distance_m: f32,
+}
+
+/// An object that could not be freed within the bound and stands still for good.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrozenObject {
+    /// The object.
+    pub object: ObjectId,
+    /// The overlap that is left, m.
+    pub overlap_m: f32,
+    /// The name of what it overlaps most.
+    pub with: String,
+}
+
+/// A joint's leaf that overlaps other things where it stands: it passes through them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PassingJoint {
+    /// The joint.
+    pub joint: JointId,
+    /// The names of the things it passes through, sorted.
+    pub through: Vec<String>,
+}
+
+/// What was found and done when a world started.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct StartReport {
+    /// Rigid bodies that can move.
+    pub bodies: usize,
+    /// Collision pieces that never move.
+    pub static_pieces: usize,
+    /// Joints.
+    pub joints: usize,
+    /// Pairs of a body and another piece that overlapped by more than the tolerance.
+    pub overlaps: usize,
+    /// Objects that were moved free.
+    pub moved: Vec<MovedObject>,
+    /// Objects that were frozen.
+    pub frozen: Vec<FrozenObject>,
+    /// Leaves that pass through what they overlap.
+    pub passing: Vec<PassingJoint>,
+    /// Moving objects that came without collision pieces and have the hull of what is seen.
+    pub stand_ins: Vec<ObjectId>,
+}

@@ -1,0 +1,269 @@
+//! A physics world as bytes, without its shapes.
+//!
+//! Everything between steps that shapes do not determine is written: bodies, islands, the broad phase's tree, contacts
+//! with their warm-start impulses, joints, and what this crate remembers. Colliders are built again from the model and
+//! the state's parameters, in the same order, at the bodies' places. Between steps no collider is marked as changed, so
+//! that a world built this way is the same, bit for bit.
+
+use crate::agents::{self, Grip};
+use crate::body::{self, Hold};
+use crate::config::PhysicsConfig;
+use crate::contact::{ContactTable, Entry, Excluded, Hooks, Impacts};
+use crate::engine::Engine;
+use crate::error::PhysicsError;
+use crate::joints::{self, Drives, Pull};
+use crate::laws;
+use crate::world::{Assembly, PhysicsWorld, assemble, pose_of};
+use dwell_scene::{AgentId, Id, State};
+use rapier3d::dynamics::{ImpulseJointSet, IslandManager, RigidBodySet};
+use rapier3d::geometry::{BroadPhaseBvh, NarrowPhase};
+use rapier3d::math::Pose as RapierPose;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use xxhash_rust::xxh3::xxh3_64;
+
+const MAGIC: &[u8; 4] = b"dwph";
+const VERSION: u32 = 1;
+const HEADER: usize = 4 + 4 + 8 + 8 + 8;
+
+/// What this crate remembers between steps.
+#[derive(Clone, Serialize, Deserialize)]
+struct Memory {
+    tick: u64,
+    holds: Vec<Hold>,
+    falls: Vec<f32>,
+    excluded: Excluded,
+    grips: Vec<Grip>,
+    parting: Vec<(u32, AgentId)>,
+    drives: Drives,
+    pulls: Vec<Option<Pull>>,
+    impacts: Impacts,
+    laws: Vec<Vec<f32>>,
+}
+
+/// What rapier remembers between steps.
+#[derive(Serialize, Deserialize)]
+struct Shot<'a> {
+    memory: Memory,
+    #[serde(borrow)]
+    islands: Owned<'a, IslandManager>,
+    broad_phase: Owned<'a, BroadPhaseBvh>,
+    narrow_phase: Owned<'a, NarrowPhase>,
+    bodies: Owned<'a, RigidBodySet>,
+    joints: Owned<'a, ImpulseJointSet>,
+}
+
+/// Written by reference, read by value.
+struct Owned<'a, T: Clone>(Cow<'a, T>);
+
+impl<T: Clone + Serialize> Serialize for Owned<'_, T> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
+    }
+}
+
+impl<'de, T: Clone + Deserialize<'de>> Deserialize<'de> for Owned<'_, T> {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        T::deserialize(deserializer).map(|value| Self(Cow::Owned(value)))
+    }
+}
+
+fn config_hash(config: &PhysicsConfig) -> u64 {
+    let bytes = postcard::to_stdvec(config)
+        .expect("a config is plain data that postcard can always write to memory");
+    xxh3_64(&bytes)
+}
+
+fn refuse<T>(why: impl Into<String>) -> Result<T, PhysicsError> {
+    Err(PhysicsError::Snapshot(why.into()))
+}
+
+impl PhysicsWorld {
+    /// This moment as bytes: header, version, fingerprints of house and config, check sum, body. They hold no shape, and
+    /// not the state: keep [`State::to_bytes`] of the same moment beside them.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let shot = Shot {
+            memory: Memory {
+                tick: self.tick,
+                holds: self.holds.clone(),
+                falls: self.falls.clone(),
+                excluded: self.excluded.clone(),
+                grips: self.grips.clone(),
+                parting: self.parting.clone(),
+                drives: self.drives.clone(),
+                pulls: self.pulls.clone(),
+                impacts: self.impacts.clone(),
+                laws: self
+                    .laws
+                    .iter()
+                    .map(|installed| installed.law.memory())
+                    .collect(),
+            },
+            islands: Owned(Cow::Borrowed(&self.engine.islands)),
+            broad_phase: Owned(Cow::Borrowed(&self.engine.broad_phase)),
+            narrow_phase: Owned(Cow::Borrowed(&self.engine.narrow_phase)),
+            bodies: Owned(Cow::Borrowed(&self.engine.bodies)),
+            joints: Owned(Cow::Borrowed(&self.engine.joints)),
+        };
+        let body = postcard::to_stdvec(&shot)
+            .expect("rapier's sets are plain data that postcard can always write to memory");
+        let mut bytes = Vec::with_capacity(HEADER + body.len());
+        bytes.extend_from_slice(MAGIC);
+        bytes.extend_from_slice(&VERSION.to_le_bytes());
+        bytes.extend_from_slice(&self.model.house.fingerprint().to_le_bytes());
+        bytes.extend_from_slice(&config_hash(&self.settings.config).to_le_bytes());
+        bytes.extend_from_slice(&xxh3_64(&body).to_le_bytes());
+        bytes.extend_from_slice(&body);
+        bytes
+    }
+
+    /// Goes to the moment of a snapshot; `state` must be the state of that moment. The next steps then give the same bits
+    /// as they did there.
+    ///
+    /// # Errors
+    /// [`PhysicsError::Snapshot`] for foreign, damaged or older bytes, another house, other settings or another moment's
+    /// state; the world is then as it was before.
+    pub fn restore(&mut self, state: &mut State, bytes: &[u8]) -> Result<(), PhysicsError> {
+        let body = self.check_header(bytes)?;
+        let shot: Shot = postcard::from_bytes(body)
+            .map_err(|error| PhysicsError::Snapshot(error.to_string()))?;
+        let memory = shot.memory;
+        let bodies = shot.bodies.0.into_owned();
+        let foreign = memory.holds.len() != self.bodies.len()
+            || memory.pulls.len() != self.joints.len()
+            || memory.falls.len() != state.agents.len();
+        if foreign {
+            return refuse(format!(
+                "it has {} bodies and {} agents; the world has {} and the state {}",
+                memory.holds.len(),
+                memory.falls.len(),
+                self.bodies.len(),
+                state.agents.len()
+            ));
+        }
+        let model = self.model.clone();
+        let table = ContactTable::new(&model.house, state);
+        let mass_factors = body::mass_factors(&model, state);
+        let mut laws = laws::install(&model, state, &[])?;
+        if laws.len() != memory.laws.len() {
+            return refuse("it was taken with other laws than the state has");
+        }
+        for (installed, remembered) in laws.iter_mut().zip(&memory.laws) {
+            installed.law.recall(remembered);
+        }
+        // Bodies stand at the places of the snapshot for the moment in which colliders are built.
+        let place = |index: usize| {
+            let handle = self.bodies[index].handle;
+            let place = bodies
+                .get(handle)
+                .map_or(RapierPose::IDENTITY, |rigid| *rigid.position());
+            (place, Hold::Frozen)
+        };
+        let gravity = state.gravity_m_s2();
+        let mut built = assemble(
+            &model,
+            &self.settings,
+            &table,
+            gravity,
+            place,
+            &mass_factors,
+        );
+        let mut agents = Vec::with_capacity(state.agents.len());
+        for (id, agent) in state.agents.iter_ids() {
+            let force = self.settings.event_force_n();
+            let (engine, entries) = (&mut built.engine, &mut built.entries);
+            agents.push(agents::insert(engine, &table, entries, id, agent, force));
+        }
+        flush(&mut built, &table, &memory.excluded);
+        let Assembly {
+            engine: scaffold,
+            entries,
+            ..
+        } = built;
+        let mut engine = Engine::new(&self.settings, gravity);
+        engine.islands = shot.islands.0.into_owned();
+        engine.broad_phase = shot.broad_phase.0.into_owned();
+        engine.narrow_phase = shot.narrow_phase.0.into_owned();
+        engine.bodies = bodies;
+        engine.joints = shot.joints.0.into_owned();
+        engine.colliders = scaffold.colliders;
+        for (plan, body) in model.bodies.iter().zip(&self.bodies) {
+            if pose_of(&engine, body) != Some(state.part_pose[plan.root()]) {
+                return refuse(
+                    "the state is of another moment: restore the state that was saved with it first",
+                );
+            }
+        }
+        for (agent, there) in agents.iter().zip(&state.agents) {
+            let rigid = engine.bodies.get(agent.handle);
+            if rigid.is_none_or(|rigid| rigid.translation() != there.position) {
+                return refuse("the state's agents are of another moment");
+            }
+        }
+        if memory
+            .grips
+            .iter()
+            .any(|grip| grip.agent.index() >= agents.len())
+        {
+            return refuse("an agent that does not exist holds something");
+        }
+        self.engine = engine;
+        self.entries = entries;
+        self.table = table;
+        self.mass_factors = mass_factors;
+        self.agents = agents;
+        self.laws = laws;
+        self.tick = memory.tick;
+        self.holds = memory.holds;
+        self.falls = memory.falls;
+        self.excluded = memory.excluded;
+        self.grips = memory.grips;
+        self.parting = memory.parting;
+        self.drives = memory.drives;
+        self.pulls = memory.pulls;
+        for joint in &mut self.joints {
+            let articulation = &model.house.joints[joint.id];
+            joints::set_resistance(joint, articulation, state);
+        }
+        self.impacts = memory.impacts;
+        self.notices.clear();
+        Ok(())
+    }
+
+    fn check_header<'a>(&self, bytes: &'a [u8]) -> Result<&'a [u8], PhysicsError> {
+        if bytes.len() < HEADER || &bytes[..4] != MAGIC {
+            return refuse(format!(
+                "{} bytes that do not begin with \"dwph\"",
+                bytes.len()
+            ));
+        }
+        let word = |at: usize| u64::from_le_bytes(std::array::from_fn(|k| bytes[at + k]));
+        let version = u32::from_le_bytes(std::array::from_fn(|k| bytes[4 + k]));
+        if version != VERSION {
+            return refuse(format!("version {version}; this build reads {VERSION}"));
+        }
+        if word(8) != self.model.house.fingerprint() {
+            return refuse(format!(
+                "it belongs to another house than {:?}",
+                self.model.house.name
+            ));
+        }
+        if word(16) != config_hash(&self.settings.config) {
+            return refuse("it was taken with other settings");
+        }
+        let body = &bytes[HEADER..];
+        if word(24) != xxh3_64(body) {
+            return refuse("its check sum does not fit: it is damaged");
+        }
+        Ok(body)
+    }
+}
+
+fn flush(assembly: &mut Assembly, table: &ContactTable, excluded: &Excluded) {
+    let entries: &[Entry] = &assembly.entries;
+    assembly.engine.flush(&Hooks {
+        entries,
+        table,
+        excluded,
+    });
+}

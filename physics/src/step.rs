@@ -1,0 +1,355 @@
+//! One control step.
+
+use crate::actions::{ActionCode, ActionOutcome, Notice};
+use crate::agents::{self, AgentControl, Probe, Push, Shell, Walk};
+use crate::body::Hold;
+use crate::contact::{Collector, ContactEvent, Hooks, note_motion};
+use crate::error::PhysicsError;
+use crate::joints::{self, Drive, Progress};
+use crate::world::PhysicsWorld;
+use dwell_scene::{Aabb, AgentId, AgentState, Id, State};
+use glam::Vec3;
+
+/// What an agent wanted to do and did in a control step.
+#[derive(Clone, Copy, Default)]
+struct Way {
+    start: Vec3,
+    wanted_m: f32,
+    made_m: f32,
+}
+
+impl PhysicsWorld {
+    /// Makes one control step: agents move as `controls` say (those without one stand still), then bodies, joints and
+    /// contacts; `state` is brought up to date, and impacts are appended to `events` in the order of time and pair.
+    ///
+    /// The state's `time_s` and `step` belong to whoever runs the world and are left alone.
+    ///
+    /// # Errors
+    /// [`PhysicsError::ForeignState`] for another world's state, [`PhysicsError::UnknownAgent`] for more controls than
+    /// agents, [`PhysicsError::Range`] for a control that is not finite. Nothing has happened then.
+    pub fn step(
+        &mut self,
+        state: &mut State,
+        controls: &[AgentControl],
+        events: &mut Vec<ContactEvent>,
+    ) -> Result<(), PhysicsError> {
+        self.check_state(state)?;
+        if controls.len() > self.agents.len() {
+            return Err(PhysicsError::UnknownAgent {
+                index: controls.len() - 1,
+                count: self.agents.len(),
+            });
+        }
+        if let Some(control) = controls.iter().find(|control| !control.is_finite()) {
+            return Err(PhysicsError::Range {
+                at: "agent control".to_owned(),
+                field: "velocities",
+                found: format!("{control:?}"),
+                allowed: "finite numbers",
+            });
+        }
+        self.notices.clear();
+        self.drive_joints(state);
+        let mut ways: Vec<Way> = state
+            .agents
+            .iter()
+            .map(|agent| Way {
+                start: agent.position,
+                ..Way::default()
+            })
+            .collect();
+        for substep in 0..self.settings.steps_per_control {
+            self.move_agents(state, controls, &mut ways, substep == 0);
+            self.carry_held(state);
+            self.physics_step(state, events);
+        }
+        self.end_ways(state, &ways);
+        self.part_ways(state);
+        self.write_bodies(state);
+        self.write_contacts(state);
+        Ok(())
+    }
+
+    fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) {
+        for joint in &self.joints {
+            joints::relax(&mut self.engine, joint);
+        }
+        for (index, joint) in self.joints.iter().enumerate() {
+            let (carried, pull) = (&self.carried[index], self.pulls[index].as_ref());
+            let near = state.joint_position[joint.id];
+            joints::exert(
+                &mut self.engine,
+                joint,
+                carried,
+                pull,
+                near,
+                self.settings.dt_s,
+            );
+        }
+        let half = 0.5 * self.settings.dt_s;
+        for installed in &self.laws {
+            installed
+                .law
+                .half_step(&mut self.engine, &self.bodies, half);
+        }
+        note_motion(&self.engine.bodies, &mut self.motion);
+        let hooks = Hooks {
+            entries: &self.entries,
+            table: &self.table,
+            excluded: &self.excluded,
+        };
+        let config = &self.settings.config;
+        let collector = Collector::new(&self.entries, &self.motion, config.event_min_speed_m_s);
+        self.engine.step(&hooks, &collector);
+        collector.settle(
+            self.tick,
+            1.0 / f64::from(config.physics_rate_hz),
+            &self.table,
+            config.event_min_impulse_n_s,
+            &mut self.impacts,
+            events,
+        );
+        for installed in &self.laws {
+            installed
+                .law
+                .half_step(&mut self.engine, &self.bodies, half);
+        }
+        self.tick += 1;
+    }
+
+    /// Sets what pulls at all joints from the state's targets.
+    fn drive_joints(&mut self, state: &mut State) {
+        let house = self.model.house.clone();
+        let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
+        let effort = self.settings.config.hand_effort;
+        for index in 0..self.joints.len() {
+            let joint = self.joints[index];
+            let articulation = &house.joints[joint.id];
+            let mut target = state.joint_target[joint.id].filter(|target| target.is_finite());
+            let child = joint.child as usize;
+            let now = (
+                state.joint_position[joint.id],
+                state.joint_velocity[joint.id],
+            );
+            if articulation.servo.is_some() {
+                for installed in &mut self.laws {
+                    target = target.map(|target| installed.law.servo_target(joint.id, target));
+                }
+            } else if let Some(goal) = target {
+                let goal = goal.clamp(articulation.limits[0], articulation.limits[1]);
+                let drive = self.drives.get(&joint.id);
+                if drive.is_none_or(|drive| drive.goal != goal) {
+                    self.drives.insert(joint.id, Drive::new(goal, now.0, None));
+                }
+                if (goal - articulation.closed).abs() > joints::tolerance(joint.kind) {
+                    let body = self.bodies[child];
+                    joints::release(&mut self.engine, &body, &mut self.holds[child]);
+                }
+            } else {
+                self.drives.remove(&joint.id);
+            }
+            let hand = self.drives.get_mut(&joint.id);
+            let limits = (step_s, effort);
+            let (pull, progress) =
+                joints::advance(joint.kind, articulation, target, hand, now, limits);
+            if pull.is_some() && self.pulls[index] != pull {
+                joints::wake(&mut self.engine, &joint);
+            }
+            self.pulls[index] = pull;
+            if let Some(progress) = progress.filter(|progress| *progress != Progress::Moving) {
+                self.finish_drive(state, &joint, progress);
+            }
+        }
+    }
+
+    fn move_agents(
+        &mut self,
+        state: &mut State,
+        controls: &[AgentControl],
+        ways: &mut [Way],
+        first: bool,
+    ) {
+        let dt_s = self.settings.dt_s;
+        let gravity = self.engine.gravity.length();
+        for index in 0..self.agents.len() {
+            let id = AgentId::from_index(index);
+            let control = controls.get(index).copied().unwrap_or_default();
+            let mut agent = state.agents[id];
+            control.turn(&mut agent, dt_s);
+            let motion = control.displacement(agent.yaw_rad, dt_s);
+            let idle = motion == Vec3::ZERO && agent.grounded && self.falls[index] == 0.0;
+            if idle && !first {
+                state.agents[id] = agent;
+                continue;
+            }
+            let others = shells(state, id);
+            let mut walk = Walk {
+                probe: Probe {
+                    engine: &self.engine,
+                    model: &self.model,
+                    entries: &self.entries,
+                    bodies: &self.bodies,
+                    holds: &self.holds,
+                    excluded: &self.excluded,
+                    others: &others,
+                    agent: id,
+                    body: agent.body,
+                },
+                pushes: Vec::new(),
+                dt_s,
+                gravity_m_s2: gravity,
+            };
+            let before = agent.position;
+            walk.step(&mut agent, &mut self.falls[index], motion);
+            let pushes = walk.pushes;
+            let length = motion.length();
+            if length > 0.0 {
+                let made = (agent.position - before).dot(motion / length);
+                ways[index].wanted_m += length;
+                ways[index].made_m += made.clamp(0.0, length);
+            }
+            state.agents[id] = agent;
+            if agent.position != before
+                && let Some(rigid) = self.engine.bodies.get_mut(self.agents[index].handle)
+            {
+                rigid.set_next_kinematic_translation(agent.position);
+            }
+            for push in pushes {
+                self.push(&push);
+            }
+        }
+    }
+
+    /// Pushes a light body, with no more than the config's force.
+    fn push(&mut self, push: &Push) {
+        let body = push.body as usize;
+        let handle = self.bodies[body].handle;
+        let dt_s = self.settings.dt_s;
+        let most = self.settings.config.push_force_n * dt_s;
+        let jointed = self.model.bodies[body].joint.is_some();
+        let Some(rigid) = self.engine.bodies.get(handle) else {
+            return;
+        };
+        // A free body is pushed at the height of its centre of mass, so that it slides instead of tipping.
+        let mut point = push.point;
+        if !jointed {
+            point.y = rigid.center_of_mass().y;
+        }
+        let speed = push.speed_m_s - rigid.velocity_at_point(point).dot(push.direction);
+        // A leaf on a hinge resists at its edge like a third of its mass.
+        let mass = if jointed {
+            rigid.mass() / 3.0
+        } else {
+            rigid.mass()
+        };
+        let impulse = (speed * mass).min(most);
+        if impulse <= 0.0 {
+            return;
+        }
+        self.engine
+            .islands
+            .wake_up(&mut self.engine.bodies, handle, true);
+        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+            rigid.apply_impulse_at_point(push.direction * impulse, point, false);
+        }
+    }
+
+    fn carry_held(&mut self, state: &mut State) {
+        let mut place = 0;
+        while place < self.grips.len() {
+            let agent = state.agents[self.grips[place].agent];
+            let body = self.bodies[self.grips[place].body as usize];
+            let grip = &mut self.grips[place];
+            let slips = agents::carry(&mut self.engine, &body, grip, &agent, self.settings.dt_s);
+            if !slips {
+                place += 1;
+                continue;
+            }
+            let (holder, object) = (grip.agent, grip.object);
+            self.ungrip(state, place);
+            let name = self.call(object);
+            self.notices.push(Notice {
+                agent: Some(holder),
+                outcome: ActionOutcome {
+                    success: false,
+                    code: ActionCode::Slipped,
+                    sentence: format!(
+                        "The {name} was caught on something and slipped from your hand."
+                    ),
+                    object: Some(object),
+                },
+            });
+        }
+    }
+
+    fn end_ways(&self, state: &mut State, ways: &[Way]) {
+        let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
+        for (agent, way) in state.agents.iter_mut().zip(ways) {
+            agent.velocity = (agent.position - way.start) / step_s;
+            agent.collided = way.made_m + 1e-4 + 1e-3 * way.wanted_m < way.wanted_m;
+        }
+    }
+
+    /// Lets bodies and the agents that held them meet again once they are apart.
+    fn part_ways(&mut self, state: &State) {
+        if self.parting.is_empty() {
+            return;
+        }
+        let mut still = Vec::new();
+        for (body, agent) in std::mem::take(&mut self.parting) {
+            let held_again = self
+                .grips
+                .iter()
+                .any(|grip| (grip.body, grip.agent) == (body, agent));
+            if held_again {
+                continue;
+            }
+            let rigid = self.engine.bodies.get(self.bodies[body as usize].handle);
+            let apart = rigid.is_none_or(|rigid| {
+                let bounds = self.model.bodies[body as usize].bounds(rigid.position());
+                !bounds.intersects(&agent_bounds(&state.agents[agent]).grown(0.01))
+            });
+            if apart {
+                self.excluded.part(body, agent);
+            } else {
+                still.push((body, agent));
+            }
+        }
+        self.parting = still;
+    }
+
+    /// The fastest point of any body, m/s.
+    pub fn fastest_m_s(&self) -> f32 {
+        self.bodies
+            .iter()
+            .zip(&self.holds)
+            .filter(|(_, hold)| **hold == Hold::Free)
+            .filter_map(|(body, _)| self.engine.bodies.get(body.handle))
+            .map(|rigid| {
+                let reach = rigid.mass_properties().max_extent();
+                rigid.linvel().length() + rigid.angvel().length() * reach
+            })
+            .fold(0.0, f32::max)
+    }
+}
+
+fn agent_bounds(agent: &AgentState) -> Aabb {
+    let r = agent.body.radius_m;
+    Aabb::new(
+        agent.position - Vec3::new(r, 0.0, r),
+        agent.position + Vec3::new(r, agent.body.height_m, r),
+    )
+}
+
+fn shells(state: &State, except: AgentId) -> Vec<Shell> {
+    state
+        .agents
+        .iter_ids()
+        .filter(|(id, _)| *id != except)
+        .map(|(_, agent)| Shell {
+            feet: agent.position,
+            radius_m: agent.body.radius_m,
+            height_m: agent.body.height_m,
+        })
+        .collect()
+}

@@ -1,0 +1,168 @@
+//! Whole houses: the built-in one, and the real one where `../shared` lies beside the repository.
+
+use crate::common::{Run, forward};
+use dwell_physics::PhysicsConfig;
+use dwell_scene::navigation::{NavConfig, NavGrid};
+use dwell_scene::{Id, ObjectId};
+use glam::Vec3;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+fn apartment() -> Run {
+    let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
+    Run::over(Arc::new(house), PhysicsConfig::default())
+}
+
+fn sample() -> Option<Run> {
+    let root = std::env::var("DWELL_SHARED_DATA").map_or_else(
+        |_| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"),
+        PathBuf::from,
+    );
+    let path = root.join("suncg/house/0004d52d1aeeb8ae6de39d6bd993e992/house.json");
+    if !path.exists() {
+        println!("skipped: no sample house at ../shared/data/suncg");
+        return None;
+    }
+    let (house, _) = dwell_houses::open(path.to_str().unwrap()).unwrap();
+    Some(Run::over(Arc::new(house), PhysicsConfig::default()))
+}
+
+fn say(name: &str, run: &Run) {
+    let report = &run.report;
+    println!(
+        "{name}: {} bodies, {} static pieces, {} joints, {} overlaps, {} moved, {} frozen, {} passing, {} stand-ins",
+        report.bodies,
+        report.static_pieces,
+        report.joints,
+        report.overlaps,
+        report.moved.len(),
+        report.frozen.len(),
+        report.passing.len(),
+        report.stand_ins.len()
+    );
+    for frozen in &report.frozen {
+        println!(
+            "  frozen {} {:.3} m in {}",
+            run.house.objects[frozen.object].name, frozen.overlap_m, frozen.with
+        );
+    }
+    for moved in &report.moved {
+        println!(
+            "  moved {} by {:.3} m ({:.3} m)",
+            run.house.objects[moved.object].name, moved.distance_m, moved.overlap_m
+        );
+    }
+    for passing in &report.passing {
+        println!("  {:?} passes through {:?}", passing.joint, passing.through);
+    }
+}
+
+/// How far the object has gone that went furthest, and its name.
+fn drift(run: &Run, before: &[Vec3]) -> Vec<(String, f32)> {
+    let mut all: Vec<_> = run
+        .house
+        .objects
+        .ids()
+        .map(|id| {
+            (
+                run.house.objects[id].name.clone(),
+                (run.position(id) - before[id.index()]).length(),
+            )
+        })
+        .collect();
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
+    all
+}
+
+fn settles(name: &str, mut run: Run, furthest_m: f32, stray: usize) {
+    say(name, &run);
+    let before: Vec<Vec3> = run.house.objects.ids().map(|id| run.position(id)).collect();
+    let mut fastest = 0.0_f32;
+    for _ in 0..40 {
+        run.steps(1);
+        fastest = fastest.max(run.world.fastest_m_s());
+    }
+    let drift = drift(&run, &before);
+    println!(
+        "  fastest {fastest:.2} m/s, {:.3} m/s after 2 s, {} awake; furthest {:?}",
+        run.world.fastest_m_s(),
+        run.world.awake_count(),
+        &drift[..8]
+    );
+    assert!(
+        run.world.fastest_m_s() < 0.5,
+        "{} m/s after 2 s",
+        run.world.fastest_m_s()
+    );
+    let gone = drift.iter().filter(|(_, far)| *far > furthest_m).count();
+    assert!(
+        gone <= stray,
+        "{gone} things went further than {furthest_m} m: {:?}",
+        &drift[..gone.min(20)]
+    );
+    run.steps(60);
+    println!(
+        "  after 5 s: {} awake, {:.4} m/s",
+        run.world.awake_count(),
+        run.world.fastest_m_s()
+    );
+}
+
+#[test]
+fn the_apartment_starts_at_rest() {
+    settles("apartment", apartment(), 0.05, 0);
+}
+
+#[test]
+fn the_real_house_starts_at_rest() {
+    if let Some(run) = sample() {
+        settles("sample house", run, 0.1, 5);
+    }
+}
+
+/// An agent follows shortest paths between far points of every storey for a while: it arrives, and never leaves the floor.
+fn walks(mut run: Run) {
+    let grid = NavGrid::build(&run.house, &run.state, &NavConfig::default()).unwrap();
+    let key = dwell_scene::random::Key::root(4);
+    let start = grid.position(grid.sample(key.child("start"), |_| true).unwrap());
+    let id = run.agent(start, 0.0);
+    let mut metres = 0.0;
+    for k in 0..40_u64 {
+        let yaw = key.child(k).stream().range(-3.0, 3.0);
+        let at = run.state.agents[id].position;
+        run.world.place_agent(&mut run.state, id, at, yaw).unwrap();
+        for _ in 0..15 {
+            let before = run.state.agents[id].position;
+            run.walk(1, &[forward(1.5)]);
+            let after = run.state.agents[id].position;
+            metres += (after - before).length();
+            assert!(
+                after.is_finite() && after.y > -0.5,
+                "{after} from {start}"
+            );
+        }
+    }
+    println!(
+        "  walked {metres:.1} m of 45 m asked, {} pushed awake",
+        run.world.awake_count()
+    );
+    assert!(metres > 8.0);
+    assert!(
+        run.house
+            .objects
+            .ids()
+            .all(|id: ObjectId| run.position(id).is_finite())
+    );
+}
+
+#[test]
+fn an_agent_walks_through_the_apartment() {
+    walks(apartment());
+}
+
+#[test]
+fn an_agent_walks_through_the_real_house() {
+    if let Some(run) = sample() {
+        walks(run);
+    }
+}

@@ -1,0 +1,142 @@
+//! Overlaps at the start.
+
+use crate::common::{Build, Piece};
+use dwell_physics::PhysicsConfig;
+use dwell_scene::Mobility;
+use glam::Vec3;
+
+#[test]
+fn shallow_overlaps_are_resolved_and_reported_and_nothing_explodes() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let half = Vec3::splat(0.1);
+    let sunk = build.movable("sunk", Piece::cuboid(half, Vec3::new(1.0, 0.06, 1.0)));
+    let in_wall = build.movable("in_wall", Piece::cuboid(half, Vec3::new(0.05, 0.1, 3.0)));
+    build.movable("below", Piece::cuboid(half, Vec3::new(4.0, 0.1, 4.0)));
+    let above = build.movable("above", Piece::cuboid(half, Vec3::new(4.0, 0.27, 4.0)));
+    let fine = build.movable("fine", Piece::cuboid(half, Vec3::new(2.0, 0.1, 5.0)));
+    let mut run = build.run();
+    let moved: Vec<_> = run.report.moved.iter().map(|moved| moved.object).collect();
+    assert_eq!(moved, [sunk, in_wall, above]);
+    for moved in &run.report.moved {
+        assert!(
+            moved.distance_m > 0.02 && moved.distance_m <= 0.1,
+            "{moved:?}"
+        );
+        assert!(
+            moved.overlap_m > 0.02 && moved.overlap_m < 0.06,
+            "{moved:?}"
+        );
+    }
+    assert!(run.report.frozen.is_empty() && run.report.overlaps == 3);
+    assert_eq!(run.position(fine), Vec3::new(2.0, 0.1, 5.0));
+    let mut fastest = 0.0_f32;
+    for _ in 0..40 {
+        run.steps(1);
+        fastest = fastest.max(run.world.fastest_m_s());
+    }
+    assert!(fastest < 0.5, "{fastest} m/s");
+    assert!(
+        run.world.fastest_m_s() < 0.01,
+        "{} m/s after 2 s",
+        run.world.fastest_m_s()
+    );
+    assert!((run.position(sunk).y - 0.1).abs() < 2e-3);
+    assert!(run.position(in_wall).x > 0.098);
+    assert!(
+        (run.position(above).y - 0.3).abs() < 4e-3,
+        "{}",
+        run.position(above)
+    );
+}
+
+#[test]
+fn what_needs_more_than_the_bound_is_frozen_and_named() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    build.fixed(
+        "block",
+        Piece::cuboid(Vec3::splat(0.5), Vec3::new(3.0, 0.5, 3.0)),
+    );
+    let buried = build.movable(
+        "buried",
+        Piece::cuboid(Vec3::splat(0.1), Vec3::new(3.0, 0.5, 3.0)),
+    );
+    let mut run = build.run();
+    assert_eq!(run.report.frozen.len(), 1);
+    assert_eq!(
+        (
+            run.report.frozen[0].object,
+            run.report.frozen[0].with.as_str()
+        ),
+        (buried, "block")
+    );
+    run.steps(40);
+    assert_eq!(run.position(buried), Vec3::new(3.0, 0.5, 3.0));
+    assert_eq!(run.world.fastest_m_s(), 0.0);
+}
+
+/// With a larger bound the same thing is lifted out.
+#[test]
+fn the_bound_is_a_setting() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    build.fixed(
+        "block",
+        Piece::cuboid(Vec3::splat(0.5), Vec3::new(3.0, 0.5, 3.0)),
+    );
+    let buried = build.movable(
+        "buried",
+        Piece::cuboid(Vec3::splat(0.1), Vec3::new(3.0, 0.7, 3.0)),
+    );
+    let run = build.run_with(PhysicsConfig {
+        max_start_shift_m: 0.6,
+        ..PhysicsConfig::default()
+    });
+    assert_eq!(run.report.moved[0].object, buried);
+    assert!(run.position(buried).y > 1.09, "{}", run.position(buried));
+}
+
+#[test]
+fn a_leaf_passes_through_its_frame_and_nothing_else() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let (_, joint) = build.wall_with_door(3.0, 6.0);
+    let run = build.run();
+    let passing = &run.report.passing[0];
+    assert_eq!(passing.joint, joint);
+    assert_eq!(passing.through, ["floor", "lintel", "wall_a", "wall_b"]);
+}
+
+#[test]
+fn a_moving_thing_without_pieces_has_the_hull_of_what_is_seen() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let ghost = build.movable(
+        "ghost",
+        Piece::cuboid(Vec3::splat(0.1), Vec3::new(3.0, 1.0, 3.0)),
+    );
+    let part = build.data.objects[ghost].first_part;
+    build.data.parts[part].colliders.clear();
+    let mut run = build.run();
+    assert_eq!(run.report.stand_ins, [ghost]);
+    run.steps(60);
+    assert!(
+        (run.position(ghost).y - 0.1).abs() < 5e-3,
+        "{}",
+        run.position(ghost)
+    );
+}
+
+/// What leaves the house comes to rest below it instead of falling for ever.
+#[test]
+fn nothing_falls_for_ever() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let lost = build.movable(
+        "lost",
+        Piece::cuboid(Vec3::splat(0.1), Vec3::new(9.0, 1.0, 3.0)),
+    );
+    let mut run = build.run();
+    run.steps(80);
+    assert!(
+        (run.position(lost).y + 1.9).abs() < 0.02,
+        "{}",
+        run.position(lost)
+    );
+    assert_eq!(run.house.objects[lost].mobility, Mobility::Movable);
+}
