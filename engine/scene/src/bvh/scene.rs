@@ -5,7 +5,7 @@ use super::kernels::level::Level;
 use super::kernels::nearest::{Claim, Nearest, Place, reach};
 use super::kernels::single::{self, Probe};
 use super::kernels::slab::least;
-use super::kernels::triangle::{EdgePlanes, corner_height, dot, weights};
+use super::kernels::triangle::{EdgePlanes, dot, height_of, weights};
 use super::kernels::{Filter, packet};
 use super::packet::{PacketHits, RayPacket};
 use super::ray::{Hit, Ray, RayMask};
@@ -284,9 +284,9 @@ impl SceneBvh<'_> {
         } = self.local(origin, direction, place.source);
         let slot = place.slot as usize;
         let surface = &bvh.surfaces[slot];
-        let slope = dot(surface.normal, x, y, z);
-        let distance =
-            corner_height(&bvh.blocks[slot / 4], slot % 4, origin, surface.normal) / slope;
+        let (block, lane) = (&bvh.blocks[slot / 4], slot % 4);
+        let slope = dot(block.normal_of(lane), x, y, z);
+        let distance = height_of(block, lane, origin) / slope;
         let cosine = slope.abs() / dot([x, y, z], x, y, z).sqrt();
         Claim {
             reach: reach(distance, cosine),

@@ -97,6 +97,7 @@ impl TriangleBvh {
                     block.a[axis][lane] = a[axis];
                     block.b[axis][lane] = b[axis];
                     block.c[axis][lane] = c[axis];
+                    block.normal[axis][lane] = list.normals[k as usize][axis];
                 }
                 surfaces[first + lane] = list.surfaces[k as usize];
             }
@@ -137,6 +138,7 @@ impl TriangleBvh {
 #[derive(Default)]
 struct List {
     corners: Vec<[Vec3; 3]>,
+    normals: Vec<Vec3>,
     boxes: Vec<Aabb>,
     surfaces: Vec<Surface>,
 }
@@ -151,13 +153,13 @@ impl List {
             return;
         };
         self.corners.push([a, b, c]);
+        self.normals.push(normal);
         self.boxes.push(Aabb {
             min: a.min(b).min(c),
             max: a.max(b).max(c),
         });
         let TriangleTag { id, mask } = tag(index);
         self.surfaces.push(Surface {
-            normal: normal.to_array(),
             id,
             index: index as u32,
             mask,

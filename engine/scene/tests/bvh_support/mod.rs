@@ -216,11 +216,7 @@ pub(crate) struct Oracle {
 impl Oracle {
     pub(crate) fn new(soup: &Soup) -> Self {
         Self {
-            corners: soup
-                .corners
-                .iter()
-                .map(|t| t.map(|v| v.as_dvec3()))
-                .collect(),
+            corners: soup.corners.iter().map(|t| t.map(Vec3::as_dvec3)).collect(),
             ids: soup.ids.clone(),
         }
     }

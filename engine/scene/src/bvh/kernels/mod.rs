@@ -2,6 +2,8 @@
 //! `level`. All compute the same distances bit for bit and judge them by the one rule of `nearest`; boxes are only ever
 //! passed over when nothing in them could count.
 
+mod everything;
+mod fan;
 pub(super) mod level;
 pub(super) mod nearest;
 pub(super) mod packet;
@@ -13,6 +15,12 @@ use glam::Vec4;
 
 use super::node::{Link, Node, STACK, Surface};
 use super::ray::RayMask;
+
+/// The three results of `f`. Array methods with closures compile into calls; this does not.
+#[inline(always)]
+fn three<T>(f: impl Fn(usize) -> T) -> [T; 3] {
+    [f(0), f(1), f(2)]
+}
 
 /// What a query sees.
 #[derive(Clone, Copy, Debug)]

@@ -5,10 +5,10 @@ use glam::Vec4;
 use super::super::node::{Link, Node, STACK};
 use super::super::triangles::TriangleBvh;
 use super::super::wide::WideTree;
-use super::Filter;
 use super::nearest::{Claim, Nearest, Place};
 use super::slab::{WideOrigin, crossing, crossing4, inverse, least, margin, most};
-use super::triangle::{EdgePlanes, bounds, corner_height, dot, settled};
+use super::triangle::{EdgePlanes, bounds, dot, height_of, settled};
+use super::{Filter, three};
 use crate::bounds::Aabb;
 
 /// A ray in the space of a tree, prepared. Its direction need not have unit length: distances are multiples of it.
@@ -36,7 +36,8 @@ impl Probe {
         longest: f32,
     ) -> Self {
         let margin = margin(origin, all);
-        let (inverse, wide) = (direction.map(inverse), WideOrigin::new(origin, margin));
+        let wide = WideOrigin::new(origin, margin);
+        let inverse = three(|axis| inverse(direction[axis]));
         Self {
             origin,
             direction,
@@ -69,8 +70,8 @@ impl Probe {
     fn enters(&self, node: &Node, limit: f32) -> (u32, Vec4) {
         let (enter, leave) = crossing4(
             node,
-            &self.wide.0.map(Vec4::splat),
-            &self.inverse.map(Vec4::splat),
+            &self.wide,
+            &three(|axis| Vec4::splat(self.inverse[axis])),
         );
         let enter = enter.max(Vec4::splat(self.near));
         (
@@ -95,10 +96,9 @@ impl Probe {
             let lane = candidates.trailing_zeros() as usize;
             candidates &= candidates - 1;
             let slot = block * 4 + lane;
-            let surface = &bvh.surfaces[slot];
             let [x, y, z] = self.direction;
-            let slope = dot(surface.normal, x, y, z);
-            let distance = corner_height(triangles, lane, self.origin, surface.normal) / slope;
+            let slope = dot(triangles.normal_of(lane), x, y, z);
+            let distance = height_of(triangles, lane, self.origin) / slope;
             let (min, max) = bounds(triangles, lane);
             let (min, max) = self.wide.corners(&min, &max);
             let distance = settled(
@@ -108,7 +108,10 @@ impl Probe {
                 self.margin,
             );
             let in_range = distance >= self.near && distance <= self.far;
-            if in_range && filter.admits_surface(surface) && found(slot as u32, distance) {
+            if in_range
+                && filter.admits_surface(&bvh.surfaces[slot])
+                && found(slot as u32, distance)
+            {
                 return true;
             }
         }

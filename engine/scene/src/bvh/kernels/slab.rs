@@ -97,10 +97,12 @@ pub(in super::super) fn crossing(min: &[f32; 3], max: &[f32; 3], inverse: [f32; 
 #[inline(always)]
 pub(in super::super) fn crossing4(
     node: &Node,
-    wide: &[Vec4; 6],
+    wide: &WideOrigin,
     inverse: &[Vec4; 3],
 ) -> (Vec4, Vec4) {
-    let at = |plane: usize, axis: usize| (node.planes[plane] - wide[plane]) * inverse[axis];
+    let at = |plane: usize, axis: usize| {
+        (node.planes[plane] - Vec4::splat(wide.0[plane])) * inverse[axis]
+    };
     let (x0, x1) = (at(0, 0), at(3, 0));
     let (y0, y1) = (at(1, 1), at(4, 1));
     let (z0, z1) = (at(2, 2), at(5, 2));

@@ -10,7 +10,8 @@
 use glam::Vec4;
 
 use super::super::node::Block;
-use super::slab::{least, most};
+use super::slab::{WideOrigin, least, most};
+use super::three;
 
 /// Four triangles as seen from an origin.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +64,7 @@ impl EdgePlanes {
     /// `longest`: no component of a direction exceeds it.
     #[inline(always)]
     pub(in super::super) fn new(block: &Block, origin: [f32; 3], longest: f32) -> Self {
-        let origin = origin.map(Vec4::splat);
+        let origin = three(|axis| Vec4::splat(origin[axis]));
         let a = minus(&block.a, &origin);
         let b = minus(&block.b, &origin);
         let c = minus(&block.c, &origin);
@@ -104,9 +105,8 @@ impl EdgePlanes {
     #[inline(always)]
     pub(in super::super) fn inside_some(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
         let bounds = |n: &[Vec4; 3]| {
-            let pairs = [0, 1, 2].map(|k| (n[k] * low[k], n[k] * high[k]));
-            let least = pairs.map(|(a, b)| a.min(b));
-            let most = pairs.map(|(a, b)| a.max(b));
+            let least = three(|k| (n[k] * low[k]).min(n[k] * high[k]));
+            let most = three(|k| (n[k] * low[k]).max(n[k] * high[k]));
             (
                 (least[0] + least[1]) + least[2],
                 (most[0] + most[1]) + most[2],
@@ -122,27 +122,52 @@ impl EdgePlanes {
         let all_may_be_negative = (u0 - tu).max(v0 - tv).max(w0 - tw).cmple(Vec4::ZERO);
         (all_may_be_positive | all_may_be_negative).bitmask()
     }
+}
 
-    /// One of the triangles: normals, shape (edge, axis), and tolerances.
+/// Four triangles as rays with one origin need them, one number after the other.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Facets {
+    /// See [`EdgePlanes`]. Shape (edge, axis, triangle).
+    pub(in super::super) edges: [[[f32; 4]; 3]; 3],
+    /// Shape (edge, triangle).
+    pub(in super::super) tolerances: [[f32; 4]; 3],
+    /// Shape (axis, triangle).
+    pub(in super::super) normal: [[f32; 4]; 3],
+    /// Distances of the planes from the origin, along their normals.
+    pub(in super::super) height: [f32; 4],
+    /// The triangles' boxes as seen from the origin: lower corners, upper corners. Shape (6, triangle).
+    pub(in super::super) bounds: [[f32; 4]; 6],
+}
+
+impl Facets {
     #[inline(always)]
-    pub(in super::super) fn of(&self, lane: usize) -> ([[f32; 3]; 3], [f32; 3]) {
-        (
-            self.normals.map(|edge| edge.map(|axis| axis[lane])),
-            self.tolerances.map(|edge| edge[lane]),
-        )
+    pub(in super::super) fn new(
+        block: &Block,
+        planes: &EdgePlanes,
+        origin: [f32; 3],
+        wide: &WideOrigin,
+    ) -> Self {
+        let corner = minus(&block.a, &three(|axis| Vec4::splat(origin[axis])));
+        let n = &block.normal;
+        let height = (n[0] * corner[0] + n[1] * corner[1]) + n[2] * corner[2];
+        let low = |k: usize| (block.a[k].min(block.b[k]).min(block.c[k]) - wide.0[k]).to_array();
+        let high =
+            |k: usize| (block.a[k].max(block.b[k]).max(block.c[k]) - wide.0[k + 3]).to_array();
+        Self {
+            edges: three(|edge| three(|axis| planes.normals[edge][axis].to_array())),
+            tolerances: three(|edge| planes.tolerances[edge].to_array()),
+            normal: three(|axis| n[axis].to_array()),
+            height: height.to_array(),
+            bounds: [low(0), low(1), low(2), high(0), high(1), high(2)],
+        }
     }
 }
 
 /// Distance of the plane of one triangle of a block from an origin, along its normal.
 #[inline(always)]
-pub(in super::super) fn corner_height(
-    block: &Block,
-    lane: usize,
-    origin: [f32; 3],
-    normal: [f32; 3],
-) -> f32 {
-    let [x, y, z] = [0, 1, 2].map(|axis| block.a[axis][lane] - origin[axis]);
-    dot(normal, x, y, z)
+pub(in super::super) fn height_of(block: &Block, lane: usize, origin: [f32; 3]) -> f32 {
+    let [x, y, z] = three(|axis| block.a[axis][lane] - origin[axis]);
+    dot(block.normal_of(lane), x, y, z)
 }
 
 /// Whether edge functions say that the ray may pass inside, from either side.
@@ -157,7 +182,12 @@ pub(in super::super) fn inside([u, v, w]: [f32; 3], [tu, tv, tw]: [f32; 3]) -> b
 #[inline]
 pub(in super::super) fn weights([u, v, w]: [f32; 3]) -> (f32, f32) {
     let front = ((u + v) + w) >= 0.0;
-    let [u, v, w] = [u, v, w].map(|side| most(if front { side } else { -side }, 0.0));
+    let sign = if front { 1.0 } else { -1.0 };
+    let (u, v, w) = (
+        most(sign * u, 0.0),
+        most(sign * v, 0.0),
+        most(sign * w, 0.0),
+    );
     let sum = (u + v) + w;
     if sum > 0.0 {
         (u / sum, v / sum)
