@@ -159,6 +159,11 @@ pub(crate) const fn white_lacquer() -> Finish {
     Finish::plain("white_lacquer", "particle_board", [238, 236, 230])
 }
 
+/// Grey boards, for carcasses behind light fronts: the gaps show.
+pub(crate) const fn grey_board() -> Finish {
+    Finish::plain("grey_board", "particle_board", [168, 168, 164])
+}
+
 /// Boards with lacquer of a colour.
 pub(crate) const fn lacquer(name: &'static str, srgb: Srgb) -> Finish {
     Finish::plain(name, "particle_board", srgb)

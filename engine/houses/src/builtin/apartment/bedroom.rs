@@ -1,7 +1,7 @@
 //! The parents' bedroom.
 
 use crate::builtin::finish::{
-    Finish, cloth, oak, porcelain, terry, upholstery, walnut, white_lacquer,
+    Finish, cloth, grey_board, oak, porcelain, terry, upholstery, walnut, white_lacquer,
 };
 use crate::builtin::models::bath_things::{laundry_basket, wall_mirror};
 use crate::builtin::models::bed::Bed;
@@ -30,7 +30,7 @@ pub(super) fn furnish(site: &mut Site<'_>) {
     let tall = Wardrobe {
         width_m: 1.8,
         doors: 4,
-        body: white_lacquer(),
+        body: grey_board(),
         front: white_lacquer(),
         ..Wardrobe::default()
     };

@@ -81,8 +81,8 @@ pub(super) fn kitchen_splashback() -> Bands {
     let tiles = Finish::tiled(
         "metro_tiles",
         "ceramic_tile",
-        "brick",
-        [[238, 236, 226], [200, 196, 186], [230, 226, 214]],
+        "metro",
+        [[240, 238, 230], [206, 202, 194], [222, 219, 210]],
         0.4,
     );
     vec![

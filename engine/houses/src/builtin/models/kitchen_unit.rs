@@ -66,10 +66,7 @@ impl KitchenUnit {
         let walls: Vec<f32> = (1..count).map(|k| k as f32 / count as f32).collect();
         let mut body = Part::new("body")
             .with(&black(), block([-x, 0.0, -z + 0.02], [x, 0.1, face - 0.04]))
-            .with_all(
-                &crate::builtin::finish::white_lacquer(),
-                carcass.boards(&[], &walls),
-            );
+            .with_all(&carcass_board(), carcass.boards(&[], &walls));
         let left_of = |k: usize| -x + self.bay_m * k as f32;
         // The worktop has a hole for each sink.
         let mut start = -x;
@@ -160,6 +157,11 @@ impl KitchenUnit {
     }
 }
 
+/// Boards of the carcass: dark, so that the gaps between fronts show.
+const fn carcass_board() -> Finish {
+    lacquer("graphite_board", [84, 86, 88])
+}
+
 /// A basin of sheet steel, open at the worktop, about x = `middle`.
 fn basin(middle: f32) -> Vec<Solid> {
     let (low, top, t) = (WORKTOP_M - 0.18, WORKTOP_M + 0.003, 0.012);
@@ -203,7 +205,7 @@ pub(crate) fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &Fin
         max: [x, height_m, DEPTH_M - BOARD_M],
     };
     let walls: Vec<f32> = (1..count).map(|k| k as f32 / count as f32).collect();
-    let white = crate::builtin::finish::white_lacquer();
+    let white = carcass_board();
     let (low, middle) = carcass.space(0.0, 0.5);
     let (upper, high) = carcass.space(0.5, 1.0);
     let mut model = Model::articulated("wall_cabinet", "hanging_kitchen_cabinet")

@@ -84,14 +84,23 @@ impl Door {
         let face = 0.5 * self.wall_m;
         let back = face - LEAF_M;
         let mut leaf = leaf.with(&self.leaf, block([left, bottom, back], [right, top, face]));
-        // Raised mouldings make two panels on each side.
+        // Raised mouldings around panels of a slightly darker paint, two on each side.
+        let shade = Finish {
+            srgb: self.leaf.srgb.map(|c| (f32::from(c) * 0.95) as u8),
+            ..self.leaf.clone()
+        };
         for (low, high) in [(0.16, 0.86), (1.0, top - 0.14)] {
             let (width, height) = (right - left - 0.26, high - low);
             let moulding = frame(width, height, 0.018, 0.006).untouchable();
             let middle = low + 0.5 * height;
+            let (x, y) = (0.5 * width - 0.018, 0.5 * height - 0.018);
+            let plate =
+                |z: f32| block([-x, middle - y, z], [x, middle + y, z + 0.002]).untouchable();
             leaf = leaf
                 .with(&self.leaf, moulding.clone().at(0.0, middle, face))
-                .with(&self.leaf, moulding.at(0.0, middle, back - 0.006));
+                .with(&self.leaf, moulding.at(0.0, middle, back - 0.006))
+                .with(&shade, plate(face))
+                .with(&shade, plate(back - 0.002));
         }
         leaf
     }

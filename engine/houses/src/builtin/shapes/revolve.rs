@@ -203,12 +203,18 @@ pub(super) fn surface(profile: &[(f32, f32)], segments: usize) -> Mesh {
             let end = if j == 0 { *a } else { *b };
             let direction = around((1.0, 0.0), i, segments);
             let normal = direction * normals[j].x + Vec3::Y * normals[j].y;
-            let uv = Vec2::new(
-                TAU * wide * i as f32 / segments as f32,
-                v + length * j as f32,
-            );
+            let position = around(end.into(), i, segments);
+            // Discs show their image flat, walls have it wrapped around.
+            let uv = if outward[k].y.abs() > 0.8 {
+                Vec2::new(position.x, -position.z)
+            } else {
+                Vec2::new(
+                    TAU * wide * i as f32 / segments as f32,
+                    v + length * j as f32,
+                )
+            };
             Vertex {
-                position: around(end.into(), i, segments),
+                position,
                 normal,
                 uv,
             }

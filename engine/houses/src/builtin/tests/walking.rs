@@ -3,8 +3,10 @@
 use super::overlap::{Convex, object_pieces};
 use super::support::apartment;
 use crate::builtin::apartment::walls;
-use dwell_scene::Aabb;
+use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
+use dwell_scene::{Aabb, State};
 use glam::Vec2;
+use std::collections::BTreeSet;
 
 /// Edge of a cell, m.
 const CELL_M: f32 = 0.05;
@@ -100,4 +102,30 @@ fn every_room_is_reached_on_foot() {
         );
         assert!(w > 0.04 && n > 0.12, "{}: {w} {n}", room.name);
     }
+}
+
+/// The scene's own walkable grid agrees: with open doors one island holds a place in every room, and the closed door of
+/// the bedroom keeps it apart.
+#[test]
+fn open_doors_join_the_rooms_and_a_closed_one_parts_them() {
+    let house = apartment();
+    let state = State::new(house);
+    let rooms_of_largest_island = |doors: Doors| -> BTreeSet<&str> {
+        let config = NavConfig {
+            doors,
+            ..NavConfig::default()
+        };
+        let grid = NavGrid::build(house, &state, &config).unwrap();
+        let largest = grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
+        let rooms = largest.filter_map(|cell| house.room_at(grid.position(cell)));
+        rooms.map(|room| house.rooms[room].name.as_str()).collect()
+    };
+    let all: BTreeSet<&str> = house.rooms.iter().map(|room| room.name.as_str()).collect();
+    assert_eq!(rooms_of_largest_island(Doors::Open), all);
+    let now = rooms_of_largest_island(Doors::AsTheyStand);
+    assert!(
+        now.contains("living_room") && now.contains("hallway"),
+        "{now:?}"
+    );
+    assert!(!now.contains("bedroom"), "{now:?}");
 }

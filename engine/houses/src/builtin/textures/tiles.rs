@@ -41,3 +41,22 @@ pub(super) fn brick(canvas: &mut Canvas, paint: &Paint) {
         )
     });
 }
+
+/// Glazed tiles twice as wide as high in running bond, four courses of two; colours: tile, joint, cloud.
+pub(super) fn metro(canvas: &mut Canvas, paint: &Paint) {
+    let [tile, joint, cloud] = paint.colors;
+    canvas.fill(|u, v| {
+        let y = v * 4.0;
+        let course = y as i32;
+        let x = u * 2.0 + if course % 2 == 0 { 0.0 } else { 0.5 };
+        let (dx, dy) = (x - x.floor(), y - course as f32);
+        let tone = paint.noise.cell(x as i32 % 2 * 3 + 1, course * 7);
+        // The glaze is thinner towards the rims.
+        let edge = (dx.min(1.0 - dx) * 2.0).min(dy.min(1.0 - dy));
+        let body = shade(
+            mix(cloud, tile, smooth_step(0.02, 0.12, edge)),
+            0.97 + 0.05 * tone,
+        );
+        mix(joint, body, smooth_step(0.02, 0.04, edge))
+    });
+}
