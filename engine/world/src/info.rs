@@ -3,9 +3,11 @@
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::world::World;
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::math::{ln, wrap_angle};
 use dwell_scene::navigation::NavGrid;
-use dwell_scene::space::yaw_from_forward;
-use dwell_scene::{AgentBody, House, RoomId};
+use dwell_scene::rays::RayScene;
+use dwell_scene::{AgentBody, Pose, RoomId};
 use glam::Vec3;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -66,7 +68,13 @@ pub struct Viewpoint {
     pub stand: [f32; 3],
 }
 
-/// A good view of every room: from the walkable place that is furthest from the room's middle, towards it.
+/// Directions around, and rays across and down, by which views are compared.
+const TURNS: u8 = 16;
+const RAYS: [usize; 2] = [11, 7];
+/// At most so many places a room are compared.
+const PLACES: usize = 48;
+
+/// A good view of every room: of walkable places and directions, the one from which most is seen from furthest.
 ///
 /// # Errors
 /// [`WorldError::Scene`] for a house too large for a navigation grid.
@@ -74,14 +82,12 @@ pub fn viewpoints(engines: &Engines) -> Result<Vec<Viewpoint>, WorldError> {
     let house = engines.house();
     let body = AgentBody::default();
     let grid = engines.navigation(&body)?;
-    Ok(house
-        .rooms
-        .ids()
-        .map(|room| viewpoint(house, &grid, room, body.eye_height_m))
-        .collect())
+    let rays = RayScene::new(house.clone());
+    Ok(house.rooms.ids().map(|room| viewpoint(&rays, &grid, room, body.eye_height_m)).collect())
 }
 
-fn viewpoint(house: &House, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoint {
+fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoint {
+    let house = rays.house();
     let room = &house.rooms[id];
     let corners: Vec<_> = room.footprint.iter().flatten().collect();
     let middle = corners.iter().copied().sum::<glam::Vec2>() / corners.len().max(1) as f32;
@@ -89,30 +95,56 @@ fn viewpoint(house: &House, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoint
     let inside: Vec<Vec3> = grid
         .walkable()
         .map(|cell| grid.position(cell))
-        .filter(|p| {
-            (p.y - room.floor_y).abs() < 0.3 && house.room_at(*p + Vec3::Y * 0.1) == Some(id)
-        })
+        .filter(|p| (p.y - room.floor_y).abs() < 0.3 && house.room_at(*p + Vec3::Y * 0.1) == Some(id))
         .collect();
     let distance = |p: &Vec3| (*p - center).length_squared();
-    let stand = inside
-        .iter()
-        .copied()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .unwrap_or(center);
-    let far = inside
-        .iter()
-        .copied()
-        .max_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .unwrap_or(center);
+    let stand = inside.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(center);
+    let mut best = (f32::NEG_INFINITY, stand + Vec3::Y * eye_m, 0.0);
+    for place in inside.iter().step_by(inside.len().div_ceil(PLACES).max(1)) {
+        let eye = *place + Vec3::Y * eye_m;
+        for turn in 0..TURNS {
+            let yaw_rad = f32::from(turn) * std::f32::consts::TAU / f32::from(TURNS);
+            let score = worth(rays, id, &Pose::from_position_yaw(eye, yaw_rad));
+            if score > best.0 {
+                best = (score, eye, yaw_rad);
+            }
+        }
+    }
     Viewpoint {
         name: room.name.clone(),
         kinds: room.kinds.clone(),
         area_m2: room.area_m2(),
         floor_y: room.floor_y,
-        eye: (far + Vec3::Y * eye_m).to_array(),
-        yaw_deg: yaw_from_forward(center - far).to_degrees(),
+        eye: best.1.to_array(),
+        yaw_deg: wrap_angle(best.2).to_degrees(),
         stand: stand.to_array(),
     }
+}
+
+/// How much a view shows of a room: the mean logarithm of distance to what is in it, and how many things there are.
+fn worth(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
+    let [across, down] = RAYS;
+    let mut seen: Vec<i32> = Vec::new();
+    let mut sum = 0.0;
+    for row in 0..down {
+        for column in 0..across {
+            let x = 2.0 * (column as f32 + 0.5) / across as f32 - 1.0;
+            let y = 1.0 - 2.0 * (row as f32 + 0.5) / down as f32;
+            let direction = world_from_eye.transform_vector(Vec3::new(x, 0.75 * y, -1.0));
+            let ray = Ray::new(world_from_eye.position, direction);
+            let Some(hit) = rays.closest(&ray, RayMask::EYE) else { continue };
+            let point = ray.at(hit.distance_m - 0.05);
+            // What lies beyond a door or window counts no more than the opening itself.
+            let inside = rays.house().room_at(point) == Some(room);
+            sum += ln(hit.distance_m.clamp(0.1, if inside { 12.0 } else { 1.5 }));
+            if inside {
+                seen.push(rays.surface(&hit).entity.0);
+            }
+        }
+    }
+    seen.sort_unstable();
+    seen.dedup();
+    sum / (across * down) as f32 + 0.06 * seen.len() as f32
 }
 
 /// An object as it is now.
