@@ -5,6 +5,8 @@ use std::sync::LazyLock;
 
 /// Entries of the encoding table; neighbours are less than half an sRGB step apart.
 const STEPS: usize = 8192;
+/// From here on `f32` holds integers only, and their last bits are those of the number.
+const INTEGERS: f32 = 8_388_608.0;
 
 /// Both directions.
 pub(crate) struct Srgb {
@@ -34,8 +36,12 @@ impl Srgb {
     /// The byte of linear light; what is not in 0 to 1 is clamped, NaN is black.
     #[inline]
     pub(crate) fn encode(&self, linear: f32) -> u8 {
-        let step = (linear * (STEPS - 1) as f32 + 0.5) as u32;
-        self.encode[step.min(STEPS as u32 - 1) as usize]
+        // Not `clamp`, which keeps NaN, and no cast, which would check its range again: the sum's last bits are the
+        // rounded step.
+        let positive = if linear > 0.0 { linear } else { 0.0 };
+        let within = if positive < 1.0 { positive } else { 1.0 };
+        let step = (within * (STEPS - 1) as f32 + INTEGERS).to_bits() as usize;
+        self.encode[step % STEPS]
     }
 
     /// The bytes of a colour in linear light.

@@ -1,15 +1,15 @@
 //! What each triangle of a house looks like, in the order in which hits name triangles.
 
 use crate::look::Look;
-use dwell_scene::{House, Id, Mesh, PartId, Placed, State, SurfaceOwner};
-use glam::{Affine3A, Mat3A, Quat, Vec2, Vec3, Vec3A};
+use dwell_scene::{House, Id, Mesh, PartId, Placed, Pose, State, SurfaceOwner};
+use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 
-/// One triangle.
+/// One triangle; a cache line.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
+#[repr(C, align(64))]
 pub(crate) struct Triangle {
-    /// Texture coordinates of the first corner, and what the second and third add to them.
-    uv: [Vec2; 3],
+    /// Maps a point on the triangle to its texture coordinates.
+    uv: [Vec4; 2],
     /// Geometric normal by the winding, unit length; world space, or part space for parts that move.
     pub(crate) normal: Vec3,
     /// Texture area per surface area, 1/m²: times the image's pixels, texels per square metre.
@@ -18,10 +18,11 @@ pub(crate) struct Triangle {
 }
 
 impl Triangle {
-    /// Texture coordinates at a hit with weights `u`, `v` of the second and third corner.
+    /// Texture coordinates at a point on the triangle, in the space of its normal.
     #[inline]
-    pub(crate) fn uv(&self, u: f32, v: f32) -> Vec2 {
-        self.uv[0] + self.uv[1] * u + self.uv[2] * v
+    pub(crate) fn uv(&self, point: Vec3) -> Vec2 {
+        let point = point.extend(1.0);
+        Vec2::new(self.uv[0].dot(point), self.uv[1].dot(point))
     }
 }
 
@@ -99,13 +100,11 @@ impl Surfaces {
             1.0
         };
         let normal = (area_normal * mirror).normalize_or_zero().as_vec3();
-        let uv = texture_coordinates(mesh, triangle);
-        let (du, dv) = (uv[1] - uv[0], uv[2] - uv[0]);
-        let density = f64::from(du.perp_dot(dv).abs()) / area_normal.length().max(1e-12);
+        let (uv, density) = texture_map(corners, area_normal, texture_coordinates(mesh, triangle));
         self.triangles.push(Triangle {
-            uv: [uv[0], du, dv],
+            uv,
             normal,
-            density: density as f32,
+            density,
             material: material as u32,
         });
         self.corner_normals
@@ -141,10 +140,10 @@ impl Surfaces {
         a * (1.0 - u - v) + b * u + c * v
     }
 
-    /// The turn from the space of normals to the world.
+    /// From the space of [`Triangle::normal`] to the world; nothing where that is the world.
     #[inline]
-    pub(crate) fn rotation(&self, instance: Option<u32>, state: &State) -> Option<Quat> {
-        instance.map(|instance| state.part_pose[self.movable[instance as usize]].rotation)
+    pub(crate) fn pose<'a>(&self, instance: Option<u32>, state: &'a State) -> Option<&'a Pose> {
+        instance.map(|instance| &state.part_pose[self.movable[instance as usize]])
     }
 
     /// Memory held, bytes.
@@ -153,6 +152,32 @@ impl Surfaces {
             + size_of_val(self.corner_normals.as_slice())
             + size_of_val(self.quick.as_slice())
     }
+}
+
+/// The map from points of a triangle's plane to texture coordinates, and the texture area per surface area.
+fn texture_map(corners: [DVec3; 3], area_normal: DVec3, uv: [Vec2; 3]) -> ([Vec4; 2], f32) {
+    let squared = area_normal.length_squared();
+    if squared < 1e-30 {
+        return (
+            [uv[0].x, uv[0].y].map(|at| Vec4::new(0.0, 0.0, 0.0, at)),
+            0.0,
+        );
+    }
+    // The gradients of the weights of the second and third corner.
+    let (e, f) = (corners[1] - corners[0], corners[2] - corners[0]);
+    let (second, third) = (
+        f.cross(area_normal) / squared,
+        area_normal.cross(e) / squared,
+    );
+    let (du, dv) = ((uv[1] - uv[0]).as_dvec2(), (uv[2] - uv[0]).as_dvec2());
+    // Images repeat: whole repetitions only cost digits.
+    let whole = ((uv[0] + uv[1] + uv[2]) / 3.0).floor();
+    let map = [0, 1].map(|k| {
+        let gradient = second * du[k] + third * dv[k];
+        let start = f64::from(uv[0][k] - whole[k]) - gradient.dot(corners[0]);
+        gradient.extend(start).as_vec4()
+    });
+    (map, (du.perp_dot(dv).abs() / squared.sqrt()) as f32)
 }
 
 fn texture_coordinates(mesh: &Mesh, triangle: usize) -> [Vec2; 3] {
@@ -215,6 +240,7 @@ fn unpack_normal(packed: u32) -> Vec3 {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "exact values")]
 mod tests {
     use super::*;
     use crate::texture::Textures;
@@ -243,6 +269,38 @@ mod tests {
             assert_eq!(unpack_normal(pack_normal(axis)), axis);
         }
         assert!(unpack_normal(pack_normal(Vec3::ZERO)).is_normalized());
+    }
+
+    #[test]
+    fn corners_have_their_texture_coordinates() {
+        let corners = [
+            Vec3::new(40.0, 1.0, 38.0),
+            Vec3::new(40.5, 1.2, 38.1),
+            Vec3::new(39.9, 1.9, 38.4),
+        ];
+        let uv = [
+            Vec2::new(7.25, -3.5),
+            Vec2::new(7.75, -3.25),
+            Vec2::new(7.0, -2.75),
+        ];
+        let wide = corners.map(Vec3::as_dvec3);
+        let area_normal = (wide[1] - wide[0]).cross(wide[2] - wide[0]);
+        let (map, _) = texture_map(wide, area_normal, uv);
+        let triangle = Triangle {
+            uv: map,
+            normal: Vec3::Y,
+            density: 0.0,
+            material: 0,
+        };
+        for (corner, expected) in corners.into_iter().zip(uv) {
+            let found = triangle.uv(corner);
+            assert!(
+                (found - (expected - Vec2::new(7.0, -4.0))).length() < 1e-4,
+                "{found} {expected}"
+            );
+        }
+        let flat = texture_map([wide[0]; 3], DVec3::ZERO, uv);
+        assert_eq!((flat.0[0].w, flat.1), (7.25, 0.0));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::color::Srgb;
 use dwell_scene::{House, Id, Texture, TextureId};
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 
 /// All images of a house, side by side.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ struct Level {
 #[derive(Clone, Copy, Debug)]
 struct Image {
     first_level: u32,
-    level_count: u32,
+    last_level: u32,
     /// The one colour of all its texels.
     uniform: Option<[u8; 4]>,
     /// Whether some texel lets light through.
@@ -74,10 +74,10 @@ impl Textures {
             }
             (current, size) = halve(&current, size);
         }
-        let level_count = self.levels.len() as u32 - first_level;
+        let last_level = self.levels.len() as u32 - 1 - first_level;
         self.images.push(Image {
             first_level,
-            level_count,
+            last_level,
             uniform,
             clear,
         });
@@ -113,30 +113,42 @@ impl Textures {
         texture: u32,
         uv: Vec2,
         texels_per_pixel: f32,
-    ) -> [f32; 4] {
+    ) -> Vec4 {
         let image = &self.images[texture as usize];
-        let level = level_of(texels_per_pixel).min(image.level_count - 1);
+        let level = level_of(texels_per_pixel).min(image.last_level);
         let Level {
             offset,
             width,
             height,
-        } = self.levels[(image.first_level + level) as usize];
+        } = self.levels[image.first_level.wrapping_add(level) as usize];
         let (x0, x1, fx) = neighbours(uv.x, width);
         let (y0, y1, fy) = neighbours(-uv.y, height);
-        let offset = offset as usize;
-        let (row0, row1) = (offset + y0 * width as usize, offset + y1 * width as usize);
+        let row = |y: u32| offset.wrapping_add(y.wrapping_mul(width));
+        let (row0, row1) = (row(y0), row(y1));
+        let texel = |row: u32, x: u32| self.texels[row.wrapping_add(x) as usize];
         let corners = [
-            (self.texels[row0 + x0], (1.0 - fx) * (1.0 - fy)),
-            (self.texels[row0 + x1], fx * (1.0 - fy)),
-            (self.texels[row1 + x0], (1.0 - fx) * fy),
-            (self.texels[row1 + x1], fx * fy),
+            texel(row0, x0),
+            texel(row0, x1),
+            texel(row1, x0),
+            texel(row1, x1),
         ];
-        let mut sum = [0.0; 4];
-        for (texel, weight) in corners {
-            for k in 0..3 {
-                sum[k] += weight * srgb.decode(texel[k]);
-            }
-            sum[3] += weight * f32::from(texel[3]) * (1.0 / 255.0);
+        let weights = [
+            (1.0 - fx) * (1.0 - fy),
+            fx * (1.0 - fy),
+            (1.0 - fx) * fy,
+            fx * fy,
+        ];
+        let mut sum = Vec4::ZERO;
+        for ([r, g, b, _], weight) in corners.into_iter().zip(weights) {
+            sum += Vec4::new(srgb.decode(r), srgb.decode(g), srgb.decode(b), 1.0) * weight;
+        }
+        if image.clear {
+            sum.w = corners
+                .iter()
+                .zip(weights)
+                .map(|(corner, weight)| f32::from(corner[3]) * weight)
+                .sum::<f32>()
+                / 255.0;
         }
         sum
     }
@@ -153,30 +165,35 @@ fn level_of(texels_per_pixel: f32) -> u32 {
     exponent.saturating_sub(126) / 2
 }
 
+/// Adding this to a number of less than 2^21 rounds it to an integer, which the sum's last bits hold.
+const INTEGERS: f32 = 12_582_912.0;
+
+/// The nearest integer, as itself and as a number.
+#[inline]
+fn nearest(number: f32) -> (f32, i32) {
+    let sum = number + INTEGERS;
+    (
+        sum - INTEGERS,
+        (sum.to_bits() as i32).wrapping_sub(INTEGERS.to_bits() as i32),
+    )
+}
+
 /// The two texels beside a repeating coordinate, and the weight of the second.
 #[inline]
-fn neighbours(coordinate: f32, size: u32) -> (usize, usize, f32) {
-    // To [0, 1) without a call to floor; a coordinate beyond the integers is its own whole part.
-    let mut fraction = coordinate - (coordinate as i32) as f32;
-    if fraction < 0.0 {
-        fraction += 1.0;
-    }
-    // Beyond 2^31 the line above leaves nonsense, and what is not a number compares with nothing.
-    if !(0.0..1.0).contains(&fraction) {
-        fraction = 0.0;
-    }
-    let place = fraction * size as f32 - 0.5;
-    let below = if place < 0.0 {
-        -1.0
-    } else {
-        (place as u32) as f32
+fn neighbours(coordinate: f32, size: u32) -> (u32, u32, f32) {
+    // Nothing repeats a million times; what is not a number becomes one.
+    let coordinate = if coordinate > -1e6 { coordinate } else { -1e6 };
+    let coordinate = if coordinate < 1e6 { coordinate } else { 1e6 };
+    // From the middle of the image: -1/2 to 1/2.
+    let place = (coordinate - nearest(coordinate).0) * size as f32 - 0.5;
+    let (below, first) = nearest(place - 0.5);
+    let (size, last) = (size as i32, size.wrapping_sub(1));
+    let wrap = |k: i32| {
+        let k = if k < 0 { k.wrapping_add(size) } else { k };
+        // Images of one texel fall short once more.
+        if k < 0 { last } else { (k as u32).min(last) }
     };
-    let first = below as i32;
-    let second = first + 1;
-    let last = size as i32 - 1;
-    let first = if first < 0 { last } else { first.min(last) };
-    let second = if second > last { 0 } else { second };
-    (first as usize, second as usize, place - below)
+    (wrap(first), wrap(first.wrapping_add(1)), place - below)
 }
 
 /// Half the size in either direction, each texel the mean of those that it covers, in linear light and weighted by alpha.
@@ -237,7 +254,7 @@ mod tests {
     }
 
     fn bytes(all: &Textures, uv: Vec2, area: f32) -> [u8; 3] {
-        let [r, g, b, _] = all.sample(Srgb::tables(), 0, uv, area);
+        let [r, g, b, _] = all.sample(Srgb::tables(), 0, uv, area).to_array();
         Srgb::tables().encode3([r, g, b])
     }
 
@@ -319,7 +336,7 @@ mod tests {
             ] {
                 let (a, b, weight) = neighbours(coordinate, size);
                 assert!(
-                    a < size as usize && b < size as usize && (0.0..=1.0).contains(&weight),
+                    a < size && b < size && (0.0..=1.0).contains(&weight),
                     "{coordinate} {size}"
                 );
             }
@@ -331,7 +348,7 @@ mod tests {
         let clear_green = [0, 255, 0, 0];
         let red = [255, 0, 0, 255];
         let all = single(2, 2, [red, clear_green, red, clear_green].concat());
-        let [r, g, b, a] = all.sample(Srgb::tables(), 0, Vec2::ZERO, 100.0);
+        let [r, g, b, a] = all.sample(Srgb::tables(), 0, Vec2::ZERO, 100.0).to_array();
         assert!(r > 0.99 && g == 0.0 && b == 0.0 && (a - 0.5).abs() < 0.01);
         assert!(all.is_clear(TextureId(0)));
     }

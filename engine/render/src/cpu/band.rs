@@ -1,11 +1,10 @@
 //! Some rows of one picture.
 
-use super::rays::{EDGE, Packet, Rays};
+use super::rays::{COLUMNS, Packet, ROWS, Rays};
+use super::shade::Palette;
 use super::{BAND_ROWS, CpuRenderer, Job};
 use crate::frame::FrameMut;
 use crate::light::{Exposure, Lighting};
-use crate::semantic::VOID;
-use crate::surfaces::SLOW;
 use dwell_scene::State;
 use dwell_scene::rays::RayScene;
 
@@ -16,8 +15,8 @@ pub(super) struct Band<'a> {
     pub(super) rays: Rays,
     /// Nothing for flat views.
     pub(super) light: Option<(&'a Lighting, Exposure)>,
-    width: usize,
-    far_m: f32,
+    /// Of the picture.
+    size: (usize, usize),
     /// Its first row in the picture.
     first_row: usize,
     rows: usize,
@@ -43,8 +42,7 @@ impl<'a> Band<'a> {
                 state: job.state,
                 rays,
                 light,
-                width,
-                far_m: camera.far_m(),
+                size: (width, height),
                 first_row,
                 rows,
                 frame: FrameMut {
@@ -59,58 +57,62 @@ impl<'a> Band<'a> {
 
     /// Writes the pixels.
     pub(super) fn render(&mut self, renderer: &CpuRenderer) {
-        for top in (0..self.rows).step_by(EDGE) {
-            for left in (0..self.width).step_by(EDGE) {
-                let packet = self.rays.packet(self.scene, left, self.first_row + top);
-                self.write(renderer, &packet, left, top);
+        let (mut packet, mut palette) = (Packet::new(), Palette::new());
+        for top in (0..self.rows).step_by(ROWS) {
+            for left in (0..self.size.0).step_by(COLUMNS) {
+                let corner = (left, self.first_row + top);
+                self.rays.cast(self.scene, corner, self.size, &mut packet);
+                self.write(renderer, &mut packet, &mut palette, (left, top));
             }
         }
     }
 
-    fn write(&mut self, renderer: &CpuRenderer, packet: &Packet, left: usize, top: usize) {
-        let columns = EDGE.min(self.width - left);
-        for row in 0..EDGE.min(self.rows - top) {
-            let first = (top + row) * self.width + left;
-            let hits = &packet.hits[row * EDGE..row * EDGE + columns];
-            if let Some(depth) = &mut self.frame.depth {
-                for (pixel, hit) in depth[first..first + columns].iter_mut().zip(hits) {
-                    *pixel = hit.map_or(self.far_m, |hit| hit.distance_m);
-                }
-            }
-            if let Some(instance) = &mut self.frame.instance {
-                for (pixel, hit) in instance[first..first + columns].iter_mut().zip(hits) {
-                    *pixel = hit.map_or(0, |hit| hit.id);
-                }
-            }
-            if let Some(semantic) = &mut self.frame.semantic {
-                for (pixel, hit) in semantic[first..first + columns].iter_mut().zip(hits) {
-                    *pixel = hit.map_or(VOID, |hit| renderer.class(hit.id));
-                }
-            }
-            if self.frame.rgb.is_some() {
-                let mut colors = [[0; 3]; EDGE];
-                for (lane, color) in (row * EDGE..).zip(&mut colors[..columns]) {
-                    *color = self.pixel(renderer, packet, lane);
-                }
-                if let Some(rgb) = &mut self.frame.rgb {
-                    rgb[first * 3..(first + columns) * 3]
-                        .copy_from_slice(&colors.as_flattened()[..columns * 3]);
-                }
-            }
-        }
-    }
-
-    #[inline]
-    fn pixel(&self, renderer: &CpuRenderer, packet: &Packet, lane: usize) -> [u8; 3] {
-        let Some(hit) = packet.hits[lane] else {
-            return self.void(packet.ray(lane));
+    fn write(
+        &mut self,
+        renderer: &CpuRenderer,
+        packet: &mut Packet,
+        palette: &mut Palette,
+        (left, top): (usize, usize),
+    ) {
+        let width = self.size.0;
+        let (columns, rows) = (COLUMNS.min(width - left), ROWS.min(self.rows - top));
+        // Pixels and lanes of each row.
+        let spans = |row: usize| {
+            let first = (top + row) * width + left;
+            (
+                first..first + columns,
+                row * COLUMNS..row * COLUMNS + columns,
+            )
         };
-        let position = renderer.surfaces.position(hit.instance, hit.triangle);
-        let [r, g, b, kind] = renderer.surfaces.quick(position);
-        if kind != SLOW && self.light.is_none() {
-            return [r, g, b];
+        if let Some(buffer) = &mut self.frame.depth {
+            let (near_m, far_m) = self.rays.range();
+            let depths = packet.depths(near_m, far_m);
+            for (pixels, lanes) in (0..rows).map(spans) {
+                buffer[pixels].copy_from_slice(&depths[lanes]);
+            }
         }
-        self.color(renderer, packet.ray(lane), hit, position)
+        if self.frame.instance.is_some() || self.frame.semantic.is_some() {
+            let ids = packet.ids();
+            for (pixels, lanes) in (0..rows).map(spans) {
+                if let Some(buffer) = &mut self.frame.instance {
+                    buffer[pixels.clone()].copy_from_slice(&ids[lanes.clone()]);
+                }
+                if let Some(buffer) = &mut self.frame.semantic {
+                    for (pixel, id) in buffer[pixels].iter_mut().zip(&ids[lanes]) {
+                        *pixel = renderer.class(*id);
+                    }
+                }
+            }
+        }
+        if self.frame.rgb.is_some() {
+            self.colors(renderer, packet, (columns, rows), palette);
+            if let Some(buffer) = &mut self.frame.rgb {
+                for (pixels, lanes) in (0..rows).map(spans) {
+                    let bytes = palette.bytes[lanes].as_flattened();
+                    buffer[pixels.start * 3..pixels.end * 3].copy_from_slice(bytes);
+                }
+            }
+        }
     }
 }
 

@@ -1,16 +1,20 @@
-//! The rays of a view, sixteen pixels at a time.
+//! The rays of a view, a packet of pixels at a time.
 
 use crate::camera::Projection;
 use crate::frame::View;
 use dwell_scene::EntityId;
-use dwell_scene::bvh::{Hit, Ray, RayMask};
-use dwell_scene::rays::{FAN, RayScene};
+use dwell_scene::bvh::{Hit, PacketHits, Ray, RayMask, RayPacket};
+use dwell_scene::rays::RayScene;
 use glam::{Vec2, Vec3};
 
-/// Pixels along the edge of a packet.
-pub(super) const EDGE: usize = 4;
+/// Pixels across a packet.
+pub(super) const COLUMNS: usize = 8;
+/// Pixels down a packet.
+pub(super) const ROWS: usize = 4;
+/// Rays of a packet.
+pub(super) const LANES: usize = COLUMNS * ROWS;
 
-/// A view, prepared. Rays run per metre of depth: the point at depth d is `start + d * direction`.
+/// A view, prepared.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rays {
     view: View,
@@ -22,18 +26,155 @@ pub(super) struct Rays {
     pub(super) pixel_area: (f32, f32),
 }
 
-/// The rays of 4 by 4 pixels, and what they met.
+/// The rays of some pixels and what they met. Lane k is column k % 8 and row k / 8.
 pub(super) struct Packet {
-    start: [Vec3; FAN],
-    direction: [Vec3; FAN],
-    pub(super) hits: [Option<Hit>; FAN],
+    rays: RayPacket<LANES>,
+    /// Depth per length along the ray.
+    per_length: [f32; LANES],
+    hits: PacketHits<LANES>,
+    /// In place of the hits where rays do not start at one point.
+    beam: Option<Box<Beam>>,
+}
+
+/// Rays side by side.
+struct Beam {
+    start: [Vec3; LANES],
+    hits: [Option<Hit>; LANES],
+}
+
+/// What one pixel sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
+    pub(super) point: Vec3,
+    /// Of the ray; unit length.
+    pub(super) direction: Vec3,
+    pub(super) depth: f32,
+    /// Depth per length along the ray.
+    pub(super) per_length: f32,
+    pub(super) id: i32,
+    pub(super) instance: Option<u32>,
+    pub(super) triangle: u32,
 }
 
 impl Packet {
-    /// The point at depth 0 and the way per metre of depth.
+    /// No rays; memory for many packets of one picture.
+    pub(super) fn new() -> Self {
+        Self {
+            rays: RayPacket::new(Vec3::ZERO),
+            per_length: [1.0; LANES],
+            hits: PacketHits::new(),
+            beam: None,
+        }
+    }
+
+    /// The direction of a ray; unit length.
     #[inline]
-    pub(super) fn ray(&self, lane: usize) -> (Vec3, Vec3) {
-        (self.start[lane], self.direction[lane])
+    pub(super) fn direction(&self, lane: usize) -> Vec3 {
+        let [x, y, z] = &self.rays.direction;
+        Vec3::new(x[lane], y[lane], z[lane])
+    }
+
+    /// What a pixel sees.
+    #[inline]
+    pub(super) fn sight(&self, lane: usize) -> Option<Sight> {
+        let direction = self.direction(lane);
+        let (start, distance, id, instance, triangle) = match &self.beam {
+            None => {
+                if !self.hits.is_hit(lane) {
+                    return None;
+                }
+                let hits = &self.hits;
+                let found = (
+                    hits.distance_m[lane],
+                    hits.id[lane],
+                    hits.instance(lane),
+                    hits.triangle[lane],
+                );
+                (self.rays.origin, found.0, found.1, found.2, found.3)
+            }
+            Some(beam) => {
+                let hit = beam.hits[lane]?;
+                (
+                    beam.start[lane],
+                    hit.distance_m,
+                    hit.id,
+                    hit.instance,
+                    hit.triangle,
+                )
+            }
+        };
+        let per_length = self.per_length[lane];
+        Some(Sight {
+            point: start + direction * distance,
+            direction,
+            depth: distance * per_length,
+            per_length,
+            id,
+            instance,
+            triangle,
+        })
+    }
+
+    /// Depths of what pixels see, m; `far_m` for those that see nothing.
+    #[inline]
+    pub(super) fn depths(&self, near_m: f32, far_m: f32) -> [f32; LANES] {
+        match &self.beam {
+            // Distances of nothing are infinite.
+            None => std::array::from_fn(|k| {
+                (self.hits.distance_m[k] * self.per_length[k]).clamp(near_m, far_m)
+            }),
+            Some(beam) => beam
+                .hits
+                .map(|hit| hit.map_or(far_m, |hit| hit.distance_m.clamp(near_m, far_m))),
+        }
+    }
+
+    /// Ids of what pixels see; 0 for those that see nothing.
+    #[inline]
+    pub(super) fn ids(&self) -> [i32; LANES] {
+        match &self.beam {
+            None => self.hits.id,
+            Some(beam) => beam.hits.map(|hit| hit.map_or(0, |hit| hit.id)),
+        }
+    }
+
+    /// Weights of the second and third corner of the triangle that a pixel sees.
+    pub(super) fn weights(&self, scene: &RayScene, lane: usize) -> (f32, f32) {
+        let hit = match &self.beam {
+            None => scene.packet_hit(&self.rays, &self.hits, lane),
+            Some(beam) => beam.hits[lane],
+        };
+        hit.map_or((0.0, 0.0), |hit| (hit.u, hit.v))
+    }
+
+    /// Goes on behind the given depths; lanes that are not named see nothing from now on.
+    pub(super) fn go_on(
+        &mut self,
+        rays: &Rays,
+        scene: &RayScene,
+        behind: impl Iterator<Item = (usize, f32)>,
+    ) {
+        let mut far_m = [-1.0; LANES];
+        for (lane, depth) in behind {
+            self.rays.near_m[lane] = depth / self.per_length[lane];
+            far_m[lane] = self.rays.far_m[lane];
+        }
+        self.rays.far_m = far_m;
+        self.trace(rays, scene);
+    }
+
+    fn trace(&mut self, rays: &Rays, scene: &RayScene) {
+        let Some(beam) = &mut self.beam else {
+            scene.closest_packet(&self.rays, RayMask::EYE, rays.hidden, &mut self.hits);
+            return;
+        };
+        for k in 0..LANES {
+            let ray = Ray {
+                origin: beam.start[k],
+                ..self.rays.ray(k)
+            };
+            beam.hits[k] = scene.closest_without(&ray, RayMask::EYE, rays.hidden);
+        }
     }
 }
 
@@ -51,51 +192,84 @@ impl Rays {
         }
     }
 
-    /// The ray through the middle of a pixel.
-    #[inline]
-    fn through(&self, x: usize, y: usize) -> (Vec3, Vec3) {
-        let image = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-        let (start, direction) = self.view.camera.ray_in_camera(image);
-        let eye = self.view.world_from_camera.position;
-        let turned = |v: Vec3| self.right * v.x + self.up * v.y + self.back * v.z;
-        match self.view.camera.projection() {
-            Projection::Pinhole { .. } => (eye, turned(direction)),
-            Projection::Orthographic { .. } => (eye + turned(start), -self.back),
-        }
+    /// The range of depth in which things are seen, m.
+    pub(super) fn range(&self) -> (f32, f32) {
+        (self.view.camera.near_m(), self.view.camera.far_m())
     }
 
-    /// What the pixels from (`x`, `y`) on see. Distances of hits are depths.
+    /// What the pixels from (`left`, `top`) on see; those beyond `width` and `height` see nothing.
     #[inline]
-    pub(super) fn packet(&self, scene: &RayScene, x: usize, y: usize) -> Packet {
-        let rays: [(Vec3, Vec3); FAN] =
-            std::array::from_fn(|k| self.through(x + k % EDGE, y + k / EDGE));
-        let near_m = self.view.camera.near_m();
-        Packet {
-            start: rays.map(|ray| ray.0),
-            direction: rays.map(|ray| ray.1),
-            hits: rays.map(|ray| self.closest(scene, ray, near_m)),
-        }
-    }
-
-    /// The nearest surface from a depth on.
-    pub(super) fn closest(
+    pub(super) fn cast(
         &self,
         scene: &RayScene,
-        (start, direction): (Vec3, Vec3),
-        near_m: f32,
-    ) -> Option<Hit> {
-        // Lengths along a ray of unit direction, and back.
-        let length = direction.length();
-        let ray = Ray {
-            origin: start,
-            direction: direction / length,
-            near_m: near_m * length,
-            far_m: self.view.camera.far_m() * length,
-        };
-        let hit = scene.closest_without(&ray, RayMask::EYE, self.hidden)?;
-        Some(Hit {
-            distance_m: hit.distance_m / length,
-            ..hit
-        })
+        (left, top): (usize, usize),
+        (width, height): (usize, usize),
+        packet: &mut Packet,
+    ) {
+        let (near, far) = self.range();
+        packet.rays.origin = self.view.world_from_camera.position;
+        packet.rays.near_m = [near; LANES];
+        packet.rays.far_m = [far; LANES];
+        if left + COLUMNS > width || top + ROWS > height {
+            for k in 0..LANES {
+                if left + k % COLUMNS >= width || top + k / COLUMNS >= height {
+                    packet.rays.far_m[k] = -1.0;
+                }
+            }
+        }
+        match self.view.camera.projection() {
+            Projection::Pinhole { fx, fy, cx, cy } => {
+                self.aim(packet, (left as f32, top as f32), (fx, fy, cx, cy));
+            }
+            Projection::Orthographic { .. } => self.spread(packet, (left, top)),
+        }
+        packet.trace(self, scene);
+    }
+
+    /// Directions through the middles of pixels.
+    #[inline]
+    fn aim(
+        &self,
+        packet: &mut Packet,
+        (left, top): (f32, f32),
+        (fx, fy, cx, cy): (f32, f32, f32, f32),
+    ) {
+        let rays = &mut packet.rays;
+        let across: [f32; COLUMNS] =
+            std::array::from_fn(|column| (left + column as f32 + 0.5 - cx) * (1.0 / fx));
+        for row in 0..ROWS {
+            let y = (cy - (top + row as f32 + 0.5)) * (1.0 / fy);
+            let fixed = self.up * y - self.back;
+            for (column, x) in across.iter().enumerate() {
+                let k = row * COLUMNS + column;
+                let length = (x * x + (y * y + 1.0)).sqrt();
+                let scale = 1.0 / length;
+                for axis in 0..3 {
+                    rays.direction[axis][k] = (self.right[axis] * x + fixed[axis]) * scale;
+                }
+                packet.per_length[k] = scale;
+                rays.near_m[k] *= length;
+                rays.far_m[k] *= length;
+            }
+        }
+    }
+
+    /// Starts in the middles of pixels, all in one direction.
+    fn spread(&self, packet: &mut Packet, (left, top): (usize, usize)) {
+        let start = std::array::from_fn(|k| {
+            let image = Vec2::new(
+                (left + k % COLUMNS) as f32 + 0.5,
+                (top + k / COLUMNS) as f32 + 0.5,
+            );
+            let start = self.view.camera.ray_in_camera(image).0;
+            self.view.world_from_camera.position + self.right * start.x + self.up * start.y
+        });
+        for axis in 0..3 {
+            packet.rays.direction[axis] = [-self.back[axis]; LANES];
+        }
+        packet.beam = Some(Box::new(Beam {
+            start,
+            hits: [None; LANES],
+        }));
     }
 }

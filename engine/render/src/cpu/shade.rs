@@ -2,9 +2,10 @@
 
 use super::CpuRenderer;
 use super::band::Band;
+use super::rays::{COLUMNS, LANES, Packet, Sight};
 use crate::color::Srgb;
 use crate::light::{beside_surface, display, sky};
-use dwell_scene::bvh::Hit;
+use crate::surfaces::SLOW;
 use dwell_scene::{Entity, EntityId};
 use glam::Vec3;
 
@@ -19,33 +20,155 @@ const GRAZING: f32 = 0.05;
 /// What the sky shows on a lit picture, against a flat one: tone mapping darkens it again.
 const LIT_SKY: f32 = 4.0;
 
-/// One ray: the point at depth 0 and the way per metre of depth.
-pub(super) type DepthRay = (Vec3, Vec3);
+/// A pixel whose ray passed a surface.
+#[derive(Clone, Copy)]
+struct Open {
+    lane: usize,
+    /// Light so far.
+    light: Vec3,
+    /// How much of what lies behind is seen.
+    rest: f32,
+    /// Where to go on, m of depth.
+    from: f32,
+}
+
+/// The pixels of a packet whose rays passed a surface.
+struct OpenLanes {
+    count: usize,
+    lanes: [Open; LANES],
+}
+
+impl OpenLanes {
+    const NONE: Self = Self {
+        count: 0,
+        lanes: [Open {
+            lane: 0,
+            light: Vec3::ZERO,
+            rest: 0.0,
+            from: 0.0,
+        }; LANES],
+    };
+
+    fn push(&mut self, open: Open) {
+        self.lanes[self.count] = open;
+        self.count += 1;
+    }
+
+    fn all(&self) -> &[Open] {
+        &self.lanes[..self.count]
+    }
+}
+
+/// Memory for many packets.
+pub(super) struct Palette {
+    pub(super) bytes: [[u8; 3]; LANES],
+    open: OpenLanes,
+    next: OpenLanes,
+}
+
+impl Palette {
+    pub(super) fn new() -> Self {
+        Self {
+            bytes: [[0; 3]; LANES],
+            open: OpenLanes::NONE,
+            next: OpenLanes::NONE,
+        }
+    }
+}
 
 impl Band<'_> {
-    /// sRGB of what a ray sees that first meets a surface that is not plain.
-    pub(super) fn color(
+    /// sRGB of the first `columns` by `rows` pixels of a packet, which afterwards no longer knows what they see first.
+    pub(super) fn colors(
         &self,
         renderer: &CpuRenderer,
-        ray: DepthRay,
-        hit: Hit,
-        position: usize,
+        packet: &mut Packet,
+        (columns, rows): (usize, usize),
+        palette: &mut Palette,
+    ) {
+        palette.open.count = 0;
+        for row in 0..rows {
+            for lane in row * COLUMNS..row * COLUMNS + columns {
+                palette.bytes[lane] = self.color(renderer, packet, lane, &mut palette.open);
+            }
+        }
+        if palette.open.count > 0 {
+            self.behind(renderer, packet, palette);
+        }
+    }
+
+    /// sRGB of a pixel that sees nothing or an opaque surface; others are noted in `open`.
+    #[inline]
+    fn color(
+        &self,
+        renderer: &CpuRenderer,
+        packet: &Packet,
+        lane: usize,
+        open: &mut OpenLanes,
     ) -> [u8; 3] {
-        let (mut light, opacity) = self.surface(renderer, ray, &hit, position);
+        let Some(sight) = packet.sight(lane) else {
+            return self.encode(self.sky(packet.direction(lane)));
+        };
+        let position = renderer.surfaces.position(sight.instance, sight.triangle);
+        let [r, g, b, kind] = renderer.surfaces.quick(position);
+        if kind != SLOW && self.light.is_none() {
+            return [r, g, b];
+        }
+        let (light, opacity) = self.surface(renderer, &sight, position, || {
+            packet.weights(self.scene, lane)
+        });
         if opacity < OPAQUE {
-            light = self.behind(renderer, ray, hit, (light, opacity));
+            open.push(Open {
+                lane,
+                light: light * opacity,
+                rest: 1.0 - opacity,
+                from: sight.depth * (1.0 + GAP.1) + GAP.0,
+            });
         }
         self.encode(light)
     }
 
-    /// sRGB of nothing.
-    pub(super) fn void(&self, ray: DepthRay) -> [u8; 3] {
-        self.encode(self.sky(ray))
+    /// All that is seen through surfaces, front to back.
+    #[cold]
+    fn behind(&self, renderer: &CpuRenderer, packet: &mut Packet, palette: &mut Palette) {
+        let bytes = &mut palette.bytes;
+        let (mut open, mut next) = (&mut palette.open, &mut palette.next);
+        for layer in 1..=LAYERS {
+            let ways = open.all().iter().map(|open| (open.lane, open.from));
+            packet.go_on(&self.rays, self.scene, ways);
+            next.count = 0;
+            for &Open {
+                lane, light, rest, ..
+            } in open.all()
+            {
+                let Some(sight) = packet.sight(lane) else {
+                    bytes[lane] = self.encode(light + self.sky(packet.direction(lane)) * rest);
+                    continue;
+                };
+                let position = renderer.surfaces.position(sight.instance, sight.triangle);
+                let (more, opacity) = self.surface(renderer, &sight, position, || {
+                    packet.weights(self.scene, lane)
+                });
+                if opacity >= OPAQUE || layer == LAYERS {
+                    bytes[lane] = self.encode(light + more * rest);
+                    continue;
+                }
+                next.push(Open {
+                    lane,
+                    light: light + more * (opacity * rest),
+                    rest: rest * (1.0 - opacity),
+                    from: sight.depth * (1.0 + GAP.1) + GAP.0,
+                });
+            }
+            if next.count == 0 {
+                return;
+            }
+            std::mem::swap(&mut open, &mut next);
+        }
     }
 
-    fn sky(&self, ray: DepthRay) -> Vec3 {
+    fn sky(&self, direction: Vec3) -> Vec3 {
         let strength = if self.light.is_some() { LIT_SKY } else { 1.0 };
-        sky(ray.1.normalize_or_zero()) * strength
+        sky(direction) * strength
     }
 
     #[inline]
@@ -58,89 +181,71 @@ impl Band<'_> {
         })
     }
 
-    /// All that a ray sees through a first surface of this light and opacity, front to back.
-    #[cold]
-    fn behind(
-        &self,
-        renderer: &CpuRenderer,
-        ray: DepthRay,
-        mut hit: Hit,
-        first: (Vec3, f32),
-    ) -> Vec3 {
-        let mut sum = first.0 * first.1;
-        let mut rest = 1.0 - first.1;
-        for layer in 1..=LAYERS {
-            let from = hit.distance_m * (1.0 + GAP.1) + GAP.0;
-            let Some(next) = self.rays.closest(self.scene, ray, from) else {
-                return sum + self.sky(ray) * rest;
-            };
-            let position = renderer.surfaces.position(next.instance, next.triangle);
-            let (light, opacity) = self.surface(renderer, ray, &next, position);
-            if opacity >= OPAQUE || layer == LAYERS {
-                return sum + light * rest;
-            }
-            sum += light * (opacity * rest);
-            rest *= 1.0 - opacity;
-            hit = next;
-        }
-        sum
-    }
-
     /// Light that a surface sends to the camera, and how much of what lies behind it hides.
+    ///
+    /// `weights`: of the second and third corner.
     #[inline]
     fn surface(
         &self,
         renderer: &CpuRenderer,
-        ray: DepthRay,
-        hit: &Hit,
+        sight: &Sight,
         position: usize,
+        weights: impl FnOnce() -> (f32, f32),
     ) -> (Vec3, f32) {
         let triangle = renderer.surfaces.triangle(position);
         let look = &renderer.looks[triangle.material as usize];
         let mut color = Vec3::from_array(look.base);
         let mut opacity = look.opacity;
-        let rotation = renderer.surfaces.rotation(hit.instance, self.state);
-        let normal = rotation.map_or(triangle.normal, |turn| turn * triangle.normal);
+        let &Sight {
+            point,
+            direction,
+            depth,
+            ..
+        } = sight;
+        let pose = renderer.surfaces.pose(sight.instance, self.state);
+        let normal = pose.map_or(triangle.normal, |pose| pose.rotation * triangle.normal);
         if let Some(texture) = look.texture() {
-            let uv = triangle.uv(hit.u, hit.v);
-            let slope = normal.dot(ray.1).abs().max(GRAZING);
+            let in_part =
+                |p: Vec3| pose.map_or(p, |pose| pose.rotation.inverse() * (p - pose.position));
             let (fixed, growing) = self.rays.pixel_area;
-            let area = (fixed + growing * hit.distance_m * hit.distance_m) / slope;
+            let slope = normal.dot(direction).abs().max(GRAZING);
+            let area = (fixed + growing * depth * depth) * sight.per_length / slope;
             let texels = area * triangle.density * look.texels;
-            let [r, g, b, alpha] = renderer
+            let uv = triangle.uv(in_part(point));
+            let sample = renderer
                 .textures
                 .sample(Srgb::tables(), texture, uv, texels);
-            color *= Vec3::new(r, g, b);
-            opacity *= alpha;
+            color *= sample.truncate();
+            opacity *= sample.w;
         }
         let Some((lighting, exposure)) = &self.light else {
             return (color, opacity);
         };
-        let facing = if normal.dot(ray.1) > 0.0 {
+        let facing = if normal.dot(direction) > 0.0 {
             -normal
         } else {
             normal
         };
-        let smooth = renderer.surfaces.smooth_normal(position, hit.u, hit.v);
-        let smooth = rotation
-            .map_or(smooth, |turn| turn * smooth)
+        let (u, v) = weights();
+        let smooth = renderer.surfaces.smooth_normal(position, u, v);
+        let smooth = pose
+            .map_or(smooth, |pose| pose.rotation * smooth)
             .normalize_or(facing);
         let smooth = if smooth.dot(facing) < 0.0 {
             -smooth
         } else {
             smooth
         };
-        let point = ray.0 + ray.1 * hit.distance_m;
         let brightness = lighting.brightness(
             renderer.house_light(),
             *exposure,
             point,
             smooth,
-            beside_surface(point, facing, ray.1),
-            hit.id,
+            beside_surface(point, facing, direction),
+            sight.id,
         );
         (
-            color * brightness + self.glow(renderer, look.emission, hit.id),
+            color * brightness + self.glow(renderer, look.emission, sight.id),
             opacity,
         )
     }

@@ -160,12 +160,12 @@ impl Walls {
 fn mean_color(look: &Look, textures: &Textures) -> Vec3 {
     let base = Vec3::from_array(look.base);
     look.texture().map_or(base, |texture| {
-        let [r, g, b, _] = textures.sample(
+        let whole = textures.sample(
             crate::color::Srgb::tables(),
             texture,
             glam::Vec2::ZERO,
             1e12,
         );
-        base * Vec3::new(r, g, b)
+        base * whole.truncate()
     })
 }
