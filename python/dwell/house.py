@@ -89,7 +89,7 @@ class House:
         return self._native.semantic_classes()
 
     def write(self, path: str | os.PathLike[str], form: Literal["dwell", "suncg"]) -> list[str]:
-        """Writes the house into a new folder; returns what the form cannot hold, a sentence each."""
+        """Writes the house into a new folder; returns what the form cannot hold, in sentences."""
         return self._native.write(os.fspath(path), form)
 
     def __repr__(self) -> str:

@@ -3,10 +3,13 @@
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::PyHouse;
+use crate::picture;
 use dwell::sensors::{Dtype, Out};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo};
 use dwell_scene::parallel::Threads;
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadwriteArrayDyn};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadwriteArrayDyn,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -185,6 +188,30 @@ impl PyBatch {
 
     fn texts(&self, py: Python<'_>, sensor: usize) -> PyResult<Vec<String>> {
         self.with(py, |batch| Ok(batch.texts(sensor)))
+    }
+
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        env: usize,
+        view_json: &str,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let picture = self.with(py, |batch| {
+            let mut view: serde_json::Value = serde_json::from_str(view_json)?;
+            if let Some(view) = view.as_object_mut() {
+                view.entry("agent").or_insert_with(|| 0.into());
+            }
+            picture::render(
+                batch.env(env)?.world(),
+                &view.to_string(),
+                &["rgb".to_owned()],
+            )
+        })?;
+        picture
+            .frame
+            .rgb
+            .into_pyarray(py)
+            .reshape([picture.height, picture.width, 3])
     }
 
     fn expert_actions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {

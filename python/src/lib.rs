@@ -8,6 +8,7 @@ mod doorway;
 mod errors;
 mod facts;
 mod house;
+mod picture;
 mod world;
 
 use pyo3::prelude::*;

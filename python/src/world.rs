@@ -3,13 +3,13 @@
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::{PyHouse, describe_level};
+use crate::picture;
 use dwell::{DiscreteAction, Guide, Stride, World, WorldConfig};
 use dwell_physics::{Action, ActionOutcome, AgentControl};
-use dwell_render::{Camera, Channels, Frame, FrameMut, Job, Map, Preset, View};
+use dwell_render::{Channels, Frame, Map};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
-use dwell_scene::space::{rotation_from_forward, rotation_from_yaw_pitch};
-use dwell_scene::{Address, AgentId, Id, LevelId, ObjectId, Pose};
+use dwell_scene::{Address, AgentId, Id, LevelId, ObjectId};
 use glam::Vec3;
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -27,41 +27,6 @@ pub(crate) struct PyWorld {
 struct Running {
     world: World,
     guide: Option<([u32; 3], Guide)>,
-}
-
-/// A picture that is asked for.
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct ViewSettings {
-    width: u32,
-    height: u32,
-    fov_deg: f32,
-    near_m: f32,
-    far_m: f32,
-    preset: Preset,
-    agent: Option<u32>,
-    position: [f32; 3],
-    yaw_deg: f32,
-    pitch_deg: f32,
-    forward: Option<[f32; 3]>,
-}
-
-impl Default for ViewSettings {
-    fn default() -> Self {
-        Self {
-            width: 128,
-            height: 128,
-            fov_deg: 90.0,
-            near_m: 0.05,
-            far_m: 50.0,
-            preset: Preset::Lit,
-            agent: None,
-            position: [0.0; 3],
-            yaw_deg: 0.0,
-            pitch_deg: 0.0,
-            forward: None,
-        }
-    }
 }
 
 /// An action of the hand, with the object by name or id.
@@ -262,81 +227,43 @@ impl PyWorld {
         view_json: &str,
         channels: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let known = ["rgb", "depth", "instance", "semantic"];
-        if let Some(other) = channels
-            .iter()
-            .find(|channel| !known.contains(&channel.as_str()))
-        {
-            let message = format!("no image {other:?}; there are {known:?}");
-            return Err(crate::errors::to_python(Fault::Config(message)));
-        }
-        let wanted = |channel: &str| channels.iter().any(|other| other == channel);
-        let (height, width, rgb, depth, instance, semantic) = self.with(py, |running| {
-            let settings: ViewSettings = serde_json::from_str(view_json)?;
-            let ViewSettings {
-                width,
-                height,
-                fov_deg,
-                near_m,
-                far_m,
-                preset,
-                ..
-            } = settings;
-            let camera = Camera::from_fov(width, height, fov_deg)?.with_range(near_m, far_m)?;
-            let (world_from_camera, hide) = running.eye(&settings)?;
-            let pixels = camera.pixels();
-            let room = |channel, each| if wanted(channel) { pixels * each } else { 0 };
-            let mut rgb = vec![0_u8; room("rgb", 3)];
-            let mut depth = vec![0.0_f32; room("depth", 1)];
-            let mut instance = vec![0_i32; room("instance", 1)];
-            let mut semantic = vec![0_i32; room("semantic", 1)];
-            let world = &running.world;
-            world.engines().renderer().render_batch(
-                &mut [Job {
-                    scene: world.rays(),
-                    state: world.state(),
-                    view: View {
-                        camera,
-                        world_from_camera,
-                        preset,
-                        hide,
-                    },
-                    frame: FrameMut {
-                        rgb: wanted("rgb").then_some(&mut rgb[..]),
-                        depth: wanted("depth").then_some(&mut depth[..]),
-                        instance: wanted("instance").then_some(&mut instance[..]),
-                        semantic: wanted("semantic").then_some(&mut semantic[..]),
-                    },
-                }],
-                Threads::resolve(None),
-            )?;
-            Ok((
-                height as usize,
-                width as usize,
-                rgb,
-                depth,
-                instance,
-                semantic,
-            ))
+        let picture = self.with(py, |running| {
+            picture::render(&running.world, view_json, &channels)
         })?;
+        let (height, width) = (picture.height, picture.width);
         let images = PyDict::new(py);
-        if wanted("rgb") {
-            images.set_item("rgb", rgb.into_pyarray(py).reshape([height, width, 3])?)?;
-        }
-        if wanted("depth") {
-            images.set_item("depth", depth.into_pyarray(py).reshape([height, width, 1])?)?;
-        }
-        if wanted("instance") {
-            images.set_item(
-                "instance",
-                instance.into_pyarray(py).reshape([height, width, 1])?,
-            )?;
-        }
-        if wanted("semantic") {
-            images.set_item(
-                "semantic",
-                semantic.into_pyarray(py).reshape([height, width, 1])?,
-            )?;
+        for channel in &channels {
+            let image = match channel.as_str() {
+                "rgb" => picture
+                    .frame
+                    .rgb
+                    .clone()
+                    .into_pyarray(py)
+                    .reshape([height, width, 3])?
+                    .into_any(),
+                "depth" => picture
+                    .frame
+                    .depth
+                    .clone()
+                    .into_pyarray(py)
+                    .reshape([height, width, 1])?
+                    .into_any(),
+                "instance" => picture
+                    .frame
+                    .instance
+                    .clone()
+                    .into_pyarray(py)
+                    .reshape([height, width, 1])?
+                    .into_any(),
+                _ => picture
+                    .frame
+                    .semantic
+                    .clone()
+                    .into_pyarray(py)
+                    .reshape([height, width, 1])?
+                    .into_any(),
+            };
+            images.set_item(channel, image)?;
         }
         Ok(images)
     }
@@ -526,34 +453,5 @@ impl PyWorld {
     #[getter]
     fn step_count(&self, py: Python<'_>) -> PyResult<u64> {
         self.with(py, |running| Ok(running.world.state().step))
-    }
-}
-
-impl Running {
-    fn eye(&self, settings: &ViewSettings) -> Result<(Pose, Option<dwell_scene::EntityId>), Fault> {
-        if let Some(agent) = settings.agent {
-            let agent = self.agent(agent as usize)?;
-            let eye = self.world.state().agents[agent].world_from_eye();
-            return Ok((eye, Some(self.world.house().entity_of_agent(agent))));
-        }
-        let rotation = match settings.forward {
-            Some(forward) => rotation_from_forward(Vec3::from_array(forward)).ok_or_else(|| {
-                Fault::Config(format!(
-                    "forward is {forward:?}; allowed is a direction that is not zero"
-                ))
-            })?,
-            None => rotation_from_yaw_pitch(
-                settings.yaw_deg.to_radians(),
-                settings.pitch_deg.to_radians(),
-            ),
-        };
-        let pose = Pose::new(Vec3::from_array(settings.position), rotation);
-        if pose.is_valid() {
-            Ok((pose, None))
-        } else {
-            Err(Fault::Config(
-                "position and angles must be finite".to_owned(),
-            ))
-        }
     }
 }

@@ -31,7 +31,7 @@ def run(args: argparse.Namespace) -> int:
         files = {
             "report.html": page,
             "report.json": json.dumps(report, indent=1, ensure_ascii=False),
-            "found.json": json.dumps({"laws": report.get("found_laws", [])}, indent=1),
+            "found.json": json.dumps(report["found"], indent=1),
         }
         for name, text in files.items():
             with atomic(args.out / name) as path:

@@ -1,0 +1,127 @@
+"""The page that tells of the demo."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Any
+
+from dwell.demo.plot import line_plot
+
+_STYLE = """
+:root{color-scheme:light dark;--ink:#1d2430;--soft:#5a6575;--paper:#fbfaf8;--card:#fff;--line:#e2dfd9;
+--accent:#1f7a6d;--warn:#c4532f}
+@media(prefers-color-scheme:dark){:root{--ink:#e8e6e1;--soft:#a3a9b3;--paper:#15181d;--card:#1d2128;
+--line:#323843;--accent:#54c2b0;--warn:#f08a63}}
+*{box-sizing:border-box}body{margin:0;background:var(--paper);color:var(--ink);
+font:16px/1.55 system-ui,sans-serif}main{max-width:1080px;margin:0 auto;padding:2rem 1.25rem 4rem}
+h1{font-size:2rem;margin:.2rem 0}h2{margin:2.6rem 0 .6rem;font-size:1.35rem}p{max-width:72ch}
+.soft{color:var(--soft)}.row{display:grid;grid-template-columns:repeat(3,1fr);gap:.6rem}
+figure{margin:0 0 1.4rem;background:var(--card);border:1px solid var(--line);border-radius:10px;padding:.8rem}
+img{width:100%;height:auto;border-radius:6px;display:block}figcaption{margin-top:.6rem}
+table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.35rem .6rem;
+border-bottom:1px solid var(--line);vertical-align:top}.yes{color:var(--accent);font-weight:600}
+.no{color:var(--warn);font-weight:600}audio{width:100%;margin:.6rem 0}.two{display:grid;
+grid-template-columns:1fr 1fr;gap:1rem;align-items:start}@media(max-width:720px){.two,.row{grid-template-columns:1fr}}
+svg{width:100%;height:auto}svg text{fill:var(--soft);font-size:11px}.axis{stroke:var(--line)}
+.before{fill:var(--warn)}.after{fill:var(--accent)}
+"""
+
+
+def _mark(success: bool) -> str:
+    return '<span class="yes">yes</span>' if success else '<span class="no">no</span>'
+
+
+def _rooms(story: dict[str, Any]) -> str:
+    figures = []
+    for room in story["rooms"]:
+        images = "".join(
+            f'<img src="{file}" alt="{escape(room["title"])}, {channel}" loading="lazy">'
+            for channel, file in room["files"].items()
+        )
+        figures.append(
+            f'<figure><div class="row">{images}</div><figcaption><strong>{escape(room["title"])}</strong> '
+            f'<span class="soft">{escape(room["name"])}</span><br>{escape(room["text"])}</figcaption></figure>'
+        )
+    return "".join(figures)
+
+
+def _instruction(told: dict[str, Any]) -> str:
+    if "refused" in told:
+        return f"<p>No instruction could be given: {escape(told['refused'])}</p>"
+    return (
+        f'<div class="two"><figure><img src="{told["film"]}" alt="what the agent saw"></figure><div>'
+        f"<p><strong>{escape(told['text'])}</strong></p><p>Fulfilled: {_mark(told['success'])}, "
+        f"checked by the same predicates that made the sentence. {told['steps']} control steps, "
+        f"success weighted by path length {told['spl']:.2f}.</p></div></div>"
+    )
+
+
+def _errand(errand: dict[str, Any]) -> str:
+    rows = "".join(
+        f"<tr><td>{line['time_s']} s</td><td>{escape(line['what'])}</td><td>{_mark(line['success'])}</td>"
+        f"<td>{escape(line['sentence'])}</td></tr>"
+        for line in errand["log"]
+    )
+    return (
+        f'<div class="two"><figure><img src="{errand["film"]}" alt="what the agent saw"></figure>'
+        f'<figure><img src="map.png" alt="the house from above with the ways"></figure></div>'
+        f"<table><tr><th>when</th><th>what</th><th>done</th><th>said</th></tr>{rows}</table>"
+        f"<h2>What it heard</h2><p>Both ears of a spherical head, traced through the rooms, "
+        f"{errand['level_db']} dB SPL on average. Wear headphones.</p>"
+        f'<audio controls src="{errand["wav"]}"></audio>'
+        f'<figure><img src="{errand["spectrogram"]}" alt="spectrogram of both ears"></figure>'
+    )
+
+
+def _calibration(found: dict[str, Any]) -> str:
+    plots = "".join(
+        f"<figure>{line_plot(plot['title'], plot['unit'], plot['before'], plot['after'])}</figure>"
+        for plot in found["plots"][:2]
+    )
+    return (
+        f"<p>Throws were simulated by another program, with something hidden: "
+        f"<em>{escape(found['hidden'])}</em></p><p><strong>{escape(found['sentence'])}</strong></p>"
+        f'<div class="two">{plots}</div><p class="soft">Residuals before (orange) and after (green) the '
+        f'named law was added. <a href="{found["page"]}">The whole report</a></p>'
+    )
+
+
+def _figures(figures: dict[str, Any]) -> str:
+    rows = []
+    for stage, values in figures.items():
+        cells = ", ".join(
+            f"{key.replace('_', ' ')} {value:.4g}" if isinstance(value, float) else f"{key} {value}"
+            for key, value in values.items()
+            if not isinstance(value, list)
+        )
+        rows.append(f"<tr><td>{stage}</td><td>{escape(cells)}</td></tr>")
+    return f"<table>{''.join(rows)}</table>"
+
+
+def html(story: dict[str, Any]) -> str:
+    """The page; ``story`` is what the parts of the demo returned."""
+    info = story["info"]
+    recording = story["recording"]
+    viewer = (
+        f'<p><a href="{recording["file"]}">A recording</a> for the Rerun viewer.</p>'
+        if "file" in recording
+        else f'<p class="soft">{escape(recording["missing"])}</p>'
+    )
+    text = "".join(
+        f"<p>{escape(part)}</p>" for part in "\n".join(story["text"]).split("\n") if part
+    )
+    return (
+        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width,initial-scale=1">'
+        f"<title>dwell: {escape(story['house'])}</title><style>{_STYLE}</style></head><body><main>"
+        f'<p class="soft">dwell demo</p><h1>{escape(story["house"])}</h1>'
+        f"<p>{len(info['rooms'])} rooms, {info['objects']} objects, {info['triangles']:,} triangles, "
+        f"{info['lights']} lights, {info['emitters']} sources of sound.</p>"
+        f"<h2>Every room</h2>{_rooms(story)}"
+        f"<h2>The house in words</h2>{text}"
+        f"<h2>An instruction</h2>{_instruction(story['instruction'])}"
+        f"<h2>An errand</h2>{_errand(story['errand'])}{viewer}"
+        f"<h2>A hidden error, found</h2>{_calibration(story['calibration'])}"
+        f"<h2>How fast</h2><p class='soft'>Short runs on this machine, beside everything else.</p>"
+        f"{_figures(story['figures'])}</main></body></html>"
+    )

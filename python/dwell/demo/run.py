@@ -1,0 +1,81 @@
+"""The order of the demo, and the folder it writes."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from dwell.demo import calibrated, errand, figures, film, instructed, page, recording, rooms
+from dwell.house import House
+
+Progress = Callable[[float, str], None]
+
+
+def run(house: str, out: Path, progress: Progress) -> dict[str, Any]:
+    """Runs the demo and writes ``out``/index.html with what it shows.
+
+    The folder appears when everything is written; that of an earlier demo is replaced.
+
+    Args:
+        house: A HOUSE string.
+        out: The folder.
+        progress: Told a fraction and what is being done.
+
+    Returns:
+        A summary: what was fulfilled, done, heard, found, and how fast.
+
+    Raises:
+        FileExistsError: ``out`` holds something that no demo wrote.
+    """
+    if out.exists() and any(out.iterdir()) and not (out / "index.html").exists():
+        raise FileExistsError(f"{out}: holds files that no demo wrote; choose another folder")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
+    folder.chmod(0o755)
+    try:
+        summary = _fill(house, folder, progress)
+        if out.exists():
+            shutil.rmtree(out)
+        folder.rename(out)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    progress(1.0, f"written to {out}")
+    return summary
+
+
+def _fill(name: str, folder: Path, progress: Progress) -> dict[str, Any]:
+    progress(0.0, f"opening {name}")
+    house = House.open(name)
+    story: dict[str, Any] = {"house": name, "info": house.info(), "text": house.describe("house")}
+    progress(0.05, "looking into every room")
+    story["rooms"] = rooms.pictures(house, folder)
+    progress(0.15, "following an instruction")
+    story["instruction"] = instructed.follow(name, folder)
+    progress(0.3, "opening, taking, listening")
+    story["errand"] = errand.walk(house, folder, lambda part: progress(0.3 + 0.3 * part, "walking"))
+    film.save_map(
+        story["errand"]["world"],
+        [("#1f7a6d", story["instruction"].get("way", [])), ("#c4532f", story["errand"]["way"])],
+        folder / "map.png",
+    )
+    progress(0.6, "finding a hidden error in measured data")
+    story["calibration"] = calibrated.example(
+        folder, lambda part: progress(0.6 + 0.15 * part, "fitting")
+    )
+    progress(0.75, "timing every stage")
+    story["figures"] = figures.measure(name, lambda part: progress(0.75 + 0.2 * part, "timing"))
+    progress(0.95, "recording for the Rerun viewer")
+    story["recording"] = recording.write(house, story["errand"], folder)
+    (folder / "index.html").write_text(page.html(story), "utf-8")
+    return {
+        "house": name,
+        "instruction": story["instruction"].get("text"),
+        "fulfilled": story["instruction"].get("success", False),
+        "errand": [line["sentence"] for line in story["errand"]["log"]],
+        "verdict": story["calibration"]["sentence"],
+        "figures": story["figures"],
+    }

@@ -1,0 +1,166 @@
+"""Worlds, houses and sound through the package."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+
+import numpy as np
+import pytest
+
+import dwell
+from dwell import _native
+
+
+def test_errors_form_one_tree_that_callers_expect() -> None:
+    with pytest.raises(FileNotFoundError) as caught:
+        dwell.House.open("/nowhere/house.json")
+    assert isinstance(caught.value, dwell.HouseNotFoundError)
+    assert isinstance(caught.value, dwell.HouseError)
+    assert isinstance(caught.value, dwell.DwellError)
+    assert isinstance(caught.value, ValueError)
+    assert "/nowhere/house.json" in str(caught.value)
+
+
+def test_the_apartment_is_a_home(apartment: dwell.House) -> None:
+    info = apartment.info()
+    assert len(info["rooms"]) >= 5
+    assert info["objects"] >= 60
+    assert len(info["categories"]) >= 25
+    kinds = {kind for room in info["rooms"] for kind in room["kinds"]}
+    assert {"kitchen", "bathroom", "bedroom", "living room"} <= kinds
+    text = apartment.describe("house")[0]
+    assert "kitchen" in text
+    assert text.endswith(".")
+
+
+def test_a_shoebox_is_seen_as_its_geometry_says(shoebox: dwell.House) -> None:
+    world = dwell.World(shoebox, agents=0)
+    camera = dwell.Camera(9, 9, fov_deg=90.0, preset="flat")
+    images = world.render(position=(3.0, 1.5, 2.5), camera=camera, channels=["depth", "instance"])
+    # Straight ahead is the north wall, z = 0, for every pixel of the middle row.
+    np.testing.assert_allclose(images["depth"][4, :, 0], 2.5, atol=1e-4)
+    assert images["depth"].dtype == np.float32
+    names = {1: "floor", 2: "ceiling", 5: "north"}
+    assert images["instance"][4, 4, 0] in names
+
+
+def test_the_free_field_falls_by_distance() -> None:
+    house = dwell.House.shoebox((60.0, 60.0, 60.0), absorption=1.0)
+    scene = dwell.AcousticScene(house, rays=0, image_order=0, air_absorption=False)
+    for distance in (1.0, 2.0, 5.0, 10.0):
+        response = scene.impulse_response((30.0, 30.0, 30.0), (30.0 + distance, 30.0, 30.0))[0]
+        level_db = 20.0 * np.log10(np.sqrt(np.sum(response.astype(np.float64) ** 2)) * distance)
+        arrival = np.argmax(np.abs(response)) / scene.rate_hz
+        assert abs(level_db) < 0.1 + 0.2  # the band-limited pulse loses a little at the band's edge
+        assert abs(arrival - distance / 343.2) < 1.0 / scene.rate_hz
+
+
+def test_ears_tell_left_from_right() -> None:
+    house = dwell.House.shoebox((60.0, 60.0, 60.0), absorption=1.0)
+    scene = dwell.AcousticScene(house, rays=0, image_order=0)
+    left, right = scene.impulse_response((27.0, 30.0, 30.0), (30.0, 30.0, 30.0), ears=True)
+    # The head faces -Z, so -X is its left.
+    assert np.argmax(np.abs(left)) < np.argmax(np.abs(right))
+    assert np.sum(left**2) > np.sum(right**2)
+
+
+def test_a_snapshot_continues_with_the_same_bits(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    room = apartment.rooms()[0]
+    world.place_agent(room["stand"], room["yaw_deg"])
+    for _ in range(5):
+        world.do("move_forward")
+        world.listen()
+    saved = world.snapshot()
+
+    def go_on() -> tuple[int, bytes]:
+        heard = b""
+        for _ in range(6):
+            world.do("turn_left")
+            heard += world.listen().tobytes()
+        return world.state_hash(), heard
+
+    first = go_on()
+    world.restore(saved)
+    assert go_on() == first
+    with pytest.raises(dwell.DwellError):
+        world.restore(saved[:-7] + b"nothing")
+    assert world.state_hash() == first[0]
+
+
+def test_parameters_change_one_world_and_no_other(apartment: dwell.House) -> None:
+    world, other = dwell.World(apartment), dwell.World(apartment)
+    world.set_parameter("world/gravity_m_s2", 1.62)
+    assert world.parameter("world/gravity_m_s2")["value"] == pytest.approx(1.62)
+    assert other.parameter("world/gravity_m_s2")["value"] == pytest.approx(9.80665)
+    with pytest.raises(dwell.SceneError, match="gravity"):
+        world.set_parameter("world/gravity", 1.0)
+
+
+def test_houses_survive_their_own_form(apartment: dwell.House, tmp_path: os.PathLike[str]) -> None:
+    path = os.path.join(tmp_path, "copy.dwell")
+    assert apartment.write(path, "dwell") == []
+    again = dwell.House.open(path)
+    assert again.info()["categories"] == apartment.info()["categories"]
+    assert dwell.World(again).state_hash() == dwell.World(apartment).state_hash()
+
+
+def _step_in_child(results: multiprocessing.SimpleQueue[int]) -> None:
+    world = dwell.World("builtin:apartment")
+    world.step()
+    world.render(camera=dwell.Camera(32, 32))
+    results.put(world.state_hash())
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_a_forked_child_can_step_and_render(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    world.step()
+    world.render(camera=dwell.Camera(32, 32))  # the parent's thread pool exists now
+    context = multiprocessing.get_context("fork")
+    results: multiprocessing.SimpleQueue[int] = context.SimpleQueue()
+    child = context.Process(target=_step_in_child, args=(results,))
+    child.start()
+    child.join(60)
+    assert child.exitcode == 0
+    assert results.get() == world.state_hash()
+
+
+def test_observations_are_written_in_place() -> None:
+    from dwell.envs.config import env_json
+    from dwell.envs.runner import Runner
+
+    config = env_json(
+        "InstructionFollowing",
+        sensors={"rgb": {"width": 16, "height": 16}},
+        laws=None,
+        parameters=None,
+        task_settings=None,
+        stride=None,
+        world=None,
+    )
+    runner = Runner([dwell.House.open("builtin:apartment")], config, 1)
+    runner.batch.reset([0])
+    buffer = runner.buffers[0]
+    assert buffer is not None
+    place = buffer.__array_interface__["data"][0]
+    runner.observe(np.ones(1, np.bool_))
+    observed = runner.observation()["rgb"]
+    assert observed.__array_interface__["data"][0] == place
+    assert observed.any()
+    with pytest.raises(dwell.ConfigError, match="uint8"):
+        runner.batch.observe(np.ones(1, np.bool_), [np.zeros((1, 16, 16, 3), np.float32)])
+
+
+def test_laws_list_what_docs_and_calibration_need() -> None:
+    import json
+
+    laws = {law["id"]: law for law in json.loads(_native.laws_json())}
+    assert {"drag", "backlash"} <= set(laws)
+    for law in laws.values():
+        assert law["equation"]
+        assert law["source"]
+        for param in law["params"]:
+            assert param["low"] <= param["default"] <= param["high"]
