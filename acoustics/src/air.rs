@@ -147,7 +147,7 @@ mod tests {
         };
         let at = |f| 1000.0 * air.attenuation_db_per_m(f);
         assert!((at(1000.0) - 4.618_841).abs() < 1e-5, "{}", at(1000.0));
-        assert!((at(3981.071_706) - 28.930_497).abs() < 1e-5);
+        assert!((at(3_981.071_706) - 28.930_497).abs() < 1e-5);
         assert!((air.speed_of_sound_m_s() - 343.2).abs() < 1e-9);
     }
 

@@ -1,5 +1,7 @@
 //! Sound where nothing reflects.
 
+#![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
+
 mod common;
 
 use common::{Hall, dry};

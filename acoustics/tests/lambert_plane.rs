@@ -1,5 +1,7 @@
 //! One scattering plane: the closed form that catches wrong factors of pi and cosines.
 
+#![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
+
 mod common;
 
 use common::{Hall, dry, material, pieces, rectangle};

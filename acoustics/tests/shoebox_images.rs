@@ -1,5 +1,7 @@
 //! Mirror images in a box, where theory knows them all.
 
+#![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
+
 mod common;
 
 use common::{Hall, box_sides, dry, material, pieces, rectangle};

@@ -1,5 +1,7 @@
 //! Blocks of sound in step with a world.
 
+#![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
+
 mod common;
 
 use common::{Hall, dry, material};
@@ -141,7 +143,7 @@ fn a_source_that_stops_rings_out_and_is_forgotten() {
         levels.push(out.iter().map(|x| x * x).sum::<f32>());
     }
     assert!(levels[0] > 0.0 && levels[4] < 0.2 * levels[0] && levels[4] > 0.0);
-    assert_eq!(levels[19], 0.0);
+    assert!(levels[19] <= 0.0);
     assert_ne!(stream.hash(), silent);
     let report = stream
         .block(&hall.rays, &state, &[], &receiver, &mut out)
@@ -171,10 +173,10 @@ fn a_moving_listener_hears_doppler_and_no_clicks() {
     // The phase at the ends of blocks, where no crossfade is under way.
     let phase = |end: usize| {
         let (mut re, mut im) = (0.0, 0.0);
-        for k in end - 48..end {
-            let (s, c) = (omega * (k as f64)).sin_cos();
-            re += f64::from(heard[k]) * c;
-            im += f64::from(heard[k]) * s;
+        for (k, x) in heard.iter().enumerate().take(end).skip(end - 48) {
+            let (s, c) = (omega * k as f64).sin_cos();
+            re += f64::from(*x) * c;
+            im += f64::from(*x) * s;
         }
         re.atan2(im)
     };

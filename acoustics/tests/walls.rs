@@ -1,5 +1,7 @@
 //! What stands between source and receiver.
 
+#![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
+
 mod common;
 
 use common::{Hall, box_sides, dry, material, pieces, rectangle};
@@ -8,7 +10,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Bands, Category, House, Id, LevelId, Material, Mesh, MeshId, Mobility, Object, ObjectId, Part,
+    Bands, Category, House, LevelId, Material, Mesh, MeshId, Mobility, Object, ObjectId, Part,
     PartId, Pose, State,
 };
 use glam::{Affine3A, Vec3};
@@ -153,10 +155,10 @@ fn a_closed_door_silences_and_an_open_one_does_not() {
         let found = hall.echogram(SOURCE, EAR, Key::root(4));
         found.total()[4]
     };
-    assert_eq!(level_at(0.0, 0.0), 0.0);
+    assert!(level_at(0.0, 0.0) <= 0.0);
     let (ajar, open) = (level_at(-0.35, 0.0), level_at(-1.5, 0.0));
     assert!(ajar > 0.0 && open > 1.5 * ajar, "{ajar} {open}");
-    assert_eq!(level_at(0.0, 0.0), 0.0);
+    assert!(level_at(0.0, 0.0) <= 0.0);
 }
 
 /// Mirrors move with the parts that carry them.
@@ -263,5 +265,4 @@ fn an_overridden_band_decays_faster_and_alone() {
             "{band}"
         );
     }
-    assert_eq!(PartId(0).index(), 0);
 }

@@ -120,8 +120,25 @@ pub(super) fn tap(canvas: &mut Canvas) {
     bubbles(canvas, 400, (500.0, 2600.0), 0.8);
 }
 
+/// Four seconds of rushing water, then the hiss of the valve while the cistern fills.
+pub(super) fn toilet_flush(canvas: &mut Canvas) {
+    let (rush, hiss) = (
+        canvas.noise("rush", |f| {
+            peak(f, 350.0, 500.0) + 0.4 * peak(f, 1500.0, 2000.0)
+        }),
+        canvas.noise("hiss", |f| peak(f, 3000.0, 3500.0)),
+    );
+    canvas.add_noise(&rush, 0.2, 4.5, |t| {
+        edges(t, 4.5, 0.6) * libm::exp(-0.25 * t)
+    });
+    canvas.add_noise(&hiss, 2.0, 8.5, |t| 0.12 * edges(t, 8.5, 1.0));
+    canvas.add(0.3, 4.0, |t| {
+        0.3 * edges(t, 4.0, 0.5) * libm::sin(TAU * (90.0 + 8.0 * t) * t)
+    });
+}
+
 /// A drum that turns 0.8 times a second with wet clothes, a motor, and water.
-pub(super) fn washer(canvas: &mut Canvas) {
+pub(super) fn washing_machine(canvas: &mut Canvas) {
     let (motor, slosh) = (
         canvas.noise("motor", |f| peak(f, 120.0, 80.0)),
         canvas.noise("slosh", |f| peak(f, 500.0, 700.0)),

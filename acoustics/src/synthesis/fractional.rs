@@ -73,6 +73,7 @@ impl Taps {
 mod tests {
     use super::*;
     use realfft::num_complex::Complex;
+    use std::f64::consts::FRAC_PI_8;
 
     /// Gain and delay at a frequency of what `Taps` makes of one sample.
     fn measure(delay: f64, omega: f64) -> (f64, f64) {
@@ -92,7 +93,7 @@ mod tests {
     fn far_delays_are_exact() {
         for k in 0..40 {
             let delay = 60.0 + f64::from(k) * 0.173;
-            for omega in [0.05, 0.3927, 1.5, 2.4] {
+            for omega in [0.05, FRAC_PI_8, 1.5, 2.4] {
                 let (gain, error) = measure(delay, omega);
                 assert!((gain - 1.0).abs() < 1e-4, "{delay} {omega}: {gain}");
                 assert!(error.abs() < 1e-3, "{delay} {omega}: {error}");
@@ -103,7 +104,7 @@ mod tests {
     #[test]
     fn near_delays_are_right_at_low_frequencies() {
         for delay in [4.66, 7.3, 15.5] {
-            let (gain, error) = measure(delay, 0.3927);
+            let (gain, error) = measure(delay, FRAC_PI_8);
             assert!((20.0 * gain.log10()).abs() < 0.05, "{delay}: {gain}");
             assert!(error.abs() < 0.05, "{delay}: {error}");
         }

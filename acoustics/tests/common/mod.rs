@@ -1,5 +1,6 @@
 //! Rooms for tests.
 
+#![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 #![allow(dead_code, reason = "every test file uses another part of this")]
 
 use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, Source};

@@ -1,0 +1,88 @@
+//! How closely a stream follows its world.
+
+use crate::error::{AcousticsError, range};
+use serde::{Deserialize, Serialize};
+
+/// Settings of a [`Stream`](crate::Stream).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct StreamConfig {
+    /// Samples of a block; 16 to 65,536. At 16 kHz and 20 control steps a second: 800.
+    pub block_samples: usize,
+    /// Source or listener must have moved this far for a new impulse response, m; 0 to 10. 0: whenever one moved at all.
+    pub update_distance_m: f32,
+    /// The head must have turned this far for a new impulse response, rad; 0 to 3.2.
+    pub update_angle_rad: f32,
+    /// A door or another large part must have moved this far, m (or turned as many rad); 0 to 10.
+    pub update_part_m: f32,
+    /// Sources that are followed at once; the first in the list win. 1 to 1,000.
+    pub max_sources: usize,
+}
+
+impl Default for StreamConfig {
+    /// [`StreamConfig::full`].
+    fn default() -> Self {
+        Self::full()
+    }
+}
+
+impl StreamConfig {
+    /// For listening: follows movements of 5 cm and 2 degrees.
+    pub fn full() -> Self {
+        Self {
+            block_samples: 800,
+            update_distance_m: 0.05,
+            update_angle_rad: 0.035,
+            update_part_m: 0.03,
+            max_sources: 64,
+        }
+    }
+
+    /// For agents that learn: follows movements of 25 cm and 10 degrees.
+    pub fn rl() -> Self {
+        Self {
+            update_distance_m: 0.25,
+            update_angle_rad: 0.175,
+            update_part_m: 0.15,
+            max_sources: 4,
+            ..Self::full()
+        }
+    }
+
+    /// The settings called `name`: `"full"` or `"rl"`.
+    pub fn preset(name: &str) -> Option<Self> {
+        match name {
+            "full" => Some(Self::full()),
+            "rl" => Some(Self::rl()),
+            _ => None,
+        }
+    }
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Range`] names the field.
+    pub fn check(&self) -> Result<(), AcousticsError> {
+        const AT: &str = "sound stream";
+        let number = |field, value: f32, high, allowed| {
+            range(AT, field, f64::from(value), (0.0, high), allowed)
+        };
+        range(
+            AT,
+            "block_samples",
+            self.block_samples as f64,
+            (16.0, 65_536.0),
+            "16 to 65536",
+        )?;
+        number("update_distance_m", self.update_distance_m, 10.0, "0 to 10")?;
+        number("update_angle_rad", self.update_angle_rad, 3.2, "0 to 3.2")?;
+        number("update_part_m", self.update_part_m, 10.0, "0 to 10")?;
+        range(
+            AT,
+            "max_sources",
+            self.max_sources as f64,
+            (1.0, 1000.0),
+            "1 to 1000",
+        )
+    }
+}
