@@ -1,1 +1,38 @@
-//! What crosses engines.
+//! What crosses engines is tested here; this crate holds what those tests share.
+
+use dwell::{Engines, Env, EnvConfig, SensorConfig};
+use serde_json::json;
+use std::sync::{Arc, OnceLock};
+
+/// The built-in apartment with its shared engines, made once a process.
+///
+/// # Panics
+/// When the built-in house does not open.
+pub fn apartment() -> Arc<Engines> {
+    static APARTMENT: OnceLock<Arc<Engines>> = OnceLock::new();
+    let open = || {
+        let (house, _) = dwell_houses::open("builtin:apartment").expect("the built-in house opens");
+        Engines::new(Arc::new(house))
+    };
+    APARTMENT.get_or_init(open).clone()
+}
+
+/// An environment in the apartment with these sensors, all small.
+///
+/// # Panics
+/// When a sensor does not exist.
+pub fn env(sensors: &[&str]) -> Env {
+    let settings = |name: &str| match name {
+        "rgb" | "depth" | "instance" | "semantic" => json!({"width": 32, "height": 24}),
+        _ => json!({}),
+    };
+    let sensors = sensors.iter().map(|name| SensorConfig {
+        kind: (*name).to_owned(),
+        settings: settings(name),
+    });
+    let config = EnvConfig {
+        sensors: Some(sensors.collect()),
+        ..EnvConfig::default()
+    };
+    Env::new(apartment(), &config).expect("the sensors exist")
+}

@@ -9,7 +9,7 @@ use crate::error::WorldError;
 use crate::info::viewpoints;
 use crate::sensors::{Dtype, Out};
 use crate::world::World;
-use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source};
+use dwell_acoustics::{Receiver, Source};
 use dwell_render::{Camera, Frame, Job, Preset, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
@@ -40,6 +40,8 @@ pub struct BenchOptions {
     pub envs: usize,
     /// Steps of a run of `physics` and `env`; default 200.
     pub steps: usize,
+    /// Presets of `acoustics`; default both, `rl` and `full`.
+    pub presets: Vec<String>,
 }
 
 /// A view of a views file.
@@ -61,6 +63,7 @@ impl Default for BenchOptions {
             repeats: 5,
             envs: 4,
             steps: 200,
+            presets: vec!["rl".to_owned(), "full".to_owned()],
         }
     }
 }
@@ -266,9 +269,8 @@ fn acoustics(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
         .collect();
     let threads = Threads::resolve(options.threads);
     let mut rates = serde_json::Map::new();
-    for preset in ["rl", "full"] {
-        let config = AcousticConfig::preset(preset).unwrap_or_default();
-        let scene = AcousticScene::new(engines.house().clone(), config)?;
+    for preset in &options.presets {
+        let scene = engines.acoustics(preset, 16_000)?;
         let mut pairs = 0;
         let seconds = timed(options.repeats.min(3), || {
             pairs = 0;

@@ -83,7 +83,11 @@ pub fn viewpoints(engines: &Engines) -> Result<Vec<Viewpoint>, WorldError> {
     let body = AgentBody::default();
     let grid = engines.navigation(&body)?;
     let rays = RayScene::new(house.clone());
-    Ok(house.rooms.ids().map(|room| viewpoint(&rays, &grid, room, body.eye_height_m)).collect())
+    Ok(house
+        .rooms
+        .ids()
+        .map(|room| viewpoint(&rays, &grid, room, body.eye_height_m))
+        .collect())
 }
 
 fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoint {
@@ -95,10 +99,16 @@ fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoi
     let inside: Vec<Vec3> = grid
         .walkable()
         .map(|cell| grid.position(cell))
-        .filter(|p| (p.y - room.floor_y).abs() < 0.3 && house.room_at(*p + Vec3::Y * 0.1) == Some(id))
+        .filter(|p| {
+            (p.y - room.floor_y).abs() < 0.3 && house.room_at(*p + Vec3::Y * 0.1) == Some(id)
+        })
         .collect();
     let distance = |p: &Vec3| (*p - center).length_squared();
-    let stand = inside.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(center);
+    let stand = inside
+        .iter()
+        .copied()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .unwrap_or(center);
     let mut best = (f32::NEG_INFINITY, stand + Vec3::Y * eye_m, 0.0);
     for place in inside.iter().step_by(inside.len().div_ceil(PLACES).max(1)) {
         let eye = *place + Vec3::Y * eye_m;
@@ -132,7 +142,9 @@ fn worth(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
             let y = 1.0 - 2.0 * (row as f32 + 0.5) / down as f32;
             let direction = world_from_eye.transform_vector(Vec3::new(x, 0.75 * y, -1.0));
             let ray = Ray::new(world_from_eye.position, direction);
-            let Some(hit) = rays.closest(&ray, RayMask::EYE) else { continue };
+            let Some(hit) = rays.closest(&ray, RayMask::EYE) else {
+                continue;
+            };
             let point = ray.at(hit.distance_m - 0.05);
             // What lies beyond a door or window counts no more than the opening itself.
             let inside = rays.house().room_at(point) == Some(room);

@@ -229,7 +229,12 @@ impl World {
             sound: self.sound.to_bytes(),
             key: self.key,
         };
-        postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory")
+        let body =
+            postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory");
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend_from_slice(&xxh3_64(&body).to_le_bytes());
+        bytes.extend_from_slice(&body);
+        bytes
     }
 
     /// Goes to where [`World::snapshot`] was taken; the next steps give the same bits as they did then.
@@ -237,8 +242,18 @@ impl World {
     /// # Errors
     /// [`WorldError`] with the reason; the world is then as it was before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        let refuse = |why: &str| WorldError::Snapshot(why.to_owned());
+        let body = bytes
+            .strip_prefix(MAGIC)
+            .ok_or_else(|| refuse("it does not begin with \"dwworld1\""))?;
+        let (sum, body) = body
+            .split_first_chunk::<8>()
+            .ok_or_else(|| refuse("it is too short"))?;
+        if u64::from_le_bytes(*sum) != xxh3_64(body) {
+            return Err(refuse("its check sum does not fit: it is damaged"));
+        }
         let parts: Parts =
-            postcard::from_bytes(bytes).map_err(|error| WorldError::Snapshot(error.to_string()))?;
+            postcard::from_bytes(body).map_err(|error| WorldError::Snapshot(error.to_string()))?;
         let mut state = State::from_bytes(self.engines.house(), &parts.state)?;
         let sound = Sound::from_bytes(
             &self.config,
@@ -260,6 +275,9 @@ impl World {
         Ok(())
     }
 }
+
+/// What a world's snapshot begins with: its kind and version.
+const MAGIC: &[u8] = b"dwworld1";
 
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Parts {

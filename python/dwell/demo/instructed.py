@@ -25,7 +25,8 @@ def follow(house: str, folder: Path) -> dict[str, Any]:
     except DwellError as error:
         return {"refused": str(error)}
     way, frames = [env.agents()[0]["position"]], [observation["rgb"]]
-    text, info, terminated, steps = str(observation["instruction"]), {}, False, 0
+    text, terminated, steps = str(observation["instruction"]), False, 0
+    info: dict[str, Any] = {}
     while not terminated and steps < _MOST_STEPS:
         observation, _, terminated, _, info = env.step(env.expert_action())
         steps += 1

@@ -125,8 +125,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64]):
     ) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Makes one control step."""
         answer = self._runner.batch.step(np.array([action], np.int64))
-        info = {key: answer[key][0] for key in INFO_KEYS}
-        info = {key: value.item() for key, value in info.items()}
+        info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
         info["action_error"] = answer["action_error"][0]
         terminated = bool(answer["terminated"][0])
         return (
@@ -140,7 +139,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64]):
             },
         )
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """What the agent sees, (240, 320, 3) uint8; ``None`` without a render mode."""
         if self.render_mode is None:
             return None

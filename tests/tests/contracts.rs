@@ -1,0 +1,188 @@
+//! Every registered sensor, task and law keeps its contract.
+
+use dwell::sensors::{Dtype, Out};
+use dwell::{Batch, DiscreteAction, sensors, tasks};
+use dwell_scene::parallel::Threads;
+
+/// The observations of every sensor of a batch, as bits.
+fn observe(batch: &mut Batch) -> Vec<Vec<u8>> {
+    let specs = batch.specs();
+    let count = batch.envs().len();
+    let mut bytes: Vec<Vec<u8>> = specs
+        .iter()
+        .map(|spec| vec![0; spec.len() * count])
+        .collect();
+    let mut floats: Vec<Vec<f32>> = specs
+        .iter()
+        .map(|spec| vec![f32::NAN; spec.len() * count])
+        .collect();
+    let mut ints: Vec<Vec<i32>> = specs
+        .iter()
+        .map(|spec| vec![-1; spec.len() * count])
+        .collect();
+    let mut texts = vec![String::new(); specs.len()];
+    let buffers = bytes
+        .iter_mut()
+        .zip(&mut floats)
+        .zip(&mut ints)
+        .zip(&mut texts);
+    let mut outs: Vec<Out<'_>> = specs
+        .iter()
+        .zip(buffers)
+        .map(|(spec, (((bytes, floats), ints), text))| match spec.dtype {
+            Dtype::Uint8 => Out::Uint8(bytes),
+            Dtype::Float32 => Out::Float32(floats),
+            Dtype::Int32 => Out::Int32(ints),
+            Dtype::Text => Out::Text(text),
+        })
+        .collect();
+    batch.observe(&vec![true; count], &mut outs).unwrap();
+    specs
+        .iter()
+        .enumerate()
+        .map(|(k, spec)| {
+            let name = &spec.name;
+            match spec.dtype {
+                Dtype::Uint8 => bytes[k].clone(),
+                Dtype::Float32 => {
+                    let range = spec.low as f32..=spec.high as f32;
+                    assert!(
+                        floats[k].iter().all(|x| range.contains(x)),
+                        "{name} leaves its range"
+                    );
+                    floats[k].iter().flat_map(|x| x.to_le_bytes()).collect()
+                }
+                Dtype::Int32 => {
+                    let fits =
+                        |x: &i32| f64::from(*x) >= spec.low && f64::from(*x) < spec.high.max(1.0);
+                    assert!(ints[k].iter().all(fits), "{name} leaves its range");
+                    ints[k].iter().flat_map(|x| x.to_le_bytes()).collect()
+                }
+                Dtype::Text => batch.texts(k).concat().into_bytes(),
+            }
+        })
+        .collect()
+}
+
+fn all_sensors() -> Vec<&'static str> {
+    sensors::all().iter().map(|kind| kind.name).collect()
+}
+
+#[test]
+fn every_sensor_fills_its_buffer_within_its_range() {
+    let mut batch = Batch::new(vec![dwell_tests::env(&all_sensors())], Threads::ONE).unwrap();
+    batch.reset(&[Some(1)]).unwrap();
+    for (spec, bits) in batch.specs().iter().zip(observe(&mut batch)) {
+        assert!(!bits.is_empty(), "{} wrote nothing", spec.name);
+        assert!(!spec.about.is_empty() && !spec.unit.is_empty());
+    }
+}
+
+/// Same bits for 1, 2 and 7 threads, alone and in a batch.
+#[test]
+fn observations_and_states_do_not_depend_on_threads_or_company() {
+    let actions = [
+        DiscreteAction::MoveForward,
+        DiscreteAction::TurnLeft,
+        DiscreteAction::MoveForward,
+        DiscreteAction::Open,
+    ];
+    let play = |seeds: &[u64], threads: usize| -> Vec<(Vec<u64>, Vec<Vec<u8>>)> {
+        let envs = seeds
+            .iter()
+            .map(|_| dwell_tests::env(&all_sensors()))
+            .collect();
+        let mut batch = Batch::new(envs, Threads::exactly(threads)).unwrap();
+        let starts: Vec<Option<u64>> = seeds.iter().copied().map(Some).collect();
+        batch.reset(&starts).unwrap();
+        let mut seen = Vec::new();
+        for step in 0..6 {
+            batch
+                .step(&vec![Some(actions[step % 4]); seeds.len()])
+                .unwrap();
+            let hashes = batch.envs().iter().map(|env| env.world().hash()).collect();
+            seen.push((hashes, observe(&mut batch)));
+        }
+        seen
+    };
+    let together = play(&[3, 8, 5], 1);
+    assert_eq!(play(&[3, 8, 5], 2), together);
+    assert_eq!(play(&[3, 8, 5], 7), together);
+    let alone = play(&[8], 2);
+    for (one, all) in alone.iter().zip(&together) {
+        assert_eq!(one.0[0], all.0[1]);
+        for (bits, joined) in one.1.iter().zip(&all.1) {
+            let texts = joined.len() != 3 * bits.len();
+            assert!(texts || joined[bits.len()..2 * bits.len()] == bits[..]);
+        }
+    }
+}
+
+/// Every task's expert earns more than an agent that stops at once, over ten fixed seeds.
+#[test]
+fn every_task_can_be_solved_by_its_expert() {
+    for kind in tasks::all() {
+        let mut env = dwell_tests::env(&["instruction"]);
+        let mut solved = 0;
+        for seed in 0..10 {
+            env.reset(seed).unwrap();
+            for _ in 0..kind.max_steps {
+                let action = env.expert_action().unwrap();
+                let info = env.step(action).unwrap();
+                if info.verdict.terminated {
+                    solved += usize::from(info.verdict.success);
+                    break;
+                }
+            }
+        }
+        assert!(
+            solved >= 8,
+            "{}: the expert solved {solved} of 10",
+            kind.name
+        );
+    }
+}
+
+#[test]
+fn names_are_unique_over_all_registers() {
+    let mut names: Vec<&str> = all_sensors();
+    names.extend(tasks::all().iter().map(|kind| kind.name));
+    names.extend(dwell::laws::all().map(|info| info.id));
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), count);
+}
+
+/// A law whose parameters all have their defaults changes no bit of a world.
+#[test]
+fn laws_at_their_default_change_nothing() {
+    use dwell::{World, WorldConfig};
+    use dwell_scene::LawSpec;
+    let run = |laws: Vec<LawSpec>| {
+        let config = WorldConfig {
+            laws,
+            ..WorldConfig::default()
+        };
+        let mut world = World::new(dwell_tests::apartment(), &config).unwrap();
+        for _ in 0..10 {
+            world.step(&[]).unwrap();
+        }
+        world.hash()
+    };
+    let bare = run(Vec::new());
+    for info in dwell::laws::all() {
+        let params = info
+            .params
+            .iter()
+            .map(|param| (param.name.to_owned(), param.default))
+            .collect();
+        let spec = LawSpec {
+            id: info.id.to_owned(),
+            version: info.version,
+            target: None,
+            params,
+        };
+        assert_eq!(run(vec![spec]), bare, "{}", info.id);
+    }
+}
