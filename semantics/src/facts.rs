@@ -22,7 +22,7 @@ pub struct Facts {
     pub plural: String,
     /// Its materials by share of the visible surface, largest first.
     pub patches: Vec<Patch>,
-    /// Its colours in plain words with their shares, largest first.
+    /// Its colours in plain words with their shares, largest first; none for what is mostly glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
     /// Its substances with their shares of the surface, largest first.
     pub substances: Vec<(&'static Substance, f32)>,
@@ -46,11 +46,22 @@ impl Facts {
         );
         let (patches, substances) = surfaces(house, colors, id);
         let extents_m = own_box(house, id).size();
+        // Glass and mirrors have the colour of what lies behind or before them.
+        let clear = ["glass", "double_glazing", "mirror"];
+        let mostly = substances
+            .first()
+            .filter(|(_, share)| *share >= MADE_OF_SHARE);
+        let colors =
+            if mostly.is_some_and(|(substance, _)| clear.contains(&substance.name.as_str())) {
+                Vec::new()
+            } else {
+                color_words(&patches, Vocabulary::Plain)
+            };
         Self {
             category,
             noun,
             plural,
-            colors: color_words(&patches, Vocabulary::Plain),
+            colors,
             patches,
             substances,
             extents_m,
@@ -83,6 +94,10 @@ impl Facts {
         let (substance, share) = self.substances.first()?;
         let dull = [
             "hard_surface",
+            "hollow_door",
+            "particle_board",
+            "thin_carpet",
+            "thick_carpet",
             "electronics",
             "appliance",
             "human",

@@ -5,40 +5,49 @@ use dwell_scene::math;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+/// Whether a box says nothing about the size of such things: doors swing, cloth is folded.
+fn changes(row: &CategoryRow) -> bool {
+    let classes = ["door", "curtain", "blinds", "towel", "clothes"];
+    classes.contains(&row.nyu40_name) || ["blanket", "umbrella"].contains(&row.name)
+}
+
 /// How large a thing is beside a usual specimen of its category.
 ///
-/// With V the volume of its box (in the axes of its own root part) and V0 that of the usual specimen in
-/// `assets/categories.csv`, z = log2(V / V0): sizes of a kind of thing spread by ratios, so the scale is a ratio.
+/// With A the product of the two longest edges of its box (in the axes of its own root part) and A0 that of the usual
+/// specimen in `assets/categories.csv`, z = log2(A / A0): sizes of a kind of thing spread by ratios, and the face that a
+/// thing shows says more than its thickness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Size {
-    /// z below -3: less than an eighth of the usual volume.
+    /// z below -3: less than 0.35 times as long and wide.
     Tiny,
-    /// z from -3 to -1.25.
+    /// z from -3 to -1.2.
     Small,
-    /// z from -1.25 to 1.25: 0.42 to 2.4 times the usual volume; not worth a word.
+    /// z from -1.2 to 1.2: 0.66 to 1.5 times as long and wide; not worth a word.
     #[default]
     Normal,
-    /// z from 1.25 to 3.
+    /// z from 1.2 to 3.
     Large,
-    /// z above 3: more than eight times the usual volume.
+    /// z above 3: more than 2.8 times as long and wide.
     Huge,
 }
 
 impl Size {
     /// The size of a box of `extents_m` beside the usual one of `row`; [`Size::Normal`] for an unknown category
-    /// and for doors, whose box grows when they open.
+    /// and for what folds or swings.
     pub fn of(extents_m: Vec3, row: Option<&CategoryRow>) -> Self {
-        let Some(row) = row.filter(|row| row.nyu40_name != "door") else {
+        let Some(row) = row.filter(|row| !changes(row)) else {
             return Self::Normal;
         };
-        // A centimetre is the least thickness, so that rugs and panes compare by area.
-        let volume = |m: Vec3| m.max(Vec3::splat(0.01)).element_product();
-        let ratio = volume(extents_m) / volume(Vec3::from(row.size_m));
+        let face = |m: Vec3| {
+            let area = (m.x * m.y).max(m.y * m.z).max(m.z * m.x);
+            area.max(1e-6)
+        };
+        let ratio = face(extents_m) / face(Vec3::from(row.size_m));
         match math::ln(ratio) / std::f32::consts::LN_2 {
             z if z < -3.0 => Self::Tiny,
-            z if z < -1.25 => Self::Small,
-            z if z <= 1.25 => Self::Normal,
+            z if z < -1.2 => Self::Small,
+            z if z <= 1.2 => Self::Normal,
             z if z <= 3.0 => Self::Large,
             _ => Self::Huge,
         }
@@ -62,11 +71,11 @@ mod tests {
     use crate::category::categories;
 
     #[test]
-    fn size_grows_with_volume_and_the_usual_one_is_normal() {
+    fn size_grows_with_the_thing_and_the_usual_one_is_normal() {
         for row in categories().rows() {
             let usual = Vec3::from(row.size_m);
             assert_eq!(Size::of(usual, Some(row)), Size::Normal, "{}", row.name);
-            if row.nyu40_name == "door" {
+            if changes(row) {
                 assert_eq!(Size::of(usual * 3.0, Some(row)), Size::Normal);
                 continue;
             }

@@ -77,15 +77,24 @@ fn parse(file: &'static str, text: &'static str) -> Result<Vec<Entry>, Semantics
     Ok(entries)
 }
 
-/// "Very dark brown" counts for brown. Names of very light colours are left out: people call them after the tint,
-/// a room calls them white or beige.
+/// Parts of survey names that give a grey a hue.
+const TINTS: [&str; 15] = [
+    "blu", "green", "purpl", "pink", "red", "orang", "yellow", "brown", "tan", "teal", "violet",
+    "rose", "rosy", "olive", "lavender",
+];
+
+/// "Very dark brown" counts for brown. Names of very light colours are left out: people call them after the tint, a room
+/// calls them white or beige; and so are tinted greys, which lie between two words.
 fn plain_from_survey(survey: &[Entry]) -> Vec<Entry> {
     let mut plain = Vec::new();
     for entry in survey {
         let last = entry.name.rsplit([' ', '/']).next().unwrap_or_default();
         let word = HEADS.iter().find(|(_, heads)| heads.contains(&last));
+        let tinted =
+            |word: &str| word == "gray" && TINTS.iter().any(|tint| entry.name.contains(tint));
         if let Some((name, _)) = word
             && !entry.name.starts_with("very light")
+            && !tinted(name)
         {
             plain.push(Entry { name, ..*entry });
         }
@@ -157,19 +166,30 @@ impl Vocabulary {
     ///
     /// The nearest entry in `OKLab`, the first of equals. CIEDE2000 is a formula for small differences (it is no metric
     /// and jumps at opposite hues); names lie far apart, and `OKLab` is uniform there and cheap. Plain words: nearly
-    /// grey colours are black, gray or white by lightness, the others take the nearest survey colour's word.
+    /// grey colours are black, gray or white by lightness, the others take the word of the nearest survey colour that is not
+    /// of an opposite hue.
     pub fn word(self, linear: [f32; 3]) -> &'static str {
         let color = Oklab::from_linear(linear);
         if self == Self::Plain {
             if color.l < 0.32 && color.chroma() < 0.035 {
                 return "black";
             }
-            if color.l > 0.93 && color.chroma() < 0.03 {
+            if color.l > 0.89 && color.chroma() < 0.03 {
                 return "white";
             }
             if color.chroma() < 0.015 {
                 return "gray";
             }
+            // A pale colour lies near many others; the word at least keeps to its side of the circle of hues.
+            return nearest(self.entries(), |entry| {
+                let (p, q) = (entry.lab, color);
+                let opposite = entry.name != "gray" && p.a * q.a + p.b * q.b <= 0.0;
+                if opposite {
+                    f32::INFINITY
+                } else {
+                    p.distance(q)
+                }
+            });
         }
         nearest(self.entries(), |entry| entry.lab.distance(color))
     }
@@ -274,6 +294,9 @@ mod tests {
             ([240, 130, 20], "orange"),
             ([230, 150, 180], "pink"),
             ([110, 40, 140], "purple"),
+            ([236, 228, 212], "white"),
+            ([176, 206, 224], "blue"),
+            ([206, 194, 172], "beige"),
         ];
         for (srgb, word) in cases {
             assert_eq!(Vocabulary::Plain.word(linear(*srgb)), *word, "{srgb:?}");

@@ -26,8 +26,7 @@ pub(super) fn adjectives(scene: &Scene<'_>, object: ObjectId) -> Adjectives {
                 _ => facts.is_opening().then_some("closed"),
             });
     let material = facts.material_word();
-    // Glass and mirrors have the colour of what lies behind or before them.
-    let color = facts.color_phrase().filter(|_| material != Some("glass"));
+    let color = facts.color_phrase();
     [
         size,
         openness.map(str::to_owned),
@@ -115,9 +114,6 @@ fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
 pub fn caption(scene: &Scene<'_>, object: ObjectId) -> String {
     let room = scene.room_of(object);
     let mut text = with_article(&phrase(scene, object));
-    if scene.house().objects[object].switch.is_some() && scene.state.switched_on[object] {
-        text.push_str(" that is switched on");
-    }
     if scene.holder(object).is_some() {
         text.push_str(" in somebody's hand");
     } else {
@@ -126,6 +122,9 @@ pub fn caption(scene: &Scene<'_>, object: ObjectId) -> String {
     if let Some(room) = room {
         text.push_str(" in the ");
         text.push_str(&scene.semantics.room(room).label);
+    }
+    if scene.house().objects[object].switch.is_some() && scene.state.switched_on[object] {
+        text.push_str(", switched on");
     }
     text
 }

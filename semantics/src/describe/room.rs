@@ -24,14 +24,27 @@ fn is_a(scene: &Scene<'_>, object: ObjectId, names: &[&str]) -> bool {
 
 /// The rooms on either side of a door or archway, in order; fewer than two where it leads outside.
 ///
-/// The rooms are those at eight points around its box, half a step away.
+/// They are looked for across the frame: a door's first part when it has several, else the whole; when that is not
+/// clearly thinner one way (a single mesh with an open leaf), on all four sides.
 pub(super) fn rooms_beside(scene: &Scene<'_>, door: ObjectId) -> Vec<RoomId> {
-    let bounds = scene.extent(door).bounds;
+    let house = scene.house();
+    let object = &house.objects[door];
+    let bounds = if object.part_count > 1 {
+        house.part_bounds(scene.state, object.first_part)
+    } else {
+        scene.extent(door).bounds
+    };
     let (center, half) = (bounds.center(), bounds.size() * 0.5);
+    let (across_x, across_z) = (half.x < 1.5 * half.z, half.z < 1.5 * half.x);
     let mut rooms = Vec::new();
-    for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+    for (x, z, looks) in [
+        (1.0, 0.0, across_x),
+        (-1.0, 0.0, across_x),
+        (0.0, 1.0, across_z),
+        (0.0, -1.0, across_z),
+    ] {
         let step = Vec3::new(x * (half.x + DOORSTEP_M), 0.0, z * (half.z + DOORSTEP_M));
-        rooms.extend(scene.house().room_at(center + step));
+        rooms.extend(house.room_at(center + step).filter(|_| looks));
     }
     rooms.sort();
     rooms.dedup();
@@ -134,7 +147,7 @@ fn placed(scene: &Scene<'_>, room: RoomId, objects: &[ObjectId]) -> Placed {
                 predicate.holds(scene, Term::Object(*object), Term::Structure(wall), None)
             })
         });
-        if hangs {
+        if hangs && !scene.facts(*object).is_opening() {
             placed.hanging.push(*object);
         }
     }

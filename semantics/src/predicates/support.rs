@@ -5,10 +5,12 @@ use crate::scene::{Scene, Term};
 use dwell_scene::{ObjectId, StructureKind};
 use glam::Vec3;
 
-/// How far a surface may lie above or below a point of the sole and still carry it, m: models float and sink a little.
+/// How far a surface may lie below or above a point of the sole and still carry it, m: models float and sink a little.
 pub(crate) const REST_GAP_M: f32 = 0.03;
+/// How far above a thing's lowest point that of its carrier may lie, m: what begins higher lies in the thing.
+const CARRIER_RISE_M: f32 = 0.005;
 /// The layer at a thing's foot whose faces are its underside, m; thinner in thin things.
-const UNDERSIDE_M: f32 = 0.01;
+const UNDERSIDE_M: f32 = 0.005;
 /// The share of a sole that something must carry to count: a board across two chairs rests on both.
 pub(crate) const REST_SHARE: f32 = 1.0 / 3.0;
 
@@ -67,8 +69,11 @@ pub(crate) fn supports_of(scene: &Scene<'_>, object: ObjectId) -> Vec<Support> {
     for other in house.objects.ids().filter(|other| *other != object) {
         let bounds = scene.extent(other).bounds;
         let carries = scene.holder(other).is_none();
-        if carries && bounds.intersects(&reach) && bounds.min.y <= extent.bottom_m() + REST_GAP_M {
-            let least_m = bounds.min.y + UNDERSIDE_M.min(0.3 * bounds.size().y);
+        if carries
+            && bounds.intersects(&reach)
+            && bounds.min.y <= extent.bottom_m() + CARRIER_RISE_M
+        {
+            let least_m = bounds.min.y + UNDERSIDE_M.min(0.1 * bounds.size().y);
             object_triangles(house, scene.state, other, |corners| {
                 search.offer(corners, Term::Object(other), least_m);
             });
