@@ -3,6 +3,7 @@
 mod atomic;
 mod build;
 pub mod builtin;
+mod damage;
 mod error;
 mod formats;
 pub mod gltf;
@@ -14,8 +15,9 @@ mod report;
 mod root;
 pub mod suncg;
 
+pub use damage::{Damage, Unmapped};
 pub use error::HousesError;
 pub use formats::{Format, Opened, formats, open, open_with};
 pub use loss::Loss;
-pub use report::{At, Damage, Report, Unmapped, Warning};
+pub use report::{At, Report, Warning};
 pub use root::DataRoot;

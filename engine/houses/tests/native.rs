@@ -12,7 +12,7 @@ use std::path::Path;
 use common::generate;
 use dwell_houses::{HousesError, native, open};
 use dwell_scene::{House, HouseData};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
 /// The whole house as bytes: unlike `==`, this tells -0 from 0.
@@ -23,8 +23,8 @@ fn bits(house: &House) -> Vec<u8> {
             .positions
             .iter()
             .chain(&mesh.normals)
-            .flat_map(|v| v.to_array());
-        let floats = floats.chain(mesh.uvs.iter().flat_map(|v| v.to_array()));
+            .flat_map(Vec3::to_array);
+        let floats = floats.chain(mesh.uvs.iter().flat_map(Vec2::to_array));
         floats
             .flat_map(|x| x.to_bits().to_le_bytes())
             .collect::<Vec<u8>>()

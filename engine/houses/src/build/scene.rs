@@ -14,8 +14,9 @@ use glam::{Affine3A, Vec2, Vec3};
 
 use super::tables::CategoryRow;
 use super::{LookTable, Names, category, convex_pieces};
+use crate::damage::Damage;
 use crate::error::HousesError;
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 
 /// How far a thing may hover above what it stands on, m.
 const GAP_M: f32 = 0.03;

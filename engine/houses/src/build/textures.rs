@@ -8,8 +8,9 @@ use dwell_scene::Texture;
 use dwell_scene::parallel::Threads;
 use image::ImageReader;
 
+use crate::damage::Damage;
 use crate::limits::{MAX_IMAGE_BYTES, MAX_IMAGE_PIXELS, MAX_IMAGE_SIDE};
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 use crate::root::DataRoot;
 
 /// The name of a texture: its path's last part without the ending.

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 
 use ::gltf::json::{Root, buffer::View};
 
+use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::MAX_BUFFER_BYTES;
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 use crate::root::DataRoot;
 
 /// The bytes of all buffers; one that cannot be read is empty and reported.

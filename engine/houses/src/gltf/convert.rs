@@ -14,9 +14,10 @@ use super::buffers::Buffers;
 use super::nodes::instances;
 use super::surface::{images, materials};
 use crate::build::{LookTable, Scene, Thing, texture_name};
+use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 use crate::root::DataRoot;
 
 pub(super) fn convert(

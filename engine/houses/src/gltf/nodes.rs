@@ -3,7 +3,8 @@
 use ::gltf::json::{Index, Root};
 use glam::{Affine3A, Mat4, Quat, Vec3};
 
-use crate::report::{At, Damage, Report};
+use crate::damage::Damage;
+use crate::report::{At, Report};
 
 /// A node that shows a mesh.
 pub(super) struct Instance {

@@ -9,8 +9,9 @@ use dwell_scene::{MaterialId, Texture, TextureId, units};
 
 use super::buffers::{Buffers, read_uri};
 use crate::build::{Look, LookTable, decode, substance_of, texture_name};
+use crate::damage::Damage;
 use crate::limits::MAX_IMAGE_BYTES;
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 use crate::root::DataRoot;
 
 /// The images that base colours use, decoded; `ids` has an entry for each image of the file.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use dwell_scene::{House, HouseData, Id, Material, MaterialId, Mesh, MeshId, Mobility};
-use glam::Affine3A;
+use glam::{Affine3A, Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::glb::{Binary, UNSIGNED_INT, UNSIGNED_SHORT};
@@ -149,11 +149,11 @@ pub(crate) fn encode(house: &HouseData) -> Result<Written, String> {
 fn mesh_accessors(binary: &mut Binary, mesh: &Mesh) -> MeshAccessors {
     let some = |count: usize| (count > 0).then_some(());
     let positions = some(mesh.positions.len())
-        .map(|()| binary.floats(mesh.positions.iter().map(|p| p.to_array()), "VEC3", true));
+        .map(|()| binary.floats(mesh.positions.iter().map(Vec3::to_array), "VEC3", true));
     let normals = some(mesh.normals.len())
-        .map(|()| binary.floats(mesh.normals.iter().map(|n| n.to_array()), "VEC3", false));
+        .map(|()| binary.floats(mesh.normals.iter().map(Vec3::to_array), "VEC3", false));
     let uvs = some(mesh.uvs.len())
-        .map(|()| binary.floats(mesh.uvs.iter().map(|uv| uv.to_array()), "VEC2", false));
+        .map(|()| binary.floats(mesh.uvs.iter().map(Vec2::to_array), "VEC2", false));
     let triangles = some(mesh.triangles.len()).map(|()| {
         let bytes: Vec<u8> = mesh
             .triangles
@@ -210,7 +210,7 @@ fn material(material: &Material) -> Value {
     if material.opacity < 1.0 {
         value["alphaMode"] = json!("BLEND");
     }
-    if material.emission != [0.0; 3] {
+    if material.emission.iter().any(|e| *e > 0.0) {
         // The format caps emission at 1.
         value["emissiveFactor"] = json!(material.emission.map(|e| e.min(1.0)));
     }

@@ -2,8 +2,9 @@
 
 use super::file::{MtlFile, ObjFile};
 use super::{read_mtl, read_obj};
+use crate::damage::Damage;
 use crate::limits::MAX_MESH_BYTES;
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 use crate::root::{DataRoot, folder_of};
 
 /// An OBJ file and the materials of its MTL files, one after another.

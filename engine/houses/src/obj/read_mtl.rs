@@ -2,7 +2,8 @@
 
 use super::file::{MtlFile, MtlMaterial};
 use super::lines::{float, integer, lines, name, shorten, split_word, words};
-use crate::report::{At, Damage, Report};
+use crate::damage::Damage;
+use crate::report::{At, Report};
 
 /// Reads MTL text. Never fails: what cannot be read is left out and reported.
 ///

@@ -2,8 +2,9 @@
 
 use super::file::{Corner, NONE, ObjFile, Run};
 use super::lines::{float, integer, lines, name, shorten, split_word, words};
+use crate::damage::Damage;
 use crate::limits::MAX_CORNERS;
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 
 /// Reads OBJ text. Never fails: what cannot be read is left out and reported.
 ///

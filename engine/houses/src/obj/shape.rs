@@ -4,7 +4,8 @@ use dwell_scene::Mesh;
 use glam::{Vec2, Vec3, Vec3Swizzles as _};
 
 use super::file::{Corner, MtlFile, NONE, ObjFile, Run};
-use crate::report::{At, Damage, Report};
+use crate::damage::Damage;
+use crate::report::{At, Report};
 
 /// Most material slots of one mesh: slots are 16-bit numbers.
 const MAX_SLOTS: usize = u16::MAX as usize;

@@ -101,7 +101,7 @@ pub(crate) fn mtl_material(name: &str, material: &Material, texture: Option<&str
         "newmtl {name}\nKd {r} {g} {b}\nKs 1 1 1\nNs {exponent}\nd {}\nillum 2\n",
         material.opacity
     );
-    if material.emission != [0.0; 3] {
+    if material.emission.iter().any(|e| *e > 0.0) {
         let [r, g, b] = material.emission;
         let _ = writeln!(text, "Ke {r} {g} {b}");
     }

@@ -5,9 +5,10 @@ use serde_json::{Map, Value};
 
 use super::file::{HouseFile, LevelFile, MaterialFile, NodeFile};
 use super::lenient::{SEPARATOR, shorten};
+use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 
 /// Parses the text of a `house.json`.
 ///

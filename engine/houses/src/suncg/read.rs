@@ -12,10 +12,11 @@ use super::file::{HouseFile, NodeFile};
 use super::metadata::{CategoryTable, LightTable, SoundTable, read_table};
 use super::parse;
 use crate::build::read_images;
+use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::MAX_TEXT_BYTES;
 use crate::obj::{MeshFiles, read_mesh};
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 use crate::root::{DataRoot, folder_of};
 
 /// All files of one house, parsed.

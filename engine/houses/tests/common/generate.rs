@@ -202,6 +202,7 @@ fn collider(n: &mut Numbers<'_>, fixed: bool) -> Collider {
 }
 
 /// A house of those numbers.
+#[allow(clippy::too_many_lines, reason = "one table after another")]
 pub(crate) fn house(numbers: &[u32]) -> HouseData {
     let n = &mut Numbers::new(numbers);
     let slots = 3;
@@ -219,12 +220,8 @@ pub(crate) fn house(numbers: &[u32]) -> HouseData {
         .collect();
     data.textures = (0..n.below(3)).map(|k| Arc::new(texture(n, k))).collect();
     let textures = data.textures.len();
-    data.materials = (0..1 + n.below(4))
-        .map(|k| material(n, k, textures))
-        .collect();
-    data.meshes = (0..1 + n.below(4))
-        .map(|_| Arc::new(mesh(n, slots)))
-        .collect();
+    data.materials = (0..=n.below(4)).map(|k| material(n, k, textures)).collect();
+    data.meshes = (0..=n.below(4)).map(|_| Arc::new(mesh(n, slots))).collect();
     let (materials, meshes) = (data.materials.len(), data.meshes.len());
     data.rooms = (0..n.below(3))
         .map(|k| Room {

@@ -1,5 +1,6 @@
 //! The real sample house, where it is there, and generated ones.
 #![allow(dead_code, reason = "each test file uses what it needs")]
+#![allow(clippy::print_stdout, reason = "a skipped test says so")]
 
 pub(crate) mod generate;
 

@@ -5,7 +5,8 @@ use glam::Vec3;
 
 use super::super::metadata::LightFile;
 use super::Converter;
-use crate::report::{At, Damage};
+use crate::damage::Damage;
+use crate::report::At;
 
 /// A lamp's cone narrower than this is a mistake, rad.
 const LEAST_CUTOFF_RAD: f32 = 0.01;

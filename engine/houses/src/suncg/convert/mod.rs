@@ -6,6 +6,7 @@ mod hinge;
 mod mobility;
 mod nodes;
 mod objects;
+mod parts;
 mod place;
 mod rooms;
 mod shapes;

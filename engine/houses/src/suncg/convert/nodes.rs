@@ -7,7 +7,8 @@ use dwell_scene::RoomId;
 use super::super::file::{HouseFile, NodeFile};
 use super::{Converter, NodeKey};
 use crate::build::Names;
-use crate::report::{At, Damage, Report};
+use crate::damage::Damage;
+use crate::report::{At, Report};
 
 /// A name for every node: its id, or `<level>_<index>`; ids used twice get a number.
 pub(super) fn names(house: &HouseFile, at: &At, report: &mut Report) -> Vec<Vec<String>> {

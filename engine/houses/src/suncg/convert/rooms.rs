@@ -9,10 +9,11 @@ use super::super::file::{Flag, NodeFile};
 use super::super::read::paths;
 use super::{Converter, NodeKey, place};
 use crate::build::room_kind;
+use crate::damage::{Damage, Unmapped};
 use crate::obj::MeshFiles;
 use crate::obj::file::Run;
 use crate::obj::{PartShape, Slots, shape_of};
-use crate::report::{At, Damage, Unmapped};
+use crate::report::At;
 
 /// Faces that look up at least this much belong to the floor that one walks on.
 const UPWARD: f32 = 0.7;

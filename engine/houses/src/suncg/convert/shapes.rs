@@ -10,9 +10,10 @@ use super::super::file::NodeFile;
 use super::super::read::{SuncgFiles, paths};
 use super::hinge::{self, Hinge};
 use crate::build::{components, submesh};
+use crate::damage::Damage;
 use crate::obj::MeshFiles;
 use crate::obj::{PartShape, Slots, shape_of};
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 
 /// The mesh of one OBJ file of a model.
 pub(super) struct ModelShape {

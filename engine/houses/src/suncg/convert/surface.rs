@@ -6,9 +6,10 @@ use dwell_scene::{MaterialId, StructureKind, TextureId};
 use super::super::file::MaterialFile;
 use super::Converter;
 use crate::build::{Look, category, substance_of};
+use crate::damage::{Damage, Unmapped};
 use crate::obj::MeshFiles;
 use crate::obj::Slots;
-use crate::report::{At, Damage, Unmapped};
+use crate::report::At;
 
 impl<'a> Converter<'a> {
     /// The material of a slot of a wall, floor or ceiling.

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::base_model;
-use crate::report::{At, Damage, Report};
+use crate::damage::Damage;
+use crate::report::{At, Report};
 
 /// One light of a model, in the model's space.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -13,8 +13,9 @@ pub use models::{ModelEntry, ModelTable};
 pub use sounds::{OneOrMany, SoundEntry, SoundTable};
 pub use votes::{VoteTable, Votes};
 
+use crate::damage::Damage;
 use crate::limits::MAX_TEXT_BYTES;
-use crate::report::{At, Damage, Report};
+use crate::report::{At, Report};
 use crate::root::DataRoot;
 
 /// The bytes of the first of `paths` that exists; `None` with a warning when none does or it cannot be read.

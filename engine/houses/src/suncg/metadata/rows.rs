@@ -1,6 +1,7 @@
 //! Rows of a CSV table by column name.
 
-use crate::report::{At, Damage, Report};
+use crate::damage::Damage;
+use crate::report::{At, Report};
 
 /// A CSV table; columns are found by name, because later releases add some.
 pub(super) struct Rows<'a> {

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::report::{At, Damage, Report};
+use crate::damage::Damage;
+use crate::report::{At, Report};
 
 /// One entry: a category, or single models of it, and the sounds by event.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -67,19 +67,21 @@ pub(super) fn of_house(house: &House) -> Losses {
 /// Whether a material differs from what its substance says where the format has no field.
 fn has_own_numbers(material: &Material) -> bool {
     let usual = library().get_or_default(&material.substance);
-    let same = material.absorption == usual.absorption
-        && material.scattering == usual.scattering
-        && material.transmission_loss_db == usual.transmission_loss_db
-        && [
-            material.density_kg_m3,
-            material.friction,
-            material.restitution,
-            material.metallic,
-        ] == [
-            usual.density_kg_m3,
-            usual.friction,
-            usual.restitution,
-            usual.metallic,
-        ];
-    !same
+    let numbers = |density: f32, friction: f32, restitution: f32, metallic: f32| {
+        [density, friction, restitution, metallic].map(f32::to_bits)
+    };
+    let own = numbers(
+        material.density_kg_m3,
+        material.friction,
+        material.restitution,
+        material.metallic,
+    );
+    own != numbers(
+        usual.density_kg_m3,
+        usual.friction,
+        usual.restitution,
+        usual.metallic,
+    ) || material.absorption != usual.absorption
+        || material.scattering != usual.scattering
+        || material.transmission_loss_db != usual.transmission_loss_db
 }

@@ -1,0 +1,228 @@
+//! glTF and GLB files as houses, written by hand and by our own writer.
+#![allow(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    reason = "tests stop at the first surprise and compare exact numbers"
+)]
+
+mod common;
+
+use dwell_houses::{Damage, HousesError, gltf, open};
+use dwell_scene::{House, Mobility, ShoeboxMaterials, State};
+use glam::{Vec2, Vec3};
+
+/// A tetrahedron as text: positions and byte indices in one base64 buffer made by hand (48 bytes of floats, 12 of indices).
+fn tetrahedron() -> String {
+    let mut bytes: Vec<u8> = Vec::new();
+    for x in [
+        0.0_f32, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.4,
+    ] {
+        bytes.extend(x.to_le_bytes());
+    }
+    bytes.extend([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]);
+    base64(&bytes)
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for chunk in bytes.chunks(3) {
+        let word = chunk
+            .iter()
+            .fold(0_u32, |word, byte| word << 8 | u32::from(*byte))
+            << (8 * (3 - chunk.len()));
+        for k in 0..4 {
+            text.push(if k <= chunk.len() {
+                char::from(DIGITS[(word >> (18 - 6 * k)) as usize & 63])
+            } else {
+                '='
+            });
+        }
+    }
+    text
+}
+
+fn text(nodes: &str, extra: &str) -> String {
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}], "nodes": {nodes},
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "indices": 1, "material": 0}}]}}],
+        "materials": [{{"name": "red plastic", "alphaMode": "BLEND", "pbrMetallicRoughness":
+            {{"baseColorFactor": [0.5, 0.25, 0.125, 0.75], "metallicFactor": 0, "roughnessFactor": 0.25}}}}],
+        "accessors": [
+            {{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [0.4, 0.4, 0.4]}},
+            {{"bufferView": 1, "componentType": 5121, "count": 12, "type": "SCALAR"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 48}}, {{"buffer": 0, "byteOffset": 48, "byteLength": 12}}],
+        "buffers": [{{"byteLength": 60, "uri": "data:application/octet-stream;base64,{}"}}]{extra}}}"#,
+        tetrahedron()
+    )
+}
+
+fn open_text(text: &str) -> Result<(House, dwell_houses::Report), HousesError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    std::fs::write(&path, text).unwrap();
+    open(&path.to_string_lossy())
+}
+
+#[test]
+fn node_transforms_materials_and_names_are_kept() {
+    let nodes = r#"[{"name": "group", "translation": [1, 0, 0], "children": [1, 2]},
+        {"name": "Mug", "mesh": 0, "scale": [2, 2, 2]},
+        {"name": "Mug", "mesh": 0, "matrix": [-1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]}]"#;
+    let (house, report) = open_text(&text(nodes, "")).unwrap();
+    assert!(report.is_empty(), "{report}");
+    let names: Vec<&str> = house
+        .objects
+        .iter()
+        .map(|object| object.name.as_str())
+        .collect();
+    assert_eq!(names, ["Mug", "Mug_2"]);
+    let state = State::new(&house);
+    let bounds = |k: u32| house.object_bounds(&state, dwell_scene::ObjectId(k));
+    assert!(bounds(0).max.abs_diff_eq(Vec3::new(1.8, 0.8, 0.8), 1e-6));
+    assert!(bounds(1).min.abs_diff_eq(Vec3::new(5.6, 0.0, 0.0), 1e-6) && bounds(1).max.x == 6.0);
+    assert_eq!(house.meshes.len(), 1, "instances share a mesh");
+    let material = &house.materials[house.parts.as_slice()[0].materials[0]];
+    assert_eq!(
+        (
+            material.opacity,
+            material.roughness,
+            material.substance.as_str()
+        ),
+        (0.75, 0.25, "plastic")
+    );
+    assert!(
+        material
+            .base_color
+            .iter()
+            .zip([0.5, 0.25, 0.125])
+            .all(|(a, b)| (a - b).abs() < 1e-5)
+    );
+}
+
+#[test]
+fn cycles_and_missing_buffers_do_no_harm() {
+    let (house, _) = open_text(&text(r#"[{"mesh": 0, "children": [0, 0]}]"#, "")).unwrap();
+    assert_eq!(
+        (house.objects.len(), house.objects.as_slice()[0].mobility),
+        (1, Mobility::Movable)
+    );
+    let stolen = text(r#"[{"mesh": 0}]"#, "").replace(
+        &format!("data:application/octet-stream;base64,{}", tetrahedron()),
+        "../../../etc/passwd",
+    );
+    let error = open_text(&stolen).unwrap_err();
+    assert!(matches!(error, HousesError::Empty { .. }), "{error}");
+}
+
+#[test]
+fn huge_counts_are_refused_before_memory_is_taken() {
+    let message = |text: &str| {
+        open_text(text).map_or_else(|error| error.to_string(), |(_, report)| report.to_string())
+    };
+    let base = text(r#"[{"mesh": 0}]"#, "");
+    assert_eq!(
+        message(&base.replace("\"byteLength\": 60", "\"byteLength\": 99999999999")),
+        "a.gltf: buffers: buffer bytes 99999999999 is more than the 2147483648 that are read"
+    );
+    let beyond = base.replace("\"count\": 4,", "\"count\": 4000000000,");
+    assert_eq!(
+        message(&beyond),
+        "a.gltf: the house is empty, not one triangle could be read (2 warnings)"
+    );
+    let offset = base.replace("\"byteOffset\": 48", "\"byteOffset\": 18446744073709551615");
+    assert_eq!(
+        message(&offset),
+        "a.gltf: the house is empty, not one triangle could be read (2 warnings)"
+    );
+}
+
+#[test]
+fn what_is_not_read_is_reported() {
+    let cameras =
+        r#", "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}]"#;
+    let (_, report) = open_text(&text(r#"[{"mesh": 0, "camera": 0}]"#, cameras)).unwrap();
+    assert_eq!(
+        report.count(
+            |d| matches!(d, Damage::Simplified { what } if what == "1 cameras are not read")
+        ),
+        1
+    );
+}
+
+#[test]
+fn a_written_house_looks_the_same_when_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
+    let path = folder.path().join("room.glb");
+    let losses = gltf::write(&house, &path).unwrap();
+    assert!(losses.iter().any(|loss| loss.what.starts_with("rooms;")));
+    let (again, report) = open(&path.to_string_lossy()).unwrap();
+    assert!(report.is_empty(), "{report}");
+    assert_eq!(again.triangle_count(), house.triangle_count());
+}
+
+#[test]
+fn the_apartment_keeps_its_places_and_textures_as_glb() {
+    let folder = tempfile::tempdir().unwrap();
+    let (house, _) = open("builtin:apartment").unwrap();
+    let path = folder.path().join("apartment.glb");
+    gltf::write(&house, &path).unwrap();
+    let (again, report) = open(&path.to_string_lossy()).unwrap();
+    assert_eq!(
+        report.count(|d| !matches!(d, Damage::DegenerateTriangles)),
+        0,
+        "{report}"
+    );
+    assert_eq!(again.triangle_count(), house.triangle_count());
+    let (a, b) = (
+        house.levels.as_slice()[0].bounds,
+        again.levels.as_slice()[0].bounds,
+    );
+    assert!(
+        a.min.abs_diff_eq(b.min, 0.3) && a.max.abs_diff_eq(b.max, 0.3),
+        "{a:?} became {b:?}"
+    );
+    // Texture coordinates under textures come through two turns of v.
+    let range = |house: &House| {
+        let parts = house.parts.iter().map(|part| (part.mesh, &part.materials));
+        let pieces = house
+            .structure
+            .iter()
+            .map(|piece| (piece.mesh, &piece.materials));
+        let (mut low, mut high) = (Vec2::MAX, Vec2::MIN);
+        for (mesh, materials) in parts.chain(pieces) {
+            let mesh = &house.meshes[mesh];
+            let textured = |k: &usize| {
+                house.materials[materials[usize::from(mesh.slot(*k))]]
+                    .texture
+                    .is_some()
+            };
+            for vertex in (0..mesh.triangles.len())
+                .filter(textured)
+                .flat_map(|k| mesh.triangles[k])
+            {
+                if let Some(uv) = mesh.uvs.get(vertex as usize) {
+                    (low, high) = (low.min(*uv), high.max(*uv));
+                }
+            }
+        }
+        (low, high)
+    };
+    let ((low, high), (low_again, high_again)) = (range(&house), range(&again));
+    assert!(
+        low.abs_diff_eq(low_again, 1e-3) && high.abs_diff_eq(high_again, 1e-3),
+        "{low} {high} became {low_again} {high_again}"
+    );
+}
+
+#[test]
+fn every_real_texture_and_triangle_survives_as_glb() {
+    let Some(real) = common::real() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("real.glb");
+    gltf::write(&real.house, &path).unwrap();
+    let (again, _) = open(&path.to_string_lossy()).unwrap();
+    assert_eq!(again.triangle_count(), real.house.triangle_count());
+    assert_eq!(again.textures.len(), real.house.textures.len());
+}

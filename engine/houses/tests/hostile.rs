@@ -1,0 +1,237 @@
+//! Files that mean harm, or that were cut or changed on the way: errors with a place, never a panic.
+#![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use dwell_houses::suncg::{parse, read_binvox};
+use dwell_houses::{HousesError, Report, open};
+use dwell_scene::{House, ShoeboxMaterials};
+use proptest::prelude::*;
+
+/// A house, and the files it is made of.
+type Sample = (PathBuf, Vec<PathBuf>);
+
+/// A small house in every format, written once.
+fn samples() -> &'static [Sample] {
+    static SAMPLES: OnceLock<(tempfile::TempDir, Vec<Sample>)> = OnceLock::new();
+    let make = || {
+        let folder = tempfile::tempdir().unwrap();
+        let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
+        let at = |name: &str| folder.path().join(name);
+        dwell_houses::native::write(&house, &at("a.dwell")).unwrap();
+        dwell_houses::gltf::write(&house, &at("a.glb")).unwrap();
+        dwell_houses::suncg::write(&house, &at("suncg")).unwrap();
+        let samples = ["a.dwell", "a.glb", "suncg"].map(|name| {
+            let mut files = Vec::new();
+            collect(&at(name), &mut files);
+            (at(name), files)
+        });
+        (folder, samples.to_vec())
+    };
+    &SAMPLES.get_or_init(make).1
+}
+
+fn collect(path: &Path, files: &mut Vec<PathBuf>) {
+    if path.is_file() {
+        files.push(path.to_owned());
+        return;
+    }
+    let mut entries: Vec<_> = std::fs::read_dir(path)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    entries.sort();
+    for entry in &entries {
+        collect(entry, files);
+    }
+}
+
+/// Copies a sample, changes one of its files, and opens it.
+fn open_changed(
+    sample: usize,
+    file: usize,
+    change: impl FnOnce(&mut Vec<u8>),
+) -> Result<(), HousesError> {
+    let (house, files) = &samples()[sample % samples().len()];
+    let root = house.parent().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let copy = |path: &Path| folder.path().join(path.strip_prefix(root).unwrap());
+    for path in files {
+        std::fs::create_dir_all(copy(path).parent().unwrap()).unwrap();
+        std::fs::copy(path, copy(path)).unwrap();
+    }
+    let changed = copy(&files[file % files.len()]);
+    let mut bytes = std::fs::read(&changed).unwrap();
+    change(&mut bytes);
+    std::fs::write(&changed, bytes).unwrap();
+    let opened = open(&copy(house).to_string_lossy());
+    // The error's sentence must be one that can be made.
+    opened
+        .map(|_| ())
+        .inspect_err(|error| assert!(!error.to_string().is_empty()))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn changed_bytes_never_panic(sample in 0..3_usize, file in any::<usize>(), changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8)) {
+        let _ = open_changed(sample, file, |bytes| {
+            for (at, byte) in changes {
+                if !bytes.is_empty() {
+                    let at = at.index(bytes.len());
+                    bytes[at] = byte;
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn cut_files_never_panic(sample in 0..3_usize, file in any::<usize>(), length in any::<prop::sample::Index>()) {
+        let _ = open_changed(sample, file, |bytes| bytes.truncate(length.index(bytes.len() + 1)));
+    }
+
+    /// Numbers in the JSON become anything a number can be.
+    #[test]
+    fn changed_numbers_never_panic(sample in 0..3_usize, file in any::<usize>(), which in any::<prop::sample::Index>(), number in prop_oneof![
+        Just("-1"), Just("1e308"), Just("18446744073709551615"), Just("0"), Just("null"), Just("\"x\""), Just("65536"), Just("4294967295"), Just("[]"),
+    ]) {
+        let _ = open_changed(sample, file, |bytes| {
+            let starts: Vec<usize> = (1..bytes.len()).filter(|k| bytes[*k].is_ascii_digit() && matches!(bytes[k - 1], b':' | b',' | b'[' | b' ')).collect();
+            if !starts.is_empty() {
+                let start = starts[which.index(starts.len())];
+                let end = (start..bytes.len()).find(|k| !bytes[*k].is_ascii_digit()).unwrap_or(bytes.len());
+                bytes.splice(start..end, number.bytes());
+            }
+        });
+    }
+
+    #[test]
+    fn any_house_json_is_parsed_or_refused(text in "[\\[\\]{}:,\"a-z0-9 .-]{0,200}") {
+        let _ = parse(text.as_bytes(), "house.json", &mut Report::new());
+    }
+
+    #[test]
+    fn any_voxel_file_is_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200), side in any::<u32>()) {
+        let _ = read_binvox(&bytes, "a.binvox");
+        let mut file = format!("#binvox 1\ndim {side} {side} {side}\ntranslate 0 0 0\nscale 1\ndata\n").into_bytes();
+        file.extend(bytes);
+        let _ = read_binvox(&file, "a.binvox");
+    }
+}
+
+#[test]
+fn house_strings_that_mean_nothing_list_what_is_allowed() {
+    let message = |house: &str| open(house).map(|_| ()).unwrap_err().to_string();
+    let allowed = "builtin:NAME; a path to a .dwell; a path to a house.json, its folder, or a data root with one house; \
+                   a path to a .glb or .gltf; a path to an .obj";
+    for house in ["castle", "seed:5", "", "house.blend"] {
+        assert_eq!(
+            message(house),
+            format!("{house:?} is no house this version opens; allowed are {allowed}")
+        );
+    }
+    assert_eq!(
+        message("builtin:castle"),
+        "no built-in house \"castle\"; this version has [\"apartment\"]"
+    );
+    assert_eq!(
+        message("no/such/house.json"),
+        "no/such: No such file or directory (os error 2)"
+    );
+    assert_eq!(
+        message("no/such/a.dwell"),
+        "no/such/a.dwell: No such file or directory (os error 2)"
+    );
+    assert_eq!(
+        message("no/such/a.glb"),
+        "no/such/a.glb: No such file or directory (os error 2)"
+    );
+}
+
+#[test]
+fn a_data_root_with_several_houses_is_not_guessed() {
+    let folder = tempfile::tempdir().unwrap();
+    for id in ["one", "two"] {
+        let house = folder.path().join("house").join(id);
+        std::fs::create_dir_all(&house).unwrap();
+        std::fs::write(house.join("house.json"), "{}").unwrap();
+    }
+    let error = open(&folder.path().to_string_lossy())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.ends_with(": expected one house in this folder, found [\"one\", \"two\"]"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_house_of_nothing_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.json");
+    std::fs::write(
+        &path,
+        r#"{"levels": [{"nodes": [{"id": "0_0", "type": "Object", "modelId": "9"}]}]}"#,
+    )
+    .unwrap();
+    let error = open(&path.to_string_lossy()).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "house.json: the house is empty, not one triangle could be read (3 warnings)"
+    );
+}
+
+#[test]
+fn axes_that_make_no_space_name_the_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.json");
+    let message = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        open(&path.to_string_lossy())
+            .map(|_| ())
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(
+        message(r#"{"levels": [], "up": [0, 0, 0]}"#),
+        "house.json: up: expected a direction of three numbers, found [0.0, 0.0, 0.0]"
+    );
+    assert_eq!(
+        message(r#"{"levels": [], "scaleToMeters": 0}"#),
+        "house.json: scaleToMeters: expected a number from 1e-6 to 1e6, found 0"
+    );
+    assert_eq!(
+        message(r#"{"levels": [], "front": [0, 1, 0]}"#),
+        "house.json: front: expected a direction at right angles to up, found [0.0, 1.0, 0.0]"
+    );
+}
+
+#[test]
+fn more_nodes_than_any_house_has_are_refused() {
+    let nodes = "{},".repeat(200_001);
+    let text = format!(
+        r#"{{"levels": [{{"nodes": [{}]}}]}}"#,
+        nodes.trim_end_matches(',')
+    );
+    let error = parse(text.as_bytes(), "house.json", &mut Report::new())
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "house.json: levels: node count 200001 is more than the 200000 that are read"
+    );
+}
+
+#[test]
+fn deep_nesting_is_refused() {
+    let text = format!("{{\"levels\": {}", "[".repeat(100_000));
+    let error = parse(text.as_bytes(), "house.json", &mut Report::new())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.starts_with("house.json:1: no valid JSON: recursion limit exceeded"),
+        "{error}"
+    );
+}
