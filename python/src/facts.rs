@@ -22,18 +22,15 @@ pub(crate) fn tasks_json() -> String {
             "sensors": kind.sensors,
         })
     });
-    Value::from_iter(tasks).to_string()
+    tasks.collect::<Value>().to_string()
 }
 
 /// The sensors: `[{name, about}]`.
 #[pyfunction]
 pub(crate) fn sensors_json() -> String {
-    Value::from_iter(
-        dwell::sensors::all()
-            .iter()
-            .map(|kind| json!({"name": kind.name, "about": kind.about})),
-    )
-    .to_string()
+    let sensors = dwell::sensors::all().iter();
+    let rows = sensors.map(|kind| json!({"name": kind.name, "about": kind.about}));
+    rows.collect::<Value>().to_string()
 }
 
 /// The laws with their equations, units, bounds and rivals.

@@ -1,5 +1,10 @@
 //! The border to Python: conversions only. The typed package around it is `python/dwell`.
 
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "pyo3 hands arguments over by value"
+)]
+
 mod acoustics;
 mod batch;
 mod bench;

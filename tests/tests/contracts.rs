@@ -1,5 +1,7 @@
 //! Every registered sensor, task and law keeps its contract.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use dwell::sensors::{Dtype, Out};
 use dwell::{Batch, DiscreteAction, sensors, tasks};
 use dwell_scene::parallel::Threads;

@@ -1,5 +1,7 @@
 //! Worlds over the built-in house: what one engine changes, the others perceive.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use dwell::{DiscreteAction, Stride, World, WorldConfig, objects_now};
 use dwell_physics::{Action, AgentControl};
 use dwell_scene::random::Key;

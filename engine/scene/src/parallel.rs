@@ -20,10 +20,6 @@ impl Threads {
     }
 
     /// `requested` if given, else the variable `DWELL_THREADS`, else what the affinity mask and the cgroup allow.
-    #[expect(
-        clippy::disallowed_methods,
-        reason = "DWELL_THREADS is the one documented setting of the environment"
-    )]
     pub fn resolve(requested: Option<usize>) -> Self {
         let from_environment = || {
             std::env::var("DWELL_THREADS")
@@ -86,7 +82,7 @@ impl Threads {
                     .par_iter_mut()
                     .enumerate()
                     .with_max_len(1)
-                    .for_each(|(k, item)| work(k, item))
+                    .for_each(|(k, item)| work(k, item));
             });
             return;
         }

@@ -60,7 +60,7 @@ impl Key {
         }
     }
 
-    /// A generator at the start of this key's stream (ChaCha with 8 rounds).
+    /// A generator at the start of this key's stream (`ChaCha8`).
     pub fn stream(self) -> Stream {
         let mut seed = [0; 32];
         seed[..16].copy_from_slice(&self.0.to_le_bytes());

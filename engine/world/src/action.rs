@@ -121,7 +121,7 @@ impl Stride {
         let mut control = AgentControl::default();
         match action {
             DiscreteAction::MoveForward => {
-                control.forward_m_s = (f64::from(self.forward_m) / step_s) as f32
+                control.forward_m_s = (f64::from(self.forward_m) / step_s) as f32;
             }
             DiscreteAction::TurnLeft => control.yaw_rate_rad_s = rate(self.turn_deg),
             DiscreteAction::TurnRight => control.yaw_rate_rad_s = -rate(self.turn_deg),

@@ -200,7 +200,7 @@ impl Env {
         Ok(self.episode.insert(episode))
     }
 
-    /// Makes one control step with `action`, without looking: call [`Self::observe`] afterwards.
+    /// Makes one control step with `action`, without looking: a [`Batch`](crate::Batch) observes afterwards.
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset and after the end of an episode.

@@ -94,7 +94,7 @@ impl Guide {
             (self.blocked, self.escape, self.escapes) = (0, 8, self.escapes + 1);
         }
         self.escape = self.escape.checked_sub(1)?;
-        let turn = if self.escapes % 2 == 0 {
+        let turn = if self.escapes.is_multiple_of(2) {
             DiscreteAction::TurnLeft
         } else {
             DiscreteAction::TurnRight

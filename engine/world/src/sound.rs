@@ -234,7 +234,9 @@ impl Sound {
             let mut signal = vec![0.0; self.block];
             signals::synthesize(&emitter.signal, self.rate_hz, start, &mut signal)?;
             let pressure = pa_from_db_spl(emitter.level_db);
-            signal.iter_mut().for_each(|sample| *sample *= pressure);
+            for sample in &mut signal {
+                *sample *= pressure;
+            }
             sources.push((
                 k as u64,
                 state.part_pose[emitter.part].transform_point(emitter.position),

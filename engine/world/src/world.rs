@@ -222,6 +222,9 @@ impl World {
     }
 
     /// The whole world as bytes: state, physics with its contact caches, sound queues and the key of the episode.
+    ///
+    /// # Panics
+    /// Never: plain bytes can always be written to memory.
     pub fn snapshot(&self) -> Vec<u8> {
         let parts = Parts {
             state: self.state.to_bytes(self.house()),

@@ -30,7 +30,7 @@ fn range(
     at: &str,
     field: &'static str,
     ok: bool,
-    found: impl ToString,
+    found: impl std::fmt::Display,
     allowed: &'static str,
 ) -> Result<(), SceneError> {
     if ok {

@@ -94,6 +94,9 @@ struct Pair {
 }
 
 /// The library that ships with the engine.
+///
+/// # Panics
+/// Never: the file is part of the build, and this crate's tests read it.
 pub fn library() -> &'static Library {
     static LIBRARY: OnceLock<Library> = OnceLock::new();
     LIBRARY.get_or_init(|| {

@@ -49,24 +49,25 @@ impl Columns {
             index(bounds.min.z, self.origin.y, self.depth),
             index(bounds.max.z, self.origin.y, self.depth),
         );
+        if x0 == x1 && z0 == z1 {
+            // Most triangles of furniture.
+            self.spans[z0 * self.width + x0].push([bounds.min.y, bounds.max.y]);
+            return;
+        }
+        let triangle = Polygon::new(&corners);
         for z in z0..=z1 {
             let z_low = self.origin.y + z as f32 * self.cell_m;
-            let row = clip(
-                &clip(&corners, 2, z_low, true),
-                2,
-                z_low + self.cell_m,
-                false,
-            );
+            let row = if z0 == z1 {
+                triangle
+            } else {
+                triangle.clipped(2, z_low, z_low + self.cell_m)
+            };
             for x in x0..=x1 {
                 let x_low = self.origin.x + x as f32 * self.cell_m;
-                let inside = clip(&clip(&row, 0, x_low, true), 0, x_low + self.cell_m, false);
-                let Some(first) = inside.first() else {
-                    continue;
-                };
-                let range = inside
-                    .iter()
-                    .fold([first.y; 2], |[low, high], p| [low.min(p.y), high.max(p.y)]);
-                self.spans[z * self.width + x].push(range);
+                let inside = row.clipped(0, x_low, x_low + self.cell_m);
+                if let Some(range) = inside.heights() {
+                    self.spans[z * self.width + x].push(range);
+                }
             }
         }
     }
@@ -87,29 +88,72 @@ impl Columns {
     }
 }
 
-/// The part of a convex polygon on one side of an axis-aligned plane (Sutherland and Hodgman, 1974).
-fn clip(polygon: &[Vec3], axis: usize, at: f32, keep_above: bool) -> Vec<Vec3> {
-    let inside = |p: Vec3| {
-        if keep_above {
-            p[axis] >= at
-        } else {
-            p[axis] <= at
+/// A convex polygon: a triangle cut by at most four planes has at most seven corners.
+#[derive(Clone, Copy)]
+struct Polygon {
+    corners: [Vec3; 8],
+    count: usize,
+}
+
+impl Polygon {
+    fn new(corners: &[Vec3; 3]) -> Self {
+        let mut polygon = Self {
+            corners: [Vec3::ZERO; 8],
+            count: 3,
+        };
+        polygon.corners[..3].copy_from_slice(corners);
+        polygon
+    }
+
+    /// The part between two planes across an axis.
+    fn clipped(&self, axis: usize, low: f32, high: f32) -> Self {
+        self.half(axis, low, true).half(axis, high, false)
+    }
+
+    /// The part on one side of a plane across an axis (Sutherland and Hodgman, 1974).
+    fn half(&self, axis: usize, at: f32, keep_above: bool) -> Self {
+        let inside = |p: Vec3| {
+            if keep_above {
+                p[axis] >= at
+            } else {
+                p[axis] <= at
+            }
+        };
+        let mut kept = Self {
+            corners: [Vec3::ZERO; 8],
+            count: 0,
+        };
+        for k in 0..self.count {
+            let (a, b) = (
+                self.corners[(k + self.count - 1) % self.count],
+                self.corners[k],
+            );
+            if inside(a) != inside(b) {
+                let t = ((at - a[axis]) / (b[axis] - a[axis])).clamp(0.0, 1.0);
+                let mut crossing = a + (b - a) * t;
+                crossing[axis] = at;
+                kept.push(crossing);
+            }
+            if inside(b) {
+                kept.push(b);
+            }
         }
-    };
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    for (k, &b) in polygon.iter().enumerate() {
-        let a = polygon[(k + polygon.len() - 1) % polygon.len()];
-        if inside(a) != inside(b) {
-            let t = ((at - a[axis]) / (b[axis] - a[axis])).clamp(0.0, 1.0);
-            let mut crossing = a + (b - a) * t;
-            crossing[axis] = at;
-            kept.push(crossing);
-        }
-        if inside(b) {
-            kept.push(b);
+        kept
+    }
+
+    fn push(&mut self, corner: Vec3) {
+        // Rounding cannot make more than eight corners of seven; one that did would change no height.
+        if let Some(place) = self.corners.get_mut(self.count) {
+            *place = corner;
+            self.count += 1;
         }
     }
-    kept
+
+    /// The lowest and the highest corner's height; nothing when no corner is left.
+    fn heights(&self) -> Option<[f32; 2]> {
+        let heights = self.corners[..self.count].iter().map(|p| [p.y; 2]);
+        heights.reduce(|[low, high], [y, _]| [low.min(y), high.max(y)])
+    }
 }
 
 #[cfg(test)]

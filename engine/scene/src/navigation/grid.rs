@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use crate::bounds::Aabb;
 use crate::error::SceneError;
-use crate::house::{House, SurfaceOwner};
+use crate::house::{House, StructureKind, SurfaceOwner};
 use crate::ids::{Id, LevelId};
 use crate::random::Key;
 use crate::state::State;
@@ -57,6 +57,8 @@ pub struct Cell(pub u32);
 #[derive(Clone, Debug)]
 pub(super) struct Storey {
     pub(super) columns: Columns,
+    /// The house's own floors and the ground outside, without furniture.
+    pub(super) floors: Columns,
     /// The number of its first cell.
     pub(super) first: usize,
 }
@@ -68,7 +70,7 @@ pub struct NavGrid {
     pub(super) storeys: Vec<Storey>,
     /// Height of the surface to stand on, m; NaN where nobody can. Shape (cell,).
     pub(super) floor_y: Vec<f32>,
-    /// Which cells hang together, numbered from the one with most cells; `u32::MAX` where nobody can stand.
+    /// Which cells hang together, numbered from the one with most cells on rooms' floors; `u32::MAX` where nobody can stand.
     pub(super) island: Vec<u32>,
 }
 
@@ -144,12 +146,14 @@ impl NavGrid {
                 .map_or(f32::INFINITY, |next| next.min.y.max(bounds.min.y + 1.0));
             grid.add_storey(house, state, bounds, top);
         }
-        grid.find_islands();
+        grid.drop_what_stands_on_nothing();
+        grid.find_islands(house);
         Ok(grid)
     }
 
     fn add_storey(&mut self, house: &House, state: &State, bounds: &Aabb, top: f32) {
         let mut columns = Columns::new(bounds, self.config.cell_m);
+        let mut floors = columns.clone();
         for placed in &house.geometry().placed {
             let world_from_mesh = match placed.owner {
                 SurfaceOwner::Part(part) if !house.parts[part].fixed => {
@@ -166,29 +170,37 @@ impl NavGrid {
                 .iter()
                 .map(|p| world_from_mesh.transform_point3(*p))
                 .collect();
+            let is_floor = matches!(placed.owner, SurfaceOwner::Structure(id)
+                if matches!(house.structure[id].kind, StructureKind::Floor | StructureKind::Ground));
+            let (low_y, high_y) = (bounds.min.y - 0.5, top + self.config.height_m);
             for triangle in &mesh.triangles {
-                columns.add_triangle(
-                    triangle.map(|v| points[v as usize]),
-                    bounds.min.y - 0.5,
-                    top + self.config.height_m,
-                );
+                let corners = triangle.map(|v| points[v as usize]);
+                columns.add_triangle(corners, low_y, high_y);
+                if is_floor {
+                    floors.add_triangle(corners, low_y, high_y);
+                }
             }
         }
         columns.finish();
+        floors.finish();
         let first = self.floor_y.len();
-        let floors: Vec<f32> = columns
+        let lowest: Vec<f32> = columns
             .spans
             .iter()
             .map(|spans| self.lowest_floor(spans, top))
             .collect();
         for z in 0..columns.depth {
             for x in 0..columns.width {
-                let y = floors[z * columns.width + x];
+                let y = lowest[z * columns.width + x];
                 let free = y.is_finite() && self.room_around(&columns, x, z, y);
                 self.floor_y.push(if free { y } else { f32::NAN });
             }
         }
-        self.storeys.push(Storey { columns, first });
+        self.storeys.push(Storey {
+            columns,
+            floors,
+            first,
+        });
     }
 
     fn place_of_part(&self, house: &House, state: &State, part: crate::PartId) -> Affine3A {
@@ -242,8 +254,40 @@ impl NavGrid {
         true
     }
 
-    /// Numbers the islands by size, the largest first.
-    fn find_islands(&mut self) {
+    /// Keeps what hangs together with a floor of the house by steps that the walker climbs: no beds, no tops of walls. A
+    /// house whose file names no floors keeps everything.
+    fn drop_what_stands_on_nothing(&mut self) {
+        let no_floors = |storey: &Storey| storey.floors.spans.iter().all(Vec::is_empty);
+        if self.storeys.iter().all(no_floors) {
+            return;
+        }
+        let mut reached = vec![false; self.floor_y.len()];
+        let mut stack = Vec::new();
+        for storey in &self.storeys {
+            for (k, spans) in storey.floors.spans.iter().enumerate() {
+                let cell = storey.first + k;
+                let y = self.floor_y[cell];
+                let over = |span: &[f32; 2]| (y - span[1]).abs() <= self.config.step_m + 1e-4;
+                if spans.iter().any(over) {
+                    reached[cell] = true;
+                    stack.push(Cell(cell as u32));
+                }
+            }
+        }
+        while let Some(cell) = stack.pop() {
+            for (next, _) in self.neighbours(cell) {
+                if !std::mem::replace(&mut reached[next.0 as usize], true) {
+                    stack.push(next);
+                }
+            }
+        }
+        for (y, reached) in self.floor_y.iter_mut().zip(reached) {
+            *y = if reached { *y } else { f32::NAN };
+        }
+    }
+
+    /// Numbers the islands by how many of their cells lie on a room's floor, then by size: roofs and wall tops come last.
+    fn find_islands(&mut self, house: &House) {
         let mut island = vec![u32::MAX; self.floor_y.len()];
         let mut sizes = Vec::new();
         for start in 0..self.floor_y.len() {
@@ -251,10 +295,11 @@ impl NavGrid {
                 continue;
             }
             let label = sizes.len() as u32;
-            let (mut stack, mut size) = (vec![Cell(start as u32)], 0_usize);
+            let (mut stack, mut size) = (vec![Cell(start as u32)], (0_usize, 0_usize));
             island[start] = label;
             while let Some(cell) = stack.pop() {
-                size += 1;
+                size.0 += usize::from(self.is_on_a_floor(house, cell));
+                size.1 += 1;
                 for (next, _) in self.neighbours(cell) {
                     let mark = &mut island[next.0 as usize];
                     if *mark == u32::MAX {
@@ -279,6 +324,13 @@ impl NavGrid {
         self.island = island;
     }
 
+    /// Whether a cell lies on the floor of a room, or on something low on it.
+    fn is_on_a_floor(&self, house: &House, cell: Cell) -> bool {
+        let place = self.position(cell);
+        let room = house.room_at(place + Vec3::Y * 0.1);
+        room.is_some_and(|room| (place.y - house.rooms[room].floor_y).abs() < 0.5)
+    }
+
     /// The number of cells, walkable or not.
     pub fn len(&self) -> usize {
         self.floor_y.len()
@@ -296,7 +348,7 @@ impl NavGrid {
             .is_some_and(|y| !y.is_nan())
     }
 
-    /// The island that a walkable cell belongs to, 0 being the largest.
+    /// The island that a walkable cell belongs to, 0 being the one with most cells on rooms' floors.
     pub fn island(&self, cell: Cell) -> Option<u32> {
         self.island
             .get(cell.0 as usize)

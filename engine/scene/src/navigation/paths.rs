@@ -22,6 +22,18 @@ impl DistanceField {
     }
 }
 
+/// The eight cells around one: straight steps first.
+const AROUND: [(isize, isize); 8] = [
+    (1, 0),
+    (-1, 0),
+    (0, 1),
+    (0, -1),
+    (1, 1),
+    (1, -1),
+    (-1, 1),
+    (-1, -1),
+];
+
 impl NavGrid {
     /// The cells one step away, with the length of that step over the ground, m. A diagonal needs both corners free.
     pub(super) fn neighbours(&self, cell: Cell) -> impl Iterator<Item = (Cell, f64)> + '_ {
@@ -36,16 +48,6 @@ impl NavGrid {
             let free = i < width && j < depth && (self.floor_y[next.0 as usize] - y).abs() <= step;
             free.then_some(next)
         };
-        const AROUND: [(isize, isize); 8] = [
-            (1, 0),
-            (-1, 0),
-            (0, 1),
-            (0, -1),
-            (1, 1),
-            (1, -1),
-            (-1, 1),
-            (-1, -1),
-        ];
         AROUND.into_iter().filter_map(move |(dx, dz)| {
             let next = at(dx, dz)?;
             if dx != 0 && dz != 0 {

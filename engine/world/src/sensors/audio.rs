@@ -19,22 +19,13 @@ pub(super) const KIND: SensorKind = SensorKind {
 };
 
 /// The settings of the ears.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct AudioConfig {
     /// Which agent's ears.
     agent: u32,
     /// Length of the window, s; default one control step; at most 10.
     window_s: Option<f64>,
-}
-
-impl Default for AudioConfig {
-    fn default() -> Self {
-        Self {
-            agent: 0,
-            window_s: None,
-        }
-    }
 }
 
 #[derive(Debug)]

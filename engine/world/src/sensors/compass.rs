@@ -18,6 +18,10 @@ pub(super) const KIND: SensorKind = SensorKind {
 #[derive(Debug)]
 struct Compass;
 
+#[expect(
+    clippy::unnecessary_wraps,
+    reason = "the signature of every sensor's builder"
+)]
 fn build(_: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     Ok(Box::new(Compass))
 }

@@ -1,4 +1,4 @@
-//! Depth image: metres along the camera's -Z, shape (height, width, 1); misses are clamped to far_m.
+//! Depth image: metres along the camera's -Z, shape (height, width, 1); misses are clamped to `far_m`.
 
 use super::camera::{CameraConfig, EyeCamera};
 use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
@@ -6,7 +6,7 @@ use crate::error::WorldError;
 use crate::requests::{Channel, Requests};
 use crate::world::World;
 
-const ABOUT: &str = "Depth image: metres along the camera's -Z, shape (height, width, 1); misses are clamped to far_m.";
+const ABOUT: &str = "Depth image: metres along the camera's -Z, shape (height, width, 1); misses are clamped to `far_m`.";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: "depth",

@@ -114,6 +114,9 @@ pub struct Site<'a> {
     pub config: &'a crate::config::WorldConfig,
 }
 
+/// Builds a sensor from its settings (a JSON object; `null` gives the defaults).
+pub type Builder = fn(&serde_json::Value, Site<'_>) -> Result<Box<dyn Sensor>, WorldError>;
+
 /// A kind of sensor that can be asked for by name.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorKind {
@@ -122,7 +125,7 @@ pub struct SensorKind {
     /// One sentence about it.
     pub about: &'static str,
     /// Builds one from its settings (a JSON object; `{}` gives the defaults).
-    pub build: fn(&serde_json::Value, Site<'_>) -> Result<Box<dyn Sensor>, WorldError>,
+    pub build: Builder,
 }
 
 /// All kinds of sensors.
