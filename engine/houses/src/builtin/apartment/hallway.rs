@@ -92,5 +92,5 @@ pub(super) fn furnish(site: &mut Site<'_>) {
     site.ceiling(&dome, 1.6, 4.5, 0.0);
     site.ceiling(&dome, 4.9, 4.5, 0.0);
     let switch = site.kind(light_switch());
-    site.hang(&switch, Side::West, WEST, 3.9, 1.1);
+    site.hang(&switch, Side::West, WEST, 5.1, 1.1);
 }

@@ -37,8 +37,8 @@ enum Look {
 }
 
 const fn door(room: RoomId, at: [f32; 2], yaw_deg: f32, openness: f32, look: Look) -> Doorway {
-    // The glazed doors of the living room lie against the wall on their right when open.
-    let hinge_right = matches!(look, Look::Glazed);
+    // Open leaves lie against the nearest wall and leave the next doorway free.
+    let hinge_right = matches!(look, Look::Glazed | Look::Entrance);
     Doorway {
         room,
         at,
