@@ -7,10 +7,10 @@ import pickle
 import gymnasium
 import numpy as np
 import pytest
-from conftest import ENV_ID
 from gymnasium.utils.env_checker import check_env
 
 import dwell
+from conftest import ENV_ID
 from dwell.envs import DwellEnv
 
 SMALL = {
