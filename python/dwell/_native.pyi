@@ -9,6 +9,35 @@ from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import Self
+
+__all__ = [
+    "AcousticScene",
+    "Batch",
+    "ConfigError",
+    "DwellError",
+    "EngineBug",
+    "House",
+    "HouseError",
+    "HouseNotFoundError",
+    "MeasuredDataError",
+    "SceneError",
+    "UsageError",
+    "World",
+    "__version__",
+    "actions",
+    "bench_json",
+    "calibrate",
+    "calibration_example",
+    "charset",
+    "doctor_json",
+    "laws_json",
+    "max_text_length",
+    "sensors_json",
+    "synthesize",
+    "tasks_json",
+    "vocabulary",
+]
 
 __version__: str
 
@@ -50,7 +79,7 @@ class House:
 class World:
     """A running world with its own state over a shared house."""
 
-    def __init__(self, house: House, config_json: str = ..., seed: int = ...) -> None: ...
+    def __new__(cls, house: House, config_json: str = ..., seed: int = ...) -> Self: ...
     def step(self, controls: NDArray[np.float32]) -> None:
         """One control step; ``controls``: shape (agent, 4): forward m/s, right m/s, yaw rad/s (positive to the left), pitch rad/s (positive up)."""
     def act(self, agent: int, action_json: str) -> str:
@@ -94,9 +123,9 @@ class World:
 class Batch:
     """Environments stepped together; observations are written into arrays of the caller."""
 
-    def __init__(
-        self, houses: Sequence[House], config_json: str, threads: int | None = ...
-    ) -> None: ...
+    def __new__(
+        cls, houses: Sequence[House], config_json: str, threads: int | None = ...
+    ) -> Self: ...
     def specs_json(self) -> str:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor."""
     def reset(self, seeds: Sequence[int | None]) -> None: ...
@@ -117,7 +146,7 @@ class Batch:
 class AcousticScene:
     """Impulse responses in a house as it starts."""
 
-    def __init__(self, house: House, config_json: str = ...) -> None: ...
+    def __new__(cls, house: House, config_json: str = ...) -> Self: ...
     def impulse_response(
         self,
         source: tuple[float, float, float],
