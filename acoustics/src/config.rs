@@ -22,6 +22,9 @@ pub struct AcousticConfig {
     pub image_planes: usize,
     /// Rays from the receiver that discover further sequences of planes; 0 to 100,000.
     pub discovery_rays: usize,
+    /// How far a ray may fall below its start before chance ends it, dB; 10 to 120. Above it, every ray is followed; below, the
+    /// fewer the fainter they are, and those that go on stand for the others.
+    pub roulette_db: f64,
     /// Radius of the sphere on which paths with specular last reflections are counted, m; 0.05 to 2. Walls make it smaller.
     pub receiver_radius_m: f64,
     /// Temperature, humidity, pressure.
@@ -52,6 +55,7 @@ impl AcousticConfig {
             image_order: 3,
             image_planes: 40,
             discovery_rays: 2_000,
+            roulette_db: 60.0,
             receiver_radius_m: 0.5,
             air: Air::default(),
             air_absorption: true,
@@ -69,6 +73,7 @@ impl AcousticConfig {
             image_order: 2,
             image_planes: 16,
             discovery_rays: 200,
+            roulette_db: 30.0,
             ..Self::full()
         }
     }
@@ -109,6 +114,13 @@ impl AcousticConfig {
             self.discovery_rays,
             100_000,
             "0 to 100000",
+        )?;
+        range(
+            AT,
+            "roulette_db",
+            self.roulette_db,
+            (10.0, 120.0),
+            "10 to 120",
         )?;
         range(
             AT,

@@ -13,7 +13,7 @@ use crate::{images, tail};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Address, House, Material, MaterialId, State};
+use dwell_scene::{Address, House, Material, MaterialId, Pose, State};
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -74,6 +74,8 @@ pub struct AcousticScene {
     synthesizer: Arc<Synthesizer>,
     /// Where all planes are now.
     planes: Vec<Plane>,
+    /// Where the moving parts are now. Shape (moving part,).
+    poses: Vec<Pose>,
     /// Shape (material,).
     surfaces: Vec<Surface>,
     overrides: BTreeMap<Address, f64>,
@@ -90,6 +92,7 @@ impl AcousticScene {
         tracing::debug!(planes = table.len(), "acoustic planes built");
         Ok(Self {
             planes: table.at_start.clone(),
+            poses: table.poses_at_start(&house),
             surfaces: house
                 .materials
                 .ids()
@@ -112,7 +115,7 @@ impl AcousticScene {
                 .map(|id| Surface::new(&self.house, Some(state), id))
                 .collect();
         }
-        self.table.update(&mut self.planes, state);
+        self.table.update(&mut self.planes, &mut self.poses, state);
     }
 
     /// The house.

@@ -203,6 +203,27 @@ fn the_order_of_the_images_does_not_change_the_energy() {
     }
 }
 
+/// Thinning out faint rays is fair: it changes neither level nor decay beyond chance.
+#[test]
+fn roulette_is_unbiased() {
+    let [all, thinned] = [120.0, 15.0].map(|roulette_db| {
+        let config = AcousticConfig {
+            roulette_db,
+            ..dry(20_000)
+        };
+        let hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.3, 0.5), config);
+        let (source, ear) = (Vec3::new(1.2, 1.5, 1.4), Vec3::new(4.6, 1.2, 3.3));
+        hall.echogram(source, ear, Key::root(12))
+    });
+    assert!(thinned.trace.segments < all.trace.segments / 2);
+    let late = |found: &dwell_acoustics::Echogram| {
+        let bins = found.tail.bins[40..60].iter();
+        bins.map(|bin| bin.energy[4]).sum::<f64>()
+    };
+    let difference_db = 10.0 * (late(&thinned) / late(&all)).log10();
+    assert!(difference_db.abs() < 0.3, "{difference_db}");
+}
+
 /// V23: the same bits for 1, 2 and 7 threads.
 #[test]
 fn threads_do_not_change_a_bit() {

@@ -141,15 +141,24 @@ impl PlaneTable {
             .unwrap_or(NO_PLANE)
     }
 
-    /// Moves the planes of the moving parts to where `state` has them.
-    pub(crate) fn update(&self, planes: &mut [Plane], state: &State) {
-        for moving in &self.moving {
-            let Some(pose) = state.part_pose.get(moving.part) else {
+    /// Where the moving parts stand at the start. Shape (moving part,).
+    pub(crate) fn poses_at_start(&self, house: &House) -> Vec<Pose> {
+        let parts = self.moving.iter();
+        parts
+            .map(|moving| house.parts[moving.part].world_from_part)
+            .collect()
+    }
+
+    /// Moves the planes of the parts that `state` has elsewhere than `poses`, and notes where they are now.
+    pub(crate) fn update(&self, planes: &mut [Plane], poses: &mut [Pose], state: &State) {
+        for (moving, pose) in self.moving.iter().zip(poses) {
+            let Some(now) = state.part_pose.get(moving.part).filter(|now| *now != pose) else {
                 continue;
             };
+            *pose = *now;
             let places = planes[moving.first..].iter_mut();
             for (plane, in_part) in places.zip(&moving.planes) {
-                *plane = moved(in_part, pose);
+                *plane = moved(in_part, now);
             }
         }
     }

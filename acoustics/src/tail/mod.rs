@@ -125,6 +125,7 @@ pub(crate) fn trace(
         bins_per_m: (1.0 / (speed * config.bin_s)) as f32,
         furthest_m: (speed * config.max_duration_s) as f32,
         bin_count,
+        roulette: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
     };
     let chunks = config.rays.div_ceil(RAYS_PER_CHUNK);
     let mut energy = vec![[0.0_f64; BAND_COUNT]; bin_count];

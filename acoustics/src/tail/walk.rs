@@ -11,8 +11,6 @@ use glam::{Quat, Vec3};
 use std::f32::consts::{PI, TAU};
 use std::ops::Range;
 
-/// Energy re the start below which rays are thinned out: -60 dB.
-const ROULETTE: f32 = 1e-6;
 /// Shadow rays shorter than this count as so long, m: it bounds the variance that a near surface brings.
 const NEAREST_M: f32 = 0.1;
 /// No ray is followed further than this many reflections.
@@ -29,6 +27,8 @@ pub(super) struct Walk<'a> {
     pub(super) bins_per_m: f32,
     pub(super) furthest_m: f32,
     pub(super) bin_count: usize,
+    /// Energy re the start below which rays are thinned out.
+    pub(super) roulette: f32,
 }
 
 impl Walk<'_> {
@@ -105,8 +105,8 @@ impl Walk<'_> {
                 );
             }
             let strongest = energy.iter().copied().fold(0.0, f32::max) / power;
-            if strongest < ROULETTE {
-                let survival = strongest / ROULETTE;
+            if strongest < self.roulette {
+                let survival = strongest / self.roulette;
                 if survival < 1e-3 || stream.uniform_f32() >= survival {
                     return;
                 }
