@@ -94,7 +94,7 @@ impl CalibrationError {
     pub(crate) fn field(
         at: impl Into<String>,
         field: impl Into<String>,
-        found: impl ToString,
+        found: impl std::fmt::Display,
         allowed: impl Into<String>,
     ) -> Self {
         Self::Field {
@@ -106,7 +106,7 @@ impl CalibrationError {
     }
 
     /// A simulation that failed.
-    pub(crate) fn simulation(at: impl Into<String>, what: impl ToString) -> Self {
+    pub(crate) fn simulation(at: impl Into<String>, what: impl std::fmt::Display) -> Self {
         Self::Simulation {
             at: at.into(),
             what: what.to_string(),

@@ -60,7 +60,7 @@ pub fn calibrate(
         Kind::ImpulseResponse => Box::new(RoomTwin::new(&bundle, options)?),
     };
     let findings = select::explain(twin.as_mut(), options, &progress)?;
-    let report = report::build(&bundle, twin.as_ref(), &findings)?;
+    let report = report::build(&bundle, twin.as_ref(), &findings);
     progress.stage(1.0, "done")?;
     Ok(report)
 }

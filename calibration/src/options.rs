@@ -25,9 +25,9 @@ pub struct Options {
     pub bootstrap_draws: usize,
     /// Whether samples far from the rest count less (Huber's loss from three robust standard deviations on); default true.
     pub robust: bool,
-    /// Physics steps per second in the simulation twin, Hz; 60 to 2,000, default 240.
+    /// Physics steps per second in the simulation twin, Hz; 60 to 1,000, default 240.
     pub physics_rate_hz: f64,
-    /// Sound rays per impulse response in the simulation twin; 100 to 100,000, default 2,000.
+    /// Sound rays per impulse response in the simulation twin; 100 to 100,000, default 2,500.
     pub rays: usize,
 }
 
@@ -44,7 +44,7 @@ impl Default for Options {
             bootstrap_draws: 2_000,
             robust: true,
             physics_rate_hz: 240.0,
-            rays: 2_000,
+            rays: 2_500,
         }
     }
 }
@@ -73,7 +73,7 @@ impl Options {
         range("rival_delta_bic", self.rival_delta_bic, 0.0, 100.0)?;
         range("min_gain_share", self.min_gain_share, 0.0, 1.0)?;
         range("bootstrap_draws", self.bootstrap_draws as f64, 100.0, 1e5)?;
-        range("physics_rate_hz", self.physics_rate_hz, 60.0, 2000.0)?;
+        range("physics_rate_hz", self.physics_rate_hz, 60.0, 1000.0)?;
         range("rays", self.rays as f64, 100.0, 1e5)
     }
 }

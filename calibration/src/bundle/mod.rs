@@ -6,7 +6,7 @@
 //! | `episodes.csv` | `episode, split_group, conditions` |
 //! | `trajectory.csv` | `episode, t_s, entity, channel, value` (kinds trajectory and servo) |
 //! | `command.csv` | `episode, t_s, actuator, kind, value` (kind servo) |
-//! | `ir.csv` | `episode, file, source_x, source_y, source_z, receiver_x, receiver_y, receiver_z, rate_hz` (kind impulse_response) |
+//! | `ir.csv` | `episode, file, source_x, source_y, source_z, receiver_x, receiver_y, receiver_z, rate_hz` (kind `impulse_response`) |
 //! | `ir/*.wav` | the responses that `ir.csv` names |
 //!
 //! Everything is SI; axes are the engine's (right-handed, y up).

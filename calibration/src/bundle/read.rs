@@ -6,7 +6,7 @@ use super::limits;
 use super::{Bundle, Episode, Response, Sample, wav};
 use crate::error::CalibrationError;
 use serde::de::DeserializeOwned;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::{BufReader, Read as _};
 use std::path::{Component, Path, PathBuf};
@@ -35,7 +35,7 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
             commands(folder, &names, &by_name, &mut bundle.episodes)?;
         }
         Kind::ImpulseResponse => {
-            responses(folder, &bundle.manifest, &by_name, &mut bundle.episodes)?
+            responses(folder, &bundle.manifest, &by_name, &mut bundle.episodes)?;
         }
     }
     check::complete(&bundle)?;
@@ -141,11 +141,11 @@ fn table<T: DeserializeOwned>(
 
 fn episodes(folder: &Path) -> Result<Vec<Episode>, CalibrationError> {
     let mut found: Vec<Episode> = Vec::new();
-    let mut names = BTreeMap::new();
+    let mut names = BTreeSet::new();
     table(folder, "episodes.csv", |row: EpisodeRow, at| {
         check::name(at, "episode", &row.episode)?;
         check::name(at, "split_group", &row.split_group)?;
-        if names.insert(row.episode.clone(), ()).is_some() {
+        if !names.insert(row.episode.clone()) {
             return Err(CalibrationError::field(
                 at,
                 "episode",

@@ -12,8 +12,8 @@ const MOST_ITERATIONS: usize = 12;
 /// Iterations of the second stage, in which outliers count less.
 const MOST_ROBUST_ITERATIONS: usize = 4;
 const MOST_DAMPINGS: usize = 6;
-/// Relative fall of the sum of squares at which the iteration ends.
-const TOLERANCE: f64 = 1e-5;
+/// Fall of the loss, in mean squared residuals, at which the iteration ends: a fiftieth of what one datum brings.
+const TOLERANCE: f64 = 0.02;
 
 /// Which causes are fitted, by position; nuisances always are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -106,11 +106,16 @@ impl Task<'_> {
         let mut damping = 1e-6;
         let mut value = total(&now.residuals, loss);
         let mut blocks = self.blocks(global, point, now, loss)?;
+        let count = now.residuals.iter().map(Vec::len).sum::<usize>().max(1) as f64;
         for _ in 0..most {
             self.progress.check()?;
-            let before = value;
+            let (before, least) = (value, TOLERANCE * value / count);
             for _ in 0..MOST_DAMPINGS {
-                let trial = self.moved(global, point, &normal::step(&blocks, damping));
+                let step = normal::step(&blocks, damping);
+                if step.predicted < least {
+                    break;
+                }
+                let trial = self.moved(global, point, &step);
                 // A trial that the engine refuses is a step too far.
                 let there = self
                     .evaluate(&trial)
@@ -123,7 +128,7 @@ impl Task<'_> {
                 }
                 damping = (damping * 30.0).max(1e-4);
             }
-            if before - value <= TOLERANCE * before {
+            if before - value <= least {
                 // Blocks of the point before the last, tiny, step serve as well.
                 break;
             }

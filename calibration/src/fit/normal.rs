@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// What one episode brings to the normal equations: blocks of JᵀWJ and JᵀWr, own nuisances first.
+/// What one episode brings to the normal equations: blocks of `JᵀWJ` and `JᵀWr`, own nuisances first.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     own: DMatrix<f64>,
@@ -17,6 +17,8 @@ pub(super) struct Step {
     pub(super) global: DVector<f64>,
     /// Shape (episode, nuisance).
     pub(super) own: Vec<DVector<f64>>,
+    /// How much the loss would fall if the model were linear.
+    pub(super) predicted: f64,
 }
 
 impl Block {
@@ -113,7 +115,7 @@ pub(super) fn step(blocks: &[Block], damping: f64) -> Step {
     } else {
         right
     };
-    let own = blocks
+    let own: Vec<DVector<f64>> = blocks
         .iter()
         .zip(&damped)
         .map(|(block, own)| {
@@ -128,8 +130,14 @@ pub(super) fn step(blocks: &[Block], damping: f64) -> Step {
             }
         })
         .collect();
+    let global = global.column(0).into_owned();
+    let falls = blocks
+        .iter()
+        .zip(&own)
+        .map(|(block, own)| block.global_slope.dot(&global) + block.own_slope.dot(own));
     Step {
-        global: global.column(0).into_owned(),
+        predicted: falls.sum(),
+        global,
         own,
     }
 }

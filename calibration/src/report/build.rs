@@ -4,7 +4,6 @@ use super::data::{Candidate, Effect, Fitted, Found, Nuisance, Report, Verdict};
 use super::plot::plots;
 use crate::bundle::Bundle;
 use crate::bundle::file::Kind;
-use crate::error::CalibrationError;
 use crate::select::{Decision, Estimate, Findings, Judged, Single, by_channel, estimates, sd_of};
 use crate::twin::{Cause, Experiment, Parameter, Slot, Twin};
 use crate::words::{list, number, percent};
@@ -14,11 +13,7 @@ use dwell_scene::LawSpec;
 const VERSION: u32 = 1;
 
 /// Puts findings into a report.
-pub(crate) fn build(
-    bundle: &Bundle,
-    twin: &dyn Twin,
-    findings: &Findings,
-) -> Result<Report, CalibrationError> {
+pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Report {
     let verdict = verdict(twin, findings);
     let named = matches!(verdict, Verdict::Named { .. });
     let chosen = if named {
@@ -38,7 +33,7 @@ pub(crate) fn build(
         .iter()
         .map(|single| candidate(twin, single))
         .collect();
-    Ok(Report {
+    Report {
         version: VERSION,
         title: bundle.manifest.title.clone(),
         licence: bundle.manifest.licence.clone(),
@@ -69,7 +64,7 @@ pub(crate) fn build(
         notes: notes(bundle, twin, findings),
         candidates,
         verdict,
-    })
+    }
 }
 
 /// Residuals of all episodes, fitted ones first.

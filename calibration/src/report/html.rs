@@ -101,7 +101,7 @@ impl Report {
     fn table_of_causes(&self, out: &mut String) {
         out.push_str(
             "<h2>Causes that were tried</h2><p class=\"soft\">Each was fitted alone. It counts when the information \
-             criterion falls by more than 10 and the episodes that no fit has seen get better beyond chance.</p>",
+             criterion (BIC) falls far enough and the episodes that no fit has seen get better beyond chance.</p>",
         );
         out.push_str(&svg::gains(&self.candidates));
         out.push_str(
@@ -109,29 +109,9 @@ impl Report {
              <th>Held-out error taken away</th><th></th></tr>",
         );
         for candidate in &self.candidates {
-            self.row(out, candidate);
+            row(out, candidate);
         }
         out.push_str("</table></div>");
-    }
-
-    fn row(&self, out: &mut String, candidate: &Candidate) {
-        let told: Vec<String> = candidate.parameters.iter().map(parameter).collect();
-        let [low, high] = candidate.gain.share_interval.map(percent);
-        let judgement = match (&candidate.implausible, candidate.passes) {
-            (Some(why), true) => format!("fits, but {}", escape(why)),
-            (_, true) => "passes".to_owned(),
-            (_, false) => "no".to_owned(),
-        };
-        let _ = write!(
-            out,
-            "<tr><td><b>{}</b><br><span class=\"soft\">{}</span></td><td class=\"n\">{}</td><td class=\"n\">{}</td>\
-             <td class=\"n\">{}<br><span class=\"soft\">{low} to {high}</span></td><td>{judgement}</td></tr>",
-            escape(&candidate.name),
-            escape(&candidate.equation),
-            told.join("<br>"),
-            number(candidate.delta_bic),
-            percent(candidate.gain.share)
-        );
     }
 
     fn table_of_residuals(&self, out: &mut String) {
@@ -212,6 +192,26 @@ impl Report {
             escape(&found)
         );
     }
+}
+
+fn row(out: &mut String, candidate: &Candidate) {
+    let told: Vec<String> = candidate.parameters.iter().map(parameter).collect();
+    let [low, high] = candidate.gain.share_interval.map(percent);
+    let judgement = match (&candidate.implausible, candidate.passes) {
+        (Some(why), true) => format!("fits, but {}", escape(why)),
+        (_, true) => "passes".to_owned(),
+        (_, false) => "no".to_owned(),
+    };
+    let _ = write!(
+        out,
+        "<tr><td><b>{}</b><br><span class=\"soft\">{}</span></td><td class=\"n\">{}</td><td class=\"n\">{}</td>\
+         <td class=\"n\">{}<br><span class=\"soft\">{low} to {high}</span></td><td>{judgement}</td></tr>",
+        escape(&candidate.name),
+        escape(&candidate.equation),
+        told.join("<br>"),
+        number(candidate.delta_bic),
+        percent(candidate.gain.share)
+    );
 }
 
 fn parameter(p: &Fitted) -> String {

@@ -130,14 +130,14 @@ pub(super) fn residuals(plot: &Plot, name: &str) -> String {
 pub(super) fn gains(candidates: &[Candidate]) -> String {
     let row = 24.0;
     let height = TOP + BOTTOM + row * candidates.len() as f64;
-    let left = 170.0;
+    let (left, right) = (170.0, 30.0);
     let ends = candidates.iter().flat_map(|c| c.gain.share_interval);
     let low = ends.fold(-0.05, f64::min).max(-1.0);
     let x = Scale {
         low: 100.0 * low,
         high: 100.0,
         from: left,
-        to: WIDTH - RIGHT,
+        to: WIDTH - right,
     };
     let mut out = open(height, "held-out gain of every cause");
     for tick in x.ticks() {

@@ -7,7 +7,7 @@ use crate::error::CalibrationError;
 use crate::fit::{Fit, Model, Task};
 use crate::options::Options;
 use crate::progress::Tell;
-use crate::twin::{Point, Slot, Twin, range_of};
+use crate::twin::{Point, Slot, Structure, Twin, range_of};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 
@@ -29,6 +29,13 @@ pub(crate) struct Judged {
     pub(crate) held_out: Fit,
     /// Independent numbers among those fitted.
     pub(crate) effective_count: f64,
+}
+
+impl Judged {
+    /// Independent numbers in a number.
+    pub(crate) fn worth(&self) -> f64 {
+        self.effective_count / self.fit.data.max(1) as f64
+    }
 }
 
 /// A model against a smaller one.
@@ -58,7 +65,8 @@ impl Comparison<'_> {
             twin: self.twin,
             set,
             threads: self.threads,
-            robust: robust && self.options.robust,
+            // Levels of a response have no outliers, and each fit of a room costs much.
+            robust: robust && self.options.robust && self.twin.structure() == Structure::InTime,
             progress: self.progress,
         }
     }
@@ -100,12 +108,13 @@ impl Comparison<'_> {
         })
     }
 
-    /// How much better `larger` is than `smaller`.
+    /// How much better `larger` is than `smaller`. `worth`: independent numbers in a number, the same for all models that
+    /// are compared: a wrong model's residuals are correlated because it is wrong.
     ///
     /// # Source
     /// G. Schwarz, Ann. Stat. 6, 461 (1978), with a noise scale that is fitted and the effective count of data.
-    pub(crate) fn against(&self, larger: &Judged, smaller: &Judged) -> Against {
-        let n = larger.effective_count.max(2.0);
+    pub(crate) fn against(&self, larger: &Judged, smaller: &Judged, worth: f64) -> Against {
+        let n = (worth * larger.fit.data as f64).max(2.0);
         let more = larger.fit.parameters as f64 - smaller.fit.parameters as f64;
         let ratio =
             smaller.fit.loss.max(f64::MIN_POSITIVE) / larger.fit.loss.max(f64::MIN_POSITIVE);
@@ -117,7 +126,7 @@ impl Comparison<'_> {
                 &smaller.held_out.loss_by_episode(robust),
                 &larger.held_out.loss_by_episode(robust),
                 larger.fit.loss / larger.fit.data.max(1) as f64,
-                n / larger.fit.data.max(1) as f64,
+                worth,
                 self.options.bootstrap_draws,
                 key,
             ),

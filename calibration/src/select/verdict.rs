@@ -68,29 +68,34 @@ pub(crate) fn explain(
         progress,
     };
     let base = all.judge(&Model::default(), &start)?;
-    let mut singles = Vec::new();
+    let mut fitted = Vec::new();
     let count = all.twin.causes().len();
     for (cause, info) in all.twin.causes().iter().enumerate() {
-        progress.stage(
-            0.2 + 0.5 * cause as f32 / count as f32,
-            &format!("trying {}", info.name),
-        )?;
-        let judged = all.judge(
-            &Model {
-                causes: vec![cause],
-            },
-            &base.fit.point,
-        )?;
-        let against = all.against(&judged, &base);
-        let implausible = implausible(all.twin, &judged, cause);
-        singles.push(Single {
-            cause,
-            passes: all.passes(&against),
-            judged,
-            against,
-            implausible,
-        });
+        let fraction = 0.2 + 0.5 * cause as f32 / count as f32;
+        progress.stage(fraction, &format!("trying {}", info.name))?;
+        let model = Model {
+            causes: vec![cause],
+        };
+        fitted.push(all.judge(&model, &base.fit.point)?);
     }
+    let best = fitted
+        .iter()
+        .min_by(|a, b| a.fit.loss.total_cmp(&b.fit.loss));
+    let worth = best.map_or(1.0, Judged::worth);
+    let singles: Vec<Single> = fitted
+        .into_iter()
+        .enumerate()
+        .map(|(cause, judged)| {
+            let against = all.against(&judged, &base, worth);
+            Single {
+                cause,
+                passes: all.passes(&against),
+                implausible: implausible(all.twin, &judged, cause),
+                judged,
+                against,
+            }
+        })
+        .collect();
     progress.stage(0.7, "comparing causes")?;
     let remainder = |judged: &Judged| Remainder::of(all.twin, &split.train, &judged.fit.residuals);
     let remainder_before = remainder(&base);
@@ -122,7 +127,8 @@ pub(crate) fn explain(
             ));
         }
     }
-    let against_base = (!chosen.model.causes.is_empty()).then(|| all.against(&chosen, &base));
+    let against_base =
+        (!chosen.model.causes.is_empty()).then(|| all.against(&chosen, &base, chosen.worth()));
     Ok(Findings {
         base,
         singles,
@@ -200,7 +206,7 @@ fn implausible(twin: &dyn Twin, judged: &Judged, cause: usize) -> Option<String>
     let parameters = &twin.causes()[cause].parameters;
     let at_bound = |p: &Parameter, value: f64| {
         let near = 1e-9 * (1.0 + value.abs());
-        (value - p.low < near || p.high - value < near) && value != p.default
+        (value - p.low < near || p.high - value < near) && (value - p.default).abs() > near
     };
     parameters.iter().zip(&found).find_map(|(p, estimate)| {
         let [low, high] = estimate.interval();
@@ -240,7 +246,7 @@ fn decide(
     let causes = all.twin.causes();
     let Some(best) = passing.first() else {
         let decision = if remainder.is_structured() {
-            Decision::Unexplained("none of the causes in the library fits it".to_owned())
+            Decision::Unexplained(nearest(all, singles))
         } else {
             Decision::Nothing
         };
@@ -271,6 +277,25 @@ fn decide(
     }
 }
 
+/// Why no cause passes, with the one that comes nearest.
+fn nearest(all: &Comparison<'_>, singles: &[Single]) -> String {
+    let best = singles
+        .iter()
+        .max_by(|a, b| a.against.delta_bic.total_cmp(&b.against.delta_bic));
+    let none = "none of the causes in the library fits it";
+    match best.filter(|best| best.against.delta_bic > all.options.min_delta_bic) {
+        Some(best) => {
+            let [low, high] = best.against.gain.share_interval.map(crate::words::percent);
+            format!(
+                "{none}; nearest comes {}, whose gain on episodes that no fit has seen is not certain ({low} to {high} of \
+                 the squared error)",
+                all.twin.causes()[best.cause].name
+            )
+        }
+        None => none.to_owned(),
+    }
+}
+
 /// Looks for a second cause beside the first.
 fn second(
     all: &Comparison<'_>,
@@ -289,7 +314,7 @@ fn second(
             causes: vec![first.cause, other.cause],
         };
         let judged = all.judge(&model, &first.judged.fit.point)?;
-        let against = all.against(&judged, &first.judged);
+        let against = all.against(&judged, &first.judged, judged.worth());
         let plausible = model
             .causes
             .iter()

@@ -16,6 +16,7 @@ use dwell_scene::{Bands, House, Material, ShoeboxMaterials, State};
 use glam::Vec3;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 /// Step of a finite difference of an absorption.
@@ -61,22 +62,8 @@ impl RoomTwin {
             }
         };
         let house = Arc::new(house);
-        let air = &bundle.manifest.scene.environment;
         let rate_hz = bundle.episodes[0].responses[0].rate_hz;
-        let config = AcousticConfig {
-            rate_hz: rate_hz.clamp(8_000, 192_000),
-            rays: options.rays,
-            max_duration_s: 0.25,
-            bin_s: 0.001,
-            image_order: 3,
-            discovery_rays: if options.house.is_some() { 1_000 } else { 0 },
-            air: Air {
-                temperature_c: air.temperature_c.unwrap_or(20.0),
-                humidity_pct: air.humidity_pct.unwrap_or(50.0),
-                pressure_kpa: air.pressure_pa.unwrap_or(101_325.0) / 1000.0,
-            },
-            ..AcousticConfig::full()
-        };
+        let config = config(bundle, options, rate_hz);
         let scene = AcousticScene::new(house.clone(), config).map_err(|e| fault(&e))?;
         let bands = features::bands(rate_hz);
         let (mut episodes, mut pairs) = (Vec::new(), Vec::new());
@@ -153,6 +140,32 @@ impl RoomTwin {
         })
     }
 
+    /// The prediction with all absorptions of a surface one step further, and the steps.
+    fn moved(
+        &self,
+        episode: usize,
+        at: &Values<'_>,
+        surface: usize,
+    ) -> Result<(Vec<f64>, Vec<f64>), CalibrationError> {
+        let count = self.bands.len();
+        let range = surface * count..(surface + 1) * count;
+        // Away from the bound.
+        let step = |a: &f64| ABSORPTION_STEP.copysign(0.99 - ABSORPTION_STEP - a);
+        let steps: Vec<f64> = at.causes[range.clone()].iter().map(step).collect();
+        let mut causes = at.causes.to_vec();
+        for (value, step) in causes[range].iter_mut().zip(&steps) {
+            *value += step;
+        }
+        let there = self.predict(
+            episode,
+            &Values {
+                causes: &causes,
+                ..*at
+            },
+        )?;
+        Ok((there, steps))
+    }
+
     /// Levels of all responses of an episode, without gains.
     fn levels(&self, episode: usize, causes: &[f64]) -> Result<Vec<f64>, CalibrationError> {
         let at = &self.episodes[episode].name;
@@ -160,7 +173,7 @@ impl RoomTwin {
         let mut state = State::new(&self.house);
         let defaults = self.causes.iter().flat_map(|cause| &cause.parameters);
         for ((address, value), parameter) in self.addresses.iter().zip(causes).zip(defaults) {
-            if *value != parameter.default {
+            if (*value - parameter.default).abs() > 0.0 {
                 let address = address.parse().map_err(|e| fault(&e))?;
                 state
                     .set_parameter(&self.house, &address, *value)
@@ -188,6 +201,25 @@ impl RoomTwin {
             levels.extend(self.smear.simulated_db(&echogram));
         }
         Ok(levels)
+    }
+}
+
+/// How finely the twin hears.
+fn config(bundle: &Bundle, options: &Options, rate_hz: u32) -> AcousticConfig {
+    let air = &bundle.manifest.scene.environment;
+    AcousticConfig {
+        rate_hz: rate_hz.clamp(8_000, 192_000),
+        rays: options.rays,
+        max_duration_s: 0.2,
+        bin_s: 0.001,
+        image_order: if options.house.is_some() { 3 } else { 4 },
+        discovery_rays: if options.house.is_some() { 1_000 } else { 0 },
+        air: Air {
+            temperature_c: air.temperature_c.unwrap_or(20.0),
+            humidity_pct: air.humidity_pct.unwrap_or(50.0),
+            pressure_kpa: air.pressure_pa.unwrap_or(101_325.0) / 1000.0,
+        },
+        ..AcousticConfig::full()
     }
 }
 
@@ -350,30 +382,8 @@ impl Twin for RoomTwin {
                 }
                 Slot::Cause(k) => {
                     let (surface, band) = (k / count, k % count);
-                    if !moved.contains_key(&surface) {
-                        let mut causes = at.causes.to_vec();
-                        let range = surface * count..(surface + 1) * count;
-                        let steps: Vec<f64> = causes[range.clone()]
-                            .iter()
-                            .map(|a| {
-                                if a + ABSORPTION_STEP > 0.99 {
-                                    -ABSORPTION_STEP
-                                } else {
-                                    ABSORPTION_STEP
-                                }
-                            })
-                            .collect();
-                        for (value, step) in causes[range].iter_mut().zip(&steps) {
-                            *value += step;
-                        }
-                        let there = self.predict(
-                            episode,
-                            &Values {
-                                causes: &causes,
-                                ..*at
-                            },
-                        )?;
-                        moved.insert(surface, (there, steps));
+                    if let Entry::Vacant(entry) = moved.entry(surface) {
+                        entry.insert(self.moved(episode, at, surface)?);
                     }
                     let (there, steps) = &moved[&surface];
                     for row in (0..base.len()).filter(|row| channel[*row] == band) {

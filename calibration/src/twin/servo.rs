@@ -6,8 +6,8 @@ use super::{Cause, ChannelInfo, Experiment, Measured, Parameter, Structure, Twin
 use crate::bundle::Bundle;
 use crate::error::CalibrationError;
 use crate::options::Options;
+use dwell_physics::PhysicsConfig;
 use dwell_scene::{JointId, LawInfo, LawSpec, Servo};
-use glam::Vec3;
 use std::collections::BTreeMap;
 
 /// Edge of the box around the servo, m.
@@ -40,12 +40,13 @@ impl ServoTwin {
             max_effort: joint.max_torque_n_m as f32,
         };
         let hinge = (servo, joint.friction_n_m as f32);
-        let arm = Thing::arm(
-            &joint.name,
-            joint.inertia_kg_m2,
-            hinge,
-            Vec3::splat(0.5 * ROOM_M),
-        );
+        let arm = Thing::arm(&joint.name, joint.inertia_kg_m2, hinge);
+        let config = PhysicsConfig {
+            control_rate_hz: options.physics_rate_hz as f32,
+            physics_rate_hz: options.physics_rate_hz as f32,
+            sleeping: false,
+            ..PhysicsConfig::default()
+        };
         let backlash = dwell_physics::laws::all()
             .iter()
             .find(|law| law.id == "backlash");
@@ -86,7 +87,7 @@ impl ServoTwin {
                     .within(-MOST_OFFSET_S, MOST_OFFSET_S),
             ],
             own: vec![Parameter::nuisance("start position", "rad", 2e-3).within(-3.0, 3.0)],
-            stage: Stage::new(ROOM_M, &arm, options.physics_rate_hz)?,
+            stage: Stage::new(ROOM_M, &arm, config)?,
             rate_hz: options.physics_rate_hz,
             friction_n_m: joint.friction_n_m,
             commands,
@@ -240,7 +241,7 @@ impl Twin for ServoTwin {
             });
         }
         let mut overrides = Vec::new();
-        if *friction != self.friction_n_m {
+        if (*friction - self.friction_n_m).abs() > 0.0 {
             overrides.push(("joint/0/friction", *friction));
         }
         if *damping > 0.0 {

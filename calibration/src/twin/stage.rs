@@ -4,8 +4,8 @@ use crate::error::CalibrationError;
 use dwell_physics::{PhysicsConfig, PhysicsWorld};
 use dwell_scene::material::library;
 use dwell_scene::{
-    Articulation, Category, Collider, House, HouseData, JointKind, LawSpec, LevelId, Material,
-    Mesh, Mobility, Object, ObjectId, Part, PartId, Pose, Servo, ShoeboxMaterials, State,
+    Articulation, Category, Collider, House, HouseData, IdVec, JointKind, LawSpec, LevelId,
+    Material, Mesh, Mobility, Object, ObjectId, Part, PartId, Pose, Servo, ShoeboxMaterials, State,
 };
 use glam::{Affine3A, Vec3};
 use std::sync::Arc;
@@ -26,14 +26,13 @@ pub(super) struct Thing {
     pub(super) name: String,
     pub(super) mass_kg: f32,
     pub(super) collider: Collider,
-    pub(super) at: Vec3,
     /// The servo and Coulomb friction of its hinge; `None`: it is free.
     pub(super) hinge: Option<(Servo, f32)>,
 }
 
 impl Thing {
     /// A ball.
-    pub(super) fn ball(name: &str, mass_kg: f64, radius_m: f64, at: Vec3) -> Self {
+    pub(super) fn ball(name: &str, mass_kg: f64, radius_m: f64) -> Self {
         Self {
             name: name.to_owned(),
             mass_kg: mass_kg as f32,
@@ -41,42 +40,52 @@ impl Thing {
                 center: Vec3::ZERO,
                 radius: radius_m as f32,
             },
-            at,
             hinge: None,
         }
     }
 
     /// A box on a vertical hinge with this moment of inertia about it.
-    pub(super) fn arm(name: &str, inertia_kg_m2: f64, hinge: (Servo, f32), at: Vec3) -> Self {
+    pub(super) fn arm(name: &str, inertia_kg_m2: f64, hinge: (Servo, f32)) -> Self {
         let half = ARM_HALF_EDGE_M;
         Self {
             name: name.to_owned(),
             // A box about its middle: I = m (a² + c²) / 12 with edges a = c.
             mass_kg: (inertia_kg_m2 * 12.0 / f64::from(8.0 * half * half)) as f32,
             collider: Collider::cuboid(Vec3::splat(-half), Vec3::splat(half)),
-            at,
             hinge: Some(hinge),
         }
     }
 }
 
 impl Stage {
-    /// A closed box of `size_m` with one thing in it.
-    pub(super) fn new(size_m: f32, thing: &Thing, rate_hz: f64) -> Result<Self, CalibrationError> {
+    /// A closed box of `size_m` around the origin with one thing in it. Near the origin single precision is finest: a
+    /// flight through larger coordinates would be rough by more than what is looked for.
+    pub(super) fn new(
+        size_m: f32,
+        thing: &Thing,
+        config: PhysicsConfig,
+    ) -> Result<Self, CalibrationError> {
         let fault =
             |error: &dyn std::fmt::Display| CalibrationError::simulation(&thing.name, error);
         let box_house =
             House::shoebox([size_m; 3], &ShoeboxMaterials::default()).map_err(|e| fault(&e))?;
         let mut data = HouseData::clone(&box_house);
+        let middle = Vec3::splat(0.5 * size_m);
+        for mesh in &mut data.meshes {
+            let mut moved = Mesh::clone(mesh);
+            for position in &mut moved.positions {
+                *position -= middle;
+            }
+            *mesh = Arc::new(moved);
+        }
+        // Nothing here asks where the room is.
+        data.rooms = IdVec::new();
+        for piece in &mut data.structure {
+            piece.room = None;
+        }
         put(&mut data, thing);
         let house = Arc::new(House::new(data).map_err(|e| fault(&e))?);
         let mut state = State::new(&house);
-        let config = PhysicsConfig {
-            control_rate_hz: rate_hz as f32,
-            physics_rate_hz: rate_hz as f32,
-            sleeping: false,
-            ..PhysicsConfig::default()
-        };
         let (world, report) =
             PhysicsWorld::new(house.clone(), config, &mut state).map_err(|e| fault(&e))?;
         if !report.frozen.is_empty() || !report.moved.is_empty() {
@@ -158,7 +167,7 @@ fn put(data: &mut HouseData, thing: &Thing) {
         object,
         name: "part".into(),
         fixed: false,
-        world_from_part: Pose::from_position(thing.at),
+        world_from_part: Pose::IDENTITY,
         mesh,
         part_from_mesh: Affine3A::from_scale(Vec3::splat(ARM_HALF_EDGE_M)),
         materials: vec![material],
@@ -174,7 +183,7 @@ fn put(data: &mut HouseData, thing: &Thing) {
             child: part,
             kind: JointKind::Hinge,
             axis: Vec3::Y,
-            parent_from_joint: Pose::from_position(thing.at),
+            parent_from_joint: Pose::IDENTITY,
             child_from_joint: Pose::IDENTITY,
             limits: [-3.0, 3.0],
             closed: 0.0,

@@ -1,0 +1,194 @@
+//! Bundles that are damaged, incomplete or hostile: every one is refused with its place, and none brings anything down.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test stops at the first surprise, in its helpers too"
+)]
+
+use dwell_calibration::{CalibrationError, Options, calibrate};
+use std::fs;
+use std::path::Path;
+
+/// A change to a bundle that was sound.
+fn after(change: impl FnOnce(&Path)) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    dwell_calibration::example::write(folder.path(), 1).unwrap();
+    change(folder.path());
+    // A bundle that is read after all is stopped before the work begins.
+    let found = calibrate(folder.path(), &Options::default(), &mut |fraction, _| {
+        fraction < 0.04
+    });
+    found.unwrap_err().to_string()
+}
+
+fn replace(folder: &Path, file: &str, from: &str, to: &str) {
+    let path = folder.join(file);
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains(from), "{file} holds no {from}");
+    fs::write(path, text.replacen(from, to, 1)).unwrap();
+}
+
+#[test]
+fn faults_are_named_with_file_line_and_field() {
+    let cases: Vec<(&str, &str, &str, &[&str])> = vec![
+        (
+            "manifest.json",
+            "\"version\": 1",
+            "\"version\": 7",
+            &["manifest.json", "version is 7", "1, the version"],
+        ),
+        (
+            "manifest.json",
+            "\"mass_kg\": 0.0027",
+            "\"mass_kg\": -1",
+            &["scene.bodies[0].mass_kg", "-1"],
+        ),
+        (
+            "manifest.json",
+            "\"licence\"",
+            "\"license\"",
+            &["manifest.json line", "license"],
+        ),
+        (
+            "manifest.json",
+            "\"unit\": \"m\"",
+            "\"unit\": \"mm\"",
+            &["channels[0].unit", "mm"],
+        ),
+        (
+            "trajectory.csv",
+            ",ball,x,",
+            ",boll,x,",
+            &["trajectory.csv line 2", "boll", "ball"],
+        ),
+        (
+            "trajectory.csv",
+            ",ball,x,",
+            ",ball,w,",
+            &["trajectory.csv line 2", "channel", "\"w\""],
+        ),
+        (
+            "trajectory.csv",
+            "throw_00,",
+            "throw_99,",
+            &["trajectory.csv line 2", "throw_99", "episodes.csv"],
+        ),
+        (
+            "trajectory.csv",
+            "12.50000",
+            "NaN",
+            &["trajectory.csv line 2", "t_s", "NaN"],
+        ),
+        (
+            "trajectory.csv",
+            "12.50000",
+            "soon",
+            &["trajectory.csv line 2"],
+        ),
+        (
+            "episodes.csv",
+            "throw_01",
+            "throw_00",
+            &["episodes.csv line 3", "again"],
+        ),
+    ];
+    for (file, from, to, told) in cases {
+        let message = after(|folder| replace(folder, file, from, to));
+        for word in told {
+            assert!(message.contains(word), "{file} {from} -> {to}: {message}");
+        }
+    }
+    let message = after(|folder| fs::remove_file(folder.join("trajectory.csv")).unwrap());
+    assert!(message.contains("trajectory.csv"), "{message}");
+    let message = after(|folder| {
+        fs::write(
+            folder.join("episodes.csv"),
+            "episode,split_group,conditions\n",
+        )
+        .unwrap();
+    });
+    assert!(message.contains("episodes.csv"), "{message}");
+    let missing = calibrate(
+        Path::new("no such folder"),
+        &Options::default(),
+        &mut |_, _| true,
+    );
+    assert!(matches!(missing, Err(CalibrationError::Read { .. })));
+}
+
+/// A room whose `ir.csv` names a file outside of the bundle.
+fn room(folder: &Path, file: &str) -> String {
+    let side = r#"{"absorption": {"centres_hz": [1000.0], "values": [0.1]}}"#;
+    let sides = ["floor", "ceiling", "west", "east", "north", "south"]
+        .map(|name| format!("\"{name}\": {side}"))
+        .join(",");
+    let manifest = format!(
+        r#"{{"version": 1, "title": "r", "licence": "CC0-1.0", "kind": "impulse_response",
+            "scene": {{"room": {{"size_m": [4, 3, 5], "surfaces": {{{sides}}}}}}}}}"#
+    );
+    fs::write(folder.join("manifest.json"), manifest).unwrap();
+    fs::write(
+        folder.join("episodes.csv"),
+        "episode,split_group,conditions\na,a,\nb,b,\nc,c,\nd,d,\n",
+    )
+    .unwrap();
+    let head = "episode,file,source_x,source_y,source_z,receiver_x,receiver_y,receiver_z,rate_hz";
+    fs::write(
+        folder.join("ir.csv"),
+        format!("{head}\na,{file},1,1,1,2,2,2,16000\n"),
+    )
+    .unwrap();
+    let found = calibrate(folder, &Options::default(), &mut |_, _| true);
+    found.unwrap_err().to_string()
+}
+
+#[test]
+fn no_path_leads_out_of_the_bundle() {
+    let outside = tempfile::tempdir().unwrap();
+    fs::write(outside.path().join("secret.wav"), b"RIFF").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for file in ["../secret.wav", "/etc/hostname", "ir/../../x.wav", ""] {
+        let message = room(folder.path(), file);
+        assert!(message.contains("inside the bundle"), "{file}: {message}");
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(
+            outside.path().join("secret.wav"),
+            folder.path().join("link.wav"),
+        )
+        .unwrap();
+        let message = room(folder.path(), "link.wav");
+        assert!(message.contains("link out of the bundle"), "{message}");
+    }
+    fs::write(folder.path().join("x.wav"), b"RIFF\xff\xff\xff\xffWAVEfmt ").unwrap();
+    assert!(room(folder.path(), "x.wav").contains("x.wav"));
+}
+
+/// Cuts and flipped bytes anywhere never panic.
+#[test]
+fn damaged_bytes_are_refused_or_read() {
+    let folder = tempfile::tempdir().unwrap();
+    dwell_calibration::example::write(folder.path(), 2).unwrap();
+    for name in ["manifest.json", "episodes.csv"] {
+        let path = folder.path().join(name);
+        let sound = fs::read(&path).unwrap();
+        for k in (0..sound.len()).step_by(13) {
+            let mut bytes = sound.clone();
+            bytes[k] ^= 0x15;
+            fs::write(&path, &bytes).unwrap();
+            drop(calibrate(
+                folder.path(),
+                &Options::default(),
+                &mut |fraction, _| fraction < 0.04,
+            ));
+            fs::write(&path, &sound[..k]).unwrap();
+            drop(calibrate(
+                folder.path(),
+                &Options::default(),
+                &mut |fraction, _| fraction < 0.04,
+            ));
+        }
+        fs::write(&path, &sound).unwrap();
+    }
+}

@@ -1,0 +1,317 @@
+//! Effects hidden in throws by an independent integrator, and the verdicts they must get.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test stops at the first surprise, in its helpers too"
+)]
+
+mod calibration_support;
+
+use calibration_support::{Files, Random, runge_kutta, table};
+use dwell_calibration::{Options, Report, Verdict, calibrate};
+use std::f64::consts::TAU;
+
+/// What acts on the ball besides gravity.
+#[derive(Clone, Copy)]
+struct World {
+    gravity: f64,
+    /// Quadratic drag.
+    c_d: f64,
+    /// Linear drag, 1/s.
+    linear: f64,
+    /// A fan that is switched on and off: sideways acceleration, m/s².
+    fan: f64,
+    /// Lowest and highest speed of throws, m/s.
+    speeds: [f64; 2],
+    noise_m: f64,
+    heavy_tails: bool,
+}
+
+const QUIET: World = World {
+    gravity: 9.806_65,
+    c_d: 0.0,
+    linear: 0.0,
+    fan: 0.0,
+    speeds: [2.0, 8.0],
+    noise_m: 0.002,
+    heavy_tails: false,
+};
+
+const MASS_KG: f64 = 0.0577;
+const RADIUS_M: f64 = 0.033;
+const THROWS: usize = 15;
+const RATE_HZ: f64 = 90.0;
+
+/// Throws of a tennis ball in `world`, calibrated.
+fn throws(world: World, seed: u64) -> Report {
+    let mut random = Random::new(seed);
+    let mut files = Files::new(format!(
+        r#"{{"version": 1, "title": "throws", "licence": "CC0-1.0", "kind": "trajectory",
+            "scene": {{"environment": {{"temperature_c": 20.0, "pressure_pa": 101325.0}},
+                       "bodies": [{{"name": "ball", "mass_kg": {MASS_KG}, "radius_m": {RADIUS_M}}}]}},
+            "channels": [{{"name": "x", "unit": "m", "clock": "c", "noise_sd": null}},
+                         {{"name": "y", "unit": "m", "clock": "c", "noise_sd": null}},
+                         {{"name": "z", "unit": "m", "clock": "c", "noise_sd": {}}}]}}"#,
+        world.noise_m
+    ));
+    // Dry air at 20 degrees Celsius and 101,325 Pa.
+    let drag = 0.5 * 1.2041 * world.c_d * std::f64::consts::PI * RADIUS_M * RADIUS_M / MASS_KG;
+    for throw in 0..THROWS {
+        let name = format!("t{throw}");
+        files.episode(&name, &format!("s{}", throw / 2));
+        let speed = random.range(world.speeds[0], world.speeds[1]);
+        let (up, around) = (random.range(0.2, 1.2), random.range(0.0, TAU));
+        let mut now = [
+            0.0,
+            random.range(1.0, 1.5),
+            0.0,
+            speed * up.cos() * around.cos(),
+            speed * up.sin(),
+            speed * up.cos() * around.sin(),
+        ];
+        let gust = random.range(0.0, TAU);
+        let rates = |t: f64, s: &[f64; 6]| {
+            let v = (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]).sqrt();
+            let slow = drag * v + world.linear;
+            let fan = world.fan * (14.0 * t + gust).sin();
+            [
+                s[3],
+                s[4],
+                s[5],
+                -slow * s[3] + fan,
+                -slow * s[4] - world.gravity,
+                -slow * s[5],
+            ]
+        };
+        let samples = (RATE_HZ * random.range(0.5, 0.8)) as usize;
+        for k in 0..samples {
+            let t = k as f64 / RATE_HZ;
+            for (axis, channel) in ["x", "y", "z"].iter().enumerate() {
+                let noise = if world.heavy_tails {
+                    random.heavy()
+                } else {
+                    random.normal()
+                };
+                files.sample(
+                    &name,
+                    3.0 + t,
+                    "ball",
+                    channel,
+                    now[axis] + world.noise_m * noise,
+                );
+            }
+            for sub in 0..8 {
+                let h = 1.0 / RATE_HZ / 8.0;
+                now = runge_kutta(now, t + f64::from(sub) * h, h, &rates);
+            }
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    files.write(folder.path());
+    calibrate(
+        folder.path(),
+        &Options {
+            seed,
+            ..Options::default()
+        },
+        &mut |_, _| true,
+    )
+    .unwrap()
+}
+
+/// The first parameter of the first effect: value and 95 % interval.
+fn named(report: &Report, law: &str) -> (f64, [f64; 2]) {
+    let Verdict::Named {
+        law: found,
+        effects,
+        ..
+    } = &report.verdict
+    else {
+        panic!("{law} was hidden: {}", table(report));
+    };
+    assert_eq!(
+        (found.as_str(), effects.len()),
+        (law, 1),
+        "{}",
+        table(report)
+    );
+    let parameter = &effects[0].parameters[0];
+    (parameter.value, parameter.interval)
+}
+
+/// Five seeds; the interval of 95 % may miss once in twenty, so a tolerance of 5 % stands beside it.
+#[test]
+fn quadratic_drag_is_named_with_its_coefficient() {
+    for seed in 1..=5 {
+        let world = World {
+            c_d: 0.5,
+            heavy_tails: seed % 2 == 0,
+            ..QUIET
+        };
+        let report = throws(world, seed);
+        let (c_d, [low, high]) = named(&report, "drag");
+        assert!(
+            (low..=high).contains(&0.5) || (c_d / 0.5 - 1.0).abs() < 0.05,
+            "{}",
+            table(&report)
+        );
+        println!("seed {seed}: {}", table(&report));
+        let laws = report.found_laws();
+        assert_eq!((laws.len(), laws[0].id.as_str()), (1, "drag"));
+        laws[0]
+            .check(
+                dwell_physics::laws::all()
+                    .iter()
+                    .find(|law| law.id == "drag")
+                    .unwrap(),
+            )
+            .unwrap();
+    }
+}
+
+#[test]
+fn linear_drag_and_gravity_get_their_own_names() {
+    let report = throws(
+        World {
+            linear: 0.2,
+            ..QUIET
+        },
+        21,
+    );
+    let (rate, _) = named(&report, "viscous_damping");
+    assert!((rate / 0.2 - 1.0).abs() < 0.05, "{}", table(&report));
+    let report = throws(
+        World {
+            gravity: 9.74,
+            ..QUIET
+        },
+        22,
+    );
+    let (gravity, _) = named(&report, "gravity");
+    assert!((gravity - 9.74).abs() < 0.02, "{}", table(&report));
+    assert!((report.found_parameters()["world/gravity_m_s2"] - gravity).abs() < 1e-12);
+}
+
+/// Ten seeds, half of them with heavy tails: no name, and nothing unexplained.
+#[test]
+fn nothing_is_found_where_nothing_is_hidden() {
+    for seed in 31..=40 {
+        let report = throws(
+            World {
+                heavy_tails: seed % 2 == 0,
+                ..QUIET
+            },
+            seed,
+        );
+        assert_eq!(
+            report.verdict,
+            Verdict::Nothing,
+            "seed {seed}: {}",
+            table(&report)
+        );
+        assert!(report.found_laws().is_empty() && report.found_parameters().is_empty());
+    }
+}
+
+/// At one low speed and with much noise, drag by v and by v² are one.
+#[test]
+fn what_cannot_be_told_apart_is_said_to_be_so() {
+    let world = World {
+        c_d: 0.5,
+        speeds: [4.0, 4.2],
+        noise_m: 0.006,
+        ..QUIET
+    };
+    let report = throws(world, 41);
+    println!("{}", table(&report));
+    let Verdict::OneOf {
+        laws,
+        separating_experiments,
+    } = &report.verdict
+    else {
+        panic!("{}", table(&report));
+    };
+    assert!(
+        laws.contains(&"drag".to_owned()) && laws.len() == separating_experiments.len(),
+        "{laws:?}"
+    );
+    assert!(report.found_laws().is_empty());
+}
+
+#[test]
+fn a_cause_outside_of_the_library_gets_no_name() {
+    for seed in [51, 52] {
+        let report = throws(World { fan: 4.0, ..QUIET }, seed);
+        println!("{}", table(&report));
+        assert!(
+            matches!(report.verdict, Verdict::Unexplained { .. }),
+            "{}",
+            table(&report)
+        );
+        assert!(report.found_laws().is_empty());
+    }
+    // Drag that no shape of this size has.
+    let report = throws(
+        World {
+            c_d: 9.0,
+            speeds: [2.0, 4.0],
+            ..QUIET
+        },
+        53,
+    );
+    assert!(
+        matches!(report.verdict, Verdict::Unexplained { .. }),
+        "{}",
+        table(&report)
+    );
+    assert!(report.sentence.contains("plausible"), "{}", table(&report));
+}
+
+#[test]
+fn the_report_is_one_page_and_the_same_for_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let hidden = dwell_calibration::example::write(folder.path(), 3).unwrap();
+    let mut fractions = Vec::new();
+    let run = |threads, fractions: &mut Vec<f32>| {
+        let options = Options {
+            threads: Some(threads),
+            ..Options::default()
+        };
+        calibrate(folder.path(), &options, &mut |fraction, _| {
+            fractions.push(fraction);
+            true
+        })
+        .unwrap()
+    };
+    let (one, two) = (run(1, &mut fractions), run(2, &mut Vec::new()));
+    assert_eq!(one.to_json(), two.to_json());
+    assert!(fractions.windows(2).all(|pair| pair[0] <= pair[1]) && fractions.last() == Some(&1.0));
+    println!("{hidden} / {}", one.sentence);
+    named(&one, "drag");
+    let page = one.to_html();
+    assert!(page.contains("<svg") && !page.contains("http") && !page.contains("<script"));
+    let json: serde_json::Value = serde_json::from_str(&one.to_json()).unwrap();
+    assert_eq!(json["verdict"]["kind"], "named");
+    assert_eq!(json["html"], page.as_str());
+    let out = tempfile::tempdir().unwrap();
+    one.write(out.path()).unwrap();
+    let found: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.path().join("found.json")).unwrap()).unwrap();
+    assert_eq!(found["laws"][0]["id"], "drag");
+    assert_eq!(std::fs::read_dir(out.path()).unwrap().count(), 3);
+}
+
+#[test]
+fn the_caller_can_stop_it() {
+    let folder = tempfile::tempdir().unwrap();
+    dwell_calibration::example::write(folder.path(), 1).unwrap();
+    let mut calls = 0;
+    let stopped = calibrate(folder.path(), &Options::default(), &mut |_, _| {
+        calls += 1;
+        calls < 5
+    });
+    assert!(matches!(
+        stopped,
+        Err(dwell_calibration::CalibrationError::Interrupted)
+    ));
+}

@@ -1,0 +1,175 @@
+//! Effects hidden in runs of a servo by an independent integrator, and the verdicts they must get.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test stops at the first surprise, in its helpers too"
+)]
+
+mod calibration_support;
+
+use calibration_support::{Files, Random, runge_kutta, table};
+use dwell_calibration::{Options, Report, Verdict, calibrate};
+
+const INERTIA: f64 = 0.004;
+const STIFFNESS: f64 = 1.6;
+const DAMPING: f64 = 0.12;
+const TORQUE: f64 = 3.0;
+const RUNS: usize = 8;
+const NOISE_RAD: f64 = 0.001;
+const RATE_HZ: f64 = 50.0;
+const DURATION_S: f64 = 3.0;
+
+#[derive(Clone, Copy, Default)]
+struct Joint {
+    /// Half the play of the gear, rad.
+    play: f64,
+    /// Coulomb friction, N·m.
+    friction: f64,
+    /// The controller's clock runs ahead of the encoder's, s.
+    offset_s: f64,
+}
+
+/// The target at a time: a sum of two sines and a step, of its own in every run.
+fn target(run: &[f64; 6], t: f64) -> f64 {
+    run[0] * (run[1] * t).sin()
+        + run[2] * (run[3] * t).sin()
+        + if t > run[5] { run[4] } else { 0.0 }
+}
+
+fn runs(joint: Joint, seed: u64) -> Report {
+    let mut random = Random::new(seed);
+    let mut files = Files::new(format!(
+        r#"{{"version": 1, "title": "servo", "licence": "CC0-1.0", "kind": "servo",
+            "scene": {{"joints": [{{"name": "elbow", "inertia_kg_m2": {INERTIA}, "stiffness_n_m_rad": {STIFFNESS},
+                                    "damping_n_m_s_rad": {DAMPING}, "max_torque_n_m": {TORQUE}}}]}},
+            "channels": [{{"name": "position", "unit": "rad", "clock": "encoder", "noise_sd": null}}]}}"#
+    ));
+    for index in 0..RUNS {
+        let name = format!("r{index}");
+        files.episode(&name, &format!("g{}", index / 2));
+        let run = [
+            random.range(0.2, 0.6),
+            random.range(1.0, 3.0),
+            random.range(0.05, 0.15),
+            random.range(4.0, 9.0),
+            random.range(-0.4, 0.4),
+            random.range(1.0, 2.5),
+        ];
+        // Ten substeps a command, a hundred commands a second.
+        let (mut now, mut output) = ([0.0, 0.0], 0.0_f64);
+        let h = 0.001;
+        for step in 0..(DURATION_S / h) as usize {
+            let t = step as f64 * h;
+            if step % 10 == 0 {
+                let u = target(&run, t);
+                files.command(&name, 5.0 + t + joint.offset_s, "elbow", u);
+                // The play operator: the output keeps its place until the input pushes it from either side.
+                output = output.clamp(u - joint.play, u + joint.play);
+            }
+            if step % (1.0 / RATE_HZ / h) as usize == 0 {
+                files.sample(
+                    &name,
+                    5.0 + t,
+                    "elbow",
+                    "position",
+                    now[0] + NOISE_RAD * random.normal(),
+                );
+            }
+            let rates = |_: f64, s: &[f64; 2]| {
+                let push = (STIFFNESS * (output - s[0]) - DAMPING * s[1]).clamp(-TORQUE, TORQUE);
+                // Coulomb friction, smooth over a thousandth of a radian a second.
+                let hold = joint.friction * (s[1] / 0.001).tanh();
+                [s[1], (push - hold) / INERTIA]
+            };
+            for sub in 0..8 {
+                now = runge_kutta(now, t + f64::from(sub) * h / 8.0, h / 8.0, &rates);
+            }
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    files.write(folder.path());
+    calibrate(
+        folder.path(),
+        &Options {
+            seed,
+            ..Options::default()
+        },
+        &mut |_, _| true,
+    )
+    .unwrap()
+}
+
+/// Three seeds, with clocks 0, 10 and 20 ms apart: the offset is a nuisance and is no effect.
+#[test]
+fn backlash_is_named_with_its_width() {
+    for seed in 1..=3_u8 {
+        let offset_s = 0.01 * (f64::from(seed) - 1.0);
+        let report = runs(
+            Joint {
+                play: 0.02,
+                offset_s,
+                ..Joint::default()
+            },
+            seed.into(),
+        );
+        println!("seed {seed}: {}", table(&report));
+        let Verdict::Named { law, effects, gain } = &report.verdict else {
+            panic!("{}", table(&report));
+        };
+        assert_eq!(
+            (law.as_str(), effects.len()),
+            ("backlash", 1),
+            "{}",
+            table(&report)
+        );
+        let width = effects[0].parameters[0].value;
+        assert!((width / 0.02 - 1.0).abs() < 0.05, "{}", table(&report));
+        assert!(gain.share > 0.5, "{}", table(&report));
+        let laws = report.found_laws();
+        assert_eq!((laws.len(), laws[0].target.as_deref()), (1, Some("elbow")));
+        let found = report.nuisances[0].value;
+        // The clocks' distance, and the half step by which commands are held.
+        assert!((found - offset_s).abs() < 0.006, "{found} {offset_s}");
+    }
+}
+
+#[test]
+fn friction_is_not_taken_for_backlash() {
+    let report = runs(
+        Joint {
+            friction: 0.05,
+            ..Joint::default()
+        },
+        11,
+    );
+    println!("{}", table(&report));
+    match &report.verdict {
+        Verdict::Named { law, effects, .. } => {
+            assert_eq!(law, "joint_friction", "{}", table(&report));
+            assert!(
+                (effects[0].parameters[0].value / 0.05 - 1.0).abs() < 0.15,
+                "{}",
+                table(&report)
+            );
+        }
+        other => panic!("{other:?} {}", table(&report)),
+    }
+}
+
+/// Four seeds, two with a clock offset: no name, and nothing unexplained.
+#[test]
+fn nothing_is_found_where_nothing_is_hidden() {
+    for seed in 21..=24 {
+        let joint = Joint {
+            offset_s: if seed % 2 == 0 { 0.015 } else { 0.0 },
+            ..Joint::default()
+        };
+        let report = runs(joint, seed);
+        assert_eq!(
+            report.verdict,
+            Verdict::Nothing,
+            "seed {seed}: {}",
+            table(&report)
+        );
+    }
+}
