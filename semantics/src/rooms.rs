@@ -57,7 +57,7 @@ impl RoomFacts {
         for room in &rooms {
             *total.entry(room.noun.clone()).or_default() += 1;
         }
-        for room in rooms.iter_mut() {
+        for room in &mut rooms {
             let number = seen.entry(room.noun.clone()).or_default();
             *number += 1;
             if total[&room.noun] > 1 {
