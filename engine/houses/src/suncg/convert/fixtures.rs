@@ -37,28 +37,33 @@ impl Converter<'_> {
         !lights.is_empty()
     }
 
-    /// What a model sounds like; returns whether it sounds at all.
+    /// What a model sounds like while it is on; returns whether it sounds at all.
+    ///
+    /// Sounds of a moment (a ring, a bark) have no start in the tables and are reported as left out.
     pub(super) fn sounds(
         &mut self,
         model: &str,
         categories: &[&str],
         object: ObjectId,
         part_id: PartId,
+        at: &At,
     ) -> bool {
         let part = &self.data.parts[part_id];
         let mesh = &self.data.meshes[part.mesh];
         let position = part.part_from_mesh.transform_point3(mesh.bounds().center());
         let before = self.data.emitters.len();
         for (event, recording) in self.files.sounds.of(model, categories) {
-            // One event is what is heard while the thing is on; rings and calls have no start in the table.
-            let _ = event;
-            let signal = signal_of(recording);
-            let level_db = level_db(&signal);
+            let Some((signal, level_db)) = signal_of(recording).filter(|_| lasts(event)) else {
+                let what =
+                    format!("the sound {recording:?} of {event:?} has no lasting signal; left out");
+                self.report.warn(at.clone(), Damage::Simplified { what });
+                continue;
+            };
             self.data.emitters.push(SoundEmitter {
                 object,
                 part: part_id,
                 position,
-                signal,
+                signal: signal.to_owned(),
                 level_db,
             });
         }
@@ -111,29 +116,27 @@ fn convert_light(
     })
 }
 
-/// The signal that stands for a recording: SUNCG names recordings and ships none.
-fn signal_of(recording: &str) -> String {
-    let stem = recording.rsplit('/').next().unwrap_or(recording);
-    let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
-    match stem {
-        "tv" => "television",
-        "music" => "radio",
-        stem => stem,
-    }
-    .to_owned()
+/// Whether an event lasts while a thing is on: `on`, `on_2`, and SUNCG's own words for it.
+fn lasts(event: &str) -> bool {
+    event.starts_with("on") || ["music", "exhaust", "drop"].contains(&event)
 }
 
-/// Level at 1 m, dB SPL: estimates of ours for household sounds.
-fn level_db(signal: &str) -> f32 {
-    match signal {
-        "vacuum_cleaner" => 75.0,
-        "car_beep" => 90.0,
-        "alarm_clock" | "doorbell" | "dog" => 72.0,
-        "kitchen_exhaust" => 60.0,
-        "dishwasher" | "air_conditioner" => 48.0,
-        "water_drop" => 40.0,
-        _ => 62.0,
-    }
+/// The signal that stands for a recording, which SUNCG names and does not ship, and its level at 1 m, dB SPL; the nearest
+/// one where ours has other machines. Levels are estimates of ours. Other names are signals already.
+fn signal_of(recording: &str) -> Option<(&str, f32)> {
+    let stem = recording.rsplit('/').next().unwrap_or(recording);
+    let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
+    Some(match stem {
+        "tv" | "television" => ("television", 62.0),
+        "music" | "radio" => ("radio", 65.0),
+        "dishwasher" => ("washing_machine", 48.0),
+        "vacuum_cleaner" => ("fan", 75.0),
+        "air_conditioner" => ("fan", 45.0),
+        "kitchen_exhaust" => ("fan", 60.0),
+        "water_drop" => ("tap", 50.0),
+        "car_beep" | "alarm_clock" | "doorbell" | "cat" | "dog" | "" => return None,
+        stem => (stem, 60.0),
+    })
 }
 
 #[cfg(test)]
@@ -142,9 +145,13 @@ mod tests {
 
     #[test]
     fn recordings_name_signals() {
+        assert_eq!(signal_of("tv.wav"), Some(("television", 62.0)));
         assert_eq!(
-            (signal_of("tv.wav"), signal_of("sounds/dishwasher.wav")),
-            ("television".into(), "dishwasher".into())
+            signal_of("sounds/dishwasher.wav").map(|s| s.0),
+            Some("washing_machine")
         );
+        assert_eq!(signal_of("kettle.wav").map(|s| s.0), Some("kettle"));
+        assert_eq!((signal_of("dog.wav"), signal_of(".wav")), (None, None));
+        assert!(lasts("on") && lasts("on_2") && !lasts("doorbell"));
     }
 }

@@ -15,9 +15,7 @@ mod surface;
 use std::collections::BTreeMap;
 
 use dwell_scene::parallel::Threads;
-use dwell_scene::{
-    Aabb, Collider, House, HouseData, Level, LevelId, MeshId, PartId, RoomId, TextureId,
-};
+use dwell_scene::{Aabb, House, HouseData, Level, LevelId, PartId, RoomId, TextureId};
 use glam::Affine3A;
 use tracing::debug_span;
 
@@ -66,7 +64,6 @@ pub fn convert(
         textures: BTreeMap::new(),
         object_names: Names::default(),
         structure_names: Names::default(),
-        pieces: BTreeMap::new(),
         stands: Vec::new(),
     };
     {
@@ -76,6 +73,10 @@ pub fn convert(
     {
         let _span = debug_span!("objects").entered();
         converter.objects();
+    }
+    {
+        let _span = debug_span!("bodies").entered();
+        converter.shape_bodies(threads);
     }
     converter.finish()
 }
@@ -96,8 +97,6 @@ struct Converter<'a> {
     textures: BTreeMap<&'a str, TextureId>,
     object_names: Names,
     structure_names: Names,
-    /// Convex pieces by mesh and the bits of its scale: instances of a model share them.
-    pieces: BTreeMap<(MeshId, [u32; 9]), Vec<Collider>>,
     /// Where the objects made so far stand, to see what rests on what.
     stands: Vec<(PartId, Aabb)>,
 }

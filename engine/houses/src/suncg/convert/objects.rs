@@ -120,14 +120,10 @@ impl<'a> Converter<'a> {
         let world_from_mesh = self.world_from_file * DAffine3::from_mat4(matrix).as_affine3a();
         let split = space::split_affine(&world_from_mesh);
         if split.is_none() {
-            self.report.warn(
-                at,
-                Damage::BadTransform {
-                    reason: "it flattens space".to_owned(),
-                },
-            );
+            let reason = "it flattens space".to_owned();
+            self.report.warn(at, Damage::BadTransform { reason });
         }
-        split
+        split.map(|(pose, rest)| (pose, place::snapped(rest)))
     }
 
     /// The OBJ file of a node's state: `_0` for state 1 where it exists.

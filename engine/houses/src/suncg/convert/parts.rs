@@ -1,5 +1,8 @@
 //! Parts of objects: bodies, joints, colliders, mass.
 
+use std::collections::BTreeMap;
+
+use dwell_scene::parallel::Threads;
 use dwell_scene::{
     Aabb, Articulation, Category, Collider, JointKind, MaterialId, MeshId, Mobility, Object,
     ObjectId, Part, PartId, Pose, RoomId,
@@ -80,7 +83,7 @@ impl Converter<'_> {
         let room = plan.room.or_else(|| self.room_around(center));
         let lit = self.lights(plan.model, id, first_part, &plan.at);
         let categories = [plan.category.fine.as_str(), plan.category.coarse.as_str()];
-        let sounds = self.sounds(plan.model, &categories, id, first_part);
+        let sounds = self.sounds(plan.model, &categories, id, first_part, &plan.at);
         let switch = if lit {
             Some(true)
         } else {
@@ -112,18 +115,11 @@ impl Converter<'_> {
     fn part(&mut self, plan: &Plan<'_>, object: ObjectId, shape: Shape, swings: bool) -> Part {
         let fixed = !swings && !plan.moves;
         let mesh = self.data.meshes[shape.mesh].clone();
+        // What moves gets its convex pieces at the end, several at once.
         let colliders = if fixed {
             vec![Collider::ExactMesh]
         } else {
-            let rest = plan
-                .part_from_mesh
-                .matrix3
-                .to_cols_array()
-                .map(f32::to_bits);
-            self.pieces
-                .entry((shape.mesh, rest))
-                .or_insert_with(|| convex_pieces(&mesh, &plan.part_from_mesh))
-                .clone()
+            Vec::new()
         };
         let density_kg_m3 = if swings {
             dwell_scene::material::library()
@@ -153,32 +149,46 @@ impl Converter<'_> {
 
     /// Fixes what hangs: a movable thing that stands on nothing would only fall.
     pub(super) fn settle(&mut self) {
-        for (id, object) in self
-            .data
-            .objects
-            .iter_ids()
-            .map(|(id, o)| (id, o.clone()))
-            .collect::<Vec<_>>()
-        {
-            if object.mobility != Mobility::Movable {
+        for (k, object) in self.data.objects.iter_mut().enumerate() {
+            let (first_part, bounds) = self.stands[k];
+            let others = self.stands.iter().filter(|(part, _)| *part != first_part);
+            let others = others.map(|(_, bounds)| *bounds);
+            if object.mobility != Mobility::Movable
+                || mobility::is_supported(&bounds, self.data.rooms.as_slice(), others)
+            {
                 continue;
             }
-            let bounds = self.stands[id.0 as usize].1;
-            let others = self
-                .stands
-                .iter()
-                .filter(|(part, _)| *part != object.first_part)
-                .map(|(_, bounds)| *bounds);
-            if mobility::is_supported(&bounds, self.data.rooms.as_slice(), others) {
-                continue;
-            }
-            self.data.objects[id].mobility = Mobility::Fixed;
-            self.data.objects[id].pickable = false;
+            object.mobility = Mobility::Fixed;
+            object.pickable = false;
             for part in object.parts() {
                 let part = &mut self.data.parts[part];
                 part.fixed = true;
                 part.colliders = vec![Collider::ExactMesh];
                 part.mass_kg = None;
+            }
+        }
+    }
+
+    /// Gives every part that moves its convex pieces; instances of a model at one scale share the work.
+    pub(super) fn shape_bodies(&mut self, threads: Threads) {
+        let key = |part: &Part| {
+            (
+                part.mesh,
+                part.part_from_mesh.to_cols_array().map(f32::to_bits),
+            )
+        };
+        let mut wanted: BTreeMap<_, Vec<PartId>> = BTreeMap::new();
+        for (id, part) in self.data.parts.iter_ids().filter(|(_, part)| !part.fixed) {
+            wanted.entry(key(part)).or_default().push(id);
+        }
+        let wanted: Vec<Vec<PartId>> = wanted.into_values().collect();
+        let made = threads.map(wanted.len(), |k| {
+            let part = &self.data.parts[wanted[k][0]];
+            convex_pieces(&self.data.meshes[part.mesh], &part.part_from_mesh)
+        });
+        for (parts, pieces) in wanted.iter().zip(made) {
+            for part in parts {
+                self.data.parts[*part].colliders.clone_from(&pieces);
             }
         }
     }

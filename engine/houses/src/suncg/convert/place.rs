@@ -80,6 +80,26 @@ pub(super) fn transform(numbers: Option<&[f64]>) -> Result<DMat4, String> {
     Ok(matrix)
 }
 
+/// Scale and mirror without the rounding of the turn that was taken out of them: instances of a model that differ by a
+/// turn alone have the same bits.
+pub(super) fn snapped(mut rest: Affine3A) -> Affine3A {
+    let snap = |x: f32| {
+        if (x - x.round()).abs() < 4e-6 {
+            x.round()
+        } else {
+            x
+        }
+    };
+    for column in [
+        &mut rest.matrix3.x_axis,
+        &mut rest.matrix3.y_axis,
+        &mut rest.matrix3.z_axis,
+    ] {
+        *column = glam::Vec3A::new(snap(column.x), snap(column.y), snap(column.z));
+    }
+    rest
+}
+
 /// A box of the file in the world; `None` when it is not one.
 pub(super) fn bounds(file: Option<&BoundsFile>, world_from_file: &Affine3A) -> Option<Aabb> {
     let corner = |numbers: &Option<Vec<f64>>| match numbers.as_deref() {
