@@ -90,9 +90,12 @@ impl Ray {
 }
 
 /// Where a ray ends.
+///
+/// Surfaces coincide where a farther one's plane lies within 10 µm plus a millionth of the distance of the nearest hit
+/// (along the ray at most 32 times as much, so that it holds at grazing angles, too). They count as one, and the lowest id is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance along the ray, m.
+    /// Distance along the ray to the nearest surface, m.
     pub distance_m: f32,
     /// Weight of the triangle's second corner.
     pub u: f32,
