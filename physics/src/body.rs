@@ -30,12 +30,13 @@ pub(crate) enum Hold {
     Latched,
 }
 
-/// rapier's type for a body under a hold. What stands is kinematic, not fixed: rapier 0.36.1 loses count of its islands
-/// when a body becomes fixed before the first step.
+/// rapier's type for a body under a hold. What stands is kinematic with no velocity, not fixed: rapier 0.36.1 loses count
+/// of its islands when a body becomes fixed before the first step. It is not moved by position either: the velocity that
+/// rapier derives from two equal rotations is not exactly zero, and would keep what touches it awake.
 pub(crate) fn body_type(hold: Hold) -> RigidBodyType {
     match hold {
         Hold::Free => RigidBodyType::Dynamic,
-        Hold::Frozen | Hold::Latched => RigidBodyType::KinematicPositionBased,
+        Hold::Frozen | Hold::Latched => RigidBodyType::KinematicVelocityBased,
     }
 }
 

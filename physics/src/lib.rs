@@ -27,6 +27,7 @@ mod body;
 mod config;
 mod contact;
 mod convert;
+mod edit;
 mod engine;
 mod error;
 mod joints;

@@ -59,6 +59,7 @@ impl PhysicsWorld {
         self.engine.gravity = gravity;
         self.table = table;
         self.mass_factors = factors;
+        self.applied.clone_from(&state.overrides);
         self.laws = laws;
         if changed {
             self.flush();

@@ -179,26 +179,23 @@ impl Start<'_> {
             let found = self.overlap(plan, &start, &placed);
             if let Some(overlap) = found.filter(|overlap| self.counts(overlap)) {
                 report.overlaps += 1;
-                match self.free(plan, start, &placed) {
-                    Some(place) => {
-                        resolved[index].place = place;
-                        let entry = moved.entry(plan.object).or_insert(MovedObject {
-                            object: plan.object,
-                            overlap_m: 0.0,
-                            distance_m: 0.0,
-                        });
-                        entry.overlap_m = entry.overlap_m.max(overlap.depth_m);
-                        let distance = (place.translation - start.translation).length();
-                        entry.distance_m = entry.distance_m.max(distance);
-                    }
-                    None => {
-                        resolved[index].hold = Hold::Frozen;
-                        report.frozen.push(FrozenObject {
-                            object: plan.object,
-                            overlap_m: overlap.depth_m,
-                            with: overlap.other.name(&self.model.house),
-                        });
-                    }
+                if let Some(place) = self.free(plan, start, &placed) {
+                    resolved[index].place = place;
+                    let entry = moved.entry(plan.object).or_insert(MovedObject {
+                        object: plan.object,
+                        overlap_m: 0.0,
+                        distance_m: 0.0,
+                    });
+                    entry.overlap_m = entry.overlap_m.max(overlap.depth_m);
+                    let distance = (place.translation - start.translation).length();
+                    entry.distance_m = entry.distance_m.max(distance);
+                } else {
+                    resolved[index].hold = Hold::Frozen;
+                    report.frozen.push(FrozenObject {
+                        object: plan.object,
+                        overlap_m: overlap.depth_m,
+                        with: overlap.other.name(&self.model.house),
+                    });
                 }
             }
             placed.push(Placed {

@@ -49,6 +49,7 @@ impl PhysicsWorld {
             });
         }
         self.notices.clear();
+        let asleep = self.engine.islands.num_active_bodies() == 0;
         self.drive_joints(state);
         let mut ways: Vec<Way> = state
             .agents
@@ -65,8 +66,11 @@ impl PhysicsWorld {
         }
         self.end_ways(state, &ways);
         self.part_ways(state);
-        self.write_bodies(state);
-        self.write_contacts(state);
+        // What slept all the time stands as it was written.
+        if !asleep || self.engine.islands.num_active_bodies() > 0 {
+            self.write_bodies(state);
+            self.write_contacts(state);
+        }
         Ok(())
     }
 
@@ -92,7 +96,7 @@ impl PhysicsWorld {
                 .law
                 .half_step(&mut self.engine, &self.bodies, half);
         }
-        note_motion(&self.engine.bodies, &mut self.motion);
+        note_motion(&self.engine, &mut self.motion);
         let hooks = Hooks {
             entries: &self.entries,
             table: &self.table,
@@ -171,7 +175,7 @@ impl PhysicsWorld {
     ) {
         let dt_s = self.settings.dt_s;
         let gravity = self.engine.gravity.length();
-        for index in 0..self.agents.len() {
+        for (index, way) in ways.iter_mut().enumerate() {
             let id = AgentId::from_index(index);
             let control = controls.get(index).copied().unwrap_or_default();
             let mut agent = state.agents[id];
@@ -205,8 +209,8 @@ impl PhysicsWorld {
             let length = motion.length();
             if length > 0.0 {
                 let made = (agent.position - before).dot(motion / length);
-                ways[index].wanted_m += length;
-                ways[index].made_m += made.clamp(0.0, length);
+                way.wanted_m += length;
+                way.made_m += made.clamp(0.0, length);
             }
             state.agents[id] = agent;
             if agent.position != before

@@ -80,30 +80,18 @@ impl PhysicsWorld {
             );
         }
         let share = (articulation.openness(position) * 100.0).round();
-        let outcome = match progress {
-            Progress::Arrived => {
-                let word = if drive.goal == articulation.closed {
-                    "closed"
-                } else {
-                    "open"
-                };
-                done(
-                    ActionCode::Done,
-                    format!("The {name} is {word}."),
-                    Some(object),
-                )
-            }
-            _ => {
-                let sentence = match self.in_the_way(state, joint) {
-                    Some(what) => format!(
-                        "The {name} stopped {share:.0} % open: the {what} is in the way. Move it."
-                    ),
-                    None => format!(
-                        "The {name} stopped {share:.0} % open: something is in the way. Step aside or move it."
-                    ),
-                };
-                fail(ActionCode::Blocked, sentence, Some(object))
-            }
+        let outcome = if progress == Progress::Arrived {
+            let shut = drive.goal == articulation.closed;
+            let word = if shut { "closed" } else { "open" };
+            let sentence = format!("The {name} is {word}.");
+            done(ActionCode::Done, sentence, Some(object))
+        } else {
+            let what = self.in_the_way(state, joint).map_or_else(
+                || "something is in the way. Step aside or move it.".to_owned(),
+                |what| format!("the {what} is in the way. Move it."),
+            );
+            let sentence = format!("The {name} stopped {share:.0} % open: {what}");
+            fail(ActionCode::Blocked, sentence, Some(object))
         };
         self.notices.push(Notice {
             agent: drive.agent,

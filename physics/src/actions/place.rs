@@ -119,7 +119,7 @@ impl PhysicsWorld {
             _ => return None,
         };
         let level = hit.normal.y > 0.9 && hit.time_of_impact > 0.0;
-        (owner == object && level).then(|| from.y - hit.time_of_impact)
+        (owner == object && level).then_some(from.y - hit.time_of_impact)
     }
 
     /// Whether a body would overlap nothing under a pose, besides agents that hold it.

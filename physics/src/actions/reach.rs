@@ -104,17 +104,14 @@ impl PhysicsWorld {
                 Some(held) => rays.closest_without(&ray, RayMask::EYE, held),
                 None => rays.closest(&ray, RayMask::EYE),
             };
-            match hit {
-                Some(hit) => {
-                    let surface = rays.surface(&hit);
-                    if surface.entity == own {
-                        return None;
-                    }
-                    if blocker.is_none() && hit.distance_m < (point - eye).length() {
-                        blocker = Some(self.surface_name(surface.owner));
-                    }
+            if let Some(hit) = hit {
+                let surface = rays.surface(&hit);
+                if surface.entity == own {
+                    return None;
                 }
-                None => {}
+                if blocker.is_none() && hit.distance_m < (point - eye).length() {
+                    blocker = Some(self.surface_name(surface.owner));
+                }
             }
         }
         Some(blocker.unwrap_or_else(|| "way".to_owned()))

@@ -10,6 +10,7 @@ use crate::engine::Engine;
 use crate::model::PhysicsModel;
 use dwell_scene::{AgentBody, AgentId};
 use glam::Vec3;
+use rapier3d::dynamics::RigidBody;
 use rapier3d::geometry::{Ball, Collider, ColliderHandle, Cylinder, Ray};
 use rapier3d::math::Pose as RapierPose;
 use rapier3d::parry::query::ShapeCastOptions;
@@ -47,6 +48,17 @@ pub(crate) struct Hit {
     pub(crate) light: Option<u32>,
 }
 
+/// What a collider is to an agent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Seen {
+    /// Itself, another agent, or what it holds.
+    Nothing,
+    /// It cannot be pushed.
+    Solid,
+    /// A body that gives way.
+    Light(u32),
+}
+
 /// The surroundings of one agent.
 pub(crate) struct Probe<'a> {
     pub(crate) engine: &'a Engine,
@@ -61,35 +73,34 @@ pub(crate) struct Probe<'a> {
 }
 
 impl Probe<'_> {
-    /// Whether a collider exists for this agent at all, and the light body it belongs to.
-    fn sees(&self, collider: &Collider) -> Option<Option<u32>> {
-        let entry = self.entries.get(entry_index(collider))?;
+    /// What a collider is to this agent.
+    fn sees(&self, collider: &Collider) -> Seen {
+        let Some(entry) = self.entries.get(entry_index(collider)) else {
+            return Seen::Nothing;
+        };
         if entry.agent().is_some() {
-            return None;
+            return Seen::Nothing;
         }
         let Some(body) = entry.body else {
-            return Some(None);
+            return Seen::Solid;
         };
-        if self
-            .excluded
-            .carriers
-            .binary_search(&(body, self.agent))
-            .is_ok()
-        {
-            return None;
+        let carriers = &self.excluded.carriers;
+        if carriers.binary_search(&(body, self.agent)).is_ok() {
+            return Seen::Nothing;
         }
         let light = self.holds[body as usize] == Hold::Free
             && (self.model.bodies[body as usize].joint.is_some()
                 || self.mass_kg(body) <= HEAVIEST_PUSHED_KG);
-        Some(light.then_some(body))
+        if light {
+            Seen::Light(body)
+        } else {
+            Seen::Solid
+        }
     }
 
     pub(crate) fn mass_kg(&self, body: u32) -> f32 {
         let handle = self.bodies[body as usize].handle;
-        self.engine
-            .bodies
-            .get(handle)
-            .map_or(0.0, |rigid| rigid.mass())
+        self.engine.bodies.get(handle).map_or(0.0, RigidBody::mass)
     }
 
     fn lower_end(&self, light: bool) -> f32 {
@@ -121,9 +132,10 @@ impl Probe<'_> {
     }
 
     fn cast_kind(&self, feet: Vec3, motion: Vec3, light: bool) -> Option<Hit> {
-        let predicate = |_: ColliderHandle, collider: &Collider| {
-            self.sees(collider)
-                .is_some_and(|body| body.is_some() == light)
+        let predicate = |_: ColliderHandle, collider: &Collider| match self.sees(collider) {
+            Seen::Nothing => false,
+            Seen::Solid => !light,
+            Seen::Light(_) => light,
         };
         let (cylinder, center) = self.cylinder(light);
         let options = ShapeCastOptions {
@@ -142,7 +154,10 @@ impl Probe<'_> {
             fraction: hit.time_of_impact.clamp(0.0, 1.0),
             normal: hit.normal1,
             point: hit.witness1,
-            light: self.sees(collider).flatten(),
+            light: match self.sees(collider) {
+                Seen::Light(body) => Some(body),
+                _ => None,
+            },
         })
     }
 
@@ -200,7 +215,7 @@ impl Probe<'_> {
 
     /// Whether the core overlaps something that cannot be pushed.
     pub(crate) fn is_inside_something(&self, feet: Vec3) -> bool {
-        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider) == Some(None);
+        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider) == Seen::Solid;
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));
@@ -212,7 +227,7 @@ impl Probe<'_> {
     /// The push, at most `most_m` long and level, that leads out of what the core overlaps; nothing if a surface lies on
     /// the way.
     pub(crate) fn way_out(&self, feet: Vec3, most_m: f32) -> Option<Vec3> {
-        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider) == Some(None);
+        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider) == Seen::Solid;
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));
@@ -247,7 +262,8 @@ impl Probe<'_> {
 
     /// The height of the ground under the feet, between the highest step above them and `down_m` below, m.
     pub(crate) fn ground(&self, feet: Vec3, down_m: f32) -> Option<f32> {
-        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider).is_some();
+        let predicate =
+            |_: ColliderHandle, collider: &Collider| self.sees(collider) != Seen::Nothing;
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));
@@ -268,7 +284,8 @@ impl Probe<'_> {
 
     /// How much the surface right under the middle faces up: 1 level, 0 upright; `None` without one near `height_m`.
     pub(crate) fn levelness(&self, feet: Vec3, height_m: f32) -> Option<f32> {
-        let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider).is_some();
+        let predicate =
+            |_: ColliderHandle, collider: &Collider| self.sees(collider) != Seen::Nothing;
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));

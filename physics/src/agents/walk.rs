@@ -159,18 +159,14 @@ impl Walk<'_> {
         }
         *fall_m_s = (*fall_m_s + self.gravity_m_s2 * self.dt_s).min(FASTEST_FALL_M_S);
         let down = *fall_m_s * self.dt_s;
-        match self.probe.ground(*feet, down) {
-            Some(ground) => {
-                feet.y = ground
-                    .max(feet.y - down)
-                    .min(feet.y + self.probe.body.step_height_m);
-                agent.grounded = true;
-            }
-            None => {
-                let part = self.probe.sink(*feet, down);
-                feet.y -= down * part;
-                agent.grounded = part < 1.0;
-            }
+        if let Some(ground) = self.probe.ground(*feet, down) {
+            let highest = feet.y + self.probe.body.step_height_m;
+            feet.y = ground.max(feet.y - down).min(highest);
+            agent.grounded = true;
+        } else {
+            let part = self.probe.sink(*feet, down);
+            feet.y -= down * part;
+            agent.grounded = part < 1.0;
         }
         if agent.grounded {
             *fall_m_s = 0.0;

@@ -2,6 +2,7 @@
 
 use super::entry::{Entry, Toucher, entry_index};
 use super::substances::ContactTable;
+use crate::engine::Engine;
 use glam::Vec3;
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, SoftBodySet, SoftBodyTearEvent};
 use rapier3d::geometry::{ColliderSet, CollisionEvent, ContactPair};
@@ -65,6 +66,14 @@ pub(crate) struct Motion {
     linear: Vec3,
     angular: Vec3,
     center: Vec3,
+    /// A bound on the speed of all its points, m/s.
+    fastest: f32,
+}
+
+impl Motion {
+    fn at(&self, point: Vec3) -> Vec3 {
+        self.linear + self.angular.cross(point - self.center)
+    }
 }
 
 /// Gathers impacts while rapier steps.
@@ -76,18 +85,24 @@ pub(crate) struct Collector<'a> {
     reports: Mutex<Vec<Report>>,
 }
 
-/// Notes the motion of all bodies before a step.
-pub(crate) fn note_motion(bodies: &RigidBodySet, out: &mut Vec<Motion>) {
+/// Notes the motion of all bodies that are awake before a step.
+pub(crate) fn note_motion(engine: &Engine, out: &mut Vec<Motion>) {
     out.clear();
-    for (handle, body) in bodies.iter() {
+    for handle in engine.islands.active_bodies() {
+        let Some(body) = engine.bodies.get(handle) else {
+            continue;
+        };
         let index = handle.into_raw_parts().0 as usize;
         if out.len() <= index {
             out.resize(index + 1, Motion::default());
         }
+        let (linear, angular) = (body.linvel(), body.angvel());
+        let reach = body.mass_properties().max_extent();
         out[index] = Motion {
-            linear: body.linvel(),
-            angular: body.angvel(),
+            linear,
+            angular,
             center: body.center_of_mass(),
+            fastest: linear.length() + angular.length() * reach,
         };
     }
 }
@@ -102,12 +117,10 @@ impl<'a> Collector<'a> {
         }
     }
 
-    fn velocity(&self, body: Option<RigidBodyHandle>, point: Vec3) -> Vec3 {
-        let motion = body
-            .and_then(|body| self.before.get(body.into_raw_parts().0 as usize))
+    fn motion(&self, body: Option<RigidBodyHandle>) -> Motion {
+        body.and_then(|body| self.before.get(body.into_raw_parts().0 as usize))
             .copied()
-            .unwrap_or_default();
-        motion.linear + motion.angular.cross(point - motion.center)
+            .unwrap_or_default()
     }
 
     fn report(
@@ -120,6 +133,10 @@ impl<'a> Collector<'a> {
         let a = self.entries.get(entry_index(one))?;
         let b = self.entries.get(entry_index(two))?;
         let (touch_a, touch_b) = (a.toucher?, b.toucher?);
+        let (motion_a, motion_b) = (self.motion(one.parent()), self.motion(two.parent()));
+        if motion_a.fastest + motion_b.fastest < self.min_speed {
+            return None;
+        }
         let (mut impulse, mut moment, mut speed) = (0.0, Vec3::ZERO, 0.0_f32);
         let (mut strongest, mut classes) = (0.0, (0, 0));
         for manifold in pair.solver_manifolds() {
@@ -135,8 +152,7 @@ impl<'a> Collector<'a> {
                 }
                 let (p, q) = manifold.data.solver_contact_world_points(contact, bodies);
                 let place = (p + q) * 0.5;
-                let relative =
-                    self.velocity(one.parent(), place) - self.velocity(two.parent(), place);
+                let relative = motion_a.at(place) - motion_b.at(place);
                 speed = speed.max(relative.dot(manifold.data.normal));
                 impulse += push;
                 here += push;

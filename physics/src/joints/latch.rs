@@ -29,6 +29,8 @@ pub(crate) fn shut(
     let place = child_at(engine, joint, articulation, articulation.closed);
     if let Some(rigid) = engine.bodies.get_mut(body.handle) {
         rigid.set_position(place, false);
+        rigid.set_linvel(glam::Vec3::ZERO, false);
+        rigid.set_angvel(glam::Vec3::ZERO, false);
         rigid.set_body_type(body_type(Hold::Latched), false);
         *hold = Hold::Latched;
     }

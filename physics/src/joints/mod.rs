@@ -20,6 +20,7 @@ use std::f32::consts::TAU;
 
 /// A joint of a world.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_field_names, reason = "a transform names both its ends")]
 pub(crate) struct Joint {
     pub(crate) id: JointId,
     pub(crate) kind: JointKind,

@@ -57,7 +57,7 @@ pub(super) const LAW: Law = Law {
 
 #[derive(Clone, Debug)]
 struct Drag {
-    /// Body and 1/2 rho c_d A, kg/m.
+    /// Body and `1/2 rho c_d A`, kg/m.
     bodies: Vec<(u32, f32)>,
 }
 

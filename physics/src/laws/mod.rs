@@ -16,8 +16,11 @@ use std::sync::LazyLock;
 /// A law of this engine: what is known about it, and how it is put to work.
 struct Law {
     info: LawInfo,
-    install: fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Box<dyn Acts>, PhysicsError>,
+    install: Install,
 }
+
+/// Puts a law to work on what its spec names.
+type Install = fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Box<dyn Acts>, PhysicsError>;
 
 /// The laws of this engine.
 static LAWS: [Law; 2] = [drag::LAW, backlash::LAW];

@@ -58,10 +58,13 @@ pub(crate) struct BodyPlan {
     pub(crate) mass_kg: f32,
 }
 
+/// A mesh's shape, and the mesh's triangle for each of its triangles.
+type ExactShape = (SharedShape, Arc<[u32]>);
+
 /// Shapes of exact meshes, shared between instances of a model.
 #[derive(Default)]
 struct Meshes {
-    made: BTreeMap<(MeshId, [u32; 12]), Option<(SharedShape, Arc<[u32]>)>>,
+    made: BTreeMap<(MeshId, [u32; 12]), Option<ExactShape>>,
 }
 
 impl Meshes {
@@ -70,7 +73,7 @@ impl Meshes {
         house: &House,
         mesh: MeshId,
         part_from_mesh: &Affine3A,
-    ) -> Option<(SharedShape, Arc<[u32]>)> {
+    ) -> Option<ExactShape> {
         let key = part_from_mesh.to_cols_array().map(f32::to_bits);
         self.made
             .entry((mesh, key))

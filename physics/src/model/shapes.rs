@@ -87,13 +87,12 @@ pub(crate) fn hull(points: &[Vec3]) -> Option<Shaped> {
         let volume = shape.mass_properties(1.0).mass();
         volume.is_finite() && volume > 1e-3 * bounds.volume()
     });
-    Some(match hull {
-        Some(shape) => Shaped::convex(shape, RapierPose::IDENTITY),
-        None => {
-            let half = (bounds.size() * 0.5).max(Vec3::splat(THINNEST_HALF_EDGE_M));
-            let shape = SharedShape::cuboid(half.x, half.y, half.z);
-            Shaped::convex(shape, RapierPose::from_translation(bounds.center()))
-        }
+    Some(if let Some(shape) = hull {
+        Shaped::convex(shape, RapierPose::IDENTITY)
+    } else {
+        let half = (bounds.size() * 0.5).max(Vec3::splat(THINNEST_HALF_EDGE_M));
+        let shape = SharedShape::cuboid(half.x, half.y, half.z);
+        Shaped::convex(shape, RapierPose::from_translation(bounds.center()))
     })
 }
 

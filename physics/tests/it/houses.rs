@@ -40,21 +40,6 @@ fn say(name: &str, run: &Run) {
         report.passing.len(),
         report.stand_ins.len()
     );
-    for frozen in &report.frozen {
-        println!(
-            "  frozen {} {:.3} m in {}",
-            run.house.objects[frozen.object].name, frozen.overlap_m, frozen.with
-        );
-    }
-    for moved in &report.moved {
-        println!(
-            "  moved {} by {:.3} m ({:.3} m)",
-            run.house.objects[moved.object].name, moved.distance_m, moved.overlap_m
-        );
-    }
-    for passing in &report.passing {
-        println!("  {:?} passes through {:?}", passing.joint, passing.through);
-    }
 }
 
 /// How far the object has gone that went furthest, and its name.
@@ -136,10 +121,7 @@ fn walks(mut run: Run) {
             run.walk(1, &[forward(1.5)]);
             let after = run.state.agents[id].position;
             metres += (after - before).length();
-            assert!(
-                after.is_finite() && after.y > -0.5,
-                "{after} from {start}"
-            );
+            assert!(after.is_finite() && after.y > -0.5, "{after} from {start}");
         }
     }
     println!(

@@ -45,7 +45,7 @@ fn tower() -> Build {
     build
 }
 
-/// v(t) = v_inf tanh(g t / v_inf), v_inf = sqrt(2 m g / (rho c_d A)); a ball's mean cross-section is pi r^2.
+/// `v(t) = v_inf tanh(g t / v_inf), v_inf = sqrt(2 m g / (rho c_d A))`; a ball's mean cross-section is pi r^2.
 #[test]
 fn drag_slows_a_fall_as_the_hyperbolic_tangent() {
     let house = tower().house();
@@ -77,11 +77,7 @@ fn backlash_draws_its_hysteresis_loop() {
     let b = 0.1;
     let house = tower().house();
     let mut state = State::new(&house);
-    state.laws = vec![spec(
-        "backlash",
-        Some("elbow"),
-        &[("half_width", f64::from(b))],
-    )];
+    state.laws = vec![spec("backlash", Some("elbow"), &[("half_width", b)])];
     let mut run = Run::from_state(
         house,
         PhysicsConfig {

@@ -1,4 +1,9 @@
 //! Behaviour of physics against theory and against itself.
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "tests may stop at the first surprise, and may talk"
+)]
 
 mod actions;
 mod agents;

@@ -1,0 +1,178 @@
+//! Changes from outside: agents that come and are placed, states that are taken over.
+
+use crate::agents;
+use crate::body::{self, Hold};
+use crate::convert::to_rapier;
+use crate::error::PhysicsError;
+use crate::joints;
+use crate::world::PhysicsWorld;
+use dwell_scene::{AgentId, AgentState, Id, State};
+use glam::Vec3;
+
+impl PhysicsWorld {
+    /// Adds an agent to the state and the world. It may be placed inside things; it then works its way out.
+    ///
+    /// # Errors
+    /// [`PhysicsError::Scene`] for a body out of range, [`PhysicsError::Range`] for a place that is not finite,
+    /// [`PhysicsError::ForeignState`] for a state with other agents.
+    pub fn add_agent(
+        &mut self,
+        state: &mut State,
+        agent: AgentState,
+    ) -> Result<AgentId, PhysicsError> {
+        agent.body.check()?;
+        finite_place(agent.position, agent.yaw_rad)?;
+        self.check_state(state)?;
+        let id = state.agents.push(AgentState {
+            holding: None,
+            ..agent
+        });
+        self.insert_agent(&agent);
+        self.flush();
+        Ok(id)
+    }
+
+    pub(crate) fn insert_agent(&mut self, agent: &AgentState) {
+        let id = AgentId::from_index(self.agents.len());
+        let force = self.settings.event_force_n();
+        let inserted = agents::insert(
+            &mut self.engine,
+            &self.table,
+            &mut self.entries,
+            id,
+            agent,
+            force,
+        );
+        self.agents.push(inserted);
+        self.falls.push(0.0);
+    }
+
+    /// Puts an agent somewhere, at rest, together with what it holds.
+    ///
+    /// # Errors
+    /// [`PhysicsError::UnknownAgent`], or [`PhysicsError::Range`] for a place that is not finite.
+    pub fn place_agent(
+        &mut self,
+        state: &mut State,
+        agent: AgentId,
+        position: Vec3,
+        yaw_rad: f32,
+    ) -> Result<(), PhysicsError> {
+        self.check_state(state)?;
+        let Some(here) = state.agents.get_mut(agent) else {
+            return Err(PhysicsError::UnknownAgent {
+                index: agent.index(),
+                count: self.agents.len(),
+            });
+        };
+        finite_place(position, yaw_rad)?;
+        here.position = position;
+        here.yaw_rad = dwell_scene::math::wrap_angle(yaw_rad);
+        here.pitch_rad = 0.0;
+        here.velocity = Vec3::ZERO;
+        here.collided = false;
+        here.grounded = true;
+        let here = *here;
+        self.falls[agent.index()] = 0.0;
+        if let Some(rigid) = self
+            .engine
+            .bodies
+            .get_mut(self.agents[agent.index()].handle)
+        {
+            rigid.set_translation(position, true);
+        }
+        if let Some(grip) = self.grips.iter().find(|grip| grip.agent == agent) {
+            let hand = to_rapier(&agents::hand_pose(grip, &here));
+            let handle = self.bodies[grip.body as usize].handle;
+            if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+                rigid.set_position(hand, true);
+                rigid.set_linvel(Vec3::ZERO, true);
+            }
+        }
+        self.flush();
+        self.write_bodies(state);
+        Ok(())
+    }
+
+    /// Takes over poses, velocities and joint positions that were set in `state` from outside: what differs from where
+    /// physics has it is moved there and woken. Frozen and shut things that are moved become free.
+    ///
+    /// # Errors
+    /// [`PhysicsError::ForeignState`] for another house's state; [`PhysicsError::Range`] for a pose that is not rigid.
+    pub fn adopt(&mut self, state: &mut State) -> Result<(), PhysicsError> {
+        self.check_state(state)?;
+        let model = self.model.clone();
+        for plan in &model.bodies {
+            let pose = state.part_pose[plan.root()];
+            let velocity = state.part_velocity[plan.root()];
+            if !pose.is_valid() || !velocity.linear.is_finite() || !velocity.angular.is_finite() {
+                return Err(PhysicsError::Range {
+                    at: format!("part {}", plan.root().0),
+                    field: "pose or velocity",
+                    found: format!("{:?}", pose.position),
+                    allowed: "finite numbers and a unit quaternion",
+                });
+            }
+        }
+        for joint in &self.joints {
+            let articulation = &model.house.joints[joint.id];
+            let wanted = state.joint_position[joint.id]
+                .clamp(articulation.limits[0], articulation.limits[1]);
+            let (now, _) = joints::read(&self.engine, joint, wanted);
+            let child = joint.child as usize;
+            if self.holds[child] == Hold::Latched
+                && !joints::stands_shut(joint, articulation, wanted)
+            {
+                let body = self.bodies[child];
+                joints::release(&mut self.engine, &body, &mut self.holds[child]);
+            }
+            if (now - wanted).abs() > 1e-5 {
+                let place = joints::child_at(&self.engine, joint, articulation, wanted);
+                if let Some(rigid) = self.engine.bodies.get_mut(self.bodies[child].handle) {
+                    rigid.set_position(place, true);
+                    rigid.set_linvel(Vec3::ZERO, true);
+                    rigid.set_angvel(Vec3::ZERO, true);
+                }
+            }
+        }
+        for (index, plan) in model.bodies.iter().enumerate() {
+            if plan.joint.is_some() {
+                continue;
+            }
+            let pose = to_rapier(&state.part_pose[plan.root()]);
+            let velocity = state.part_velocity[plan.root()];
+            let Some(rigid) = self.engine.bodies.get_mut(self.bodies[index].handle) else {
+                continue;
+            };
+            let moved = *rigid.position() != pose;
+            if moved {
+                self.holds[index] = Hold::Free;
+                rigid.set_body_type(body::body_type(Hold::Free), true);
+                rigid.set_position(pose, true);
+            }
+            let origin = rigid.position().translation;
+            let now = (rigid.velocity_at_point(origin), rigid.angvel());
+            if now != (velocity.linear, velocity.angular) {
+                let arm = rigid.center_of_mass() - origin;
+                rigid.set_linvel(velocity.linear + velocity.angular.cross(arm), true);
+                rigid.set_angvel(velocity.angular, true);
+            }
+        }
+        self.flush();
+        self.write_bodies(state);
+        self.write_contacts(state);
+        Ok(())
+    }
+}
+
+fn finite_place(position: Vec3, yaw_rad: f32) -> Result<(), PhysicsError> {
+    if position.is_finite() && position.abs().max_element() <= 32_768.0 && yaw_rad.is_finite() {
+        return Ok(());
+    }
+    Err(PhysicsError::Range {
+        at: "agent".to_owned(),
+        field: "position or yaw",
+        found: format!("{position:?}, {yaw_rad}"),
+        allowed: "finite numbers within 32768 m of the origin",
+    })
+}
