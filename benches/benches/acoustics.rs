@@ -2,6 +2,8 @@
 //!
 //! Houses: a shoebox, the built-in apartment, and the SUNCG sample house where `../shared` lies beside the repository.
 
+#![expect(clippy::print_stdout, reason = "a bench tells its figures")]
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use dwell_acoustics::{

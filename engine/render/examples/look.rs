@@ -74,8 +74,7 @@ fn main() {
     let out = Path::new(&arguments[1]);
     std::fs::create_dir_all(out).unwrap();
     let start = Instant::now();
-    let (house, _) =
-        dwell_houses::suncg::open(Path::new(&arguments[0]), Threads::default()).unwrap();
+    let (house, _) = dwell_houses::open(&arguments[0]).unwrap();
     let house = Arc::new(house);
     println!("opened in {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
     let start = Instant::now();
@@ -188,9 +187,6 @@ fn room_views(house: &House, world: &World, camera: Camera) -> Vec<View> {
 
 fn pictures(house: &House, world: &World, views: &[View], size: u32, out: &Path) {
     let camera = Camera::from_fov(size, size, 90.0).unwrap();
-    for view in views {
-        println!("{:?}", view.world_from_camera);
-    }
     println!("{} classes", semantic_classes(house).len());
     for (k, view) in views.iter().take(12).enumerate() {
         let view = View { camera, ..*view };

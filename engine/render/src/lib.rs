@@ -11,7 +11,7 @@
 //!
 //! - lamps that are on: a watt counts as 100 lm, sent evenly by points and lines (a line is four points) and into their
 //!   cone by spots, with the attenuation of the file (usually the inverse square); a lamp shines through its own shade;
-//! - windows that lead to the open air: a sky of 3,000 cd/m² as a disc of the window's area, and the sun where its ray
+//! - windows that lead to the open air: a sky of 2,500 cd/m² as a disc of the window's area, and the sun where its ray
 //!   passes the window;
 //! - what a room throws back, evenly from all around: the equation of the integrating sphere, with the mean reflectance
 //!   of the room's walls; rooms share it through doors as far as those are open;

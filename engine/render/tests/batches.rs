@@ -128,7 +128,7 @@ fn worlds_over_one_house_share_a_batch() {
     let view = views()[1];
     let (first_state, first_scene) = (world.state.clone(), world.scene.clone());
     let expected_first = world.shot(&view);
-    for pose in world.state.part_pose.iter_mut() {
+    for pose in &mut world.state.part_pose {
         pose.position.y += 0.3;
     }
     world.scene.update(&world.state);

@@ -15,16 +15,16 @@ use dwell_scene::{Category, House, Light, LightShape, Mesh, ObjectId, Pose, Shoe
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
-/// Light before tone mapping: the inverse of Reinhard's equation 4 with white 5.
+/// Light before tone mapping: the inverse of Reinhard's equation 4 with white 8.
 fn before_tone_mapping(byte: u8) -> f32 {
     inverse(f32::from(byte))
 }
 
 fn inverse(byte: f32) -> f32 {
     let shown = linear_from_srgb(byte / 255.0);
-    // x (1 + x/25) = shown (1 + x)
-    let half = 12.5 * (1.0 - shown);
-    -half + (half * half + 25.0 * shown).sqrt()
+    // x (1 + x/64) = shown (1 + x)
+    let half = 32.0 * (1.0 - shown);
+    -half + (half * half + 64.0 * shown).sqrt()
 }
 
 fn grey_room() -> House {

@@ -18,7 +18,7 @@ const GAP: (f32, f32) = (2e-4, 2e-6);
 /// The least cosine at which a pixel's footprint still grows.
 const GRAZING: f32 = 0.05;
 /// What the sky shows on a lit picture, against a flat one: tone mapping darkens it again.
-const LIT_SKY: f32 = 4.0;
+const LIT_SKY: f32 = 2.5;
 
 /// A pixel whose ray passed a surface.
 #[derive(Clone, Copy)]
@@ -166,6 +166,7 @@ impl Band<'_> {
         }
     }
 
+    /// Light of nothing.
     fn sky(&self, direction: Vec3) -> Vec3 {
         let strength = if self.light.is_some() { LIT_SKY } else { 1.0 };
         sky(direction) * strength
@@ -173,12 +174,12 @@ impl Band<'_> {
 
     #[inline]
     fn encode(&self, light: Vec3) -> [u8; 3] {
-        let light = light.to_array();
-        Srgb::tables().encode3(if self.light.is_some() {
-            light.map(display)
+        let shown = if self.light.is_some() {
+            display(light)
         } else {
             light
-        })
+        };
+        Srgb::tables().encode3(shown.to_array())
     }
 
     /// Light that a surface sends to the camera, and how much of what lies behind it hides.

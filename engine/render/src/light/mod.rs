@@ -16,7 +16,7 @@ use rooms::{PANE_TRANSMITTANCE, RoomLight, SKY_LUMINANCE_CD_M2};
 use std::f32::consts::PI;
 
 /// Illuminance by the sun on a surface across its rays behind a pane, lx: a low sun behind thin cloud.
-const SUN_LX: f32 = 6000.0;
+const SUN_LX: f32 = 2500.0;
 /// Towards the sun: 36 degrees high, between the axes, so that it enters houses however they stand.
 const TO_SUN: Vec3 = Vec3::new(0.485, 0.588, 0.647);
 /// Width of the border of sunlit patches, m.
@@ -32,6 +32,8 @@ const OPEN_AIR: f32 = 1.3;
 pub(crate) struct Lighting {
     /// By room; those outside come first.
     lamps: Vec<Lamp>,
+    /// Where the lamps of each room start, those outside first, and where the last end. Shape (room + 2,).
+    lamp_starts: Vec<usize>,
     /// Shape (room,).
     rooms: Vec<RoomLight>,
     flux_lm: Vec<Vec3>,
@@ -51,8 +53,13 @@ impl Lighting {
         for light in &house.lights {
             add_lamps(house, state, &fixed.grid, light, &mut self.lamps);
         }
-        self.lamps
-            .sort_by_key(|lamp| lamp.room.map_or(0, |room| room + 1));
+        let place = |lamp: &Lamp| lamp.room.map_or(0, |room| room + 1);
+        self.lamps.sort_by_key(place);
+        self.lamp_starts.clear();
+        for room in 0..=house.rooms.len() + 1 {
+            self.lamp_starts
+                .push(self.lamps.partition_point(|lamp| place(lamp) < room));
+        }
         self.flux_lm.clear();
         self.flux_lm.resize(house.rooms.len(), Vec3::ZERO);
         for lamp in &self.lamps {
@@ -98,11 +105,7 @@ impl Lighting {
         };
         let mut lx = self.rooms[position].indirect * fill(normal)
             + self.lamplight(room, point, normal, entity);
-        for window in fixed
-            .windows
-            .iter()
-            .filter(|window| window.room == position)
-        {
+        for window in fixed.windows_of(position) {
             lx += Vec3::splat(daylight(window, point, normal));
         }
         lx * exposure.per_lx
@@ -110,11 +113,9 @@ impl Lighting {
 
     /// Illuminance by the lamps of a room, lx.
     fn lamplight(&self, room: Option<usize>, point: Vec3, normal: Vec3, entity: i32) -> Vec3 {
-        let first = self.lamps.partition_point(|lamp| lamp.room < room);
-        let mine = self.lamps[first..]
-            .iter()
-            .take_while(|lamp| lamp.room == room);
-        mine.fold(Vec3::ZERO, |sum, lamp| {
+        let place = room.map_or(0, |room| room + 1);
+        let mine = &self.lamps[self.lamp_starts[place]..self.lamp_starts[place + 1]];
+        mine.iter().fold(Vec3::ZERO, |sum, lamp| {
             sum + lamp.illuminance(point, normal, entity)
         })
     }
@@ -128,10 +129,10 @@ impl Lighting {
 }
 
 /// A point in the room from which a surface at `point` is seen. `facing`: normal of the flat triangle towards the viewer;
-/// `direction`: from the viewer, any length.
+/// `direction`: from the viewer, unit length.
 pub(crate) fn beside_surface(point: Vec3, facing: Vec3, direction: Vec3) -> Vec3 {
     let [off, back] = OFF_SURFACE_M;
-    point + facing * off - direction.normalize_or_zero() * back
+    point + facing * off - direction * back
 }
 
 /// How much of a room's reflected light reaches a surface by where it faces, about 1: floors face bright walls and

@@ -8,8 +8,8 @@ use dwell_scene::{House, Id, RoomId, State};
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Luminance of the sky, cd/m²: an overcast sky that gives about 10,000 lx in the open.
-pub(crate) const SKY_LUMINANCE_CD_M2: f32 = 3000.0;
+/// Luminance of the sky, cd/m²: an overcast sky that gives about 8,000 lx in the open.
+pub(crate) const SKY_LUMINANCE_CD_M2: f32 = 2500.0;
 /// What window panes let through.
 pub(crate) const PANE_TRANSMITTANCE: f32 = 0.7;
 /// Illuminance that even a dark room has, lx: what comes through gaps and from appliances that are not modelled.
@@ -27,7 +27,10 @@ const ROUNDS: usize = 8;
 #[derive(Debug)]
 pub(crate) struct HouseLight {
     pub(crate) grid: RoomGrid,
-    pub(crate) windows: Vec<Window>,
+    /// By room.
+    windows: Vec<Window>,
+    /// Where the windows of each room start, and where the last end. Shape (room + 1,).
+    window_starts: Vec<usize>,
     passages: Vec<Passage>,
     /// Shape (room,).
     rooms: Vec<Walls>,
@@ -54,7 +57,10 @@ pub(crate) struct RoomLight {
 impl HouseLight {
     pub(crate) fn new(house: &House, looks: &[Look], textures: &Textures) -> Self {
         let grid = RoomGrid::new(house);
-        let (windows, passages) = openings(house, &grid);
+        let (mut windows, passages) = openings(house, &grid);
+        windows.sort_by_key(|window| window.room);
+        let start = |room: usize| windows.partition_point(|window| window.room < room);
+        let window_starts = (0..=house.rooms.len()).map(start).collect();
         let rooms = house
             .rooms
             .ids()
@@ -63,9 +69,16 @@ impl HouseLight {
         Self {
             grid,
             windows,
+            window_starts,
             passages,
             rooms,
         }
+    }
+
+    /// The windows of a room.
+    #[inline]
+    pub(crate) fn windows_of(&self, room: usize) -> &[Window] {
+        &self.windows[self.window_starts[room]..self.window_starts[room + 1]]
     }
 
     /// The light in every room when lamps send `flux_lm` into each.

@@ -1,15 +1,17 @@
 //! From light to display.
 
+use super::rooms::luminance;
 use dwell_scene::math;
+use glam::Vec3;
 
 /// Illuminance at which exposure is neither raised nor lowered, lx.
 const MIDDLE_LX: f32 = 150.0;
 /// How far eyes adapt: 1 would make every room equally bright.
 const ADAPTATION: f32 = 0.85;
 /// What white under the mean illuminance of the room shows, before tone mapping.
-const GAIN: f32 = 1.05;
+const GAIN: f32 = 1.2;
 /// What becomes display white.
-const WHITE: f32 = 5.0;
+const WHITE: f32 = 8.0;
 
 /// Units of display white per lx of a room with this mean illuminance.
 pub(crate) fn exposure_per_lx(mean_lx: f32) -> f32 {
@@ -21,8 +23,20 @@ pub(crate) fn exposure_per_lx(mean_lx: f32) -> f32 {
 /// # Source
 /// E. Reinhard et al., "Photographic Tone Reproduction for Digital Images" (2002), equation 4, for each channel.
 #[inline]
-pub(crate) fn display(light: f32) -> f32 {
+fn compress(light: f32) -> f32 {
     (light * (1.0 + light * (1.0 / (WHITE * WHITE))) / (1.0 + light)).min(1.0)
+}
+
+/// Light as a display shows it, each channel 0 to 1.
+///
+/// Halfway between compressing each channel, which bleaches bright colours, and the luminance alone, which lets them
+/// glow.
+#[inline]
+pub(crate) fn display(light: Vec3) -> Vec3 {
+    let each = Vec3::new(compress(light.x), compress(light.y), compress(light.z));
+    let bright = luminance(light);
+    let whole = light * (compress(bright) / bright.max(1e-6));
+    ((each + whole) * 0.5).min(Vec3::ONE)
 }
 
 #[cfg(test)]
@@ -31,13 +45,16 @@ mod tests {
 
     #[test]
     fn brighter_light_is_never_darker_on_display() {
-        assert!(display(0.0).abs() < 1e-9);
-        assert!((display(WHITE) - 1.0).abs() < 1e-6);
+        assert!(compress(0.0).abs() < 1e-9);
+        assert!((compress(WHITE) - 1.0).abs() < 1e-6);
         let mut last = 0.0;
         for k in 1..1000 {
-            let now = display(k as f32 * 0.01);
+            let now = compress(k as f32 * 0.01);
             assert!(now >= last);
             last = now;
+            // Grey stays grey.
+            let grey = display(Vec3::splat(k as f32 * 0.01));
+            assert!((grey - now).abs().max_element() < 1e-5);
         }
     }
 

@@ -78,7 +78,7 @@ mod tests {
     fn values_are_met_at_centres_and_lie_between_them() {
         let bands = Bands::octaves([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]);
         assert!((bands.at(1000.0) - 0.4).abs() < 1e-6);
-        assert!((bands.at(1414.213_6) - 0.45).abs() < 1e-5);
+        assert!((bands.at(1_414.213_6) - 0.45).abs() < 1e-5);
         assert!((bands.at(20.0) - 0.1).abs() < 1e-6 && (bands.at(20_000.0) - 0.7).abs() < 1e-6);
         assert!(
             Bands {

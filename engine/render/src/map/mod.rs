@@ -1,9 +1,11 @@
 //! Maps: a storey from above.
 
+mod walls;
+
 use crate::camera::Camera;
 use crate::error::RenderError;
 use crate::frame::View;
-use dwell_scene::{Aabb, House, Id, LevelId, Pose, StructureKind, space};
+use dwell_scene::{Aabb, House, Id, LevelId, Pose, space};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
@@ -11,11 +13,6 @@ use std::f32::consts::FRAC_PI_2;
 const BELOW_CEILING_M: f32 = 0.6;
 /// Free space around the house, m.
 const BORDER_M: f32 = 0.5;
-/// Width of the lines for walls, m: the skins of a wall are about so thick.
-const WALL_M: f32 = 0.08;
-/// Their colour.
-const WALL_SRGB: [u8; 3] = [40, 40, 44];
-
 /// A storey from above, cut open below its ceilings, -Z up in the image and +X to the right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
@@ -81,67 +78,10 @@ impl Map {
         })
     }
 
-    /// Draws where the cut meets walls into a picture of the map: a camera that starts inside a wall sees nothing of it.
-    ///
-    /// `rgb`: shape (height, width, 3) of [`Self::view`]'s camera; what does not fit stays as it is.
-    pub fn draw_walls(&self, house: &House, rgb: &mut [u8]) {
-        let width = self.view.camera.width() as usize;
-        let half_m = (WALL_M * 0.5).max(0.75 / self.pixels_per_m);
-        for [a, b] in self.wall_lines(house) {
-            let (a, b) = (a - self.corner, b - self.corner);
-            let low = ((a.min(b) - half_m) * self.pixels_per_m).max(Vec2::ZERO);
-            let high = (a.max(b) + half_m) * self.pixels_per_m;
-            for y in low.y as usize..=(high.y.max(0.0) as usize) {
-                for x in low.x as usize..=(high.x.max(0.0) as usize).min(width - 1) {
-                    let place = (Vec2::new(x as f32, y as f32) + 0.5) / self.pixels_per_m;
-                    let first = (y * width + x) * 3;
-                    if distance(place, a, b) <= half_m
-                        && let Some(pixel) = rgb.get_mut(first..first + 3)
-                    {
-                        pixel.copy_from_slice(&WALL_SRGB);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Where triangles of walls cross the cut, as (x, z), m.
-    fn wall_lines(&self, house: &House) -> Vec<[Vec2; 2]> {
-        let mut lines = Vec::new();
-        for piece in house
-            .structure
-            .iter()
-            .filter(|piece| piece.kind == StructureKind::Wall)
-        {
-            let mesh = &house.meshes[piece.mesh];
-            for corners in (0..mesh.triangles.len()).map(|k| mesh.corners(k)) {
-                let mut ends = Vec::new();
-                for k in 0..3 {
-                    let (a, b) = (corners[k], corners[(k + 1) % 3]);
-                    if (a.y > self.cut_y) != (b.y > self.cut_y) {
-                        let p = a.lerp(b, (self.cut_y - a.y) / (b.y - a.y));
-                        ends.push(Vec2::new(p.x, p.z));
-                    }
-                }
-                if let [a, b] = ends[..] {
-                    lines.push([a, b]);
-                }
-            }
-        }
-        lines
-    }
-
     /// Where a point appears, pixels from the upper left corner of the image.
     pub fn image_from_world(&self, point: Vec3) -> Vec2 {
         (Vec2::new(point.x, point.z) - self.corner) * self.pixels_per_m
     }
-}
-
-/// From a point to a line between two others.
-fn distance(p: Vec2, a: Vec2, b: Vec2) -> f32 {
-    let along = b - a;
-    let part = (p - a).dot(along) / along.length_squared().max(1e-12);
-    (p - a - along * part.clamp(0.0, 1.0)).length()
 }
 
 #[cfg(test)]
@@ -170,21 +110,6 @@ mod tests {
             );
             assert!((depth - (map.cut_y - point.y)).abs() < 1e-4);
         }
-        // Walls are drawn where they stand, and nowhere else.
-        let mut rgb = vec![200; map.view.camera.pixels() * 3];
-        map.draw_walls(&house, &mut rgb);
-        let at = |x: f32, z: f32| {
-            let p = map.image_from_world(Vec3::new(x, 0.0, z));
-            rgb[(p.y as usize * 450 + p.x as usize) * 3]
-        };
-        assert_eq!(
-            [at(0.0, 2.0), at(8.0, 2.0), at(4.0, 0.0), at(4.0, 4.0)],
-            [40; 4]
-        );
-        assert_eq!(
-            [at(0.2, 2.0), at(7.8, 0.2), at(4.0, 2.0), at(-0.2, 2.0)],
-            [200; 4]
-        );
         let message = Map::new(&house, LevelId(3), 450).unwrap_err().to_string();
         assert_eq!(message, "no storey 3; the house has 1");
     }
