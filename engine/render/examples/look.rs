@@ -92,7 +92,11 @@ fn main() {
     let camera = Camera::from_fov(128, 128, 90.0).unwrap();
     let listed = arguments
         .get(2)
-        .filter(|path| path.ends_with(".json"))
+        .filter(|path| {
+            Path::new(path)
+                .extension()
+                .is_some_and(|ending| ending == "json")
+        })
         .map(|path| listed_views(Path::new(path), camera));
     let views = listed
         .clone()
