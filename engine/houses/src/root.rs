@@ -45,7 +45,7 @@ impl DataRoot {
     /// `name` may hold `..`, double slashes and backslashes (all occur in SUNCG and in OBJ files from Windows).
     ///
     /// # Errors
-    /// [`Leaves`] when the path is absolute or climbs out of the root.
+    /// `Leaves` when the path is absolute or climbs out of the root.
     pub fn resolve(inside: &str, name: &str) -> Result<String, Leaves> {
         if name.starts_with(['/', '\\'])
             || name.as_bytes().get(1) == Some(&b':')

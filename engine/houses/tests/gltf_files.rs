@@ -1,7 +1,6 @@
 //! glTF and GLB files as houses, written by hand and by our own writer.
 #![allow(
     clippy::unwrap_used,
-    clippy::float_cmp,
     reason = "tests stop at the first surprise and compare exact numbers"
 )]
 

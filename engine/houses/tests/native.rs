@@ -1,7 +1,6 @@
 //! The native form gives back the same bits that were written.
 #![allow(
     clippy::unwrap_used,
-    clippy::float_cmp,
     reason = "tests stop at the first surprise and compare exact numbers"
 )]
 

@@ -1,7 +1,6 @@
 //! The OBJ and MTL parser against an independent one, and OBJ files as houses.
 #![allow(
     clippy::unwrap_used,
-    clippy::float_cmp,
     reason = "tests stop at the first surprise and compare exact numbers"
 )]
 

@@ -1,7 +1,6 @@
 //! A house written as SUNCG and read back is the same house, apart from what the list of losses names.
 #![allow(
     clippy::unwrap_used,
-    clippy::float_cmp,
     reason = "tests stop at the first surprise and compare exact numbers"
 )]
 

@@ -240,7 +240,6 @@ fn unpack_normal(packed: u32) -> Vec3 {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "exact values")]
 mod tests {
     use super::*;
     use crate::texture::Textures;

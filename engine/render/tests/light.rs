@@ -2,7 +2,6 @@
 
 #![allow(
     clippy::unwrap_used,
-    clippy::float_cmp,
     reason = "tests may stop at the first surprise, and compare bits"
 )]
 

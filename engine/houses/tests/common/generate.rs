@@ -202,7 +202,6 @@ fn collider(n: &mut Numbers<'_>, fixed: bool) -> Collider {
 }
 
 /// A house of those numbers.
-#[allow(clippy::too_many_lines, reason = "one table after another")]
 pub(crate) fn house(numbers: &[u32]) -> HouseData {
     let n = &mut Numbers::new(numbers);
     let slots = 3;

@@ -3,7 +3,6 @@
 
 #![allow(
     clippy::unwrap_used,
-    clippy::float_cmp,
     reason = "tests stop at the first surprise and compare exact numbers"
 )]
 

@@ -9,7 +9,6 @@ use crate::builtin::model::Model;
 use dwell_scene::random::Key;
 
 /// The list: a new model is one line here.
-#[expect(clippy::too_many_lines, reason = "one line a model")]
 pub(crate) fn all() -> Vec<Model> {
     let glaze = porcelain("glaze", [200, 200, 210]);
     let fabric = cloth("fabric", [120, 130, 140]);
