@@ -43,7 +43,7 @@ static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
     }];
     match sample_house() {
         Some(case) => cases.push(case),
-        None => println!("no sample house in ../shared: the built-in apartment alone"),
+        None => eprintln!("no sample house in ../shared: the built-in apartment alone"),
     }
     cases
 });
