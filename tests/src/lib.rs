@@ -17,11 +17,19 @@ pub fn apartment() -> Arc<Engines> {
     APARTMENT.get_or_init(open).clone()
 }
 
-/// An environment in the apartment with these sensors, all small.
+/// An environment of the first task in the apartment with these sensors, all small.
 ///
 /// # Panics
 /// When a sensor does not exist.
 pub fn env(sensors: &[&str]) -> Env {
+    env_of(&EnvConfig::default().task, sensors)
+}
+
+/// An environment of a task in the apartment with these sensors, all small.
+///
+/// # Panics
+/// When the task or a sensor does not exist.
+pub fn env_of(task: &str, sensors: &[&str]) -> Env {
     let settings = |name: &str| match name {
         "rgb" | "depth" | "instance" | "semantic" => json!({"width": 32, "height": 24}),
         _ => json!({}),
@@ -31,6 +39,7 @@ pub fn env(sensors: &[&str]) -> Env {
         settings: settings(name),
     });
     let config = EnvConfig {
+        task: task.to_owned(),
         sensors: Some(sensors.collect()),
         ..EnvConfig::default()
     };

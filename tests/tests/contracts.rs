@@ -120,11 +120,11 @@ fn observations_and_states_do_not_depend_on_threads_or_company() {
     }
 }
 
-/// Every task's expert earns more than an agent that stops at once, over ten fixed seeds.
+/// Every task's expert succeeds in at least eight of ten fixed seeds.
 #[test]
 fn every_task_can_be_solved_by_its_expert() {
     for kind in tasks::all() {
-        let mut env = dwell_tests::env(&["instruction"]);
+        let mut env = dwell_tests::env_of(kind.name, &["instruction"]);
         let mut solved = 0;
         for seed in 0..10 {
             env.reset(seed).unwrap();
