@@ -2,8 +2,6 @@
 //!
 //! Houses: the built-in apartment, and the SUNCG sample house with its views where `../shared` lies beside the repository.
 
-#![expect(clippy::print_stdout, reason = "a bench tells its figures")]
-
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use dwell_houses::open;
