@@ -1,6 +1,5 @@
 //! SUNCG: `house.json` with its rooms, objects, textures and tables.
 
-pub mod arch;
 mod binvox;
 mod convert;
 pub mod file;
