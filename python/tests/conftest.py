@@ -6,8 +6,6 @@ import pytest
 
 import dwell
 
-ENV_ID = "dwell/InstructionFollowing-v0"
-
 
 @pytest.fixture(scope="session")
 def apartment() -> dwell.House:

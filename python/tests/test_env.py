@@ -10,9 +10,9 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import dwell
-from conftest import ENV_ID
 from dwell.envs import DwellEnv
 
+ENV_ID = "dwell/InstructionFollowing-v0"
 SMALL = {
     "rgb": {"width": 32, "height": 24},
     "depth": {"width": 32, "height": 24},
