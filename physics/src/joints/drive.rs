@@ -1,12 +1,12 @@
 //! What moves joints: their own servos, or a hand that opens and closes them.
 
-use super::effort::Pull;
+use super::effort::{Gain, Pull};
 use super::latch::tolerance;
 use dwell_scene::{AgentId, Articulation, JointId, JointKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Natural frequency of the hand's pull, rad/s; it is critically damped.
+/// Lowest natural frequency of the hand's pull, rad/s.
 const HAND_FREQUENCY_RAD_S: f32 = 12.0;
 /// How fast a hand swings a door, rad/s.
 const HAND_SWING_RAD_S: f32 = 1.5;
@@ -43,6 +43,13 @@ pub(crate) enum Progress {
     Blocked,
 }
 
+fn speed_and_lead(kind: JointKind) -> (f32, f32) {
+    match kind {
+        JointKind::Hinge => (HAND_SWING_RAD_S, HAND_LEAD[0]),
+        JointKind::Slide => (HAND_PULL_M_S, HAND_LEAD[1]),
+    }
+}
+
 impl Drive {
     pub(crate) fn new(goal: f32, position: f32, agent: Option<AgentId>) -> Self {
         Self {
@@ -55,17 +62,23 @@ impl Drive {
 
     /// Moves the hand on by one control step and judges the joint.
     fn follow(&mut self, kind: JointKind, position: f32, velocity: f32, step_s: f32) -> Progress {
-        let (rate, lead) = match kind {
-            JointKind::Hinge => (HAND_SWING_RAD_S, HAND_LEAD[0]),
-            JointKind::Slide => (HAND_PULL_M_S, HAND_LEAD[1]),
-        };
+        let (rate, lead) = speed_and_lead(kind);
         let left = (position - self.goal).abs();
         if left <= tolerance(kind) && velocity.abs() < 0.2 {
             return Progress::Arrived;
         }
-        self.ramp += (self.goal - self.ramp).clamp(-rate * step_s, rate * step_s);
+        let stride = rate * step_s;
+        let stands = velocity.abs() < CREEP;
+        let onward = (self.goal - position).signum();
+        let short = (self.goal - self.ramp) * onward > stride;
+        if short || stands {
+            // Where friction holds it short of the goal, the hand pulls further than the goal.
+            self.ramp += stride * onward;
+        } else {
+            self.ramp = self.goal;
+        }
         self.ramp = self.ramp.clamp(position - lead, position + lead);
-        if velocity.abs() < CREEP {
+        if stands {
             self.stalled_s += step_s;
         } else {
             self.stalled_s = 0.0;
@@ -92,10 +105,11 @@ pub(crate) fn advance(
         let [low, high] = articulation.limits;
         let pull = target.map(|target| Pull {
             target: target.clamp(low, high),
-            stiffness: servo.stiffness,
-            damping: servo.damping,
             max_effort: servo.max_effort,
-            by_inertia: false,
+            gain: Gain::Servo {
+                stiffness: servo.stiffness,
+                damping: servo.damping,
+            },
         });
         return (pull, None);
     }
@@ -105,10 +119,11 @@ pub(crate) fn advance(
     let progress = hand.follow(kind, position, velocity, step_s);
     let pull = (progress == Progress::Moving).then_some(Pull {
         target: hand.ramp,
-        stiffness: HAND_FREQUENCY_RAD_S * HAND_FREQUENCY_RAD_S,
-        damping: 2.0 * HAND_FREQUENCY_RAD_S,
         max_effort: hand_effort,
-        by_inertia: true,
+        gain: Gain::Hand {
+            frequency_rad_s: HAND_FREQUENCY_RAD_S,
+            lead: speed_and_lead(kind).1,
+        },
     });
     (pull, Some(progress))
 }

@@ -11,15 +11,40 @@ use glam::{Mat3, Vec3};
 use rapier3d::dynamics::RigidBody;
 use serde::{Deserialize, Serialize};
 
-/// A pull towards a target: N·m/rad or N/m, N·m·s/rad or N·s/m, N·m or N; targets in rad or m.
+/// A pull towards a target, rad or m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Pull {
     pub(crate) target: f32,
-    pub(crate) stiffness: f32,
-    pub(crate) damping: f32,
+    /// N·m or N.
     pub(crate) max_effort: f32,
-    /// Whether stiffness and damping are per unit of inertia (1/s², 1/s).
-    pub(crate) by_inertia: bool,
+    pub(crate) gain: Gain,
+}
+
+/// How a pull grows with the way to its target.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Gain {
+    /// N·m/rad or N/m, and N·m·s/rad or N·s/m.
+    Servo { stiffness: f32, damping: f32 },
+    /// Critically damped: at least this natural frequency, and stiff enough to pull with all its effort at `lead` (rad or
+    /// m) from the target.
+    Hand { frequency_rad_s: f32, lead: f32 },
+}
+
+impl Pull {
+    /// Stiffness and damping for an inertia.
+    fn gains(&self, inertia: f32) -> (f32, f32) {
+        match self.gain {
+            Gain::Servo { stiffness, damping } => (stiffness, damping),
+            Gain::Hand {
+                frequency_rad_s,
+                lead,
+            } => {
+                let slow = frequency_rad_s * frequency_rad_s * inertia;
+                let stiffness = slow.max(self.max_effort / lead);
+                (stiffness, 2.0 * (stiffness * inertia).sqrt())
+            }
+        }
+    }
 }
 
 /// One degree of freedom before a step.
@@ -42,8 +67,7 @@ impl Freedom {
 
     /// The effort of a pull at the end of the step, with `other` efforts besides gravity.
     fn pull_effort(&self, pull: &Pull, other: f32, dt_s: f32) -> f32 {
-        let unit = if pull.by_inertia { self.inertia } else { 1.0 };
-        let (k, d) = (pull.stiffness * unit, pull.damping * unit);
+        let (k, d) = pull.gains(self.inertia);
         let free = self.velocity + dt_s * (self.weight + other) / self.inertia;
         let soft = 1.0 + dt_s * (d + k * dt_s) / self.inertia;
         let effort = (k * (pull.target - self.position - dt_s * free) - d * free) / soft;
@@ -189,10 +213,11 @@ mod tests {
         for stiffness in [1.0, 100.0, 1e6] {
             let pull = Pull {
                 target: 0.5,
-                stiffness,
-                damping: 3.0,
                 max_effort: 1e9,
-                by_inertia: false,
+                gain: Gain::Servo {
+                    stiffness,
+                    damping: 3.0,
+                },
             };
             let rest = freedom(0.5 - 2.0 / stiffness, 0.0, -2.0);
             let effort = rest.pull_effort(&pull, 0.0, DT_S);
@@ -210,10 +235,11 @@ mod tests {
         for gain in [1.0, 1e3, 1e6, 1e9] {
             let pull = Pull {
                 target: 0.0,
-                stiffness: gain,
-                damping: gain,
                 max_effort: f32::MAX,
-                by_inertia: false,
+                gain: Gain::Servo {
+                    stiffness: gain,
+                    damping: gain,
+                },
             };
             let (mut x, mut v) = (1.0, 0.0);
             for _ in 0..1000 {

@@ -113,6 +113,36 @@ fn a_blocked_door_says_what_is_in_the_way() {
     assert_eq!(run.state.joint_target[joint], None);
 }
 
+/// Shut on an agent that stands in the doorway, the door stops at its body and says so.
+#[test]
+fn a_door_does_not_shut_through_an_agent() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let (_, joint) = build.wall_with_door(3.0, 6.0);
+    let mut run = build.run();
+    run.state.joint_position[joint] = 1.5;
+    run.world.adopt(&mut run.state).unwrap();
+    let id = run.agent(Vec3::new(2.75, 0.0, 3.0), 0.0);
+    run.state.joint_target[joint] = Some(0.0);
+    let mut told = None;
+    for _ in 0..80 {
+        run.walk(1, &[]);
+        if let Some(notice) = run.world.notices().first() {
+            told = Some(notice.outcome.clone());
+            break;
+        }
+    }
+    let told = told.expect("a notice");
+    assert_eq!(told.code, ActionCode::Blocked, "{}", told.sentence);
+    assert!(told.sentence.contains("agent 0"), "{}", told.sentence);
+    assert!(
+        run.state.joint_position[joint] > 0.15,
+        "{}",
+        run.state.joint_position[joint]
+    );
+    let moved = run.state.agents[id].position - Vec3::new(2.75, 0.0, 3.0);
+    assert!(moved.length() < 0.05, "{moved}");
+}
+
 #[test]
 fn an_open_door_gives_way_to_a_walking_agent() {
     let mut build = Build::room([6.0, 3.0, 6.0]);

@@ -1,6 +1,7 @@
 //! Bodies against textbook mechanics.
 
 use crate::common::{Build, Piece, gravity, pair};
+use dwell_physics::PhysicsConfig;
 use glam::{Quat, Vec3};
 
 /// y0 - g t^2 / 2. The solver makes 4 substeps of 1/480 s by symplectic Euler, which falls g t h / 2 = 9 mm too far in
@@ -21,6 +22,29 @@ fn free_fall_follows_the_parabola() {
             run.position(ball).y
         );
         assert!((run.velocity(ball).y + gravity() * t).abs() < 1e-3 * gravity());
+    }
+}
+
+/// The rates are settings: the same fall at other rates, each within its own error g t h / 2.
+#[test]
+fn a_fall_does_not_depend_on_the_rates() {
+    for (control, physics, substeps) in [(10.0, 60.0, 4), (20.0, 240.0, 2), (100.0, 100.0, 1)] {
+        let mut build = Build::room([4.0, 10.0, 4.0]);
+        let ball = build.movable("ball", Piece::ball(0.1, Vec3::new(2.0, 8.0, 2.0)));
+        let mut run = build.run_with(PhysicsConfig {
+            control_rate_hz: control,
+            physics_rate_hz: physics,
+            solver_substeps: substeps,
+            ..PhysicsConfig::default()
+        });
+        run.steps((0.8 * control) as usize);
+        let expected = 8.0 - 0.5 * gravity() * 0.64;
+        let bound = 0.5 * gravity() * 0.8 / (physics * substeps as f32) + 1e-3;
+        assert!(
+            (run.position(ball).y - expected).abs() < bound,
+            "{control} {physics}: {}",
+            run.position(ball).y
+        );
     }
 }
 
@@ -137,7 +161,8 @@ fn a_stack_of_eight_boxes_stays() {
     run.steps(200);
     for (k, id) in boxes.iter().enumerate() {
         let off = run.position(*id) - Vec3::new(2.0, 0.1 + 0.2 * k as f32, 2.0);
-        assert!(off.length() < 0.01, "box {k} moved by {off}");
+        println!("  box {k} moved by {off}");
+        assert!(off.length() < 0.004, "box {k} moved by {off}");
     }
     assert_eq!(run.world.awake_count(), 0, "a stack at rest sleeps");
 }

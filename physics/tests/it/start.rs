@@ -123,6 +123,33 @@ fn a_moving_thing_without_pieces_has_the_hull_of_what_is_seen() {
     );
 }
 
+#[test]
+fn an_empty_house_and_things_without_shape_make_a_world() {
+    let house = dwell_scene::House::new(dwell_scene::HouseData::default()).unwrap();
+    let mut run = crate::common::Run::over(std::sync::Arc::new(house), PhysicsConfig::default());
+    run.agent(Vec3::ZERO, 0.0);
+    run.steps(30);
+    assert!(
+        (run.state.agents[dwell_scene::AgentId(0)].position.y + 2.0).abs() < 0.01,
+        "on the last floor"
+    );
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let ghost = build.movable(
+        "ghost",
+        Piece::cuboid(Vec3::splat(0.1), Vec3::new(3.0, 1.0, 3.0)),
+    );
+    let part = build.data.objects[ghost].first_part;
+    build.data.parts[part].colliders.clear();
+    build.data.parts[part].mesh = build.data.meshes.push(std::sync::Arc::default());
+    let mut run = build.run();
+    run.steps(40);
+    assert!(
+        run.position(ghost).y > 0.0 && run.position(ghost).y < 0.02,
+        "{}",
+        run.position(ghost)
+    );
+}
+
 /// What leaves the house comes to rest below it instead of falling for ever.
 #[test]
 fn nothing_falls_for_ever() {
