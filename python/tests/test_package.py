@@ -19,10 +19,10 @@ def test_package_is_marked_as_typed() -> None:
     assert importlib.resources.files("dwell").joinpath("py.typed").is_file()
 
 
-def test_only_numpy_and_gymnasium_are_required() -> None:
+def test_only_three_light_packages_are_required() -> None:
     requirements = importlib.metadata.requires("dwell") or []
     core = {re.split(r"[<>=!~ ;]", line)[0] for line in requirements if "extra ==" not in line}
-    assert core == {"numpy", "gymnasium"}
+    assert core == {"gymnasium", "numpy", "pillow"}
 
 
 def test_command_line_is_installed() -> None:
