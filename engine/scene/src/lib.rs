@@ -42,5 +42,8 @@ pub use law::{LawInfo, LawSpec};
 pub use material::{Bands, Material};
 pub use mesh::Mesh;
 pub use space::Pose;
-pub use state::{Address, AgentBody, AgentState, Contact, Parameter, State, Velocity};
+pub use state::{
+    Address, AgentBody, AgentState, BaseState, Contact, DifferentialDrive, Gait, HolonomicBase,
+    Locomotion, Parameter, State, Velocity,
+};
 pub use texture::Texture;

@@ -3,10 +3,10 @@
 //! An override in [`State::overrides`](super::State) goes before the house's value, per world, without rebuilding the
 //! house. Engines read through [`State::object_mass_kg`](super::State::object_mass_kg) and kin.
 
-use super::State;
+use super::{Locomotion, State};
 use crate::error::SceneError;
 use crate::house::House;
-use crate::ids::{Entity, EntityId, JointId, MaterialId, ObjectId, PartId};
+use crate::ids::{AgentId, Entity, EntityId, Id, JointId, MaterialId, ObjectId, PartId};
 use crate::material::{Bands, PairContact, library};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use serde::{Deserialize, Serialize};
@@ -146,6 +146,31 @@ fn find_joint(house: &House, address: &Address, word: &str) -> Result<JointId, S
 }
 
 impl State {
+    fn find_agent(&self, address: &Address, word: &str) -> Result<AgentId, SceneError> {
+        let index = word
+            .parse::<usize>()
+            .ok()
+            .filter(|index| *index < self.agents.len());
+        index.map(AgentId::from_index).ok_or_else(|| {
+            address.fault(format!(
+                "no agent {word:?}; there are {}, counted from 0",
+                self.agents.len()
+            ))
+        })
+    }
+
+    /// How an agent gets about in this world: its body's numbers with overrides.
+    ///
+    /// # Panics
+    /// For an agent that does not exist.
+    pub fn locomotion(&self, agent: AgentId) -> Locomotion {
+        let nominal = self.agents[agent].body.locomotion;
+        if self.overrides.is_empty() {
+            return nominal;
+        }
+        nominal.with(|field| self.lookup(format!("agent/{}/base/{field}", agent.index())))
+    }
+
     /// What stands at `address`.
     ///
     /// # Errors
@@ -207,9 +232,19 @@ impl State {
                     _ => Err(address.fault(format!("no field {field:?}; a joint has friction and damping"))),
                 }
             }
+            ["agent", agent, "base", field] => {
+                let id = self.find_agent(address, agent)?;
+                let parameters = self.locomotion(id).parameters();
+                let found = parameters.iter().find(|(name, _)| *name == field);
+                found.map(|(_, parameter)| *parameter).ok_or_else(|| {
+                    let names: Vec<_> = parameters.iter().map(|(name, _)| *name).collect();
+                    let kind = self.agents[id].body.locomotion.name();
+                    address.fault(format!("no field {field:?}; agent {agent} ({kind}) has {names:?}"))
+                })
+            }
             ["world", "gravity_m_s2"] => make(self.gravity_m_s2(), "m/s2", 0.0, 100.0),
             _ => Err(address.fault(
-                "known are object/ID/mass_kg, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, world/gravity_m_s2",
+                "known are object/ID/mass_kg, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/base/FIELD, world/gravity_m_s2",
             )),
         }
     }
@@ -346,6 +381,43 @@ mod tests {
             state.parameter(&house, &other).unwrap(),
             State::new(&house).parameter(&house, &other).unwrap()
         );
+    }
+
+    #[test]
+    fn a_base_is_measured_anew_in_one_world_and_its_body_stays_nominal() {
+        use crate::{AgentBody, AgentState, DifferentialDrive};
+        let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
+        let mut state = State::new(&house);
+        let body = AgentBody {
+            locomotion: Locomotion::DifferentialDrive(DifferentialDrive::default()),
+            ..AgentBody::default()
+        };
+        for _ in 0..2 {
+            state
+                .agents
+                .push(AgentState::new(body, glam::Vec3::ZERO, 0.0));
+        }
+        let address: Address = "agent/1/base/wheel_base_m".parse().unwrap();
+        state.set_parameter(&house, &address, 0.31).unwrap();
+        assert_eq!(
+            state.parameter(&house, &address).unwrap().value as f32,
+            0.31
+        );
+        let base = |agent| match state.locomotion(AgentId(agent)) {
+            Locomotion::DifferentialDrive(base) => base,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!((base(0).wheel_base_m, base(1).wheel_base_m), (0.3, 0.31));
+        assert_eq!(state.agents[AgentId(1)].body, body);
+        for (text, part) in [
+            ("agent/2/base/wheel_base_m", "there are 2"),
+            ("agent/0/base/max_speed_m_s", "left_wheel_radius_m"),
+        ] {
+            let address: Address = text.parse().unwrap();
+            let message = state.parameter(&house, &address).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+        assert!(state.set_parameter(&house, &address, 0.0).is_err());
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Agents as the engines see them.
 
+use super::Locomotion;
 use crate::ids::ObjectId;
 use crate::space::{Pose, rotation_from_yaw_pitch};
 use glam::Vec3;
@@ -25,6 +26,8 @@ pub struct AgentBody {
     pub lift_kg: f32,
     /// How far from its eye its hand reaches, m.
     pub reach_m: f32,
+    /// How it gets about; default: it walks.
+    pub locomotion: Locomotion,
 }
 
 impl Default for AgentBody {
@@ -39,6 +42,7 @@ impl Default for AgentBody {
             mass_kg: 60.0,
             lift_kg: 10.0,
             reach_m: 1.5,
+            locomotion: Locomotion::default(),
         }
     }
 }
@@ -81,8 +85,25 @@ impl AgentBody {
         range("max_slope_rad", self.max_slope_rad, 0.0, 1.4, "0 to 1.4")?;
         range("mass_kg", self.mass_kg, 1.0, 500.0, "1 to 500")?;
         range("lift_kg", self.lift_kg, 0.0, 500.0, "0 to 500")?;
-        range("reach_m", self.reach_m, 0.1, 5.0, "0.1 to 5")
+        range("reach_m", self.reach_m, 0.1, 5.0, "0.1 to 5")?;
+        self.locomotion.check()
     }
+}
+
+/// What a base's wheels do, and what the base makes of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BaseState {
+    /// Speeds of the left and right wheel, rad/s; 0 without wheels.
+    pub wheel_rad_s: [f32; 2],
+    /// How far the left and right wheel have turned since the agent was placed, rad, as their encoders count.
+    pub wheel_turned_rad: [f64; 2],
+    /// How the wheels would move it: m/s forward, m/s to the left, rad/s to the left.
+    pub twist: [f32; 3],
+    /// Where it believes to be, from its wheels and nominal geometry: m forward and m to the left of where it was
+    /// placed, and rad to the left.
+    pub odometry: [f64; 3],
+    /// What rounding has kept back of its way so far: m along X and Z, rad.
+    pub kept_back: [f32; 3],
 }
 
 /// One agent's changing half.
@@ -104,6 +125,12 @@ pub struct AgentState {
     pub collided: bool,
     /// What it holds.
     pub holding: Option<ObjectId>,
+    /// How much lower than its body's height it is now, m: more than 0 while it crouches.
+    pub crouched_by_m: f32,
+    /// The rate of its turn to the left as its gyro reads it, rad/s: the mean over the last control step.
+    pub gyro_rad_s: f32,
+    /// Its wheels, if it has some.
+    pub base: BaseState,
 }
 
 impl AgentState {
@@ -118,7 +145,20 @@ impl AgentState {
             grounded: true,
             collided: false,
             holding: None,
+            crouched_by_m: 0.0,
+            gyro_rad_s: 0.0,
+            base: BaseState::default(),
         }
+    }
+
+    /// Its height now, m.
+    pub fn height_m(&self) -> f32 {
+        self.body.height_m - self.crouched_by_m
+    }
+
+    /// Height of eyes and ears above the feet now, m.
+    pub fn eye_height_m(&self) -> f32 {
+        (self.body.eye_height_m - self.crouched_by_m).max(0.0)
     }
 
     /// Where its eyes are and look: a camera at this pose sees what it sees.
@@ -136,6 +176,6 @@ impl AgentState {
 
     /// Where its eyes are, m.
     pub fn eye_position(&self) -> Vec3 {
-        self.position + Vec3::Y * self.body.eye_height_m
+        self.position + Vec3::Y * self.eye_height_m()
     }
 }

@@ -2,10 +2,12 @@
 
 mod address;
 mod agent;
+mod locomotion;
 mod snapshot;
 
 pub use address::{Address, Parameter};
-pub use agent::{AgentBody, AgentState};
+pub use agent::{AgentBody, AgentState, BaseState};
+pub use locomotion::{DifferentialDrive, Gait, HolonomicBase, Locomotion};
 
 use crate::house::House;
 use crate::ids::{AgentId, IdVec, JointId, ObjectId, PartId};
