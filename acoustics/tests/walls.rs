@@ -93,6 +93,7 @@ fn two_rooms(wall: &Material, door: &Material) -> House {
         colliders: Vec::new(),
         mass_kg: None,
         density_kg_m3: 500.0,
+        inertial: None,
     });
     House::new(data).unwrap()
 }

@@ -137,6 +137,7 @@ fn add_box(data: &mut HouseData, like: &Object, center: Vec3, half: Vec3, stands
         colliders: vec![Collider::cuboid(-half, half)],
         mass_kg: None,
         density_kg_m3: 300.0,
+        inertial: None,
     });
     data.objects.push(Object {
         mobility: if stands {

@@ -116,8 +116,7 @@ impl PhysicsWorld {
         }
         for joint in &self.joints {
             let articulation = &model.house.joints[joint.id];
-            let wanted = state.joint_position[joint.id]
-                .clamp(articulation.limits[0], articulation.limits[1]);
+            let wanted = articulation.clamp(state.joint_position[joint.id]);
             let (now, _) = joints::read(&self.engine, joint, wanted);
             let child = joint.child as usize;
             if self.holds[child] == Hold::Latched

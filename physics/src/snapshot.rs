@@ -23,7 +23,7 @@ use std::borrow::Cow;
 use xxhash_rust::xxh3::xxh3_64;
 
 const MAGIC: &[u8; 4] = b"dwph";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.

@@ -7,7 +7,7 @@ use crate::contact::{Collector, ContactEvent, Hooks, note_motion};
 use crate::error::PhysicsError;
 use crate::joints::{self, Drive, Progress};
 use crate::world::PhysicsWorld;
-use dwell_scene::{Aabb, AgentId, AgentState, Id, State};
+use dwell_scene::{Aabb, AgentId, AgentState, Id, JointCommand, State};
 use glam::Vec3;
 
 /// What an agent wanted to do and did in a control step.
@@ -129,18 +129,23 @@ impl PhysicsWorld {
         for index in 0..self.joints.len() {
             let joint = self.joints[index];
             let articulation = &house.joints[joint.id];
-            let mut target = state.joint_target[joint.id].filter(|target| target.is_finite());
+            let mut command = state.joint_command[joint.id];
+            if !command.is_finite() {
+                command = JointCommand::Off;
+            }
             let child = joint.child as usize;
             let now = (
                 state.joint_position[joint.id],
                 state.joint_velocity[joint.id],
             );
             if articulation.servo.is_some() {
-                for installed in &mut self.laws {
-                    target = target.map(|target| installed.law.servo_target(joint.id, target));
+                if let JointCommand::Position(target) = &mut command {
+                    for installed in &mut self.laws {
+                        *target = installed.law.servo_target(joint.id, *target);
+                    }
                 }
-            } else if let Some(goal) = target {
-                let goal = goal.clamp(articulation.limits[0], articulation.limits[1]);
+            } else if let JointCommand::Position(goal) = command {
+                let goal = articulation.clamp(goal);
                 let drive = self.drives.get(&joint.id);
                 if drive.is_none_or(|drive| drive.goal != goal) {
                     self.drives.insert(joint.id, Drive::new(goal, now.0, None));
@@ -155,7 +160,7 @@ impl PhysicsWorld {
             let hand = self.drives.get_mut(&joint.id);
             let limits = (step_s, effort);
             let (pull, progress) =
-                joints::advance(joint.kind, articulation, target, hand, now, limits);
+                joints::advance(joint.kind, articulation, command, hand, now, limits);
             if pull.is_some() && self.pulls[index] != pull {
                 joints::wake(&mut self.engine, &joint);
             }

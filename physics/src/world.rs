@@ -326,8 +326,8 @@ fn check_counts(house: &House, state: &State) -> Result<(), PhysicsError> {
     )?;
     same("joints", state.joint_position.len(), house.joints.len())?;
     same(
-        "joint targets",
-        state.joint_target.len(),
+        "joint commands",
+        state.joint_command.len(),
         house.joints.len(),
     )?;
     same("objects", state.held_by.len(), house.objects.len())

@@ -77,21 +77,16 @@ fn words_know_what_is_open_and_what_is_on() {
         let pose = part.world_from_part;
         b.data.objects[object].mobility = dwell_scene::Mobility::Articulated;
         b.data.joints.push(dwell_scene::Articulation {
-            name: "hinge".into(),
-            object,
-            parent: None,
-            child: dwell_scene::PartId(object.0),
-            kind: dwell_scene::JointKind::Hinge,
-            axis: Vec3::Y,
             parent_from_joint: pose,
-            child_from_joint: Pose::IDENTITY,
-            limits: [0.0, 1.5],
-            closed: 0.0,
+            limits: Some([0.0, 1.5]),
             open: 1.5,
-            initial: 0.0,
-            friction: 0.0,
-            damping: 0.0,
-            servo: None,
+            ..dwell_scene::Articulation::new(
+                "hinge",
+                object,
+                dwell_scene::PartId(object.0),
+                dwell_scene::JointKind::Hinge,
+                Vec3::Y,
+            )
         });
     }
     let house = b.build();

@@ -7,7 +7,7 @@ use crate::bundle::Bundle;
 use crate::error::CalibrationError;
 use crate::options::Options;
 use dwell_physics::PhysicsConfig;
-use dwell_scene::{JointId, LawInfo, LawSpec, Servo};
+use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, Servo};
 use std::collections::BTreeMap;
 
 /// Edge of the box around the servo, m.
@@ -38,6 +38,7 @@ impl ServoTwin {
             stiffness: joint.stiffness_n_m_rad as f32,
             damping: joint.damping_n_m_s_rad as f32,
             max_effort: joint.max_torque_n_m as f32,
+            ..Servo::default()
         };
         let hinge = (servo, joint.friction_n_m as f32);
         let arm = Thing::arm(&joint.name, joint.inertia_kg_m2, hinge);
@@ -267,7 +268,8 @@ impl Twin for ServoTwin {
             }
             let position = stage.state.joint_position[joint];
             let held = (target - f64::from(position)).abs() <= *deadband;
-            stage.state.joint_target[joint] = Some(if held { position } else { target as f32 });
+            let told = if held { position } else { target as f32 };
+            stage.state.joint_command[joint] = JointCommand::Position(told);
             stage.step()?;
             let velocity = stage.state.joint_velocity[joint];
             track.push((

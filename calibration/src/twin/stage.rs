@@ -174,24 +174,14 @@ fn put(data: &mut HouseData, thing: &Thing) {
         colliders: vec![thing.collider.clone()],
         mass_kg: Some(thing.mass_kg),
         density_kg_m3: 1000.0,
+        inertial: None,
     });
     if let Some((servo, friction)) = thing.hinge {
         data.joints.push(Articulation {
-            name: thing.name.clone(),
-            object,
-            parent: None,
-            child: part,
-            kind: JointKind::Hinge,
-            axis: Vec3::Y,
-            parent_from_joint: Pose::IDENTITY,
-            child_from_joint: Pose::IDENTITY,
-            limits: [-3.0, 3.0],
-            closed: 0.0,
-            open: 3.0,
-            initial: 0.0,
+            limits: Some([-3.0, 3.0]),
             friction,
-            damping: 0.0,
             servo: Some(servo),
+            ..Articulation::new(&thing.name, object, part, JointKind::Hinge, Vec3::Y)
         });
     }
 }

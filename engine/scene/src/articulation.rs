@@ -1,6 +1,6 @@
 //! Joints: doors, drawers, lids, servos and robots, in one description.
 
-use crate::ids::{ObjectId, PartId};
+use crate::ids::{JointId, ObjectId, PartId};
 use crate::space::Pose;
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
@@ -15,15 +15,100 @@ pub enum JointKind {
     Slide,
 }
 
-/// A position servo: effort = `stiffness` * (target - position) - `damping` * velocity, limited to `max_effort`.
+/// The motor of a joint with its controller.
+///
+/// Told a position: effort = `stiffness` * (target - position) - `damping` * velocity, and with `feed_forward` what gravity
+/// asks besides. Told a velocity: effort = `velocity_gain` * (target - velocity), and the same. Told an effort: that
+/// effort. Always within `gear * max_effort`, and never driving the joint beyond `max_velocity / gear`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Servo {
     /// N·m/rad or N/m.
     pub stiffness: f32,
     /// N·m·s/rad or N·s/m.
     pub damping: f32,
-    /// N·m or N.
+    /// The motor's largest effort, N·m or N; `gear` times as much at the joint.
     pub max_effort: f32,
+    /// N·m·s/rad or N·s/m; 0: it cannot be told a velocity.
+    pub velocity_gain: f32,
+    /// The motor's highest speed, rad/s or m/s; 1 / `gear` times as much at the joint. `None`: no bound.
+    pub max_velocity: Option<f32>,
+    /// Turns of the motor for one of the joint; above 0.
+    pub gear: f32,
+    /// Whether its controller adds the effort that carries the weight of what hangs on the joint.
+    pub feed_forward: bool,
+}
+
+impl Default for Servo {
+    /// A motor without strength, gear 1.
+    fn default() -> Self {
+        Self {
+            stiffness: 0.0,
+            damping: 0.0,
+            max_effort: 0.0,
+            velocity_gain: 0.0,
+            max_velocity: None,
+            gear: 1.0,
+            feed_forward: false,
+        }
+    }
+}
+
+impl Servo {
+    /// The largest effort at the joint, N·m or N.
+    pub fn joint_effort(&self) -> f32 {
+        self.gear * self.max_effort
+    }
+
+    /// The highest speed it drives the joint to, rad/s or m/s; infinite without a bound.
+    pub fn joint_velocity(&self) -> f32 {
+        self.max_velocity
+            .map_or(f32::INFINITY, |velocity| velocity / self.gear)
+    }
+}
+
+/// What a joint's motor is told. A joint without a motor is moved by hand: it obeys positions only.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JointCommand {
+    /// Nothing: it swings freely.
+    #[default]
+    Off,
+    /// Go to this position, rad or m.
+    Position(f32),
+    /// Keep this velocity, rad/s or m/s.
+    Velocity(f32),
+    /// Exert this effort, N·m or N.
+    Effort(f32),
+}
+
+impl JointCommand {
+    /// The position it is told to go to.
+    pub fn position(self) -> Option<f32> {
+        match self {
+            Self::Position(target) => Some(target),
+            _ => None,
+        }
+    }
+
+    /// Whether its number is finite.
+    pub fn is_finite(self) -> bool {
+        match self {
+            Self::Off => true,
+            Self::Position(x) | Self::Velocity(x) | Self::Effort(x) => x.is_finite(),
+        }
+    }
+}
+
+/// A joint that follows another by a linkage: `position = multiplier * leader's position + offset`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mimic {
+    /// The joint it follows; it stands before this one in the house and follows none itself.
+    pub leader: JointId,
+    /// rad or m of this joint for one of the leader.
+    pub multiplier: f32,
+    /// rad or m.
+    pub offset: f32,
 }
 
 /// A joint with one degree of freedom between two parts, from which physics builds constraints, eyes see parts and words
@@ -49,11 +134,12 @@ pub struct Articulation {
     pub parent_from_joint: Pose,
     /// The joint's frame on the child.
     pub child_from_joint: Pose,
-    /// Lowest and highest position, rad or m.
-    pub limits: [f32; 2],
+    /// Lowest and highest position, rad or m; `None`: it turns or slides without end.
+    pub limits: Option<[f32; 2]>,
     /// The position at which it counts as closed, inside the limits.
     pub closed: f32,
-    /// The position at which it counts as fully open, inside the limits.
+    /// The position at which it counts as fully open, inside the limits; equal to `closed` for what neither opens nor
+    /// closes, such as the joint of an arm.
     pub open: f32,
     /// The position at the start, inside the limits.
     pub initial: f32,
@@ -61,8 +147,15 @@ pub struct Articulation {
     pub friction: f32,
     /// Viscous damping, N·m·s/rad or N·s/m.
     pub damping: f32,
+    /// Inertia that the joint itself resists with, such as a rotor's times the square of its gear, kg·m² or kg. It is that
+    /// of the servo's gear here; another gear set at run time changes it by the square.
+    #[serde(default)]
+    pub armature: f32,
     /// The motor, if it has one.
     pub servo: Option<Servo>,
+    /// The joint it follows, if it follows one.
+    #[serde(default)]
+    pub mimic: Option<Mimic>,
 }
 
 impl Articulation {
@@ -84,6 +177,40 @@ impl Articulation {
             * self.parent_from_joint
             * self.motion(position)
             * self.child_from_joint.inverse()
+    }
+
+    /// A joint between the house and `child` at the part's origin: without limits, friction, motor, and nothing to open.
+    pub fn new(name: &str, object: ObjectId, child: PartId, kind: JointKind, axis: Vec3) -> Self {
+        Self {
+            name: name.to_owned(),
+            object,
+            parent: None,
+            child,
+            kind,
+            axis,
+            parent_from_joint: Pose::IDENTITY,
+            child_from_joint: Pose::IDENTITY,
+            limits: None,
+            closed: 0.0,
+            open: 0.0,
+            initial: 0.0,
+            friction: 0.0,
+            damping: 0.0,
+            armature: 0.0,
+            servo: None,
+            mimic: None,
+        }
+    }
+
+    /// `position` within the limits.
+    pub fn clamp(&self, position: f32) -> f32 {
+        self.limits
+            .map_or(position, |[low, high]| position.clamp(low, high))
+    }
+
+    /// Whether it is something to open and close by hand: a door, a drawer, a lid.
+    pub fn opens(&self) -> bool {
+        self.open != self.closed && self.servo.is_none() && self.mimic.is_none()
     }
 
     /// How far it is open: 0 closed, 1 fully open, clamped.
@@ -110,21 +237,11 @@ mod tests {
     #[test]
     fn a_door_swings_about_its_hinge_line() {
         let door = Articulation {
-            name: "hinge".into(),
-            object: ObjectId(0),
-            parent: None,
-            child: PartId(0),
-            kind: JointKind::Hinge,
-            axis: Vec3::Y,
             parent_from_joint: Pose::from_position(Vec3::new(1.0, 0.0, 5.0)),
             child_from_joint: Pose::from_position(Vec3::new(-0.4, 0.0, 0.0)),
-            limits: [0.0, FRAC_PI_2],
-            closed: 0.0,
+            limits: Some([0.0, FRAC_PI_2]),
             open: FRAC_PI_2,
-            initial: 0.0,
-            friction: 0.0,
-            damping: 0.0,
-            servo: None,
+            ..Articulation::new("hinge", ObjectId(0), PartId(0), JointKind::Hinge, Vec3::Y)
         };
         let closed = door.world_from_child(&Pose::IDENTITY, 0.0);
         assert!((closed.position - Vec3::new(1.4, 0.0, 5.0)).length() < 1e-6);

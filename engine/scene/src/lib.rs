@@ -25,13 +25,13 @@ mod state;
 mod texture;
 pub mod units;
 
-pub use articulation::{Articulation, JointKind, Servo};
+pub use articulation::{Articulation, JointCommand, JointKind, Mimic, Servo};
 pub use bounds::Aabb;
 pub use collider::Collider;
 pub use error::SceneError;
 pub use fixtures::{Holding, Light, LightShape, Receptacle, SoundEmitter};
 pub use house::{
-    Category, Geometry, House, HouseData, Level, Mobility, Object, Part, Placed, Room,
+    Category, Geometry, House, HouseData, Inertial, Level, Mobility, Object, Part, Placed, Room,
     ShoeboxMaterials, StaticTriangle, Structure, StructureKind, Surface, SurfaceOwner,
 };
 pub use ids::{

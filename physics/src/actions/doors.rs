@@ -5,7 +5,7 @@ use crate::contact::Toucher;
 use crate::joints::{self, Drive, Joint, Progress};
 use crate::world::PhysicsWorld;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentId, JointId, ObjectId, State};
+use dwell_scene::{AgentId, JointCommand, JointId, ObjectId, State};
 
 /// Openness from which a thing counts as open, and below which as closed.
 const OPEN: f32 = 0.95;
@@ -23,7 +23,10 @@ impl PhysicsWorld {
         let holder = state.agents[agent];
         let name = self.call(object);
         let house = self.model().house.clone();
-        let ids: Vec<JointId> = house.joints_of(object).collect();
+        let ids: Vec<JointId> = house
+            .joints_of(object)
+            .filter(|id| house.joints[*id].opens())
+            .collect();
         if ids.is_empty() {
             let verb = if open { "open" } else { "close" };
             let sentence =
@@ -45,7 +48,7 @@ impl PhysicsWorld {
         for id in ids {
             let joint = &house.joints[id];
             let goal = if open { joint.open } else { joint.closed };
-            state.joint_target[id] = Some(goal);
+            state.joint_command[id] = JointCommand::Position(goal);
             let drive = Drive::new(goal, state.joint_position[id], Some(agent));
             self.drives.insert(id, drive);
         }
@@ -59,7 +62,7 @@ impl PhysicsWorld {
         let Some(drive) = self.drives.remove(&joint.id) else {
             return;
         };
-        state.joint_target[joint.id] = None;
+        state.joint_command[joint.id] = JointCommand::Off;
         let articulation = self.model().house.joints[joint.id].clone();
         let object = articulation.object;
         let name = self.call(object);

@@ -2,7 +2,7 @@
 
 use super::effort::{Gain, Pull};
 use super::latch::tolerance;
-use dwell_scene::{AgentId, Articulation, JointId, JointKind};
+use dwell_scene::{AgentId, Articulation, JointCommand, JointId, JointKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -91,27 +91,36 @@ impl Drive {
     }
 }
 
-/// What pulls at a joint during the next control step, and how its hand stands. `target`: where the servo is told to go;
+/// What pulls at a joint during the next control step, and how its hand stands. `command`: what its motor is told;
 /// `hand`: the hand that moves a joint without a servo.
 pub(crate) fn advance(
     kind: JointKind,
     articulation: &Articulation,
-    target: Option<f32>,
+    command: JointCommand,
     hand: Option<&mut Drive>,
     (position, velocity): (f32, f32),
     (step_s, hand_effort): (f32, f32),
 ) -> (Option<Pull>, Option<Progress>) {
     if let Some(servo) = &articulation.servo {
-        let [low, high] = articulation.limits;
-        let pull = target.map(|target| Pull {
-            target: target.clamp(low, high),
-            max_effort: servo.max_effort,
-            gain: Gain::Servo {
-                stiffness: servo.stiffness,
-                damping: servo.damping,
-            },
-        });
-        return (pull, None);
+        let (target, gain) = match command {
+            JointCommand::Off => return (None, None),
+            JointCommand::Position(target) => {
+                let (stiffness, damping) = (servo.stiffness, servo.damping);
+                (
+                    articulation.clamp(target),
+                    Gain::Servo { stiffness, damping },
+                )
+            }
+            JointCommand::Velocity(target) => (target, Gain::Velocity(servo.velocity_gain)),
+            JointCommand::Effort(target) => (target, Gain::Effort),
+        };
+        let max_effort = servo.joint_effort();
+        let pull = Pull {
+            target,
+            max_effort,
+            gain,
+        };
+        return (Some(pull), None);
     }
     let Some(hand) = hand else {
         return (None, None);

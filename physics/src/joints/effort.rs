@@ -11,7 +11,7 @@ use glam::{Mat3, Vec3};
 use rapier3d::dynamics::RigidBody;
 use serde::{Deserialize, Serialize};
 
-/// A pull towards a target, rad or m.
+/// A pull towards a target, in the unit of its gain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Pull {
     pub(crate) target: f32,
@@ -28,6 +28,10 @@ pub(crate) enum Gain {
     /// Critically damped: at least this natural frequency, and stiff enough to pull with all its effort at `lead` (rad or
     /// m) from the target.
     Hand { frequency_rad_s: f32, lead: f32 },
+    /// Towards a velocity, N·m·s/rad or N·s/m.
+    Velocity(f32),
+    /// The target is the effort itself.
+    Effort,
 }
 
 impl Pull {
@@ -43,6 +47,8 @@ impl Pull {
                 let stiffness = slow.max(self.max_effort / lead);
                 (stiffness, 2.0 * (stiffness * inertia).sqrt())
             }
+            Gain::Velocity(gain) => (0.0, gain),
+            Gain::Effort => (0.0, 0.0),
         }
     }
 }
@@ -70,7 +76,13 @@ impl Freedom {
         let (k, d) = pull.gains(self.inertia);
         let free = self.velocity + dt_s * (self.weight + other) / self.inertia;
         let soft = 1.0 + dt_s * (d + k * dt_s) / self.inertia;
-        let effort = (k * (pull.target - self.position - dt_s * free) - d * free) / soft;
+        let effort = match pull.gain {
+            Gain::Velocity(_) => d * (pull.target - free) / soft,
+            Gain::Effort => pull.target,
+            Gain::Servo { .. } | Gain::Hand { .. } => {
+                (k * (pull.target - self.position - dt_s * free) - d * free) / soft
+            }
+        };
         effort.clamp(-pull.max_effort, pull.max_effort)
     }
 

@@ -65,8 +65,10 @@ pub(crate) fn insert(
             .local_frame1(parent_from_joint * to_x)
             .local_frame2(child_from_joint * to_x)
             .contacts_enabled(false);
-        if joint.kind == JointKind::Slide || joint.limits[1] - joint.limits[0] < TAU {
-            builder = builder.limits(axis, joint.limits);
+        let bounds =
+            |limits: &[f32; 2]| joint.kind == JointKind::Slide || limits[1] - limits[0] < TAU;
+        if let Some(limits) = joint.limits.filter(bounds) {
+            builder = builder.limits(axis, limits);
         }
         let child_handle = bodies[child as usize].handle;
         engine

@@ -113,6 +113,7 @@ impl Build {
                 colliders: vec![piece.collider.clone()],
                 mass_kg: None,
                 density_kg_m3: piece.density,
+                inertial: None,
             });
         }
         self.data.objects.push(Object {
@@ -156,21 +157,13 @@ impl Build {
         let child_from_joint =
             self.data.parts[id].world_from_part.inverse() * Pose::from_position(at);
         self.data.joints.push(Articulation {
-            name: "hinge".into(),
-            object,
-            parent: None,
-            child: id,
-            kind,
-            axis,
             parent_from_joint: Pose::from_position(at),
             child_from_joint,
-            limits,
+            limits: Some(limits),
             closed: 0.0_f32.clamp(limits[0], limits[1]),
             open: limits[1],
             initial: 0.0_f32.clamp(limits[0], limits[1]),
-            friction: 0.0,
-            damping: 0.0,
-            servo: None,
+            ..Articulation::new("hinge", object, id, kind, axis)
         })
     }
 

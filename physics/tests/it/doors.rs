@@ -2,6 +2,7 @@
 
 use crate::common::{Build, Piece, forward};
 use dwell_physics::{Action, ActionCode};
+use dwell_scene::JointCommand;
 use glam::Vec3;
 
 #[test]
@@ -110,7 +111,7 @@ fn a_blocked_door_says_what_is_in_the_way() {
         told.outcome.sentence
     );
     assert!(run.state.joint_position[joint] < 1.0);
-    assert_eq!(run.state.joint_target[joint], None);
+    assert_eq!(run.state.joint_command[joint], JointCommand::Off);
 }
 
 /// Shut on an agent that stands in the doorway, the door stops at its body and says so.
@@ -122,7 +123,7 @@ fn a_door_does_not_shut_through_an_agent() {
     run.state.joint_position[joint] = 1.5;
     run.world.adopt(&mut run.state).unwrap();
     let id = run.agent(Vec3::new(2.75, 0.0, 3.0), 0.0);
-    run.state.joint_target[joint] = Some(0.0);
+    run.state.joint_command[joint] = JointCommand::Position(0.0);
     let mut told = None;
     for _ in 0..80 {
         run.walk(1, &[]);

@@ -3,7 +3,7 @@
 use crate::common::{Run, forward};
 use dwell_physics::PhysicsConfig;
 use dwell_scene::navigation::{NavConfig, NavGrid};
-use dwell_scene::{Aabb, Id, ObjectId};
+use dwell_scene::{Aabb, Id, JointCommand, ObjectId};
 use glam::Vec3;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -153,7 +153,7 @@ fn nearly_every_door_and_drawer_of_the_apartment_opens_and_shuts() {
         let joint = run.house.joints[id].clone();
         let name = format!("{}/{}", run.house.objects[joint.object].name, joint.name);
         for (goal, last) in [(joint.open, false), (joint.closed, true)] {
-            run.state.joint_target[id] = Some(goal);
+            run.state.joint_command[id] = JointCommand::Position(goal);
             let mut told = String::new();
             for _ in 0..100 {
                 run.steps(1);

@@ -2,7 +2,7 @@
 
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::PhysicsConfig;
-use dwell_scene::{JointId, JointKind, Mobility, ObjectId, Servo};
+use dwell_scene::{JointCommand, JointId, JointKind, Mobility, ObjectId, Servo};
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 
@@ -164,10 +164,11 @@ fn a_servo_goes_to_its_target_less_the_load_over_its_stiffness() {
         stiffness: 20.0,
         damping: 1.0,
         max_effort: 10.0,
+        ..Servo::default()
     });
     let mut run = build.run();
     for target in [0.8, -0.4, 0.0] {
-        run.state.joint_target[joint] = Some(target);
+        run.state.joint_command[joint] = JointCommand::Position(target);
         run.steps(60);
         let q = run.state.joint_position[joint];
         let load = mass * gravity() * 0.2 * q.cos();
@@ -196,12 +197,13 @@ fn a_servo_is_no_stronger_than_its_effort() {
         stiffness: 1000.0,
         damping: 10.0,
         max_effort: 0.5 * torque,
+        ..Servo::default()
     });
     let mut run = build.run_with(PhysicsConfig {
         sleeping: false,
         ..PhysicsConfig::default()
     });
-    run.state.joint_target[joint] = Some(0.5);
+    run.state.joint_command[joint] = JointCommand::Position(0.5);
     run.steps(60);
     assert!(
         run.state.joint_position[joint] < -0.9,

@@ -2,7 +2,7 @@
 
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::{PhysicsConfig, laws};
-use dwell_scene::{JointKind, LawInfo, LawSpec, Mobility, Servo, State};
+use dwell_scene::{JointCommand, JointKind, LawInfo, LawSpec, Mobility, Servo, State};
 use glam::Vec3;
 
 fn spec(id: &str, target: Option<&str>, params: &[(&str, f64)]) -> LawSpec {
@@ -41,6 +41,7 @@ fn tower() -> Build {
         stiffness: 50.0,
         damping: 2.0,
         max_effort: 100.0,
+        ..Servo::default()
     });
     build
 }
@@ -88,7 +89,7 @@ fn backlash_draws_its_hysteresis_loop() {
     );
     let joint = run.house.joints.ids().next().unwrap();
     let mut follow = |target: f32| {
-        run.state.joint_target[joint] = Some(target);
+        run.state.joint_command[joint] = JointCommand::Position(target);
         run.steps(30);
         run.state.joint_position[joint]
     };
@@ -119,7 +120,7 @@ fn a_law_at_its_default_changes_no_bit() {
         state.laws = laws;
         let mut run = Run::from_state(house, PhysicsConfig::default(), state);
         let joint = run.house.joints.ids().next().unwrap();
-        run.state.joint_target[joint] = Some(0.7);
+        run.state.joint_command[joint] = JointCommand::Position(0.7);
         run.steps(40);
         run.state.laws.clear();
         run.hash()

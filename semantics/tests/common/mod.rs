@@ -164,6 +164,7 @@ impl Builder {
             colliders,
             mass_kg: Some(1.0),
             density_kg_m3: 100.0,
+            inertial: None,
         });
         self.data.objects.push(Object {
             name: format!("{category}_{}", object.0),

@@ -261,6 +261,7 @@ impl Builder {
             materials: thing.materials,
             colliders,
             mass_kg: moves.then(|| (box_m3 * density_kg_m3).clamp(0.02, 2000.0)),
+            inertial: None,
             density_kg_m3,
         });
         let first_part = PartId(self.data.parts.len() as u32 - 1);

@@ -162,6 +162,7 @@ impl Assembly {
                 colliders: part.colliders.clone(),
                 mass_kg: Some(part.mass_kg),
                 density_kg_m3: part.density_kg_m3,
+                inertial: None,
             });
         }
         data.objects.push(Object {
@@ -195,21 +196,21 @@ impl Assembly {
             let frame = Pose::from_position(joint.position);
             let hinge = joint.kind == JointKind::Hinge;
             data.joints.push(Articulation {
-                name: joint.name.to_owned(),
-                object,
                 parent: Some(part_id(joint.parent)),
-                child: part_id(joint.child),
-                kind: joint.kind,
-                axis: joint.axis,
                 parent_from_joint: frame,
                 child_from_joint: frame,
-                limits: [0.0, joint.open],
-                closed: 0.0,
+                limits: Some([0.0, joint.open]),
                 open: joint.open,
                 initial: joint.initial,
                 friction: FRICTION,
                 damping: if hinge { HINGE_DAMPING } else { SLIDE_DAMPING },
-                servo: None,
+                ..Articulation::new(
+                    joint.name,
+                    object,
+                    part_id(joint.child),
+                    joint.kind,
+                    joint.axis,
+                )
             });
         }
         data.lights.extend(model.lights.iter().map(|light| Light {

@@ -7,8 +7,10 @@ use crate::gltf::MeshAccessors;
 
 /// What the field `format` holds.
 pub const FORMAT: &str = "dwell-house";
-/// The version that is written and read.
-pub const VERSION: u32 = 1;
+/// The version that is written.
+pub const VERSION: u32 = 2;
+/// The versions that are read. 1 had no inertials, no joints without limits, and of motors only the position servo.
+pub(super) const VERSIONS: [u32; 2] = [1, VERSION];
 
 /// The head of the file, which every version has.
 #[derive(Debug, Serialize, Deserialize)]

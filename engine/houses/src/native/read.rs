@@ -7,7 +7,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Mesh};
 use glam::{Vec2, Vec3};
 
-use super::file::{FORMAT, Head, NativeFile, VERSION};
+use super::file::{FORMAT, Head, NativeFile, VERSIONS};
 use super::{GEOMETRY, TABLES};
 use crate::error::HousesError;
 use crate::gltf::{Geometry, MeshAccessors};
@@ -38,8 +38,9 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
             found,
         });
     }
-    if head.version != VERSION {
-        let (found, allowed) = (head.version.to_string(), vec![VERSION.to_string()]);
+    if !VERSIONS.contains(&head.version) {
+        let allowed = VERSIONS.map(|version| version.to_string()).to_vec();
+        let found = head.version.to_string();
         return Err(HousesError::Version {
             at: at.field("version"),
             found,

@@ -277,6 +277,7 @@ pub(crate) fn house(numbers: &[u32]) -> HouseData {
                 colliders: (0..n.below(3)).map(|_| collider(n, fixed)).collect(),
                 mass_kg: n.flag().then(|| 0.1 + n.unit() * 90.0),
                 density_kg_m3: 1.0 + n.unit() * 900.0,
+                inertial: None,
             });
             if !fixed && part > 0 && n.flag() {
                 data.joints
@@ -320,17 +321,23 @@ fn joint(n: &mut Numbers<'_>, object: ObjectId, first: PartId, child: PartId) ->
         axis: n.direction(),
         parent_from_joint: n.pose(),
         child_from_joint: n.pose(),
-        limits: [low, low + span],
+        limits: n.flag().then_some([low, low + span]),
         closed: low,
         open: low + span,
         initial: low,
         friction: n.unit(),
         damping: n.unit(),
+        armature: n.unit(),
         servo: n.flag().then(|| Servo {
             stiffness: n.unit(),
             damping: n.unit(),
             max_effort: n.unit(),
+            velocity_gain: n.unit(),
+            max_velocity: n.flag().then(|| n.unit()),
+            gear: 0.5 + n.unit(),
+            feed_forward: n.flag(),
         }),
+        mimic: None,
     }
 }
 

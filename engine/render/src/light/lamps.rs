@@ -180,6 +180,7 @@ mod tests {
             colliders: Vec::new(),
             mass_kg: None,
             density_kg_m3: 500.0,
+            inertial: None,
         });
         let light = Light {
             object: ObjectId(0),

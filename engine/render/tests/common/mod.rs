@@ -89,6 +89,7 @@ impl Builder {
             colliders: Vec::new(),
             mass_kg: None,
             density_kg_m3: 500.0,
+            inertial: None,
         });
         object
     }

@@ -1,9 +1,10 @@
 //! The one check of a house's tables.
 
 use super::data::{HouseData, Mobility};
+use crate::articulation::Articulation;
 use crate::collider::Collider;
 use crate::error::SceneError;
-use crate::ids::{Id, IdVec, MaterialId, MeshId};
+use crate::ids::{Id, IdVec, JointId, MaterialId, MeshId};
 use std::collections::BTreeSet;
 
 /// Largest coordinate of anything, m: beyond it f32 positions are coarser than 4 mm.
@@ -234,6 +235,18 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                     "1e-6 to 1e6",
                 )?;
             }
+            if let Some(inertial) = &part.inertial {
+                let (ok, found) = (inertial.is_valid(), format!("{:?}", inertial.moments));
+                let allowed =
+                    "finite, principal moments above 0 with none above the sum of the other two";
+                range(
+                    &at,
+                    "inertial",
+                    ok && part.mass_kg.is_some(),
+                    found,
+                    allowed,
+                )?;
+            }
             let exact = part.colliders.contains(&Collider::ExactMesh);
             range(
                 &at,
@@ -306,7 +319,7 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
             "not rigid",
             "finite with unit quaternions",
         )?;
-        let [low, high] = joint.limits;
+        let [low, high] = joint.limits.unwrap_or([f32::MIN, f32::MAX]);
         range(
             &at,
             "limits",
@@ -341,6 +354,52 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
             joint.damping,
             "0 to 1e6",
         )?;
+        range(
+            &at,
+            "armature",
+            (0.0..=1e6).contains(&joint.armature),
+            joint.armature,
+            "0 to 1e6",
+        )?;
+        motor(data, &at, id, joint)?;
+    }
+    Ok(())
+}
+
+/// Checks a joint's servo and what it follows.
+fn motor(data: &HouseData, at: &str, id: JointId, joint: &Articulation) -> Result<(), SceneError> {
+    if let Some(servo) = &joint.servo {
+        for (field, value) in [
+            ("servo.stiffness", servo.stiffness),
+            ("servo.damping", servo.damping),
+            ("servo.velocity_gain", servo.velocity_gain),
+            ("servo.max_effort", servo.max_effort),
+        ] {
+            range(at, field, (0.0..=1e9).contains(&value), value, "0 to 1e9")?;
+        }
+        let gear = servo.gear;
+        range(
+            at,
+            "servo.gear",
+            (1e-6..=1e6).contains(&gear),
+            gear,
+            "1e-6 to 1e6",
+        )?;
+        if let Some(velocity) = servo.max_velocity {
+            let ok = (0.0..=1e6).contains(&velocity);
+            range(at, "servo.max_velocity", ok, velocity, "0 to 1e6")?;
+        }
+    }
+    if let Some(mimic) = &joint.mimic {
+        exists(at, "joints", &data.joints, mimic.leader)?;
+        let leads = mimic.leader < id && data.joints[mimic.leader].mimic.is_none();
+        let (found, allowed) = (
+            mimic.leader.0,
+            "a joint that stands before and follows none",
+        );
+        range(at, "mimic.leader", leads, found, allowed)?;
+        let finite = mimic.multiplier.is_finite() && mimic.offset.is_finite();
+        range(at, "mimic", finite, "not finite", "finite numbers")?;
     }
     Ok(())
 }

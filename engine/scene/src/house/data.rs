@@ -11,7 +11,7 @@ use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::space::Pose;
 use crate::texture::Texture;
-use glam::{Affine3A, Vec2};
+use glam::{Affine3A, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -189,4 +189,29 @@ pub struct Part {
     pub mass_kg: Option<f32>,
     /// Mean density of the colliders' volume, kg/m³ (a cupboard is mostly air).
     pub density_kg_m3: f32,
+    /// Centre of mass and inertia as measured or given, for a part with a `mass_kg`; `None`: those of the colliders, evenly
+    /// filled.
+    #[serde(default)]
+    pub inertial: Option<Inertial>,
+}
+
+/// Where a part's mass sits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Inertial {
+    /// The centre of mass with the principal axes, on the part.
+    pub part_from_principal: Pose,
+    /// The principal moments of inertia about the centre of mass, kg·m².
+    pub moments: Vec3,
+}
+
+impl Inertial {
+    /// Whether a body can have it: finite, moments above 0, none above the sum of the other two (by more than 1 in
+    /// 1000, which rounded files exceed).
+    pub fn is_valid(&self) -> bool {
+        let m = self.moments;
+        self.part_from_principal.is_valid()
+            && m.is_finite()
+            && m.min_element() > 0.0
+            && m.max_element() <= (m.element_sum() - m.max_element()) * 1.001
+    }
 }

@@ -7,7 +7,7 @@ mod queries;
 mod shoebox;
 
 pub use data::{
-    Category, HouseData, Level, Mobility, Object, Part, Room, Structure, StructureKind,
+    Category, HouseData, Inertial, Level, Mobility, Object, Part, Room, Structure, StructureKind,
 };
 pub(crate) use geometry::normals_map;
 pub use geometry::{Geometry, Placed, StaticTriangle, Surface, SurfaceOwner};

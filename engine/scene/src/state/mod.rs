@@ -9,6 +9,7 @@ pub use address::{Address, Parameter};
 pub use agent::{AgentBody, AgentState, BaseState};
 pub use locomotion::{DifferentialDrive, Gait, HolonomicBase, Locomotion};
 
+use crate::articulation::JointCommand;
 use crate::house::House;
 use crate::ids::{AgentId, IdVec, JointId, ObjectId, PartId};
 use crate::law::LawSpec;
@@ -34,8 +35,8 @@ pub struct State {
     pub joint_position: IdVec<JointId, f32>,
     /// Velocity of every joint, rad/s or m/s. Shape (joint,).
     pub joint_velocity: IdVec<JointId, f32>,
-    /// Where each servo is told to go, rad or m; `None`: it is off. Shape (joint,).
-    pub joint_target: IdVec<JointId, Option<f32>>,
+    /// What each joint's motor, or the hand on it, is told. Shape (joint,).
+    pub joint_command: IdVec<JointId, JointCommand>,
     /// The agents.
     pub agents: IdVec<AgentId, AgentState>,
 
@@ -89,7 +90,7 @@ impl State {
             part_velocity: IdVec::filled(Velocity::default(), parts),
             joint_position: house.joints.iter().map(|joint| joint.initial).collect(),
             joint_velocity: IdVec::filled(0.0, joints),
-            joint_target: IdVec::filled(None, joints),
+            joint_command: IdVec::filled(JointCommand::Off, joints),
             agents: IdVec::new(),
             switched_on: house
                 .objects
@@ -103,10 +104,11 @@ impl State {
         }
     }
 
-    /// How far an object is open: the largest openness of its joints; `None` when it has no joint.
+    /// How far an object is open: the largest openness of its joints that open; `None` when it has none.
     pub fn openness(&self, house: &House, object: ObjectId) -> Option<f32> {
         house
             .joints_of(object)
+            .filter(|joint| house.joints[*joint].opens())
             .map(|joint| house.joints[joint].openness(self.joint_position[joint]))
             .reduce(f32::max)
     }

@@ -83,12 +83,14 @@ impl State {
             state.part_pose.len(),
             state.part_velocity.len(),
             state.joint_position.len(),
+            state.joint_command.len(),
             state.held_by.len(),
         );
         if lengths
             != (
                 house.parts.len(),
                 house.parts.len(),
+                house.joints.len(),
                 house.joints.len(),
                 house.objects.len(),
             )

@@ -144,6 +144,7 @@ impl Converter<'_> {
             colliders,
             mass_kg,
             density_kg_m3,
+            inertial: None,
         }
     }
 
@@ -251,20 +252,14 @@ fn joint(
         (Some(first), part_from_joint)
     };
     Articulation {
-        name: "hinge".to_owned(),
-        object,
         parent,
-        child,
-        kind: JointKind::Hinge,
-        axis: Vec3::Y,
         parent_from_joint,
         child_from_joint: part_from_joint,
-        limits: [closed.min(open), closed.max(open)],
+        limits: Some([closed.min(open), closed.max(open)]),
         closed,
         open,
-        initial: 0.0,
         friction: HINGE_FRICTION,
         damping: HINGE_DAMPING,
-        servo: None,
+        ..Articulation::new("hinge", object, child, JointKind::Hinge, Vec3::Y)
     }
 }
