@@ -30,6 +30,18 @@ pub fn env(sensors: &[&str]) -> Env {
 /// # Panics
 /// When the task or a sensor does not exist.
 pub fn env_of(task: &str, sensors: &[&str]) -> Env {
+    let config = EnvConfig {
+        task: task.to_owned(),
+        ..EnvConfig::default()
+    };
+    env_with(config, sensors)
+}
+
+/// An environment in the apartment with these sensors, all small.
+///
+/// # Panics
+/// When the task, a law or a sensor does not exist.
+pub fn env_with(config: EnvConfig, sensors: &[&str]) -> Env {
     let settings = |name: &str| match name {
         "rgb" | "depth" | "instance" | "semantic" => json!({"width": 32, "height": 24}),
         _ => json!({}),
@@ -39,9 +51,8 @@ pub fn env_of(task: &str, sensors: &[&str]) -> Env {
         settings: settings(name),
     });
     let config = EnvConfig {
-        task: task.to_owned(),
         sensors: Some(sensors.collect()),
-        ..EnvConfig::default()
+        ..config
     };
-    Env::new(apartment(), &config).expect("the sensors exist")
+    Env::new(apartment(), &config).expect("task, laws and sensors exist")
 }

@@ -1,56 +1,53 @@
 //! The noise that a microphone adds of itself.
 
+use super::{Acts, Law};
 use dwell_scene::law::{Engine, ParamInfo};
 use dwell_scene::random::Key;
 use dwell_scene::{LawInfo, LawSpec};
 
-/// What is known about it.
-pub static INFO: LawInfo = LawInfo {
-    id: "microphone_noise",
-    version: 1,
-    name: "self-noise of the microphones",
-    equation: "p_out = p + w, w white and normal with standard deviation sigma_pa (Pa), independent in every sample and channel",
-    source: "IEC 60268-4:2018, clause 17 (equivalent sound pressure due to inherent noise)",
-    engine: Engine::Acoustics,
-    acts_on: "sensor",
-    params: &[ParamInfo {
-        name: "sigma_pa",
-        unit: "Pa",
-        default: 0.0,
-        low: 0.0,
-        high: 10.0,
-        // 10 to 40 dB SPL.
-        plausible: [6.3e-5, 2e-3],
-    }],
-    rivals: &[],
-    separating_experiment: "record with all sources off: what is left does not depend on where the microphone stands",
+pub(super) const LAW: Law = Law {
+    info: LawInfo {
+        id: "microphone_noise",
+        version: 1,
+        name: "self-noise of the microphones",
+        equation: "p_out = p + w, w white and normal with standard deviation sigma_pa (Pa), independent in every sample and channel",
+        source: "IEC 60268-4:2018, clause 17 (equivalent sound pressure due to inherent noise)",
+        engine: Engine::Acoustics,
+        acts_on: "sensor",
+        params: &[ParamInfo {
+            name: "sigma_pa",
+            unit: "Pa",
+            default: 0.0,
+            low: 0.0,
+            high: 10.0,
+            // 10 to 40 dB SPL.
+            plausible: [6.3e-5, 2e-3],
+        }],
+        rivals: &["background_noise", "second_slope"],
+        separating_experiment: "record with all sources off, then move the microphone: self-noise is the same everywhere and \
+                                unlike in two microphones, background noise is neither; play the same sound louder: a \
+                                second slope of the decay rises with it, noise does not",
+    },
+    acts: Acts::Microphones(add),
 };
 
-/// Adds the noise of every installed law of this kind to `out`.
-///
-/// # Determinism
-/// What is drawn depends on `key` and the length of `out` alone; nothing is drawn at the default.
-pub(crate) fn apply(laws: &[LawSpec], key: Key, out: &mut [f32]) {
-    let installed = laws.iter().filter(|law| law.id == INFO.id);
-    for (k, law) in installed.enumerate() {
-        let sigma = law.value(&INFO, "sigma_pa").unwrap_or(0.0);
-        if sigma > 0.0 {
-            let mut stream = key.child(k as u64).stream();
-            for sample in out.iter_mut() {
-                *sample += (sigma * stream.normal()) as f32;
-            }
-        }
+fn add(spec: &LawSpec, info: &LawInfo, key: Key, block: &mut [f32]) {
+    let sigma = spec.value(info, "sigma_pa").unwrap_or(0.0);
+    let mut stream = key.stream();
+    for sample in block {
+        *sample += (sigma * stream.normal()) as f32;
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::at_microphones;
     use super::*;
     use std::collections::BTreeMap;
 
     fn law(sigma_pa: f64) -> LawSpec {
         LawSpec {
-            id: INFO.id.to_owned(),
+            id: LAW.info.id.to_owned(),
             version: 1,
             target: None,
             params: BTreeMap::from([("sigma_pa".to_owned(), sigma_pa)]),
@@ -62,7 +59,7 @@ mod tests {
         let before = [0.1_f32, -0.2, 0.3];
         for laws in [vec![], vec![law(0.0)]] {
             let mut out = before;
-            apply(&laws, Key::root(1), &mut out);
+            at_microphones(&laws, Key::root(1), &mut out);
             assert_eq!(out.map(f32::to_bits), before.map(f32::to_bits));
         }
     }
@@ -73,7 +70,7 @@ mod tests {
         for seed in 0..5 {
             for (laws, variance) in [(vec![law(0.02)], 4e-4), (vec![law(0.02), law(0.02)], 8e-4)] {
                 let mut out = vec![0.0; 20_000];
-                apply(&laws, Key::root(seed), &mut out);
+                at_microphones(&laws, Key::root(seed), &mut out);
                 let found = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / 20_000.0;
                 assert!((found / variance - 1.0).abs() < 5.0 * (2.0 / 20_000.0_f64).sqrt());
             }

@@ -1,19 +1,53 @@
 //! Effects on sound that the basic model lacks: one file and one line each.
 
-pub mod microphone_noise;
+mod microphone_noise;
 
-use dwell_scene::LawInfo;
+use dwell_scene::random::Key;
+use dwell_scene::{LawInfo, LawSpec};
+use std::sync::LazyLock;
 
-/// All laws of sound.
-pub fn all() -> &'static [&'static LawInfo] {
-    static ALL: [&LawInfo; 1] = [&microphone_noise::INFO];
-    &ALL
+/// A law of this engine: what is known about it, and where it acts.
+struct Law {
+    info: LawInfo,
+    acts: Acts,
+}
+
+/// Where a law acts.
+enum Acts {
+    /// On what microphones give out: changes a block of pressure, Pa. What is drawn depends on the key and the block's
+    /// length alone.
+    Microphones(fn(&LawSpec, &LawInfo, Key, &mut [f32])),
+}
+
+/// The laws of this engine.
+static LAWS: [Law; 1] = [microphone_noise::LAW];
+
+/// What is known about each law of sound.
+///
+/// ```
+/// assert!(dwell_acoustics::laws::all().iter().any(|law| law.id == "microphone_noise"));
+/// ```
+pub fn all() -> &'static [LawInfo] {
+    static INFOS: LazyLock<Vec<LawInfo>> =
+        LazyLock::new(|| LAWS.iter().map(|law| law.info.clone()).collect());
+    &INFOS
+}
+
+/// Applies the installed laws of microphones to a block, in the order in which they were installed.
+pub(crate) fn at_microphones(installed: &[LawSpec], key: Key, block: &mut [f32]) {
+    for (k, spec) in installed.iter().enumerate() {
+        if let Some(law) = LAWS.iter().find(|law| law.info.id == spec.id)
+            && !spec.is_default(&law.info)
+        {
+            let Acts::Microphones(change) = law.acts;
+            change(spec, &law.info, key.child(k as u64), block);
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::LawSpec;
     use std::collections::BTreeMap;
 
     #[test]

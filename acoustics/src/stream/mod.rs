@@ -8,7 +8,7 @@ pub use config::StreamConfig;
 
 use crate::error::{AcousticsError, finite};
 use crate::fft::RealFft;
-use crate::laws::microphone_noise;
+use crate::laws;
 use crate::receiver::{Receiver, Source};
 use crate::scene::AcousticScene;
 use dwell_scene::parallel::Threads;
@@ -201,7 +201,7 @@ impl Stream {
             !voice.input.is_silent() || sources.iter().any(|source| source.id == voice.id)
         });
         let noise = self.key.child("microphone").child(self.block);
-        microphone_noise::apply(&state.laws, noise, out);
+        laws::at_microphones(&state.laws, noise, out);
         self.block += 1;
         Ok(report)
     }

@@ -7,7 +7,7 @@ use dwell_scene::{LawInfo, LawSpec};
 pub fn all() -> impl Iterator<Item = &'static LawInfo> {
     dwell_physics::laws::all()
         .iter()
-        .chain(dwell_acoustics::laws::all().iter().copied())
+        .chain(dwell_acoustics::laws::all())
 }
 
 /// Checks laws and leaves out those at their default: such a law changes nothing, bit for bit.
