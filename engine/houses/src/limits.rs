@@ -12,8 +12,9 @@ pub(crate) const MAX_IMAGE_SIDE: u32 = 16_384;
 pub(crate) const MAX_IMAGE_PIXELS: u64 = 64 << 20;
 /// Largest binary buffer of glTF and of the native form, bytes.
 pub(crate) const MAX_BUFFER_BYTES: u64 = 2 << 30;
-/// Most nodes in a house, all levels together.
-pub(crate) const MAX_NODES: usize = 200_000;
+/// Most nodes in a house, all levels together: what rests on what is asked for every pair. The largest SUNCG houses have a
+/// few thousand.
+pub(crate) const MAX_NODES: usize = 50_000;
 /// Most corners of one polygon.
 pub(crate) const MAX_CORNERS: usize = 100_000;
 /// Largest voxel grid side of a binvox file (SUNCG has 128).

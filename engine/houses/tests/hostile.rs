@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use dwell_houses::suncg::{parse, read_binvox};
+use dwell_houses::suncg::{arch, parse, read_binvox};
 use dwell_houses::{HousesError, Report, open};
 use dwell_scene::{House, ShoeboxMaterials};
 use proptest::prelude::*;
@@ -130,6 +130,7 @@ proptest! {
     #[test]
     fn any_house_json_is_parsed_or_refused(text in "[\\[\\]{}:,\"a-z0-9 .-]{0,200}") {
         let _ = parse(text.as_bytes(), "house.json", &mut Report::new());
+        let _ = arch::parse(text.as_bytes(), "arch.json", &mut Report::new());
     }
 
     #[test]
@@ -245,7 +246,7 @@ fn axes_that_make_no_space_name_the_field() {
 
 #[test]
 fn more_nodes_than_any_house_has_are_refused() {
-    let nodes = "{},".repeat(200_001);
+    let nodes = "{},".repeat(50_001);
     let text = format!(
         r#"{{"levels": [{{"nodes": [{}]}}]}}"#,
         nodes.trim_end_matches(',')
@@ -255,7 +256,7 @@ fn more_nodes_than_any_house_has_are_refused() {
         .to_string();
     assert_eq!(
         error,
-        "house.json: levels: node count 200001 is more than the 200000 that are read"
+        "house.json: levels: node count 50001 is more than the 50000 that are read"
     );
 }
 

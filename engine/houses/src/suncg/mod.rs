@@ -1,5 +1,6 @@
 //! SUNCG: `house.json` with its rooms, objects, textures and tables.
 
+pub mod arch;
 mod binvox;
 mod convert;
 pub mod file;

@@ -8,6 +8,7 @@ use dwell_scene::Texture;
 use dwell_scene::parallel::Threads;
 use tracing::debug_span;
 
+use super::arch::{self, ArchFile};
 use super::file::{HouseFile, NodeFile};
 use super::metadata::{CategoryTable, LightTable, SoundTable, read_table};
 use super::parse;
@@ -30,6 +31,8 @@ pub struct SuncgFiles {
     pub house: HouseFile,
     /// OBJ files by path relative to the root, with their materials; those that do not exist are absent.
     pub meshes: BTreeMap<String, MeshFiles>,
+    /// `arch.json` with its path, when the house has no room meshes.
+    pub arch: Option<(String, ArchFile)>,
     /// Images by path relative to the root; those that do not exist or cannot be read are absent.
     pub textures: BTreeMap<String, Arc<Texture>>,
     /// `ModelCategoryMapping.csv`.
@@ -113,9 +116,11 @@ impl SuncgFiles {
             let _span = debug_span!("meshes").entered();
             read_meshes(root, &scene_id, &house, threads, report)
         };
+        let arch = read_arch(root, &scene_id, &meshes, report);
         let textures = {
             let _span = debug_span!("textures").entered();
-            read_textures(root, &house, &meshes, threads, report)
+            let at = At::file(house_path);
+            read_textures(root, &house, &meshes, arch.as_ref(), threads, &at, report)
         };
         let _span = debug_span!("tables").entered();
         let mut files = Self {
@@ -123,6 +128,7 @@ impl SuncgFiles {
             house_path: house_path.to_owned(),
             house,
             meshes,
+            arch,
             textures,
             categories: CategoryTable::default(),
             lights: LightTable::default(),
@@ -204,25 +210,54 @@ fn read_meshes(
     meshes
 }
 
+/// The walls of the second release, where no room mesh is there.
+fn read_arch(
+    root: &DataRoot,
+    scene_id: &str,
+    meshes: &BTreeMap<String, MeshFiles>,
+    report: &mut Report,
+) -> Option<(String, ArchFile)> {
+    let path = format!("wall/{scene_id}/{scene_id}.arch.json");
+    if meshes.keys().any(|path| path.starts_with("room/")) || !root.has_file(&path) {
+        return None;
+    }
+    let read = root.read(&path, MAX_TEXT_BYTES);
+    match read.and_then(|text| arch::parse(&text, &path, report)) {
+        Ok(file) => Some((path, file)),
+        Err(error) => {
+            let damage = Damage::UnreadableMesh {
+                path: path.clone(),
+                reason: error.reason(),
+            };
+            report.warn(At::file(path), damage);
+            None
+        }
+    }
+}
+
 fn read_textures(
     root: &DataRoot,
     house: &HouseFile,
     meshes: &BTreeMap<String, MeshFiles>,
+    arch: Option<&(String, ArchFile)>,
     threads: Threads,
+    at: &At,
     report: &mut Report,
 ) -> BTreeMap<String, Arc<Texture>> {
-    let mut wanted: BTreeSet<String> = meshes
+    let of_meshes = meshes
         .values()
-        .flat_map(|files| files.textures.iter().flatten().cloned())
-        .collect();
+        .flat_map(|files| files.textures.iter().flatten().cloned());
+    let mut wanted: BTreeSet<String> = of_meshes.collect();
     let own = nodes(house).flat_map(|node| node.materials.iter().flatten());
-    for name in own
-        .chain(&house.materials)
-        .filter_map(|material| material.texture.as_deref())
-    {
+    let of_arch = arch
+        .iter()
+        .flat_map(|(_, arch)| &arch.elements)
+        .flat_map(|element| &element.materials);
+    let named = own.chain(&house.materials).chain(of_arch);
+    for name in named.filter_map(|material| material.texture.as_deref()) {
         let Some(candidates) = paths::texture(name) else {
             report.warn(
-                At::file("house.json"),
+                at.clone(),
                 Damage::PathRefused {
                     path: name.to_owned(),
                 },
@@ -234,7 +269,7 @@ fn read_textures(
                 wanted.insert(path.clone());
             }
             None => report.warn(
-                At::file("house.json"),
+                at.clone(),
                 Damage::MissingTexture {
                     path: format!("texture/{name}"),
                 },

@@ -168,3 +168,37 @@ pub(crate) fn compose(root: &Path) {
         [0, 0, 255],
     );
 }
+
+/// A house of the second release: no room meshes, walls in `arch.json`.
+const SECOND_RELEASE: &str = r#"{"version": "suncg@1.0.2", "id": "00v2", "levels": [{"id": "0", "nodes": [
+    {"id": "0_0", "type": "Room", "valid": 1, "modelId": "fr_0rm_0", "roomTypes": ["Bedroom"], "bbox": {"min": [40, 0, 40], "max": [44, 2.8, 43]}},
+    {"id": "0_1", "type": "Room", "valid": 1, "modelId": "fr_0rm_1", "roomTypes": [], "hideCeiling": 1}]}]}"#;
+const ARCH: &str = r##"{"version": "suncg-arch@1.0.2", "id": "00v2", "up": [0, 1, 0], "front": [0, 0, 1], "scaleToMeters": 1,
+    "defaults": {"Wall": {"depth": 0.1, "extraHeight": 0.035}, "Ceiling": {"depth": 0.05}, "Floor": {"depth": 0.05}},
+    "elements": [
+    {"id": "0_0_w0", "type": "Wall", "roomId": "0_0", "height": 2.7, "points": [[40, 0, 40], [44, 0, 40]],
+     "holes": [{"type": "Door", "box": {"min": [1, 0.04], "max": [1.9, 2.12]}}, {"type": "Window", "box": {"min": [2.2, 0.87], "max": [3.6, 2.23]}}],
+     "materials": [{"name": "inside", "texture": "wallp_0", "diffuse": "#ff8000"}, {"name": "outside", "texture": "bricks_1"}]},
+    {"id": "0_0_w1", "type": "Wall", "roomId": ["0_0", "0_1"], "height": 2.7, "points": [[44, 0, 40], [44, 0, 43]], "materials": []},
+    {"id": "0_0_f", "type": "Floor", "roomId": "0_0", "offset": [0, 0.05, 0], "points": [[40, 0, 40], [44, 0, 40], [44, 0, 43], [40, 0, 43]],
+     "materials": [{"name": "floor", "texture": "laminate_1_2"}]},
+    {"id": "0_0_c", "type": "Ceiling", "roomId": "0_0", "points": [[40, 2.69, 40], [44, 2.69, 40], [44, 2.69, 43], [40, 2.69, 43]]},
+    {"id": "0_1_f", "type": "Floor", "roomId": "0_1", "points": [[44, 0.05, 40], [46, 0.05, 40], [46, 0.05, 43], [45, 0.05, 43], [45, 0.05, 41], [44, 0.05, 41]]},
+    {"id": "0_1_c", "type": "Ceiling", "roomId": "0_1", "points": [[44, 2.69, 40], [46, 2.69, 40], [46, 2.69, 43]]},
+    {"id": "lost", "type": "Wall", "height": 1, "points": [[50, 0, 50], [51, 0, 50]]},
+    {"id": "bad", "type": "Wall", "height": 2, "points": [[50, 0, "x"]]}]}"##;
+
+/// Writes the house of the second release.
+pub(crate) fn compose_second_release(root: &Path) {
+    for (path, text) in [
+        ("house/00v2/house.json", SECOND_RELEASE),
+        ("wall/00v2/00v2.arch.json", ARCH),
+    ] {
+        let path = root.join(path);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    for name in ["laminate_1_2", "wallp_0", "bricks_1"] {
+        image(&root.join(format!("texture/{name}.jpg")), [200; 3]);
+    }
+}

@@ -2,12 +2,12 @@
 //! page names. Nothing here comes out of our own writer.
 #![allow(
     clippy::unwrap_used,
-    clippy::float_cmp,
     reason = "tests stop at the first surprise and compare exact numbers"
 )]
 
 mod files;
 mod looks;
+mod second_release;
 
 use std::sync::OnceLock;
 

@@ -1,5 +1,6 @@
 //! The only place where SUNCG files become a [`House`]: every decision about meaning is made below this folder.
 
+mod arch;
 mod boxes;
 mod fixtures;
 mod hinge;
@@ -65,6 +66,7 @@ pub fn convert(
         object_names: Names::default(),
         structure_names: Names::default(),
         stands: Vec::new(),
+        arch_used: Vec::new(),
     };
     {
         let _span = debug_span!("rooms").entered();
@@ -99,6 +101,8 @@ struct Converter<'a> {
     structure_names: Names,
     /// Where the objects made so far stand, to see what rests on what.
     stands: Vec<(PartId, Aabb)>,
+    /// Which elements of `arch.json` some room has.
+    arch_used: Vec<bool>,
 }
 
 /// A node's place: level, position there.
@@ -139,6 +143,7 @@ impl Converter<'_> {
                 }
             }
         }
+        self.arch_leftovers();
     }
 
     /// The room of a point, by floors: the smallest that holds it.

@@ -182,6 +182,14 @@ impl<'a> Converter<'a> {
             self.report
                 .warn(plan.at.clone(), Damage::Simplified { what });
         }
+        if !two_states && plan.category.coarse == "door" {
+            let what = format!(
+                "door model {:?} has one state only; it does not move",
+                plan.model
+            );
+            self.report
+                .warn(plan.at.clone(), Damage::Simplified { what });
+        }
         let usual = plan.row.map_or_else(
             || dwell_scene::material::library().default_substance(),
             CategoryRow::substance,

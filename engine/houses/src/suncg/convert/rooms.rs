@@ -35,17 +35,24 @@ impl<'a> Converter<'a> {
         let room_id = RoomId(self.data.rooms.len() as u32);
         let level = Self::level_id(key.0);
         let first_piece = self.data.structure.len();
-        if let Some(model) = self.room_model(node, &at) {
-            for (letter, kind) in PARTS {
-                let hidden = match kind {
-                    StructureKind::Ceiling => node.hide_ceiling,
-                    StructureKind::Floor => node.hide_floor,
-                    _ => node.hide_walls,
-                };
-                if hidden != Some(Flag(true)) {
-                    let path = paths::room(&self.files.scene_id, model, letter);
-                    self.pieces_of(&path, kind, &name, level, Some(room_id), &at);
-                }
+        let hidden = PARTS.map(|(_, kind)| {
+            let flag = match kind {
+                StructureKind::Ceiling => node.hide_ceiling,
+                StructureKind::Floor => node.hide_floor,
+                _ => node.hide_walls,
+            };
+            (flag == Some(Flag(true))).then_some(kind)
+        });
+        if self.has_arch() {
+            let hidden: Vec<StructureKind> = hidden.into_iter().flatten().collect();
+            self.arch_of_node(node, level, Some(room_id), &hidden);
+        } else if let Some(model) = self.room_model(node, &at) {
+            for (letter, kind) in PARTS
+                .into_iter()
+                .filter(|(_, kind)| !hidden.contains(&Some(*kind)))
+            {
+                let path = paths::room(&self.files.scene_id, model, letter);
+                self.pieces_of(&path, kind, &name, level, Some(room_id), &at);
             }
         }
         let pieces = first_piece..self.data.structure.len();
@@ -59,6 +66,9 @@ impl<'a> Converter<'a> {
         let name = self.node_names[key.0][key.1].clone();
         if node.hide_floor == Some(Flag(true)) {
             return;
+        }
+        if self.has_arch() {
+            return self.arch_of_node(node, Self::level_id(key.0), None, &[]);
         }
         if let Some(model) = self.room_model(node, &at) {
             let path = paths::room(&self.files.scene_id, model, 'f');
@@ -207,7 +217,7 @@ impl<'a> Converter<'a> {
         }
     }
 
-    fn in_world(&self, mut mesh: Mesh) -> Mesh {
+    pub(super) fn in_world(&self, mut mesh: Mesh) -> Mesh {
         if self.world_from_file != glam::Affine3A::IDENTITY {
             let map = self.world_from_file;
             mesh.positions

@@ -20,16 +20,26 @@ impl<'a> Converter<'a> {
         slot: u16,
         kind: StructureKind,
     ) -> MaterialId {
-        let usual = match kind {
-            StructureKind::Floor => "floor",
-            StructureKind::Ground => "ground",
-            StructureKind::Ceiling => "ceiling",
-            StructureKind::Wall | StructureKind::Other => "wall",
-        };
-        let usual =
-            category([usual]).map_or_else(|| library().default_substance(), |row| row.substance());
+        let usual = usual_of_structure(kind);
         let surface = self.slot_surface(files, slots, usize::from(slot));
         let substance = surface.named_substance().unwrap_or(usual);
+        self.look(&surface, substance, false)
+    }
+
+    /// The material of a side of a wall or slab that has only what `change` says.
+    pub(super) fn plain_structure_material(
+        &mut self,
+        change: Option<&'a MaterialFile>,
+        kind: StructureKind,
+        at: &At,
+    ) -> MaterialId {
+        let mut surface = Surface::default();
+        if let Some(change) = change {
+            self.apply_override(&mut surface, change, at);
+        }
+        let substance = surface
+            .named_substance()
+            .unwrap_or_else(|| usual_of_structure(kind));
         self.look(&surface, substance, false)
     }
 
@@ -203,6 +213,17 @@ impl<'a> Converter<'a> {
             .entry(path)
             .or_insert_with(|| self.data.textures.push(self.files.textures[path].clone()))
     }
+}
+
+/// What walls, floors and ceilings are usually made of.
+fn usual_of_structure(kind: StructureKind) -> &'static Substance {
+    let name = match kind {
+        StructureKind::Floor => "floor",
+        StructureKind::Ground => "ground",
+        StructureKind::Ceiling => "ceiling",
+        StructureKind::Wall | StructureKind::Other => "wall",
+    };
+    category([name]).map_or_else(|| library().default_substance(), |row| row.substance())
 }
 
 /// What a slot shows.

@@ -1,0 +1,122 @@
+//! Structure pieces of the second release, which states walls instead of meshes.
+
+use std::sync::Arc;
+
+use dwell_scene::{LevelId, RoomId, Structure, StructureKind};
+
+use super::super::arch::{Element, ElementKind, slab, wall};
+use super::super::file::NodeFile;
+use super::Converter;
+use crate::damage::Damage;
+use crate::report::At;
+
+impl<'a> Converter<'a> {
+    /// Whether the walls stand in `arch.json`.
+    pub(super) fn has_arch(&self) -> bool {
+        self.files.arch.is_some()
+    }
+
+    /// The elements of a room's or a ground's node; one that two rooms share goes to the first.
+    pub(super) fn arch_of_node(
+        &mut self,
+        node: &NodeFile,
+        level: LevelId,
+        room: Option<RoomId>,
+        hidden: &[StructureKind],
+    ) {
+        let ids = [node.id.as_deref(), node.model_id.as_deref()];
+        let belongs = |element: &Element| {
+            element
+                .rooms
+                .iter()
+                .any(|room| ids.contains(&Some(room.as_str())))
+        };
+        self.arch_where(belongs, level, room, hidden);
+    }
+
+    /// What no node claimed.
+    pub(super) fn arch_leftovers(&mut self) {
+        if !self.data.levels.is_empty() {
+            self.arch_where(|_| true, LevelId(0), None, &[]);
+        }
+    }
+
+    fn arch_where(
+        &mut self,
+        wanted: impl Fn(&Element) -> bool,
+        level: LevelId,
+        room: Option<RoomId>,
+        hidden: &[StructureKind],
+    ) {
+        let Some((path, arch)) = &self.files.arch else {
+            return;
+        };
+        self.arch_used.resize(arch.elements.len(), false);
+        for (k, element) in arch.elements.iter().enumerate() {
+            if self.arch_used[k] || !wanted(element) {
+                continue;
+            }
+            self.arch_used[k] = true;
+            let at = At::file(path).field(format_args!("elements[{k}]"));
+            let kind = match element.kind {
+                ElementKind::Wall => StructureKind::Wall,
+                ElementKind::Floor => StructureKind::Floor,
+                ElementKind::Ceiling => StructureKind::Ceiling,
+                ElementKind::Ground => StructureKind::Ground,
+            };
+            if !hidden.contains(&kind) {
+                self.arch_piece(element, kind, level, room, &at);
+            }
+        }
+    }
+
+    fn arch_piece(
+        &mut self,
+        element: &'a Element,
+        kind: StructureKind,
+        level: LevelId,
+        room: Option<RoomId>,
+        at: &At,
+    ) {
+        let mesh = if kind == StructureKind::Wall {
+            wall(element)
+        } else {
+            slab(element)
+        };
+        if mesh.triangles.is_empty() {
+            return self.report.warn(
+                at.clone(),
+                Damage::EmptyMesh {
+                    path: element.id.clone(),
+                },
+            );
+        }
+        // Two sides and a rim; a single material covers both sides.
+        let sides = [
+            element.materials.first(),
+            element.materials.get(1).or(element.materials.first()),
+            None,
+        ];
+        let materials = sides
+            .map(|side| self.plain_structure_material(side, kind, at))
+            .to_vec();
+        let base = if element.id.is_empty() {
+            format!("{kind:?}")
+        } else {
+            element.id.clone()
+        };
+        let name = self.structure_names.unique(&base);
+        let mesh = self.in_world(mesh);
+        let bounds = mesh.bounds();
+        self.data.levels[level].bounds = self.data.levels[level].bounds.union(&bounds);
+        let mesh = self.data.meshes.push(Arc::new(mesh));
+        self.data.structure.push(Structure {
+            name,
+            kind,
+            room,
+            level,
+            mesh,
+            materials,
+        });
+    }
+}
