@@ -10,7 +10,7 @@ use dwell_scene::{House, ShoeboxMaterials};
 use proptest::prelude::*;
 
 /// The formats that read files, and where each one's sample stands.
-const SAMPLES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 4] = [
     ("native", "a.dwell"),
     ("suncg", "suncg"),
     ("gltf", "a.glb"),
@@ -36,7 +36,7 @@ fn samples() -> &'static [Sample] {
         std::fs::create_dir(at("obj")).unwrap();
         std::fs::write(at("obj/a.obj"), OBJ).unwrap();
         std::fs::write(at("obj/a.mtl"), MTL).unwrap();
-        let samples = SAMPLES.map(|(_, name)| {
+        let samples = FILES.map(|(_, name)| {
             let house = at(name);
             let whole = if house.is_file() && name.contains('/') {
                 house.parent().unwrap()
@@ -147,7 +147,7 @@ fn every_format_that_reads_files_has_a_sample() {
     let without: Vec<_> = dwell_houses::formats()
         .iter()
         .map(|format| format.name)
-        .filter(|name| *name != "builtin" && SAMPLES.iter().all(|(format, _)| format != name))
+        .filter(|name| *name != "builtin" && FILES.iter().all(|(format, _)| format != name))
         .collect();
     assert!(without.is_empty(), "{without:?}");
     for (house, files) in samples() {
