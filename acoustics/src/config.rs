@@ -55,7 +55,7 @@ impl AcousticConfig {
             image_order: 3,
             image_planes: 40,
             discovery_rays: 2_000,
-            roulette_db: 60.0,
+            roulette_db: 40.0,
             receiver_radius_m: 0.5,
             air: Air::default(),
             air_absorption: true,

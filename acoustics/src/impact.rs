@@ -148,7 +148,7 @@ impl ImpactSound {
         let kinds = [0, 1].map(|k| ringing(&self.substances[k]));
         // The softer of the two lasts longer under the blow and leaves the high modes out.
         let softer = kinds.iter().map(|kind| kind.loss).fold(0.0, f64::max);
-        let contact_s = 0.0004 * (softer / 0.01).sqrt().clamp(0.3, 20.0);
+        let contact_s = 0.00012 * (softer / 0.01).sqrt().clamp(0.3, 20.0);
         for (kind, size) in kinds.iter().zip(self.size_m) {
             let Some(size) = size else { continue };
             let length_m = f64::from(size).clamp(0.02, 3.0);

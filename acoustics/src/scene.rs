@@ -25,8 +25,8 @@ pub(crate) struct Surface {
     pub(crate) kept: Banded,
     /// Fraction of it that is scattered.
     pub(crate) scattering: Banded,
-    /// Mean scattering: the probability that a ray is scattered.
-    pub(crate) scatter_probability: f32,
+    /// Whether it scatters at all.
+    pub(crate) scatters: bool,
     /// Energy that passes through, from 0 to 1.
     pub(crate) passed: Banded,
 }
@@ -35,7 +35,7 @@ impl Surface {
     const HARD: Self = Self {
         kept: [1.0; BAND_COUNT],
         scattering: [0.0; BAND_COUNT],
-        scatter_probability: 0.0,
+        scatters: false,
         passed: [0.0; BAND_COUNT],
     };
 
@@ -50,7 +50,7 @@ impl Surface {
         Self {
             kept: bands::sample(&absorption).map(|a| (1.0 - a).clamp(0.0, 1.0)),
             scattering,
-            scatter_probability: (scattering.iter().sum::<f32>() / BAND_COUNT as f32).min(1.0),
+            scatters: scattering.iter().any(|s| *s > 0.0),
             passed: loss_db.map(|db| {
                 if db >= Material::OPAQUE_TO_SOUND_DB {
                     0.0

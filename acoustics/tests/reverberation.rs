@@ -224,6 +224,39 @@ fn roulette_is_unbiased() {
     assert!(difference_db.abs() < 0.3, "{difference_db}");
 }
 
+/// Bands that scatter differently share their rays, and still each has the decay of a room that scatters like it.
+#[test]
+fn a_band_does_not_feel_how_others_scatter() {
+    let mixed = Material {
+        scattering: Bands::octaves([0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8]),
+        ..material(0.1, 0.0)
+    };
+    let (source, ear) = (Vec3::new(1.2, 1.5, 1.4), Vec3::new(4.6, 1.2, 3.3));
+    let level = |wall: &Material| {
+        let hall = Hall::shoebox([6.0, 3.0, 5.0], wall, dry(6000));
+        let found = hall.echogram(source, ear, Key::root(21));
+        let windows = found.tail.bins[50..200].chunks(50);
+        windows
+            .map(|bins| {
+                bins.iter().fold([0.0; 8], |sum: [f64; 8], bin| {
+                    std::array::from_fn(|band| sum[band] + bin.energy[band])
+                })
+            })
+            .collect::<Vec<_>>()
+    };
+    let together = level(&mixed);
+    for band in [2, 4, 6] {
+        let alone = level(&material(
+            0.1,
+            mixed.scattering.at(bands::NOMINAL_CENTRES_HZ[band]),
+        ));
+        for (a, b) in together.iter().zip(&alone) {
+            let difference_db = 10.0 * (a[band] / b[band]).log10();
+            assert!(difference_db.abs() < 0.7, "band {band}: {difference_db} dB");
+        }
+    }
+}
+
 /// V23: the same bits for 1, 2 and 7 threads.
 #[test]
 fn threads_do_not_change_a_bit() {

@@ -3,6 +3,7 @@
 mod fractional;
 mod minimum_phase;
 mod noise;
+mod smooth;
 
 use crate::bands::FilterBank;
 use crate::config::AcousticConfig;

@@ -35,7 +35,7 @@ pub(super) fn add(noise: &Noise<'_>, ears: &[Option<Vec3>], key: Key, out: &mut 
     let tail = &noise.echogram.tail;
     let mut buses = vec![vec![vec![0.0_f32; noise.length]; BAND_COUNT]; ears.len()];
     let mut any = false;
-    for (k, bin) in tail.bins.iter().enumerate() {
+    for (k, bin) in super::smooth::smooth(tail).iter().enumerate() {
         if bin.energy.iter().all(|e| *e <= 0.0) {
             continue;
         }

@@ -94,7 +94,7 @@ impl Walk<'_> {
                 surface.normal
             };
             let start = point + normal * margin_m(point);
-            if material.scatter_probability > 0.0 {
+            if material.scatters {
                 self.shine(
                     start,
                     normal,
@@ -104,15 +104,23 @@ impl Walk<'_> {
                     chunk,
                 );
             }
-            let strongest = energy.iter().copied().fold(0.0, f32::max) / power;
-            if strongest < self.roulette {
-                let survival = strongest / self.roulette;
+            let mean = energy.iter().sum::<f32>() / (BAND_COUNT as f32 * power);
+            if mean < self.roulette {
+                let survival = mean / self.roulette;
                 if survival < 1e-3 || stream.uniform_f32() >= survival {
                     return;
                 }
                 energy = energy.map(|e| e / survival);
             }
-            let scatter = material.scatter_probability;
+            // The fraction of this ray's energy that is scattered: with it, both branches keep the sum over the bands, and no
+            // band's weight can grow from reflection to reflection.
+            let all: f32 = energy.iter().sum();
+            let scattered_part: f32 = energy
+                .iter()
+                .zip(material.scattering)
+                .map(|(e, s)| e * s)
+                .sum();
+            let scatter = (scattered_part / all).clamp(0.0, 1.0);
             if scatter > 0.0 && stream.uniform_f32() < scatter {
                 multiply(&mut energy, &material.scattering.map(|s| s / scatter));
                 ray = Ray::new(start, lambert(normal, stream));
