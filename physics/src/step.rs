@@ -327,6 +327,17 @@ impl PhysicsWorld {
         self.parting = still;
     }
 
+    /// The kinetic energy of everything that moves freely or on joints, J: that of the centres of mass and of the spins.
+    pub fn kinetic_energy_j(&self) -> f64 {
+        self.bodies
+            .iter()
+            .zip(&self.holds)
+            .filter(|(_, hold)| **hold == Hold::Free)
+            .filter_map(|(body, _)| self.engine.bodies.get(body.handle))
+            .map(|rigid| f64::from(rigid.kinetic_energy()))
+            .sum()
+    }
+
     /// The fastest point of any body, m/s.
     pub fn fastest_m_s(&self) -> f32 {
         self.bodies

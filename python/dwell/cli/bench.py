@@ -19,6 +19,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--views", type=Path, metavar="FILE", help="JSON list of position and forward"
     )
+    parser.add_argument(
+        "--boxes",
+        type=Path,
+        metavar="FILE",
+        help="physics: JSON of fixed and dynamic boxes, density_kg_m3 and physics_rate_hz",
+    )
+    parser.add_argument("--worlds", type=int, default=64, help="physics: worlds stepped together")
     parser.add_argument("--resolution", type=int, default=128, help="pixels across and down")
     parser.add_argument("--preset", choices=("flat", "lit"), default="flat")
     parser.add_argument("--threads", type=int)
@@ -34,11 +41,13 @@ def run(args: argparse.Namespace) -> int:
 
     options: dict[str, Any] = {
         key: getattr(args, key)
-        for key in ("resolution", "preset", "threads", "repeats", "envs", "steps")
+        for key in ("resolution", "preset", "threads", "repeats", "envs", "steps", "worlds")
     }
     if args.views:
         rows = json.loads(args.views.read_text("utf-8"))
         options["views"] = [{key: row[key] for key in ("position", "forward")} for row in rows]
+    if args.boxes:
+        options["boxes"] = json.loads(args.boxes.read_text("utf-8"))
     figures = json.loads(_native.bench_json(args.stage, args.house, json.dumps(options)))
     if args.json:
         print_json(figures)

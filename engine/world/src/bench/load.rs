@@ -1,0 +1,24 @@
+//! Opening a house with its ray tree, and starting a world over again.
+
+use super::{BenchOptions, median, open, timed};
+use crate::config::WorldConfig;
+use crate::error::WorldError;
+use crate::world::World;
+use dwell_scene::random::Key;
+use serde_json::{Value, json};
+
+pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+    let mut triangles = 0;
+    let seconds = timed(options.repeats, || {
+        let (house, _) = dwell_houses::open(house)?;
+        house.geometry();
+        triangles = house.triangle_count();
+        Ok(())
+    })?;
+    let engines = open(house)?;
+    let mut world = World::new(engines, &WorldConfig::default())?;
+    let reset = timed(options.repeats, || world.reset(Key::root(0)))?;
+    Ok(
+        json!({"load_ms": median(&seconds) * 1e3, "reset_ms": median(&reset) * 1e3, "triangles": triangles}),
+    )
+}

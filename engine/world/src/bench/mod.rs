@@ -1,0 +1,144 @@
+//! Throughput of every stage, for `dwell bench`. Times are of this process and machine; compare ratios within one run.
+
+mod acoustics;
+mod env;
+mod load;
+mod physics;
+mod render;
+
+pub use physics::{BenchBox, BenchBoxes};
+
+use crate::engines::Engines;
+use crate::error::WorldError;
+use dwell_render::Preset;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A stage: its name, and what measures it.
+type Stage = (
+    &'static str,
+    fn(&str, &BenchOptions) -> Result<Value, WorldError>,
+);
+
+/// All stages. A new one is one file and one line here.
+const STAGES: [Stage; 5] = [
+    ("load", load::run),
+    ("render", render::run),
+    ("physics", physics::run),
+    ("acoustics", acoustics::run),
+    ("env", env::run),
+];
+
+/// What `dwell bench` can be told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BenchOptions {
+    /// Views to render, in order; `None`: eight around from the middle of every room.
+    pub views: Option<Vec<BenchView>>,
+    /// Pixels across and down; default 128.
+    pub resolution: u32,
+    /// `"flat"` (default) or `"lit"`.
+    pub preset: Preset,
+    /// Threads; `None`: what the machine allows.
+    pub threads: Option<usize>,
+    /// Repetitions of which the median counts; 1 to 1,000, default 5.
+    pub repeats: usize,
+    /// Environments stepped together by `env`; default 4.
+    pub envs: usize,
+    /// Steps of a run of `physics` and `env`; default 200.
+    pub steps: usize,
+    /// Presets of `acoustics`; default both, `rl` and `full`.
+    pub presets: Vec<String>,
+    /// What `physics` steps instead of the house's own objects; `None`: those.
+    pub boxes: Option<BenchBoxes>,
+    /// Worlds that `physics` steps together, to be compared with one; default 64.
+    pub worlds: usize,
+}
+
+/// A view of a views file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BenchView {
+    /// m.
+    pub position: [f32; 3],
+    /// Any length.
+    pub forward: [f32; 3],
+}
+
+impl Default for BenchOptions {
+    fn default() -> Self {
+        Self {
+            views: None,
+            resolution: 128,
+            preset: Preset::Flat,
+            threads: None,
+            repeats: 5,
+            envs: 4,
+            steps: 200,
+            presets: vec!["rl".to_owned(), "full".to_owned()],
+            boxes: None,
+            worlds: 64,
+        }
+    }
+}
+
+impl BenchOptions {
+    fn check(&self) -> Result<(), WorldError> {
+        for (field, value, high) in [
+            ("repeats", self.repeats, 1000),
+            ("envs", self.envs, 4096),
+            ("steps", self.steps, 1_000_000),
+            ("worlds", self.worlds, 4096),
+        ] {
+            if !(1..=high).contains(&value) {
+                return Err(WorldError::Config {
+                    field,
+                    found: value.to_string(),
+                    allowed: format!("1 to {high}"),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Seconds of each of `repeats` runs, sorted.
+fn timed(
+    repeats: usize,
+    mut run: impl FnMut() -> Result<(), WorldError>,
+) -> Result<Vec<f64>, WorldError> {
+    let mut seconds = Vec::with_capacity(repeats);
+    for _ in 0..repeats {
+        let start = Instant::now();
+        run()?;
+        seconds.push(start.elapsed().as_secs_f64());
+    }
+    seconds.sort_by(f64::total_cmp);
+    Ok(seconds)
+}
+
+fn median(sorted: &[f64]) -> f64 {
+    sorted[sorted.len() / 2]
+}
+
+/// Measures one stage over a house: `load`, `render`, `physics`, `acoustics` or `env`.
+///
+/// # Errors
+/// [`WorldError`] for an unknown stage, a wrong option or a house that cannot be opened.
+pub fn run(what: &str, house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+    options.check()?;
+    let stage = STAGES.iter().find(|(name, _)| *name == what);
+    let Some((_, run)) = stage else {
+        return Err(WorldError::Unknown {
+            kind: "bench",
+            name: what.to_owned(),
+            known: STAGES.iter().map(|(name, _)| (*name).to_owned()).collect(),
+        });
+    };
+    run(house, options)
+}
+
+fn open(house: &str) -> Result<Arc<Engines>, WorldError> {
+    Ok(Engines::new(Arc::new(dwell_houses::open(house)?.0)))
+}
