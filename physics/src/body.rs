@@ -1,8 +1,9 @@
 //! The rigid bodies of a world: making them, and reading where they are.
 
-use crate::contact::{ContactTable, Entry};
+use crate::contact::{Dress, Entry};
 use crate::convert::{from_rapier, to_rapier};
 use crate::engine::Engine;
+use crate::inertia::Inertia;
 use crate::model::{BodyPlan, Owner, PhysicsModel, Piece, shapes};
 use dwell_scene::material::PairContact;
 use dwell_scene::{House, ObjectId, PartId, Pose, State, Velocity};
@@ -63,7 +64,7 @@ pub(crate) fn dress(
 pub(crate) fn insert_statics(
     engine: &mut Engine,
     model: &PhysicsModel,
-    table: &ContactTable,
+    values: Dress<'_>,
 ) -> Vec<Entry> {
     let ground = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut entries = Vec::with_capacity(model.statics.len() + 1);
@@ -76,15 +77,15 @@ pub(crate) fn insert_statics(
         cover: crate::model::Cover::One(None),
     };
     for piece in model.statics.iter().chain([&last_floor]) {
-        let surface = table.surface(&piece.cover);
+        let entry = Entry::new(piece.owner, None, values.table.surface(&piece.cover));
         let builder = ColliderBuilder::new(piece.shape.clone())
             .position(piece.place)
             .density(0.0);
-        let builder = dress(builder, table.rule(&surface), false, entries.len());
+        let builder = dress(builder, values.rule(&entry), false, entries.len());
         engine
             .colliders
             .insert_with_parent(builder, ground, &mut engine.bodies);
-        entries.push(Entry::new(piece.owner, None, surface));
+        entries.push(entry);
     }
     entries
 }
@@ -93,32 +94,37 @@ pub(crate) fn insert_statics(
 pub(crate) fn insert_body(
     engine: &mut Engine,
     plan: &BodyPlan,
-    table: &ContactTable,
+    values: Dress<'_>,
     entries: &mut Vec<Entry>,
     place: BodyPlace,
 ) -> Body {
-    let builder = RigidBodyBuilder::new(body_type(place.hold))
+    let mut builder = RigidBodyBuilder::new(body_type(place.hold))
         .pose(place.world_from_body)
         .can_sleep(place.sleeping_allowed);
+    if let Some(inertia) = &place.inertia {
+        builder = builder.additional_mass_properties(inertia.properties());
+    }
     let handle = engine.bodies.insert(builder);
     for piece in &plan.pieces {
-        let surface = table.surface(&piece.cover);
+        let surface = values.table.surface(&piece.cover);
+        let entry = Entry::new(piece.owner, Some(place.index), surface);
+        let density = density(piece, place.mass_factor, place.inertia.as_ref());
         let builder = ColliderBuilder::new(piece.shape.clone())
             .position(piece.place)
-            .density(piece.density_kg_m3 * place.mass_factor)
+            .density(density)
             .active_events(ActiveEvents::CONTACT_FORCE_EVENTS)
             .contact_force_event_threshold(place.event_force_n);
         // Leaves ask which pairs meet; free bodies do so only against agents, who ask themselves.
         let builder = dress(
             builder,
-            table.rule(&surface),
+            values.rule(&entry),
             plan.joint.is_some(),
             entries.len(),
         );
         engine
             .colliders
             .insert_with_parent(builder, handle, &mut engine.bodies);
-        entries.push(Entry::new(piece.owner, Some(place.index), surface));
+        entries.push(entry);
     }
     Body { handle }
 }
@@ -130,8 +136,18 @@ pub(crate) struct BodyPlace {
     pub(crate) world_from_body: RapierPose,
     pub(crate) hold: Hold,
     pub(crate) mass_factor: f32,
+    /// What a law makes of its mass and inertia.
+    pub(crate) inertia: Option<Inertia>,
     pub(crate) sleeping_allowed: bool,
     pub(crate) event_force_n: f32,
+}
+
+/// The density of a collider, kg/m3: none where the body's mass and inertia are given as a whole.
+pub(crate) fn density(piece: &Piece, mass_factor: f32, inertia: Option<&Inertia>) -> f32 {
+    match inertia {
+        Some(_) => 0.0,
+        None => piece.density_kg_m3 * mass_factor,
+    }
 }
 
 /// Changes a collider's contact values in place.

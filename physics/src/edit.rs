@@ -2,6 +2,7 @@
 
 use crate::agents;
 use crate::body::{self, Hold};
+use crate::contact::Dress;
 use crate::convert::to_rapier;
 use crate::error::PhysicsError;
 use crate::joints;
@@ -35,9 +36,14 @@ impl PhysicsWorld {
     pub(crate) fn insert_agent(&mut self, agent: &AgentState) {
         let id = AgentId::from_index(self.agents.len());
         let force = self.settings.event_force_n();
+        let values = Dress {
+            house: &self.model.house,
+            table: &self.table,
+            laws: &self.laws,
+        };
         let inserted = agents::insert(
             &mut self.engine,
-            &self.table,
+            values,
             &mut self.entries,
             id,
             agent,

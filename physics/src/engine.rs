@@ -1,28 +1,25 @@
 //! rapier's parts in one place.
 
 use crate::config::Settings;
+use crate::laws::Compliance;
+use crate::softness;
 use glam::Vec3;
 use rapier3d::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
-    RigidBodySet, SoftBodySet, SpringCoefficients,
+    RigidBodyHandle, RigidBodySet, RigidBodyType, SoftBodySet,
 };
 use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
+use rapier3d::math::Pose;
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, QueryFilter, QueryPipeline};
 
-/// Natural frequency of contacts, as a share of the substep rate. A body sinks by g over its square: 0.04 mm at 4 substeps
-/// and 120 Hz.
-const CONTACT_FREQUENCY: f32 = 1.0 / 6.0;
-/// The same against what never moves.
-const STATIC_CONTACT_FREQUENCY: f32 = 0.25;
 /// Steps of no length until the tree is back.
 const MOST_FLUSHES: usize = 4;
-/// Damping ratio of contacts, as rapier has it.
-const CONTACT_DAMPING_RATIO: f32 = 10.0;
-
 /// The simulation itself. Workspaces that hold nothing between steps are made anew when it is cloned.
 pub(crate) struct Engine {
     pub(crate) gravity: Vec3,
     parameters: IntegrationParameters,
+    /// Runs of rapier in a physics step: 1, or as many as soft contacts need.
+    runs: u32,
     pipeline: PhysicsPipeline,
     ccd: CCDSolver,
     multibodies: MultibodyJointSet,
@@ -40,6 +37,7 @@ impl Clone for Engine {
         Self {
             gravity: self.gravity,
             parameters: self.parameters,
+            runs: self.runs,
             pipeline: PhysicsPipeline::new(),
             ccd: CCDSolver::new(),
             multibodies: MultibodyJointSet::new(),
@@ -56,23 +54,10 @@ impl Clone for Engine {
 
 impl Engine {
     pub(crate) fn new(settings: &Settings, gravity_m_s2: f32) -> Self {
-        let substeps = settings.config.solver_substeps as f32;
-        let substep_hz = substeps / settings.dt_s;
-        let softness = |share: f32| SpringCoefficients {
-            natural_frequency: share * substep_hz,
-            damping_ratio: CONTACT_DAMPING_RATIO,
-        };
-        let parameters = IntegrationParameters {
-            dt: settings.dt_s,
-            min_ccd_dt: settings.dt_s / 100.0,
-            num_solver_iterations: settings.config.solver_substeps as usize,
-            contact_softness: softness(CONTACT_FREQUENCY),
-            static_contact_softness: softness(STATIC_CONTACT_FREQUENCY),
-            ..IntegrationParameters::default()
-        };
         Self {
             gravity: Vec3::new(0.0, -gravity_m_s2, 0.0),
-            parameters,
+            parameters: softness::rigid(settings),
+            runs: 1,
             pipeline: PhysicsPipeline::new(),
             ccd: CCDSolver::new(),
             multibodies: MultibodyJointSet::new(),
@@ -86,10 +71,43 @@ impl Engine {
         }
     }
 
+    /// Makes contacts give as a law says, or as hard as the rate allows.
+    pub(crate) fn soften(&mut self, settings: &Settings, compliance: Option<Compliance>) {
+        (self.parameters, self.runs) = match compliance {
+            Some(compliance) => softness::soft(settings, compliance),
+            None => (softness::rigid(settings), 1),
+        };
+    }
+
     /// One physics step.
     pub(crate) fn step(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
         let parameters = self.parameters;
-        self.run(&parameters, hooks, events);
+        if self.runs == 1 {
+            self.run(&parameters, hooks, events);
+            return;
+        }
+        // What is led from place to place goes an equal part of the way in each run.
+        let led: Vec<(RigidBodyHandle, Pose, Pose)> = self
+            .bodies
+            .iter()
+            .filter(|(_, body)| body.body_type() == RigidBodyType::KinematicPositionBased)
+            .map(|(handle, body)| (handle, *body.position(), *body.next_position()))
+            .filter(|(_, from, to)| from != to)
+            .collect();
+        for run in 1..=self.runs {
+            for (handle, from, to) in &led {
+                let share = run as f32 / self.runs as f32;
+                let place = if run == self.runs {
+                    *to
+                } else {
+                    from.lerp(to, share)
+                };
+                if let Some(body) = self.bodies.get_mut(*handle) {
+                    body.set_next_kinematic_position(place);
+                }
+            }
+            self.run(&parameters, hooks, events);
+        }
     }
 
     /// Takes over what was changed from outside, without letting time pass: positions, contacts and the tree for queries

@@ -1,13 +1,14 @@
 //! Parameters that change while a world runs.
 
 use crate::body;
-use crate::contact::{ContactTable, Surface};
+use crate::contact::{ContactTable, Dress};
 use crate::error::PhysicsError;
 use crate::joints;
 use crate::laws;
-use crate::world::PhysicsWorld;
+use crate::world::{PhysicsWorld, Weights};
 use dwell_scene::State;
 use glam::Vec3;
+use rapier3d::dynamics::MassProperties;
 
 impl PhysicsWorld {
     /// Takes over the state's overrides and laws: masses, friction and restitution of pairs and materials, gravity,
@@ -21,11 +22,15 @@ impl PhysicsWorld {
         let laws = laws::install(&self.model, state, &self.laws)?;
         let model = self.model.clone();
         let table = ContactTable::new(&model.house, state);
-        let factors = body::mass_factors(&model, state);
+        let weights = Weights::new(&model, state, &laws);
         let gravity = Vec3::new(0.0, -state.gravity_m_s2(), 0.0);
-        let mut changed = gravity != self.engine.gravity
-            || factors != self.mass_factors
-            || table.differs(&self.table);
+        let mut changed =
+            gravity != self.engine.gravity || weights != self.weights || table.differs(&self.table);
+        let values = Dress {
+            house: &model.house,
+            table: &table,
+            laws: &laws,
+        };
         let mut index = 0;
         let statics = model.statics.iter().map(|piece| (piece, None));
         let moving = model
@@ -38,14 +43,28 @@ impl PhysicsWorld {
             if body.is_some() && index == model.statics.len() {
                 index += 1;
             }
-            let surface = table.surface(&piece.cover);
-            let density = body.map(|body| piece.density_kg_m3 * factors[body]);
-            changed |= self.redress(index, surface, &table, density);
+            self.entries[index].surface = table.surface(&piece.cover);
+            let density = body.map(|body| {
+                let altered = weights.altered[body].as_ref();
+                body::density(piece, weights.factors[body], altered)
+            });
+            changed |= self.redress(index, values, density);
             index += 1;
+        }
+        for (index, inertia) in weights.altered.iter().enumerate() {
+            if *inertia == self.weights.altered[index] {
+                continue;
+            }
+            let properties = inertia.map_or_else(MassProperties::default, |i| i.properties());
+            let handle = self.bodies[index].handle;
+            if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+                rigid.set_additional_mass_properties(properties, false);
+            }
         }
         for agent in 0..self.agents.len() {
             let entry = self.agents[agent].entry as usize;
-            changed |= self.redress(entry, table.human(), &table, None);
+            self.entries[entry].surface = table.human();
+            changed |= self.redress(entry, values, None);
         }
         for joint in &mut self.joints {
             let articulation = &model.house.joints[joint.id];
@@ -57,8 +76,9 @@ impl PhysicsWorld {
                 .zip(&self.laws)
                 .any(|(new, old)| new.spec != old.spec);
         self.engine.gravity = gravity;
+        self.engine.soften(&self.settings, laws::compliance(&laws));
         self.table = table;
-        self.mass_factors = factors;
+        self.weights = weights;
         self.applied.clone_from(&state.overrides);
         self.laws = laws;
         if changed {
@@ -73,15 +93,8 @@ impl PhysicsWorld {
     }
 
     /// Gives a collider its contact values and density. Returns whether they were others before.
-    fn redress(
-        &mut self,
-        entry: usize,
-        surface: Surface,
-        table: &ContactTable,
-        density: Option<f32>,
-    ) -> bool {
-        let rule = table.rule(&surface);
-        self.entries[entry].surface = surface;
+    fn redress(&mut self, entry: usize, values: Dress<'_>, density: Option<f32>) -> bool {
+        let rule = values.rule(&self.entries[entry]);
         // Colliders are inserted in the order of entries and never removed.
         let Some((collider, handle)) = self.engine.colliders.get_unknown_gen(entry as u32) else {
             return false;

@@ -6,14 +6,14 @@
 //! that a world built this way is the same, bit for bit.
 
 use crate::agents::{self, Grip};
-use crate::body::{self, Hold};
+use crate::body::Hold;
 use crate::config::PhysicsConfig;
-use crate::contact::{ContactTable, Entry, Excluded, Hooks, Impacts};
+use crate::contact::{ContactTable, Dress, Excluded, Hooks, Impacts};
 use crate::engine::Engine;
 use crate::error::PhysicsError;
 use crate::joints::{self, Drives, Pull};
-use crate::laws;
-use crate::world::{Assembly, PhysicsWorld, assemble, pose_of};
+use crate::laws::{self, Installed};
+use crate::world::{Assembly, PhysicsWorld, Weights, assemble, pose_of};
 use dwell_scene::{AgentId, Id, State};
 use rapier3d::dynamics::{ImpulseJointSet, IslandManager, RigidBodySet};
 use rapier3d::geometry::{BroadPhaseBvh, NarrowPhase};
@@ -145,14 +145,6 @@ impl PhysicsWorld {
             ));
         }
         let model = self.model.clone();
-        // The same overrides give the same table.
-        let same = state.overrides == self.applied;
-        let (table, mass_factors) = if same {
-            (self.table.clone(), self.mass_factors.clone())
-        } else {
-            let table = ContactTable::new(&model.house, state);
-            (table, body::mass_factors(&model, state))
-        };
         let mut laws = laws::install(&model, state, &[])?;
         if laws.len() != memory.laws.len() {
             return refuse("it was taken with other laws than the state has");
@@ -160,6 +152,25 @@ impl PhysicsWorld {
         for (installed, remembered) in laws.iter_mut().zip(&memory.laws) {
             installed.law.recall(remembered);
         }
+        // The same overrides and laws give the same values.
+        let specs =
+            |laws: &[Installed]| laws.iter().map(|law| law.spec.clone()).collect::<Vec<_>>();
+        let same = state.overrides == self.applied;
+        let table = if same {
+            self.table.clone()
+        } else {
+            ContactTable::new(&model.house, state)
+        };
+        let weights = if same && specs(&laws) == specs(&self.laws) {
+            self.weights.clone()
+        } else {
+            Weights::new(&model, state, &laws)
+        };
+        let values = Dress {
+            house: &model.house,
+            table: &table,
+            laws: &laws,
+        };
         // Bodies stand at the places of the snapshot for the moment in which colliders are built.
         let place = |index: usize| {
             let handle = self.bodies[index].handle;
@@ -169,27 +180,21 @@ impl PhysicsWorld {
             (place, Hold::Frozen)
         };
         let gravity = state.gravity_m_s2();
-        let mut built = assemble(
-            &model,
-            &self.settings,
-            &table,
-            gravity,
-            place,
-            &mass_factors,
-        );
+        let mut built = assemble(&model, &self.settings, values, gravity, place, &weights);
         let mut agents = Vec::with_capacity(state.agents.len());
         for (id, agent) in state.agents.iter_ids() {
             let force = self.settings.event_force_n();
             let (engine, entries) = (&mut built.engine, &mut built.entries);
-            agents.push(agents::insert(engine, &table, entries, id, agent, force));
+            agents.push(agents::insert(engine, values, entries, id, agent, force));
         }
-        flush(&mut built, &table, &memory.excluded);
+        flush(&mut built, values, &memory.excluded);
         let Assembly {
             engine: scaffold,
             entries,
             ..
         } = built;
         let mut engine = Engine::new(&self.settings, gravity);
+        engine.soften(&self.settings, laws::compliance(&laws));
         engine.islands = shot.islands.0.into_owned();
         engine.broad_phase = shot.broad_phase.0.into_owned();
         engine.narrow_phase = shot.narrow_phase.0.into_owned();
@@ -219,7 +224,7 @@ impl PhysicsWorld {
         self.engine = engine;
         self.entries = entries;
         self.table = table;
-        self.mass_factors = mass_factors;
+        self.weights = weights;
         self.applied.clone_from(&state.overrides);
         self.agents = agents;
         self.laws = laws;
@@ -269,11 +274,11 @@ impl PhysicsWorld {
     }
 }
 
-fn flush(assembly: &mut Assembly, table: &ContactTable, excluded: &Excluded) {
-    let entries: &[Entry] = &assembly.entries;
+fn flush(assembly: &mut Assembly, dress: Dress<'_>, excluded: &Excluded) {
+    let entries = &assembly.entries;
     assembly.engine.flush(&Hooks {
         entries,
-        table,
+        dress,
         excluded,
     });
 }

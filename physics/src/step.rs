@@ -3,9 +3,10 @@
 use crate::actions::{ActionCode, ActionOutcome, Notice};
 use crate::agents::{self, AgentControl, Probe, Push, Shell, Walk};
 use crate::body::Hold;
-use crate::contact::{Collector, ContactEvent, Hooks, note_motion};
+use crate::contact::{Collector, ContactEvent, Dress, Hooks, note_motion};
 use crate::error::PhysicsError;
 use crate::joints::{self, Drive, Progress};
+use crate::laws::{Acts, Stage};
 use crate::world::PhysicsWorld;
 use dwell_scene::{Aabb, AgentId, AgentState, Id, JointCommand, State};
 use glam::Vec3;
@@ -91,15 +92,18 @@ impl PhysicsWorld {
             );
         }
         let half = 0.5 * self.settings.dt_s;
-        for installed in &self.laws {
-            installed
-                .law
-                .half_step(&mut self.engine, &self.bodies, half);
-        }
+        self.apply_laws(|law, stage| {
+            law.half_step(stage, half);
+            law.before_step(stage);
+        });
         note_motion(&self.engine, &mut self.motion);
         let hooks = Hooks {
             entries: &self.entries,
-            table: &self.table,
+            dress: Dress {
+                house: &self.model.house,
+                table: &self.table,
+                laws: &self.laws,
+            },
             excluded: &self.excluded,
         };
         let config = &self.settings.config;
@@ -113,12 +117,19 @@ impl PhysicsWorld {
             &mut self.impacts,
             events,
         );
-        for installed in &self.laws {
-            installed
-                .law
-                .half_step(&mut self.engine, &self.bodies, half);
-        }
+        self.apply_laws(|law, stage| law.half_step(stage, half));
         self.tick += 1;
+    }
+
+    /// Lets each law act on the world between steps.
+    fn apply_laws(&mut self, mut each: impl FnMut(&mut dyn Acts, &mut Stage<'_>)) {
+        let mut stage = Stage {
+            engine: &mut self.engine,
+            bodies: &self.bodies,
+        };
+        for installed in &mut self.laws {
+            each(&mut *installed.law, &mut stage);
+        }
     }
 
     /// Sets what pulls at all joints from the state's targets.

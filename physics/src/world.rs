@@ -4,10 +4,11 @@ use crate::actions::Notice;
 use crate::agents::{Agent, Grip};
 use crate::body::{self, Body, BodyPlace, Hold};
 use crate::config::{PhysicsConfig, Settings};
-use crate::contact::{ContactTable, Entry, Excluded, Hooks, Impacts, Motion, touching};
+use crate::contact::{ContactTable, Dress, Entry, Excluded, Hooks, Impacts, Motion, touching};
 use crate::convert::{from_rapier, to_rapier};
 use crate::engine::Engine;
 use crate::error::PhysicsError;
+use crate::inertia::{self, Inertia};
 use crate::joints::{self, Drives, Joint, Pull};
 use crate::laws::{self, Installed};
 use crate::model::PhysicsModel;
@@ -35,7 +36,7 @@ pub struct PhysicsWorld {
     pub(crate) table: ContactTable,
     pub(crate) bodies: Vec<Body>,
     pub(crate) holds: Vec<Hold>,
-    pub(crate) mass_factors: Vec<f32>,
+    pub(crate) weights: Weights,
     /// The overrides that are in force.
     pub(crate) applied: BTreeMap<Address, f64>,
     pub(crate) joints: Vec<Joint>,
@@ -59,6 +60,23 @@ pub struct PhysicsWorld {
     pub(crate) motion: Vec<Motion>,
 }
 
+/// What bodies weigh in a world.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Weights {
+    /// What densities are multiplied with. Shape (body,).
+    pub(crate) factors: Vec<f32>,
+    /// What laws make of mass and inertia. Shape (body,).
+    pub(crate) altered: Vec<Option<Inertia>>,
+}
+
+impl Weights {
+    pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &[Installed]) -> Self {
+        let factors = body::mass_factors(model, state);
+        let altered = inertia::altered(model, &factors, laws);
+        Self { factors, altered }
+    }
+}
+
 /// The parts of a world that its shapes make up.
 pub(crate) struct Assembly {
     pub(crate) engine: Engine,
@@ -71,13 +89,14 @@ pub(crate) struct Assembly {
 pub(crate) fn assemble(
     model: &PhysicsModel,
     settings: &Settings,
-    table: &ContactTable,
+    values: Dress<'_>,
     gravity_m_s2: f32,
     places: impl Fn(usize) -> (RapierPose, Hold),
-    mass_factors: &[f32],
+    weights: &Weights,
 ) -> Assembly {
     let mut engine = Engine::new(settings, gravity_m_s2);
-    let mut entries = body::insert_statics(&mut engine, model, table);
+    engine.soften(settings, laws::compliance(values.laws));
+    let mut entries = body::insert_statics(&mut engine, model, values);
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut bodies = Vec::with_capacity(model.bodies.len());
     for (index, plan) in model.bodies.iter().enumerate() {
@@ -86,14 +105,15 @@ pub(crate) fn assemble(
             index: index as u32,
             world_from_body,
             hold,
-            mass_factor: mass_factors[index],
+            mass_factor: weights.factors[index],
+            inertia: weights.altered[index],
             sleeping_allowed: settings.config.sleeping,
             event_force_n: settings.event_force_n(),
         };
         bodies.push(body::insert_body(
             &mut engine,
             plan,
-            table,
+            values,
             &mut entries,
             place,
         ));
@@ -137,15 +157,20 @@ impl PhysicsWorld {
         let settings = config.build()?;
         check_counts(&model.house, state)?;
         let table = ContactTable::new(&model.house, state);
-        let mass_factors = body::mass_factors(&model, state);
+        let laws = laws::install(&model, state, &[])?;
+        let weights = Weights::new(&model, state, &laws);
         align_joints(&model, state);
         let places = |index: usize| {
             let root = model.bodies[index].root();
             (to_rapier(&state.part_pose[root]), Hold::Free)
         };
         let gravity = state.gravity_m_s2();
-        let assembly = assemble(&model, &settings, &table, gravity, places, &mass_factors);
-        let laws = laws::install(&model, state, &[])?;
+        let values = Dress {
+            house: &model.house,
+            table: &table,
+            laws: &laws,
+        };
+        let assembly = assemble(&model, &settings, values, gravity, places, &weights);
         let mut world = Self {
             holds: vec![Hold::Free; model.bodies.len()],
             model,
@@ -154,7 +179,7 @@ impl PhysicsWorld {
             entries: assembly.entries,
             table,
             bodies: assembly.bodies,
-            mass_factors,
+            weights,
             applied: state.overrides.clone(),
             joints: Vec::new(),
             carried: Vec::new(),
@@ -272,7 +297,11 @@ impl PhysicsWorld {
     pub(crate) fn flush(&mut self) {
         let hooks = Hooks {
             entries: &self.entries,
-            table: &self.table,
+            dress: Dress {
+                house: &self.model.house,
+                table: &self.table,
+                laws: &self.laws,
+            },
             excluded: &self.excluded,
         };
         self.engine.flush(&hooks);

@@ -8,7 +8,7 @@ pub(crate) use carry::{Grip, carry, hand_pose, release};
 pub(crate) use probe::{Probe, Shell};
 pub(crate) use walk::{Push, Walk};
 
-use crate::contact::{ContactTable, Entry, Toucher};
+use crate::contact::{Dress, Entry, Toucher};
 use crate::engine::Engine;
 use dwell_scene::{AgentBody, AgentId, AgentState};
 use glam::Vec3;
@@ -86,7 +86,7 @@ fn capsule(body: &AgentBody) -> (f32, f32) {
 /// Inserts an agent's capsule.
 pub(crate) fn insert(
     engine: &mut Engine,
-    table: &ContactTable,
+    values: Dress<'_>,
     entries: &mut Vec<Entry>,
     id: AgentId,
     state: &AgentState,
@@ -96,25 +96,25 @@ pub(crate) fn insert(
         .bodies
         .insert(RigidBodyBuilder::kinematic_position_based().translation(state.position));
     let (center, half) = capsule(&state.body);
-    let surface = table.human();
-    let entry = entries.len();
+    let entry = Entry {
+        toucher: Some(Toucher::Agent(id)),
+        body: None,
+        surface: values.table.human(),
+    };
+    let number = entries.len();
     let shape = SharedShape::capsule_y(half, state.body.radius_m);
     let builder = ColliderBuilder::new(shape)
         .translation(Vec3::Y * center)
         .density(0.0)
         .active_events(rapier3d::pipeline::ActiveEvents::CONTACT_FORCE_EVENTS)
         .contact_force_event_threshold(event_force_n);
-    let builder = crate::body::dress(builder, table.rule(&surface), true, entry);
+    let builder = crate::body::dress(builder, values.rule(&entry), true, number);
     engine
         .colliders
         .insert_with_parent(builder, handle, &mut engine.bodies);
-    entries.push(Entry {
-        toucher: Some(Toucher::Agent(id)),
-        body: None,
-        surface,
-    });
+    entries.push(entry);
     Agent {
         handle,
-        entry: entry as u32,
+        entry: number as u32,
     }
 }

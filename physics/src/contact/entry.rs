@@ -37,6 +37,14 @@ impl Surface {
                 .unwrap_or(0),
         }
     }
+
+    /// Whether some class of the surface is such.
+    pub(crate) fn any_class(&self, is: impl Fn(u16) -> bool) -> bool {
+        match self {
+            Self::One(class) => is(*class),
+            Self::PerTriangle(classes) => classes.iter().any(|class| is(*class)),
+        }
+    }
 }
 
 /// What a collider stands for.

@@ -2,10 +2,19 @@
 
 use super::entry::{Entry, entry_index};
 use super::substances::ContactTable;
-use dwell_scene::AgentId;
-use rapier3d::geometry::SolverFlags;
-use rapier3d::pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks};
+use crate::laws::{self, ContactValues, Installed, Side, Touch};
+use dwell_scene::material::PairContact;
+use dwell_scene::{AgentId, House};
+use glam::{Quat, Vec3};
+use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::{SolverContact, SolverContacts, SolverFlags};
+use rapier3d::pipeline::{
+    ContactModificationContext, ModifiableManifold, PairFilterContext, PhysicsHooks,
+};
 use serde::{Deserialize, Serialize};
+
+/// Distance below which two points of a contact plane are one, m.
+const SAME_POINT_M: f32 = 0.002;
 
 /// Pairs that do not meet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -41,10 +50,38 @@ impl Excluded {
     }
 }
 
+/// The values of colliders: the table's, and what laws make of them.
+#[derive(Clone, Copy)]
+pub(crate) struct Dress<'a> {
+    pub(crate) house: &'a House,
+    pub(crate) table: &'a ContactTable,
+    pub(crate) laws: &'a [Installed],
+}
+
+impl Dress<'_> {
+    /// The values of a collider on itself, for rapier's own rule, and whether rapier asks about its pairs instead.
+    pub(crate) fn rule(&self, entry: &Entry) -> (PairContact, bool) {
+        let (mut own, mut special) = self.table.rule(&entry.surface);
+        if self.laws.is_empty() {
+            return (own, special);
+        }
+        if laws::compliance(self.laws).is_some() {
+            own.restitution = 0.0;
+            special |= entry.body.is_some();
+        }
+        special |= self
+            .laws
+            .iter()
+            .filter_map(|installed| installed.law.scope())
+            .any(|scope| scope.asks(self.house, self.table, entry));
+        (own, special)
+    }
+}
+
 /// The callbacks of one step.
 pub(crate) struct Hooks<'a> {
     pub(crate) entries: &'a [Entry],
-    pub(crate) table: &'a ContactTable,
+    pub(crate) dress: Dress<'a>,
     pub(crate) excluded: &'a Excluded,
 }
 
@@ -63,12 +100,121 @@ impl PhysicsHooks for Hooks<'_> {
         let (Some(a), Some(b)) = (self.entries.get(a), self.entries.get(b)) else {
             return;
         };
-        if let Some(manifold) = context.rigid_mut() {
-            let class_a = a.surface.class(manifold.manifold.subshape1);
-            let class_b = b.surface.class(manifold.manifold.subshape2);
-            let pair = self.table.pair(class_a, class_b);
-            *manifold.friction = pair.friction;
-            *manifold.restitution = pair.restitution;
+        let Dress { table, laws, .. } = self.dress;
+        let (bodies, body_a, body_b) = (context.bodies, context.rigid_body1, context.rigid_body2);
+        let Some(manifold) = context.rigid_mut() else {
+            return;
+        };
+        let class_a = a.surface.class(manifold.manifold.subshape1);
+        let class_b = b.surface.class(manifold.manifold.subshape2);
+        let pair = table.pair(class_a, class_b);
+        *manifold.friction = pair.friction;
+        *manifold.restitution = pair.restitution;
+        if laws.is_empty() {
+            return;
+        }
+        if laws::compliance(laws).is_some() {
+            *manifold.restitution = 0.0;
+            single_out(manifold.solver_contacts);
+        }
+        let side = |entry: &Entry, class: u16, body: Option<RigidBodyHandle>| Side {
+            toucher: entry.toucher,
+            substance: table.substance(class),
+            rotation: body
+                .and_then(|body| bodies.get(body))
+                .map_or(Quat::IDENTITY, |rigid| *rigid.rotation()),
+        };
+        let sides = (side(a, class_a, body_a), side(b, class_b, body_b));
+        self.shape(manifold, bodies, (body_a, body_b), sides);
+    }
+}
+
+/// Keeps the deepest of points that are one: a ball on the common edge of two triangles touches both, and as many springs
+/// are as many times as stiff.
+fn single_out(contacts: &mut SolverContacts) {
+    let same = |a: &SolverContact, b: &SolverContact| {
+        a.anchor1.distance_squared(b.anchor1) < SAME_POINT_M * SAME_POINT_M
+    };
+    let mut index = 0;
+    while index < contacts.len() {
+        let mine = contacts[index];
+        let doubled = contacts.iter().enumerate().any(|(k, other)| {
+            k != index && same(&mine, other) && (other.dist, k) < (mine.dist, index)
+        });
+        if doubled {
+            contacts.remove(index);
+        } else {
+            index += 1;
+        }
+    }
+}
+
+impl Hooks<'_> {
+    /// Lets the laws change a plane's values.
+    fn shape(
+        &self,
+        plane: &mut ModifiableManifold<'_>,
+        bodies: &RigidBodySet,
+        (body_a, body_b): (Option<RigidBodyHandle>, Option<RigidBodyHandle>),
+        (a, b): (Side<'_>, Side<'_>),
+    ) {
+        let count = plane.solver_contacts.len();
+        let turns = |installed: &Installed| {
+            let scope = installed.law.scope()?;
+            scope.turns(self.dress.house, &a, &b)
+        };
+        if count == 0 || self.dress.laws.iter().all(|law| turns(law).is_none()) {
+            return;
+        }
+        let sum: Vec3 = plane
+            .solver_contacts
+            .iter()
+            .map(|contact| (contact.anchor1 + contact.anchor2) * 0.5)
+            .sum();
+        let point = sum / count as f32;
+        let velocity = |body: Option<RigidBodyHandle>| {
+            body.and_then(|body| bodies.get(body))
+                .map_or(Vec3::ZERO, |rigid| rigid.velocity_at_point(point))
+        };
+        let friction_impulse: Vec3 = plane
+            .solver_contacts
+            .iter()
+            .filter_map(|contact| {
+                let index = contact.contact_indices()[0] as usize;
+                let point = plane.manifold.points.get(index)?;
+                Some(point.data.warmstart_tangent_world)
+            })
+            .sum();
+        let touch = Touch {
+            surface: a,
+            other: b,
+            normal: *plane.normal,
+            relative_velocity: velocity(body_b) - velocity(body_a),
+            // rapier keeps what acts on the first body.
+            friction_impulse_n_s: -friction_impulse,
+        };
+        let mut values = ContactValues {
+            friction: *plane.friction,
+            restitution: *plane.restitution,
+            surface_velocity: Vec3::ZERO,
+        };
+        for installed in self.dress.laws {
+            match turns(installed) {
+                Some(false) => installed.law.shape_contact(&touch, &mut values),
+                Some(true) => {
+                    values.surface_velocity *= -1.0;
+                    installed.law.shape_contact(&touch.turned(), &mut values);
+                    values.surface_velocity *= -1.0;
+                }
+                None => {}
+            }
+        }
+        *plane.friction = values.friction.max(0.0);
+        *plane.restitution = values.restitution.clamp(0.0, 1.0);
+        if values.surface_velocity != Vec3::ZERO {
+            for contact in plane.solver_contacts.iter_mut() {
+                contact.tangent_velocity = values.surface_velocity;
+            }
         }
     }
 }

@@ -7,9 +7,9 @@ mod substances;
 mod touching;
 
 pub use entry::Toucher;
-pub(crate) use entry::{Entry, Surface, entry_index};
+pub(crate) use entry::{Entry, entry_index};
 pub use events::ContactEvent;
 pub(crate) use events::{Collector, Impacts, Motion, note_motion};
-pub(crate) use hooks::{Excluded, Hooks};
+pub(crate) use hooks::{Dress, Excluded, Hooks};
 pub(crate) use substances::ContactTable;
 pub(crate) use touching::touching;

@@ -1,16 +1,21 @@
 //! Physical effects that the basic model lacks. One file each, one line in the list.
 //!
-//! A law at its default is not installed, so that nothing changes bit for bit.
+//! A law at its default is not installed, so that nothing changes bit for bit. What a law can reach is [`Acts`]: forces on
+//! bodies, the values of contacts, mass and inertia, how stiff contacts are, where servos go. What wakes a body that
+//! sleeps: laws of air and of contact act on what moves, and leave asleep what sleeps, apart from wind, which wakes what
+//! it is strong enough to move.
 
-mod backlash;
-mod drag;
+mod acts;
+mod actuators;
+mod bodies;
+mod contacts;
+mod target;
 
-use crate::body::Body;
-use crate::engine::Engine;
+pub(crate) use acts::{Acts, Compliance, ContactValues, Side, Stage, Touch};
+
 use crate::error::PhysicsError;
 use crate::model::PhysicsModel;
-use dwell_scene::{JointId, LawInfo, LawSpec, State};
-use std::fmt::Debug;
+use dwell_scene::{LawInfo, LawSpec, State};
 use std::sync::LazyLock;
 
 /// A law of this engine: what is known about it, and how it is put to work.
@@ -23,7 +28,16 @@ struct Law {
 type Install = fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Box<dyn Acts>, PhysicsError>;
 
 /// The laws of this engine.
-static LAWS: [Law; 2] = [drag::LAW, backlash::LAW];
+static LAWS: &[Law] = &[
+    bodies::drag::LAW,
+    bodies::center_of_mass::LAW,
+    bodies::inertia_error::LAW,
+    contacts::compliance::LAW,
+    contacts::stribeck::LAW,
+    contacts::anisotropic_friction::LAW,
+    contacts::velocity_restitution::LAW,
+    actuators::backlash::LAW,
+];
 
 /// What is known about each law of this engine.
 ///
@@ -35,28 +49,6 @@ pub fn all() -> &'static [LawInfo] {
     static INFOS: LazyLock<Vec<LawInfo>> =
         LazyLock::new(|| LAWS.iter().map(|law| law.info.clone()).collect());
     &INFOS
-}
-
-/// A law at work in a world.
-pub(crate) trait Acts: Debug + Send + Sync {
-    /// Acts on bodies for half a physics step, before and after it (Strang's splitting).
-    fn half_step(&self, _engine: &mut Engine, _bodies: &[Body], _half_dt_s: f32) {}
-
-    /// Where a joint's motor goes when its servo is told `target`.
-    fn servo_target(&mut self, _joint: JointId, target: f32) -> f32 {
-        target
-    }
-
-    /// What it remembers, for snapshots.
-    fn memory(&self) -> Vec<f32> {
-        Vec::new()
-    }
-
-    /// Takes back what [`Acts::memory`] gave.
-    fn recall(&mut self, _memory: &[f32]) {}
-
-    /// A copy.
-    fn boxed(&self) -> Box<dyn Acts>;
 }
 
 /// An installed law with the words it was installed by.
@@ -104,16 +96,14 @@ pub(crate) fn install(
     Ok(installed)
 }
 
-fn no_target<'a>(
-    law: &'static str,
-    kind: &'static str,
-    name: &str,
-    known: impl Iterator<Item = &'a str>,
-) -> PhysicsError {
-    PhysicsError::LawTarget {
-        law,
-        kind,
-        name: name.to_owned(),
-        known: known.take(12).map(str::to_owned).collect(),
-    }
+/// How contacts give under the laws; the last law that says so wins.
+pub(crate) fn compliance(laws: &[Installed]) -> Option<Compliance> {
+    laws.iter()
+        .rev()
+        .find_map(|installed| installed.law.compliance())
+}
+
+/// The value of a law's parameter.
+fn value(spec: &LawSpec, info: &LawInfo, name: &str) -> f32 {
+    spec.value(info, name).unwrap_or(0.0) as f32
 }

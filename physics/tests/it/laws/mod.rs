@@ -1,6 +1,10 @@
 //! Laws against their closed forms, and unchanged bits without them.
 
-use crate::common::{Build, Piece, Run, gravity};
+mod actuators;
+mod bodies;
+mod contacts;
+
+use crate::common::{Build, Piece, Run};
 use dwell_physics::{PhysicsConfig, laws};
 use dwell_scene::{JointCommand, JointKind, LawInfo, LawSpec, Mobility, Servo, State};
 use glam::Vec3;
@@ -44,72 +48,6 @@ fn tower() -> Build {
         ..Servo::default()
     });
     build
-}
-
-/// `v(t) = v_inf tanh(g t / v_inf), v_inf = sqrt(2 m g / (rho c_d A))`; a ball's mean cross-section is pi r^2.
-#[test]
-fn drag_slows_a_fall_as_the_hyperbolic_tangent() {
-    let house = tower().house();
-    let mut state = State::new(&house);
-    state.laws = vec![spec("drag", Some("ball"), &[("c_d", 0.8)])];
-    let mut run = Run::from_state(house, PhysicsConfig::default(), state);
-    let ball = run.house.object_named("ball").unwrap();
-    let other = run.house.object_named("other").unwrap();
-    let pi = std::f32::consts::PI;
-    let mass = 30.0 * 4.0 / 3.0 * pi * 0.001;
-    let terminal = (2.0 * mass * gravity() / (1.204 * 0.8 * pi * 0.01)).sqrt();
-    for step in 1..=80 {
-        run.steps(1);
-        let t = step as f32 / 20.0;
-        let expected = terminal * (gravity() * t / terminal).tanh();
-        let found = -run.velocity(ball).y;
-        assert!(
-            (found / expected - 1.0).abs() < 3e-3,
-            "{t} s: {found} m/s, expected {expected} m/s"
-        );
-    }
-    // The other ball, which the law does not name, falls freely.
-    assert!((run.velocity(other).y + gravity() * 4.0).abs() < 0.05);
-}
-
-/// The joint follows the target b behind on the way up and b ahead on the way down, and rests at the turns.
-#[test]
-fn backlash_draws_its_hysteresis_loop() {
-    let b = 0.1;
-    let house = tower().house();
-    let mut state = State::new(&house);
-    state.laws = vec![spec("backlash", Some("elbow"), &[("half_width", b)])];
-    let mut run = Run::from_state(
-        house,
-        PhysicsConfig {
-            sleeping: false,
-            ..PhysicsConfig::default()
-        },
-        state,
-    );
-    let joint = run.house.joints.ids().next().unwrap();
-    let mut follow = |target: f32| {
-        run.state.joint_command[joint] = JointCommand::Position(target);
-        run.steps(30);
-        run.state.joint_position[joint]
-    };
-    for (target, expected) in [
-        (0.05, 0.0),
-        (0.5, 0.4),
-        (1.0, 0.9),
-        (0.9, 0.9),
-        (0.8, 0.9),
-        (0.5, 0.6),
-        (0.0, 0.1),
-        (0.15, 0.1),
-        (0.4, 0.3),
-    ] {
-        let found = follow(target);
-        assert!(
-            (found - expected).abs() < 2e-3,
-            "target {target}: {found}, expected {expected}"
-        );
-    }
 }
 
 #[test]

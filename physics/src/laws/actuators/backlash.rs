@@ -1,13 +1,14 @@
 //! Backlash: the play of a servo's gear.
 
-use super::{Acts, Law, no_target};
 use crate::error::PhysicsError;
+use crate::laws::target::no_target;
+use crate::laws::{Acts, Law};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
 use dwell_scene::{Id, JointId, LawInfo, LawSpec, State};
 use std::collections::BTreeMap;
 
-pub(super) const LAW: Law = Law {
+pub(in crate::laws) const LAW: Law = Law {
     info: LawInfo {
         id: "backlash",
         version: 1,

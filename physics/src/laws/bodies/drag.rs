@@ -1,16 +1,15 @@
 //! Quadratic air drag.
 
-use super::{Acts, Law, no_target};
-use crate::body::Body;
-use crate::engine::Engine;
 use crate::error::PhysicsError;
+use crate::laws::target::free_bodies;
+use crate::laws::{Acts, Law, Stage, value};
 use crate::model::{BodyPlan, PhysicsModel};
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 use rapier3d::geometry::{SharedShape, TypedShape};
 use std::f32::consts::PI;
 
-pub(super) const LAW: Law = Law {
+pub(in crate::laws) const LAW: Law = Law {
     info: LawInfo {
         id: "drag",
         version: 1,
@@ -67,39 +66,24 @@ fn install(
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let value = |name: &str| spec.value(info, name).unwrap_or(0.0) as f32;
-    let (c_d, area, density) = (value("c_d"), value("area_m2"), value("air_density_kg_m3"));
-    let house = &model.house;
-    if let Some(target) = &spec.target
-        && house.object_named(target).is_none()
-    {
-        let names = house.objects.iter().map(|object| object.name.as_str());
-        return Err(no_target(info.id, "object", target, names));
-    }
-    let wanted = |plan: &BodyPlan| {
-        spec.target
-            .as_ref()
-            .is_none_or(|target| house.objects[plan.object].name == *target)
-    };
-    let bodies = model
-        .bodies
-        .iter()
-        .enumerate()
-        .filter(|(_, plan)| plan.joint.is_none() && wanted(plan))
+    let (c_d, area) = (value(spec, info, "c_d"), value(spec, info, "area_m2"));
+    let density = value(spec, info, "air_density_kg_m3");
+    let bodies = free_bodies(spec, info, model)?
+        .into_iter()
         .map(|(index, plan)| {
             let area = if area > 0.0 {
                 area
             } else {
                 cross_section_m2(plan)
             };
-            (index as u32, 0.5 * density * c_d * area)
+            (index, 0.5 * density * c_d * area)
         })
         .collect();
     Ok(Box::new(Drag { bodies }))
 }
 
 /// The mean cross-section of a body's pieces: a quarter of their surface.
-fn cross_section_m2(plan: &BodyPlan) -> f32 {
+pub(super) fn cross_section_m2(plan: &BodyPlan) -> f32 {
     plan.pieces
         .iter()
         .map(|piece| surface_m2(&piece.shape))
@@ -130,10 +114,10 @@ fn surface_m2(shape: &SharedShape) -> f32 {
 }
 
 impl Acts for Drag {
-    fn half_step(&self, engine: &mut Engine, bodies: &[Body], half_dt_s: f32) {
+    fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
-            let handle = bodies[*body as usize].handle;
-            let Some(rigid) = engine.bodies.get(handle) else {
+            let handle = stage.bodies[*body as usize].handle;
+            let Some(rigid) = stage.engine.bodies.get(handle) else {
                 continue;
             };
             if rigid.is_sleeping() || !rigid.is_dynamic() || rigid.mass() <= 0.0 {
@@ -142,7 +126,7 @@ impl Acts for Drag {
             // The exact solution of m dv/dt = -k |v| v over the half step; it never turns the velocity round.
             let velocity = rigid.linvel();
             let slowed = velocity / (1.0 + gain / rigid.mass() * velocity.length() * half_dt_s);
-            if let Some(rigid) = engine.bodies.get_mut(handle) {
+            if let Some(rigid) = stage.engine.bodies.get_mut(handle) {
                 rigid.set_linvel(slowed, false);
             }
         }

@@ -1,0 +1,66 @@
+//! Mass, centre of mass and inertia of a body.
+
+use crate::laws::Installed;
+use crate::model::{BodyPlan, PhysicsModel};
+use glam::{Mat3, Vec3};
+use rapier3d::dynamics::MassProperties;
+
+/// Mass, centre of mass and inertia of a body, in the body's own frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Inertia {
+    pub(crate) mass_kg: f32,
+    /// The centre of mass, m.
+    pub(crate) center: Vec3,
+    /// About the centre of mass, kg·m².
+    pub(crate) tensor: Mat3,
+}
+
+impl Inertia {
+    /// What a body's pieces have, with their densities multiplied by `factor`.
+    pub(crate) fn of(plan: &BodyPlan, factor: f32) -> Self {
+        let mut all = MassProperties::default();
+        for piece in &plan.pieces {
+            let own = piece.shape.mass_properties(piece.density_kg_m3 * factor);
+            all += own.transform_by(&piece.place);
+        }
+        Self {
+            mass_kg: all.mass(),
+            center: all.local_com,
+            tensor: all.reconstruct_inertia_matrix(),
+        }
+    }
+
+    /// Whether the tensor is symmetric and positive definite.
+    pub(crate) fn is_positive(&self) -> bool {
+        let t = self.tensor;
+        let minor = t.x_axis.x * t.y_axis.y - t.x_axis.y * t.y_axis.x;
+        t.is_finite() && t.x_axis.x > 0.0 && minor > 0.0 && t.determinant() > 0.0
+    }
+
+    /// In rapier's form.
+    pub(crate) fn properties(&self) -> MassProperties {
+        MassProperties::with_inertia_matrix(self.center, self.mass_kg, self.tensor)
+    }
+}
+
+/// The inertia of each body whose inertia some law changes; the colliders of such a body have no density. Shape (body,).
+pub(crate) fn altered(
+    model: &PhysicsModel,
+    factors: &[f32],
+    laws: &[Installed],
+) -> Vec<Option<Inertia>> {
+    let bodies = model.bodies.iter().zip(factors).enumerate();
+    bodies
+        .map(|(index, (plan, factor))| {
+            if laws.is_empty() {
+                return None;
+            }
+            let own = Inertia::of(plan, *factor);
+            let mut changed = own;
+            for installed in laws {
+                installed.law.weigh(index as u32, &mut changed);
+            }
+            (changed != own).then_some(changed)
+        })
+        .collect()
+}

@@ -1,0 +1,123 @@
+//! What a law can do to a world.
+
+use crate::body::Body;
+use crate::contact::Toucher;
+use crate::engine::Engine;
+use crate::inertia::Inertia;
+use crate::laws::target::Scope;
+use dwell_scene::JointId;
+use glam::{Quat, Vec3};
+use std::fmt::Debug;
+
+/// A law at work in a world. Every method has a default that does nothing; a law writes those it needs.
+pub(crate) trait Acts: Debug + Send + Sync {
+    /// Acts on bodies for half a physics step, before and after it (Strang's splitting).
+    fn half_step(&mut self, _stage: &mut Stage<'_>, _half_dt_s: f32) {}
+
+    /// Acts on bodies once before each physics step, with what the contacts of the last step carried.
+    fn before_step(&mut self, _stage: &mut Stage<'_>) {}
+
+    /// The contacts whose values it changes in [`Acts::shape_contact`]; `None`: none.
+    fn scope(&self) -> Option<&Scope> {
+        None
+    }
+
+    /// Changes the values of one contact plane (one manifold) within the scope, before it is solved. rapier has one
+    /// friction, one restitution and one surface velocity for all points of a plane, and no stiffness of its own.
+    fn shape_contact(&self, _touch: &Touch<'_>, _values: &mut ContactValues) {}
+
+    /// Changes mass, centre of mass or inertia of a body, once when laws or masses change.
+    fn weigh(&self, _body: u32, _inertia: &mut Inertia) {}
+
+    /// How all contacts of the world give; `None`: as the engine has it.
+    fn compliance(&self) -> Option<Compliance> {
+        None
+    }
+
+    /// Where a joint's motor goes when its servo is told `target`.
+    fn servo_target(&mut self, _joint: JointId, target: f32) -> f32 {
+        target
+    }
+
+    /// What it remembers, for snapshots.
+    fn memory(&self) -> Vec<f32> {
+        Vec::new()
+    }
+
+    /// Takes back what [`Acts::memory`] gave.
+    fn recall(&mut self, _memory: &[f32]) {}
+
+    /// A copy.
+    fn boxed(&self) -> Box<dyn Acts>;
+}
+
+/// The world as a law sees it between steps.
+pub(crate) struct Stage<'a> {
+    pub(crate) engine: &'a mut Engine,
+    /// By the number of the body's plan in the model.
+    pub(crate) bodies: &'a [Body],
+}
+
+/// One of the two things that touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Side<'a> {
+    pub(crate) toucher: Option<Toucher>,
+    /// What it is made of there, as the materials library names it.
+    pub(crate) substance: &'a str,
+    /// How its own frame is turned in the world; the identity for structure and fixed things.
+    pub(crate) rotation: Quat,
+}
+
+/// Two surfaces that touch or are about to, at the beginning of a physics step. The surface is what the law's target names
+/// first; without a name, structure comes before things and things stand in order.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch<'a> {
+    pub(crate) surface: Side<'a>,
+    /// What slides or rolls over the surface, or hits it.
+    pub(crate) other: Side<'a>,
+    /// From the surface to the other, unit length.
+    pub(crate) normal: Vec3,
+    /// The velocity of the other against the surface at the middle of the plane's points, m/s.
+    pub(crate) relative_velocity: Vec3,
+    /// The friction impulse on the other in the last substep, N·s.
+    pub(crate) friction_impulse_n_s: Vec3,
+}
+
+impl Touch<'_> {
+    /// How fast the two approach, m/s; negative when they part.
+    pub(crate) fn approach_m_s(&self) -> f32 {
+        -self.relative_velocity.dot(self.normal)
+    }
+
+    /// How the other slides over the surface, m/s.
+    pub(crate) fn slip(&self) -> Vec3 {
+        self.relative_velocity + self.normal * self.approach_m_s()
+    }
+
+    /// The same seen from the other side.
+    pub(crate) fn turned(self) -> Self {
+        Self {
+            surface: self.other,
+            other: self.surface,
+            normal: -self.normal,
+            relative_velocity: -self.relative_velocity,
+            friction_impulse_n_s: -self.friction_impulse_n_s,
+        }
+    }
+}
+
+/// The values of one contact plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ContactValues {
+    pub(crate) friction: f32,
+    pub(crate) restitution: f32,
+    /// The slip towards which friction drives, m/s: as of a conveyor belt. 0 where no law says otherwise.
+    pub(crate) surface_velocity: Vec3,
+}
+
+/// Contacts as springs with dampers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Compliance {
+    pub(crate) natural_frequency_hz: f32,
+    pub(crate) damping_ratio: f32,
+}

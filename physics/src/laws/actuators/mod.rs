@@ -1,0 +1,3 @@
+//! Laws of servos and joints.
+
+pub(super) mod backlash;

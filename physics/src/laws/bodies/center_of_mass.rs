@@ -1,0 +1,71 @@
+//! A centre of mass that is not where the shape says.
+
+use crate::error::PhysicsError;
+use crate::inertia::Inertia;
+use crate::laws::target::free_bodies;
+use crate::laws::{Acts, Law, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{LawInfo, LawSpec, State};
+use glam::Vec3;
+
+const fn offset(name: &'static str) -> ParamInfo {
+    ParamInfo {
+        name,
+        unit: "m",
+        default: 0.0,
+        low: -1.0,
+        high: 1.0,
+        plausible: [-0.01, 0.01],
+    }
+}
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "center_of_mass_offset",
+        version: 1,
+        name: "offset of the centre of mass",
+        equation: "the centre of mass is c + (x_m, y_m, z_m), with c where shape and density put it, in the frame of the \
+                   object's first moving part (m); mass and inertia about the centre of mass stay",
+        source: "L. D. Landau, E. M. Lifshitz, Mechanics (1976), sections 31 and 32",
+        engine: ActsIn::Physics,
+        acts_on: "object",
+        params: &[offset("x_m"), offset("y_m"), offset("z_m")],
+        rivals: &["marker_offset", "inertia_error", "frame_tilt"],
+        separating_experiment: "throw the object spinning and let it tip over its edges: a marker that is off circles in \
+                                flight in the same way, but only the centre of mass decides over which edge it falls and \
+                                the slope at which it does",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Offset {
+    bodies: Vec<u32>,
+    offset: Vec3,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    let bodies = free_bodies(spec, info, model)?;
+    Ok(Box::new(Offset {
+        bodies: bodies.into_iter().map(|(index, _)| index).collect(),
+        offset: Vec3::from_array(["x_m", "y_m", "z_m"].map(|name| value(spec, info, name))),
+    }))
+}
+
+impl Acts for Offset {
+    fn weigh(&self, body: u32, inertia: &mut Inertia) {
+        if self.bodies.binary_search(&body).is_ok() {
+            inertia.center += self.offset;
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

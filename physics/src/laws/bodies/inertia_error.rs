@@ -1,0 +1,157 @@
+//! An inertia that is not what shape and density say.
+
+use crate::error::PhysicsError;
+use crate::inertia::Inertia;
+use crate::laws::target::free_bodies;
+use crate::laws::{Acts, Law, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{LawInfo, LawSpec, State};
+use glam::{Mat3, Vec3};
+
+const fn moment(name: &'static str) -> ParamInfo {
+    ParamInfo {
+        name,
+        unit: "1",
+        default: 0.0,
+        low: -0.5,
+        high: 2.0,
+        plausible: [-0.2, 0.3],
+    }
+}
+
+const fn product(name: &'static str) -> ParamInfo {
+    ParamInfo {
+        name,
+        unit: "1",
+        default: 0.0,
+        low: -0.3,
+        high: 0.3,
+        plausible: [-0.05, 0.05],
+    }
+}
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "inertia_error",
+        version: 1,
+        name: "error of the inertia",
+        equation: "I_ij = s_i s_j (J_ij + p_ij sqrt(J_ii J_jj)) with s_i = sqrt((1 + scale) (1 + i)), J the inertia about \
+                   the centre of mass from shape and density (kg m2), i one of x, y, z and p_ij one of xy, yz, zx, in the \
+                   frame of the object's first moving part; p_ii = 0, the mass stays",
+        source: "L. D. Landau, E. M. Lifshitz, Mechanics (1976), section 32",
+        engine: ActsIn::Physics,
+        acts_on: "object",
+        params: &[
+            moment("scale"),
+            moment("x"),
+            moment("y"),
+            moment("z"),
+            product("xy"),
+            product("yz"),
+            product("zx"),
+        ],
+        rivals: &["mass", "center_of_mass_offset", "collision_shape"],
+        separating_experiment: "spin the object freely about three axes for the ratios of its moments (the scale cannot be \
+                                seen without a force), and let it hit the floor with a corner, or add a known mass, for \
+                                the scale",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct InertiaError {
+    bodies: Vec<u32>,
+    /// `s` of the equation.
+    scale: Vec3,
+    /// `p` for xy, yz, zx.
+    products: Vec3,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    let of = |names: [&str; 3]| Vec3::from_array(names.map(|name| value(spec, info, name)));
+    let all = 1.0 + value(spec, info, "scale");
+    let plans = free_bodies(spec, info, model)?;
+    let law = InertiaError {
+        bodies: plans.iter().map(|(index, _)| *index).collect(),
+        scale: ((Vec3::ONE + of(["x", "y", "z"])) * all).map(f32::sqrt),
+        products: of(["xy", "yz", "zx"]),
+    };
+    for (index, plan) in plans {
+        let mut inertia = Inertia::of(plan, 1.0);
+        law.weigh(index, &mut inertia);
+        if !inertia.is_positive() {
+            return Err(PhysicsError::Range {
+                at: format!(
+                    "law {}, object {:?}",
+                    info.id, model.house.objects[plan.object].name
+                ),
+                field: "xy, yz, zx",
+                found: law.products.to_string(),
+                allowed: "products that leave the inertia positive definite",
+            });
+        }
+    }
+    Ok(Box::new(law))
+}
+
+impl Acts for InertiaError {
+    fn weigh(&self, body: u32, inertia: &mut Inertia) {
+        if self.bodies.binary_search(&body).is_err() {
+            return;
+        }
+        let own = inertia.tensor;
+        let root = Vec3::new(own.x_axis.x, own.y_axis.y, own.z_axis.z).map(f32::sqrt);
+        let [xy, yz, zx] = self.products.to_array();
+        let wrong = Mat3::from_cols(
+            Vec3::new(0.0, xy, zx),
+            Vec3::new(xy, 0.0, yz),
+            Vec3::new(zx, yz, 0.0),
+        );
+        let scaled =
+            |by: Vec3, tensor: Mat3| Mat3::from_diagonal(by) * tensor * Mat3::from_diagonal(by);
+        inertia.tensor = scaled(self.scale, own + scaled(root, wrong));
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_number_changes_its_entry() {
+        let law = InertiaError {
+            bodies: vec![3],
+            scale: Vec3::new(1.5, 1.2, 0.9).map(f32::sqrt),
+            products: Vec3::new(0.1, -0.2, 0.05),
+        };
+        let own = Inertia {
+            mass_kg: 2.0,
+            center: Vec3::X,
+            tensor: Mat3::from_diagonal(Vec3::new(1.0, 4.0, 9.0)),
+        };
+        let mut found = own;
+        law.weigh(2, &mut found);
+        assert_eq!(found, own);
+        law.weigh(3, &mut found);
+        let (xy, yz) = (0.1 * 2.0 * 1.8_f32.sqrt(), -0.2 * 6.0 * 1.08_f32.sqrt());
+        let zx = 0.05 * 3.0 * 1.35_f32.sqrt();
+        let expected = Mat3::from_cols(
+            Vec3::new(1.5, xy, zx),
+            Vec3::new(xy, 4.8, yz),
+            Vec3::new(zx, yz, 8.1),
+        );
+        assert!(found.tensor.abs_diff_eq(expected, 1e-5), "{}", found.tensor);
+        assert!(found.is_positive());
+        assert_eq!((found.mass_kg, found.center), (2.0, Vec3::X));
+    }
+}

@@ -1,0 +1,89 @@
+//! Contacts that give.
+
+use crate::error::PhysicsError;
+use crate::laws::{Acts, Compliance, Law, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{LawInfo, LawSpec, State};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "contact_compliance",
+        version: 1,
+        name: "contact compliance",
+        equation: "m d'' + b d' + k d = f at each contact point, with d the depth (m), f the pressing force (N), m the \
+                   effective mass along the normal (kg; 1/m = 1/m_1 + 1/m_2 plus the share of the rotations, m the body's \
+                   mass for a ball on the floor, a quarter of it at each corner of a cube that stands on a face), \
+                   k = m (2 pi f_n)^2 (N/m) and b = 2 zeta m 2 pi f_n (N s/m); the contact pushes as long as there is \
+                   depth, so that zeta makes the rebound and the pairs' restitution does not enter. f_n = 0: contacts as \
+                   hard as the rate allows. One value for the whole world",
+        source: "K. L. Johnson, Contact Mechanics (1985), chapter 11 (spring and dashpot); E. Catto, Soft Constraints, GDC \
+                 (2011)",
+        engine: ActsIn::Physics,
+        acts_on: "world",
+        params: &[
+            ParamInfo {
+                name: "natural_frequency_hz",
+                unit: "Hz",
+                default: 0.0,
+                low: 0.0,
+                high: 2000.0,
+                plausible: [20.0, 500.0],
+            },
+            ParamInfo {
+                name: "damping_ratio",
+                unit: "1",
+                default: 0.3,
+                low: 0.01,
+                high: 5.0,
+                plausible: [0.02, 1.0],
+            },
+        ],
+        rivals: &[
+            "restitution",
+            "velocity_restitution",
+            "length_scale",
+            "timestamp_offset",
+        ],
+        separating_experiment: "measure the depth at rest under two masses of one shape, or the duration of an impact \
+                                with at least ten samples in it: only compliance sinks by m g / k and rebounds pi sqrt(m/k) \
+                                late whatever the speed; a wrong size or floor height is the same for every mass",
+    },
+    install,
+};
+
+/// A natural frequency below this one is none, Hz.
+const LOWEST_HZ: f32 = 0.1;
+
+#[derive(Clone, Debug)]
+struct Soft(Compliance);
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    _model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    if let Some(target) = &spec.target {
+        return Err(crate::laws::target::no_target(
+            info.id,
+            "part of the world (it acts on all contacts; leave the target out)",
+            target,
+            std::iter::empty(),
+        ));
+    }
+    Ok(Box::new(Soft(Compliance {
+        natural_frequency_hz: value(spec, info, "natural_frequency_hz"),
+        damping_ratio: value(spec, info, "damping_ratio"),
+    })))
+}
+
+impl Acts for Soft {
+    fn compliance(&self) -> Option<Compliance> {
+        (self.0.natural_frequency_hz >= LOWEST_HZ).then_some(self.0)
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

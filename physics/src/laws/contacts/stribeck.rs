@@ -1,0 +1,88 @@
+//! Friction that is higher at rest than in motion.
+
+use crate::error::PhysicsError;
+use crate::laws::target::Scope;
+use crate::laws::{Acts, ContactValues, Law, Touch, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{LawInfo, LawSpec, State, math};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "stribeck_friction",
+        version: 1,
+        name: "static and kinetic friction (Stribeck)",
+        equation: "mu(v) = mu_k (1 + (static_ratio - 1) exp(-(v / v_s)^shape)), with v the slip speed at the middle of the \
+                   contact plane (m/s), v_s = stribeck_m_s and mu_k the pair's friction",
+        source: "B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7), 1083 (1994), equation 4",
+        engine: ActsIn::Physics,
+        acts_on: "contact",
+        params: &[
+            ParamInfo {
+                name: "static_ratio",
+                unit: "1",
+                default: 1.0,
+                low: 0.5,
+                high: 5.0,
+                plausible: [1.0, 1.6],
+            },
+            ParamInfo {
+                name: "stribeck_m_s",
+                unit: "m/s",
+                default: 0.01,
+                low: 1e-4,
+                high: 1.0,
+                plausible: [0.001, 0.1],
+            },
+            ParamInfo {
+                name: "shape",
+                unit: "1",
+                default: 2.0,
+                low: 0.5,
+                high: 4.0,
+                plausible: [0.5, 2.0],
+            },
+        ],
+        rivals: &["friction", "backlash", "anisotropic_friction"],
+        separating_experiment: "tilt the floor slowly until the object starts to slide, then until one that was pushed \
+                                stops: two angles mean two frictions; a single coefficient, and play, have one",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Stribeck {
+    scope: Scope,
+    ratio: f32,
+    speed_m_s: f32,
+    shape: f32,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    Ok(Box::new(Stribeck {
+        scope: Scope::of(spec, info, model)?,
+        ratio: value(spec, info, "static_ratio"),
+        speed_m_s: value(spec, info, "stribeck_m_s"),
+        shape: value(spec, info, "shape"),
+    }))
+}
+
+impl Acts for Stribeck {
+    fn scope(&self) -> Option<&Scope> {
+        Some(&self.scope)
+    }
+
+    fn shape_contact(&self, touch: &Touch<'_>, values: &mut ContactValues) {
+        let share = touch.slip().length() / self.speed_m_s;
+        values.friction *= 1.0 + (self.ratio - 1.0) * math::exp(-math::pow(share, self.shape));
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,83 @@
+//! Restitution that depends on how fast things hit.
+
+use crate::error::PhysicsError;
+use crate::laws::target::Scope;
+use crate::laws::{Acts, ContactValues, Law, Touch, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{LawInfo, LawSpec, State};
+
+/// From 1 on, what lies would bounce.
+const LIVELIEST: f32 = 0.99;
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "velocity_restitution",
+        version: 1,
+        name: "restitution that depends on speed",
+        equation: "e(v) = e - slope_s_m (v - reference_m_s), between 0 and 0.99, with v the speed of approach along the \
+                   normal (m/s) and e the pair's restitution",
+        source: "K. L. Johnson, Contact Mechanics (1985), section 11.5 (restitution falls with speed), to first order",
+        engine: ActsIn::Physics,
+        acts_on: "contact",
+        params: &[
+            ParamInfo {
+                name: "slope_s_m",
+                unit: "s/m",
+                default: 0.0,
+                low: -1.0,
+                high: 1.0,
+                plausible: [0.0, 0.1],
+            },
+            ParamInfo {
+                name: "reference_m_s",
+                unit: "m/s",
+                default: 1.0,
+                low: 0.0,
+                high: 20.0,
+                plausible: [0.5, 5.0],
+            },
+        ],
+        rivals: &["restitution", "drag", "contact_compliance"],
+        separating_experiment: "drop the object from heights that differ by a factor of sixteen (four in speed) and compare \
+                                the share of the speed that is left: one restitution leaves the same share everywhere, and \
+                                air takes speed between the bounces as well",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct VelocityRestitution {
+    scope: Scope,
+    slope: f32,
+    reference: f32,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    Ok(Box::new(VelocityRestitution {
+        scope: Scope::of(spec, info, model)?,
+        slope: value(spec, info, "slope_s_m"),
+        reference: value(spec, info, "reference_m_s"),
+    }))
+}
+
+impl Acts for VelocityRestitution {
+    fn scope(&self) -> Option<&Scope> {
+        Some(&self.scope)
+    }
+
+    fn shape_contact(&self, touch: &Touch<'_>, values: &mut ContactValues) {
+        let speed = touch.approach_m_s().max(0.0);
+        let e = values.restitution - self.slope * (speed - self.reference);
+        values.restitution = e.clamp(0.0, LIVELIEST);
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

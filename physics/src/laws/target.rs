@@ -1,0 +1,165 @@
+//! What a law's target names: objects, and contacts.
+
+use crate::contact::{ContactTable, Entry, Toucher};
+use crate::error::PhysicsError;
+use crate::laws::Side;
+use crate::model::{BodyPlan, PhysicsModel};
+use dwell_scene::material::library;
+use dwell_scene::{House, LawInfo, LawSpec, ObjectId, StructureId};
+
+/// The free bodies that a spec acts on: those of the object it names, or all.
+pub(super) fn free_bodies<'a>(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &'a PhysicsModel,
+) -> Result<Vec<(u32, &'a BodyPlan)>, PhysicsError> {
+    let house = &model.house;
+    if let Some(target) = &spec.target
+        && house.object_named(target).is_none()
+    {
+        let names = house.objects.iter().map(|object| object.name.as_str());
+        return Err(no_target(info.id, "object", target, names));
+    }
+    let wanted = |plan: &BodyPlan| {
+        spec.target
+            .as_ref()
+            .is_none_or(|target| house.objects[plan.object].name == *target)
+    };
+    let bodies = model.bodies.iter().enumerate();
+    Ok(bodies
+        .filter(|(_, plan)| plan.joint.is_none() && wanted(plan))
+        .map(|(index, plan)| (index as u32, plan))
+        .collect())
+}
+
+pub(super) fn no_target<'a>(
+    law: &'static str,
+    kind: &'static str,
+    name: &str,
+    known: impl Iterator<Item = &'a str>,
+) -> PhysicsError {
+    PhysicsError::LawTarget {
+        law,
+        kind,
+        name: name.to_owned(),
+        known: known.take(12).map(str::to_owned).collect(),
+    }
+}
+
+/// What one name of a contact's target stands for: all objects, structure pieces and the substance of that name.
+#[derive(Clone, Debug, PartialEq)]
+struct Named {
+    objects: Vec<ObjectId>,
+    structure: Vec<StructureId>,
+    substance: Option<&'static str>,
+}
+
+impl Named {
+    fn of(house: &House, name: &str) -> Option<Self> {
+        let objects = house.objects.iter_ids();
+        let structure = house.structure.iter_ids();
+        let named = Self {
+            objects: objects
+                .filter(|(_, object)| object.name == name)
+                .map(|(id, _)| id)
+                .collect(),
+            structure: structure
+                .filter(|(_, piece)| piece.name == name)
+                .map(|(id, _)| id)
+                .collect(),
+            substance: library().get(name).map(|substance| substance.name.as_str()),
+        };
+        let nothing =
+            named.objects.is_empty() && named.structure.is_empty() && named.substance.is_none();
+        (!nothing).then_some(named)
+    }
+
+    fn is_thing(&self, house: &House, toucher: Option<Toucher>) -> bool {
+        match toucher {
+            Some(Toucher::Part(part)) => self.objects.contains(&house.parts[part].object),
+            Some(Toucher::Structure(id)) => self.structure.contains(&id),
+            _ => false,
+        }
+    }
+
+    fn is(&self, house: &House, side: &Side<'_>) -> bool {
+        self.substance == Some(side.substance) || self.is_thing(house, side.toucher)
+    }
+}
+
+/// The contacts that a law shapes. A target is `NAME` (all contacts of what it names) or `NAME~NAME` (those between the
+/// two, in either order); a name is that of an object, of a piece of the structure or of a substance of the materials
+/// library. No target: all contacts.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Scope {
+    one: Option<Named>,
+    other: Option<Named>,
+}
+
+impl Scope {
+    pub(super) fn of(
+        spec: &LawSpec,
+        info: &LawInfo,
+        model: &PhysicsModel,
+    ) -> Result<Self, PhysicsError> {
+        let house = &model.house;
+        let Some(target) = &spec.target else {
+            return Ok(Self {
+                one: None,
+                other: None,
+            });
+        };
+        let named = |name: &str| {
+            Named::of(house, name).ok_or_else(|| {
+                let objects = house.objects.iter().map(|object| object.name.as_str());
+                let structure = house.structure.iter().map(|piece| piece.name.as_str());
+                let kind = "object, structure or substance";
+                no_target(info.id, kind, name, objects.chain(structure))
+            })
+        };
+        // An object's own name may hold the sign.
+        if let Some(whole) = Named::of(house, target) {
+            return Ok(Self {
+                one: Some(whole),
+                other: None,
+            });
+        }
+        Ok(match target.split_once('~') {
+            Some((one, other)) => Self {
+                one: Some(named(one)?),
+                other: Some(named(other)?),
+            },
+            None => Self {
+                one: Some(named(target)?),
+                other: None,
+            },
+        })
+    }
+
+    /// Whether rapier must ask about the pairs of a collider.
+    pub(crate) fn asks(&self, house: &House, table: &ContactTable, entry: &Entry) -> bool {
+        let Some(one) = &self.one else {
+            return entry.body.is_some();
+        };
+        let made_of = |class: u16| one.substance == Some(table.substance(class));
+        entry.surface.any_class(made_of) || one.is_thing(house, entry.toucher)
+    }
+
+    /// Whether a contact is within, and if so, whether `b` is the surface and not `a`.
+    pub(crate) fn turns(&self, house: &House, a: &Side<'_>, b: &Side<'_>) -> Option<bool> {
+        let is = |named: &Option<Named>, side: &Side<'_>| {
+            named.as_ref().is_none_or(|named| named.is(house, side))
+        };
+        let (forth, back) = (
+            is(&self.one, a) && is(&self.other, b),
+            is(&self.one, b) && is(&self.other, a),
+        );
+        match (forth, back) {
+            (false, false) => None,
+            (true, false) => Some(false),
+            (false, true) => Some(true),
+            // Structure sorts before parts, parts before agents.
+            (true, true) => Some(a.toucher > b.toucher),
+        }
+    }
+}
