@@ -1,13 +1,13 @@
 //! Changes from outside: agents that come and are placed, states that are taken over.
 
-use crate::agents;
+use crate::agents::{self, Loose};
 use crate::body::{self, Hold};
 use crate::contact::Dress;
 use crate::convert::to_rapier;
 use crate::error::PhysicsError;
 use crate::joints;
 use crate::world::PhysicsWorld;
-use dwell_scene::{AgentId, AgentState, Id, State};
+use dwell_scene::{AgentId, AgentState, BaseState, Id, State};
 use glam::Vec3;
 
 impl PhysicsWorld {
@@ -23,6 +23,15 @@ impl PhysicsWorld {
     ) -> Result<AgentId, PhysicsError> {
         agent.body.check()?;
         finite_place(agent.position, agent.yaw_rad)?;
+        let lowest = 2.0 * agent.body.radius_m;
+        if !(0.0..=agent.body.height_m - lowest).contains(&agent.crouched_by_m) {
+            return Err(PhysicsError::Range {
+                at: "agent".to_owned(),
+                field: "crouched_by_m",
+                found: agent.crouched_by_m.to_string(),
+                allowed: "0 to the height above twice the radius",
+            });
+        }
         self.check_state(state)?;
         let id = state.agents.push(AgentState {
             holding: None,
@@ -50,7 +59,7 @@ impl PhysicsWorld {
             force,
         );
         self.agents.push(inserted);
-        self.falls.push(0.0);
+        self.loose.push(Loose::default());
     }
 
     /// Puts an agent somewhere, at rest, together with what it holds.
@@ -78,14 +87,21 @@ impl PhysicsWorld {
         here.velocity = Vec3::ZERO;
         here.collided = false;
         here.grounded = true;
+        here.gyro_rad_s = 0.0;
+        here.base = BaseState::default();
+        let stands_up = here.crouched_by_m != 0.0;
+        here.crouched_by_m = 0.0;
         let here = *here;
-        self.falls[agent.index()] = 0.0;
+        self.loose[agent.index()] = Loose::default();
         if let Some(rigid) = self
             .engine
             .bodies
             .get_mut(self.agents[agent.index()].handle)
         {
             rigid.set_translation(position, true);
+        }
+        if stands_up {
+            agents::reshape(&mut self.engine, &self.agents[agent.index()], &here);
         }
         if let Some(grip) = self.grips.iter().find(|grip| grip.agent == agent) {
             let hand = to_rapier(&agents::hand_pose(grip, &here));

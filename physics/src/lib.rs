@@ -23,6 +23,7 @@
 
 mod actions;
 mod agents;
+pub mod bases;
 mod body;
 mod config;
 mod contact;

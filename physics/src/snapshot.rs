@@ -5,7 +5,7 @@
 //! the state's parameters, in the same order, at the bodies' places. Between steps no collider is marked as changed, so
 //! that a world built this way is the same, bit for bit.
 
-use crate::agents::{self, Grip};
+use crate::agents::{self, Grip, Loose};
 use crate::body::Hold;
 use crate::config::PhysicsConfig;
 use crate::contact::{ContactTable, Dress, Excluded, Hooks, Impacts};
@@ -23,7 +23,7 @@ use std::borrow::Cow;
 use xxhash_rust::xxh3::xxh3_64;
 
 const MAGIC: &[u8; 4] = b"dwph";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.
@@ -31,7 +31,7 @@ const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 struct Memory {
     tick: u64,
     holds: Vec<Hold>,
-    falls: Vec<f32>,
+    loose: Vec<Loose>,
     excluded: Excluded,
     grips: Vec<Grip>,
     parting: Vec<(u32, AgentId)>,
@@ -89,7 +89,7 @@ impl PhysicsWorld {
             memory: Memory {
                 tick: self.tick,
                 holds: self.holds.clone(),
-                falls: self.falls.clone(),
+                loose: self.loose.clone(),
                 excluded: self.excluded.clone(),
                 grips: self.grips.clone(),
                 parting: self.parting.clone(),
@@ -134,12 +134,12 @@ impl PhysicsWorld {
         let bodies = shot.bodies.0.into_owned();
         let foreign = memory.holds.len() != self.bodies.len()
             || memory.pulls.len() != self.joints.len()
-            || memory.falls.len() != state.agents.len();
+            || memory.loose.len() != state.agents.len();
         if foreign {
             return refuse(format!(
                 "it has {} bodies and {} agents; the world has {} and the state {}",
                 memory.holds.len(),
-                memory.falls.len(),
+                memory.loose.len(),
                 self.bodies.len(),
                 state.agents.len()
             ));
@@ -230,7 +230,7 @@ impl PhysicsWorld {
         self.laws = laws;
         self.tick = memory.tick;
         self.holds = memory.holds;
-        self.falls = memory.falls;
+        self.loose = memory.loose;
         self.excluded = memory.excluded;
         self.grips = memory.grips;
         self.parting = memory.parting;

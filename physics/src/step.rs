@@ -1,23 +1,15 @@
 //! One control step.
 
 use crate::actions::{ActionCode, ActionOutcome, Notice};
-use crate::agents::{self, AgentControl, Probe, Push, Shell, Walk};
+use crate::agents::{self, AgentControl, Way};
 use crate::body::Hold;
 use crate::contact::{Collector, ContactEvent, Dress, Hooks, note_motion};
 use crate::error::PhysicsError;
 use crate::joints::{self, Drive, Progress};
 use crate::laws::{Acts, Stage};
 use crate::world::PhysicsWorld;
-use dwell_scene::{Aabb, AgentId, AgentState, Id, JointCommand, State};
+use dwell_scene::{Aabb, AgentState, JointCommand, State};
 use glam::Vec3;
-
-/// What an agent wanted to do and did in a control step.
-#[derive(Clone, Copy, Default)]
-struct Way {
-    start: Vec3,
-    wanted_m: f32,
-    made_m: f32,
-}
 
 impl PhysicsWorld {
     /// Makes one control step: agents move as `controls` say (those without one stand still), then bodies, joints and
@@ -27,7 +19,8 @@ impl PhysicsWorld {
     ///
     /// # Errors
     /// [`PhysicsError::ForeignState`] for another world's state, [`PhysicsError::UnknownAgent`] for more controls than
-    /// agents, [`PhysicsError::Range`] for a control that is not finite. Nothing has happened then.
+    /// agents, [`PhysicsError::Range`] for a control that is not finite or that the agent's body cannot follow. Nothing has
+    /// happened then.
     pub fn step(
         &mut self,
         state: &mut State,
@@ -41,25 +34,13 @@ impl PhysicsWorld {
                 count: self.agents.len(),
             });
         }
-        if let Some(control) = controls.iter().find(|control| !control.is_finite()) {
-            return Err(PhysicsError::Range {
-                at: "agent control".to_owned(),
-                field: "velocities",
-                found: format!("{control:?}"),
-                allowed: "finite numbers",
-            });
+        for (index, (control, agent)) in controls.iter().zip(&state.agents).enumerate() {
+            control.check(index, &agent.body.locomotion)?;
         }
         self.notices.clear();
         let asleep = self.engine.islands.num_active_bodies() == 0;
         self.drive_joints(state);
-        let mut ways: Vec<Way> = state
-            .agents
-            .iter()
-            .map(|agent| Way {
-                start: agent.position,
-                ..Way::default()
-            })
-            .collect();
+        let mut ways = Way::all(state);
         for substep in 0..self.settings.steps_per_control {
             self.move_agents(state, controls, &mut ways, substep == 0);
             self.carry_held(state);
@@ -182,98 +163,6 @@ impl PhysicsWorld {
         }
     }
 
-    fn move_agents(
-        &mut self,
-        state: &mut State,
-        controls: &[AgentControl],
-        ways: &mut [Way],
-        first: bool,
-    ) {
-        let dt_s = self.settings.dt_s;
-        let gravity = self.engine.gravity.length();
-        for (index, way) in ways.iter_mut().enumerate() {
-            let id = AgentId::from_index(index);
-            let control = controls.get(index).copied().unwrap_or_default();
-            let mut agent = state.agents[id];
-            control.turn(&mut agent, dt_s);
-            let motion = control.displacement(agent.yaw_rad, dt_s);
-            let idle = motion == Vec3::ZERO && agent.grounded && self.falls[index] == 0.0;
-            if idle && !first {
-                state.agents[id] = agent;
-                continue;
-            }
-            let others = shells(state, id);
-            let mut walk = Walk {
-                probe: Probe {
-                    engine: &self.engine,
-                    model: &self.model,
-                    entries: &self.entries,
-                    bodies: &self.bodies,
-                    holds: &self.holds,
-                    excluded: &self.excluded,
-                    others: &others,
-                    agent: id,
-                    body: agent.body,
-                },
-                pushes: Vec::new(),
-                dt_s,
-                gravity_m_s2: gravity,
-            };
-            let before = agent.position;
-            walk.step(&mut agent, &mut self.falls[index], motion);
-            let pushes = walk.pushes;
-            let length = motion.length();
-            if length > 0.0 {
-                let made = (agent.position - before).dot(motion / length);
-                way.wanted_m += length;
-                way.made_m += made.clamp(0.0, length);
-            }
-            state.agents[id] = agent;
-            if agent.position != before
-                && let Some(rigid) = self.engine.bodies.get_mut(self.agents[index].handle)
-            {
-                rigid.set_next_kinematic_translation(agent.position);
-            }
-            for push in pushes {
-                self.push(&push);
-            }
-        }
-    }
-
-    /// Pushes a light body, with no more than the config's force.
-    fn push(&mut self, push: &Push) {
-        let body = push.body as usize;
-        let handle = self.bodies[body].handle;
-        let dt_s = self.settings.dt_s;
-        let most = self.settings.config.push_force_n * dt_s;
-        let jointed = self.model.bodies[body].joint.is_some();
-        let Some(rigid) = self.engine.bodies.get(handle) else {
-            return;
-        };
-        // A free body is pushed at the height of its centre of mass, so that it slides instead of tipping.
-        let mut point = push.point;
-        if !jointed {
-            point.y = rigid.center_of_mass().y;
-        }
-        let speed = push.speed_m_s - rigid.velocity_at_point(point).dot(push.direction);
-        // A leaf on a hinge resists at its edge like a third of its mass.
-        let mass = if jointed {
-            rigid.mass() / 3.0
-        } else {
-            rigid.mass()
-        };
-        let impulse = (speed * mass).min(most);
-        if impulse <= 0.0 {
-            return;
-        }
-        self.engine
-            .islands
-            .wake_up(&mut self.engine.bodies, handle, true);
-        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
-            rigid.apply_impulse_at_point(push.direction * impulse, point, false);
-        }
-    }
-
     fn carry_held(&mut self, state: &mut State) {
         let mut place = 0;
         while place < self.grips.len() {
@@ -299,14 +188,6 @@ impl PhysicsWorld {
                     object: Some(object),
                 },
             });
-        }
-    }
-
-    fn end_ways(&self, state: &mut State, ways: &[Way]) {
-        let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
-        for (agent, way) in state.agents.iter_mut().zip(ways) {
-            agent.velocity = (agent.position - way.start) / step_s;
-            agent.collided = way.made_m + 1e-4 + 1e-3 * way.wanted_m < way.wanted_m;
         }
     }
 
@@ -368,19 +249,6 @@ fn agent_bounds(agent: &AgentState) -> Aabb {
     let r = agent.body.radius_m;
     Aabb::new(
         agent.position - Vec3::new(r, 0.0, r),
-        agent.position + Vec3::new(r, agent.body.height_m, r),
+        agent.position + Vec3::new(r, agent.height_m(), r),
     )
-}
-
-fn shells(state: &State, except: AgentId) -> Vec<Shell> {
-    state
-        .agents
-        .iter_ids()
-        .filter(|(id, _)| *id != except)
-        .map(|(_, agent)| Shell {
-            feet: agent.position,
-            radius_m: agent.body.radius_m,
-            height_m: agent.body.height_m,
-        })
-        .collect()
 }

@@ -1,7 +1,7 @@
 //! A running physics world.
 
 use crate::actions::Notice;
-use crate::agents::{Agent, Grip};
+use crate::agents::{Agent, Grip, Loose};
 use crate::body::{self, Body, BodyPlace, Hold};
 use crate::config::{PhysicsConfig, Settings};
 use crate::contact::{ContactTable, Dress, Entry, Excluded, Hooks, Impacts, Motion, touching};
@@ -45,8 +45,8 @@ pub struct PhysicsWorld {
     /// What pulls at each joint during this control step.
     pub(crate) pulls: Vec<Option<Pull>>,
     pub(crate) agents: Vec<Agent>,
-    /// Speed downwards of each agent, m/s.
-    pub(crate) falls: Vec<f32>,
+    /// What each agent has of speed that is not its own will.
+    pub(crate) loose: Vec<Loose>,
     pub(crate) excluded: Excluded,
     pub(crate) grips: Vec<Grip>,
     /// Bodies that were let go and still overlap the agent that held them.
@@ -185,7 +185,7 @@ impl PhysicsWorld {
             carried: Vec::new(),
             pulls: Vec::new(),
             agents: Vec::new(),
-            falls: Vec::new(),
+            loose: Vec::new(),
             excluded: Excluded::default(),
             grips: Vec::new(),
             parting: Vec::new(),

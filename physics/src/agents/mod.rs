@@ -1,73 +1,29 @@
-//! Agents' bodies: they walk, turn, look, climb steps, fall, push light things and carry one.
+//! Agents' bodies: they walk or drive, turn, look, crouch, climb steps, slide off slopes, fall, push light things and
+//! carry one.
 
 mod carry;
+mod control;
+mod moving;
 mod probe;
+mod slope;
 mod walk;
 
+pub use control::AgentControl;
+
 pub(crate) use carry::{Grip, carry, hand_pose, release};
+pub(crate) use moving::Way;
 pub(crate) use probe::{Probe, Shell};
-pub(crate) use walk::{Push, Walk};
+pub(crate) use walk::{Loose, Push, Walk};
 
 use crate::contact::{Dress, Entry, Toucher};
 use crate::engine::Engine;
-use dwell_scene::{AgentBody, AgentId, AgentState};
+use dwell_scene::{AgentId, AgentState};
 use glam::Vec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use serde::{Deserialize, Serialize};
 
 /// Height of the gap under an agent's rapier shape, m: what lies flat on the floor is stepped on, not shot away.
 const SOLE_M: f32 = 0.05;
-/// Furthest an agent looks up or down, rad.
-const STEEPEST_LOOK_RAD: f32 = 1.5;
-
-/// What an agent's body does during one control step: constant velocities in its own frame.
-///
-/// A displacement of `d` metres in a control step is a velocity of `d * control_rate_hz`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct AgentControl {
-    /// m/s towards where it faces; negative: backwards.
-    pub forward_m_s: f32,
-    /// m/s to its right; negative: to its left.
-    pub right_m_s: f32,
-    /// rad/s, positive to the left.
-    pub yaw_rate_rad_s: f32,
-    /// rad/s, positive up; the pitch stays within 1.5 rad.
-    pub pitch_rate_rad_s: f32,
-}
-
-impl AgentControl {
-    /// Whether all numbers are finite.
-    pub fn is_finite(&self) -> bool {
-        [
-            self.forward_m_s,
-            self.right_m_s,
-            self.yaw_rate_rad_s,
-            self.pitch_rate_rad_s,
-        ]
-        .iter()
-        .all(|x| x.is_finite())
-    }
-
-    /// Turns an agent by this control for `dt_s` seconds.
-    pub(crate) fn turn(&self, agent: &mut AgentState, dt_s: f32) {
-        if self.yaw_rate_rad_s != 0.0 {
-            let yaw = agent.yaw_rad + self.yaw_rate_rad_s * dt_s;
-            agent.yaw_rad = dwell_scene::math::wrap_angle(yaw);
-        }
-        let pitch = agent.pitch_rad + self.pitch_rate_rad_s * dt_s;
-        agent.pitch_rad = pitch.clamp(-STEEPEST_LOOK_RAD, STEEPEST_LOOK_RAD);
-    }
-
-    /// The displacement in world space in `dt_s` seconds, m.
-    pub(crate) fn displacement(&self, yaw_rad: f32, dt_s: f32) -> Vec3 {
-        let forward = dwell_scene::space::forward_from_yaw(yaw_rad);
-        let right = Vec3::new(-forward.z, 0.0, forward.x);
-        (forward * self.forward_m_s + right * self.right_m_s) * dt_s
-    }
-}
-
 /// An agent's body in rapier: a capsule that pushes and is hit, and is moved by [`Walk`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Agent {
@@ -75,12 +31,25 @@ pub(crate) struct Agent {
     pub(crate) entry: u32,
 }
 
-/// The capsule's centre above the feet and half of its straight part, m.
-fn capsule(body: &AgentBody) -> (f32, f32) {
-    let sole = SOLE_M.min(body.height_m - 2.0 * body.radius_m).max(0.0);
-    let center = 0.5 * (sole + body.height_m);
-    let half = (0.5 * (body.height_m - sole) - body.radius_m).max(1e-3);
-    (center, half)
+/// The capsule of an agent as it stands now, and its centre above the feet, m.
+fn capsule(agent: &AgentState) -> (SharedShape, f32) {
+    let (radius, height) = (agent.body.radius_m, agent.height_m());
+    let sole = SOLE_M.min(height - 2.0 * radius).max(0.0);
+    let half = (0.5 * (height - sole) - radius).max(1e-3);
+    (SharedShape::capsule_y(half, radius), 0.5 * (sole + height))
+}
+
+/// Gives an agent's capsule the height that it has now.
+pub(crate) fn reshape(engine: &mut Engine, agent: &Agent, state: &AgentState) {
+    let (shape, center) = capsule(state);
+    // Colliders are inserted in the order of entries and never removed.
+    let Some((_, handle)) = engine.colliders.get_unknown_gen(agent.entry) else {
+        return;
+    };
+    if let Some(collider) = engine.colliders.get_mut(handle) {
+        collider.set_shape(shape);
+        collider.set_translation_wrt_parent(Vec3::Y * center);
+    }
 }
 
 /// Inserts an agent's capsule.
@@ -95,14 +64,13 @@ pub(crate) fn insert(
     let handle = engine
         .bodies
         .insert(RigidBodyBuilder::kinematic_position_based().translation(state.position));
-    let (center, half) = capsule(&state.body);
+    let (shape, center) = capsule(state);
     let entry = Entry {
         toucher: Some(Toucher::Agent(id)),
         body: None,
         surface: values.table.human(),
     };
     let number = entries.len();
-    let shape = SharedShape::capsule_y(half, state.body.radius_m);
     let builder = ColliderBuilder::new(shape)
         .translation(Vec3::Y * center)
         .density(0.0)

@@ -18,6 +18,8 @@ use rapier3d::pipeline::QueryFilter;
 
 /// Gap that the cylinder keeps from what it cannot enter, m.
 pub(crate) const SKIN_M: f32 = 0.008;
+/// What is left between the cylinder's skin and the edge that its foot has rolled off, m.
+const CLEAR_M: f32 = 0.002;
 /// How far the cylinder hovers above the highest step, m; more than the skin, so that a step never catches it.
 const HOVER_M: f32 = 0.015;
 /// How much slimmer the core is that must never overlap anything, m.
@@ -26,6 +28,10 @@ const CORE_MARGIN_M: f32 = 0.03;
 const HEAVIEST_PUSHED_KG: f32 = 30.0;
 /// Height up to which light things are stepped on, m.
 const SOLE_M: f32 = 0.05;
+/// How far above and below the foot's lowest point the surface under the middle is looked for, m; below by the foot's
+/// radius more, which lies on a slope beside its middle.
+const ABOVE_GROUND_M: f32 = 0.1;
+const BELOW_GROUND_M: f32 = 0.1;
 
 /// Another agent's cylinder.
 #[derive(Clone, Copy, Debug)]
@@ -256,8 +262,11 @@ impl Probe<'_> {
         free.then_some(out)
     }
 
+    /// Half of the body's radius; less for one that climbs only low steps, so that a foot that rolls off an edge does not
+    /// let the cylinder down on it.
     fn foot_radius_m(&self) -> f32 {
-        0.5 * self.body.radius_m
+        let most = self.lower_end(false) - SKIN_M - CLEAR_M;
+        (0.5 * self.body.radius_m).min(most).max(1e-3)
     }
 
     /// The height of the ground under the feet, between the highest step above them and `down_m` below, m.
@@ -282,16 +291,37 @@ impl Probe<'_> {
         Some(start.y - radius - fall * hit.time_of_impact)
     }
 
-    /// How much the surface right under the middle faces up: 1 level, 0 upright; `None` without one near `height_m`.
-    pub(crate) fn levelness(&self, feet: Vec3, height_m: f32) -> Option<f32> {
+    /// The unit normal of the surface right under the middle, on its upper side; `None` without one near `height_m`.
+    pub(crate) fn surface(&self, feet: Vec3, height_m: f32) -> Option<Vec3> {
         let predicate =
             |_: ColliderHandle, collider: &Collider| self.sees(collider) != Seen::Nothing;
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));
-        let start = Vec3::new(feet.x, height_m + 0.1, feet.z);
+        let start = Vec3::new(feet.x, height_m + ABOVE_GROUND_M, feet.z);
         let ray = Ray::new(start, Vec3::NEG_Y);
-        let (_, hit) = queries.cast_ray_and_get_normal(&ray, 0.2, true)?;
-        (hit.time_of_impact > 0.0).then_some(hit.normal.y.abs())
+        let longest = ABOVE_GROUND_M + BELOW_GROUND_M + self.foot_radius_m();
+        let (_, hit) = queries.cast_ray_and_get_normal(&ray, longest, true)?;
+        let up = if hit.normal.y < 0.0 {
+            -hit.normal
+        } else {
+            hit.normal
+        };
+        (hit.time_of_impact > 0.0).then_some(up)
+    }
+
+    /// Whether there is room above for a body that is taller by `up_m`.
+    pub(crate) fn room_above(&self, feet: Vec3, up_m: f32) -> bool {
+        let rise = Vec3::Y * up_m;
+        let top = feet.y + self.body.height_m;
+        let under_another = self.others.iter().any(|shell| {
+            let apart = (shell.feet - feet).with_y(0.0).length();
+            apart < self.body.radius_m + shell.radius_m
+                && shell.feet.y < top + up_m
+                && shell.feet.y + shell.height_m > top
+        });
+        !under_another
+            && self.cast_kind(feet, rise, false).is_none()
+            && self.cast_kind(feet, rise, true).is_none()
     }
 }

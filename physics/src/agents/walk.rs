@@ -6,6 +6,7 @@
 use super::probe::{Hit, Probe};
 use dwell_scene::AgentState;
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// Turns of the slide in one piece of a movement.
 const SLIDES: usize = 4;
@@ -19,6 +20,15 @@ const MOST_PIECES: f32 = 256.0;
 const WAY_OUT_M: f32 = 0.02;
 /// Gap that is left before what was hit, besides the skin, m.
 const BACK_M: f32 = 1e-4;
+
+/// The speed that an agent has not by its own will.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Loose {
+    /// Downwards, m/s.
+    pub(crate) fall_m_s: f32,
+    /// The level part of a slide off a slope, m/s.
+    pub(crate) slide_m_s: Vec3,
+}
 
 /// A push on a light body.
 #[derive(Clone, Copy, Debug)]
@@ -40,9 +50,11 @@ pub(crate) struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Moves the agent by `motion` (level, m) and lets it stand or fall. `fall_m_s` is its speed downwards.
-    pub(crate) fn step(&mut self, agent: &mut AgentState, fall_m_s: &mut f32, motion: Vec3) {
+    /// Moves the agent by `motion` (level, m) and lets it stand, slide or fall.
+    pub(crate) fn step(&mut self, agent: &mut AgentState, loose: &mut Loose, motion: Vec3) {
         let mut feet = agent.position;
+        let slid = loose.slide_m_s * self.dt_s;
+        let motion = motion + slid;
         if motion.length_squared() > 1e-14 {
             if self.probe.is_inside_something(feet) {
                 if let Some(out) = self.probe.way_out(feet, WAY_OUT_M) {
@@ -56,7 +68,13 @@ impl Walk<'_> {
                 }
             }
         }
-        self.stand_or_fall(&mut feet, agent, fall_m_s);
+        if slid != Vec3::ZERO {
+            loose.slide_m_s = self.slide_left(loose.slide_m_s, feet - agent.position);
+        }
+        self.stand_or_fall(&mut feet, agent, &mut loose.fall_m_s);
+        if agent.grounded && loose.fall_m_s == 0.0 {
+            loose.slide_m_s = self.slide_on(feet, loose.slide_m_s);
+        }
         agent.position = feet;
     }
 
@@ -76,13 +94,8 @@ impl Walk<'_> {
                 return feet;
             }
             if rise > LEVEL_M {
-                let slope = self.probe.body.max_slope_rad;
-                let steep = self
-                    .probe
-                    .levelness(target, ground)
-                    .is_some_and(|up| up < dwell_scene::math::cos(slope) - 1e-3 && up > 1e-3);
                 let raised = Vec3::new(target.x, ground, target.z);
-                if steep
+                if self.is_too_steep(target, ground)
                     || !self.probe.headroom(target, rise)
                     || self.probe.is_inside_something(raised)
                 {
@@ -165,8 +178,10 @@ impl Walk<'_> {
             agent.grounded = true;
         } else {
             let part = self.probe.sink(*feet, down);
-            feet.y -= down * part;
             agent.grounded = part < 1.0;
+            // What the cylinder comes to rest on must not stop it from moving on.
+            let rest = if agent.grounded { LEVEL_M } else { 0.0 };
+            feet.y -= (down * part - rest).max(0.0);
         }
         if agent.grounded {
             *fall_m_s = 0.0;

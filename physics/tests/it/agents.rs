@@ -2,6 +2,7 @@
 
 use crate::common::{Build, Piece, forward, gravity};
 use dwell_physics::AgentControl;
+use dwell_scene::AgentBody;
 use glam::{Quat, Vec3};
 use proptest::prelude::*;
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -162,6 +163,30 @@ fn it_falls_from_a_table() {
         "{seconds} s, expected {expected} s"
     );
     assert!(run.state.agents[id].position.y.abs() < 1e-3);
+}
+
+/// Whatever the speed and the highest step, nobody stays hanging on an edge.
+#[test]
+fn it_comes_off_a_table_at_any_speed() {
+    for (speed, step_height_m) in [(0.1, 0.2), (0.1, 0.02), (1.0, 0.02), (1.0, 0.0), (0.3, 0.1)] {
+        let mut build = Build::room([6.0, 4.0, 6.0]);
+        build.fixed(
+            "table",
+            Piece::cuboid(Vec3::new(1.0, 0.5, 1.0), Vec3::new(3.0, 0.5, 4.0)),
+        );
+        let mut run = build.run();
+        let body = AgentBody {
+            step_height_m,
+            ..AgentBody::default()
+        };
+        let id = run.agent_with(body, Vec3::new(3.0, 1.0, 3.1), 0.0);
+        run.walk((0.6 / speed * 20.0) as usize, &[forward(speed)]);
+        let at = run.state.agents[id].position;
+        assert!(
+            at.y < 0.01 && at.z < 2.81,
+            "{speed} m/s, step {step_height_m} m: {at}"
+        );
+    }
 }
 
 #[test]

@@ -7,10 +7,12 @@
 
 mod actions;
 mod agents;
+mod bases;
 mod common;
 mod crowd;
 mod doors;
 mod events;
+mod gait;
 mod houses;
 mod joints;
 mod laws;

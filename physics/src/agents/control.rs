@@ -1,0 +1,106 @@
+//! What an agent's body is told to do.
+
+use crate::error::PhysicsError;
+use dwell_scene::{AgentState, Locomotion};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Furthest an agent looks up or down, rad.
+const STEEPEST_LOOK_RAD: f32 = 1.5;
+
+/// What an agent's body does during one control step: constant velocities in its own frame.
+///
+/// A displacement of `d` metres in a control step is a velocity of `d * control_rate_hz`. An agent on legs has these
+/// velocities at once, up to its speed limit; wheels go towards them as fast as they accelerate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AgentControl {
+    /// m/s towards where it faces; negative: backwards.
+    pub forward_m_s: f32,
+    /// m/s to its right; negative: to its left. A differential drive cannot.
+    pub right_m_s: f32,
+    /// rad/s, positive to the left.
+    pub yaw_rate_rad_s: f32,
+    /// rad/s, positive up; the pitch stays within 1.5 rad.
+    pub pitch_rate_rad_s: f32,
+    /// Speeds of the left and right wheel of a differential drive, rad/s, instead of the velocities above.
+    pub wheel_rad_s: Option<[f32; 2]>,
+    /// Whether an agent on legs crouches; it stands up again where it has room.
+    pub crouch: bool,
+}
+
+impl AgentControl {
+    /// Whether all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let wheels = self.wheel_rad_s.unwrap_or_default();
+        [
+            self.forward_m_s,
+            self.right_m_s,
+            self.yaw_rate_rad_s,
+            self.pitch_rate_rad_s,
+            wheels[0],
+            wheels[1],
+        ]
+        .iter()
+        .all(|x| x.is_finite())
+    }
+
+    /// Checks that a body that gets about like this can do it.
+    pub(crate) fn check(&self, index: usize, locomotion: &Locomotion) -> Result<(), PhysicsError> {
+        let refuse = |field: &'static str, found: String, allowed: &'static str| {
+            Err(PhysicsError::Range {
+                at: format!("control of agent {index} ({})", locomotion.name()),
+                field,
+                found,
+                allowed,
+            })
+        };
+        if !self.is_finite() {
+            return refuse("velocities", format!("{self:?}"), "finite numbers");
+        }
+        let drive = matches!(locomotion, Locomotion::DifferentialDrive(_));
+        if let Some(rates) = self.wheel_rad_s {
+            let found = format!("{rates:?}");
+            if !drive {
+                return refuse("wheel_rad_s", found, "nothing: it has no such wheels");
+            }
+            if self.forward_m_s != 0.0 || self.yaw_rate_rad_s != 0.0 {
+                return refuse(
+                    "wheel_rad_s",
+                    found,
+                    "either wheel speeds or forward_m_s and yaw_rate_rad_s, not both",
+                );
+            }
+        }
+        if drive && self.right_m_s != 0.0 {
+            let found = self.right_m_s.to_string();
+            return refuse("right_m_s", found, "0: its wheels do not go sideways");
+        }
+        if self.crouch && !matches!(locomotion, Locomotion::Walking(_)) {
+            return refuse("crouch", "true".to_owned(), "false: it has no legs");
+        }
+        Ok(())
+    }
+
+    /// Turns an agent by this control for `dt_s` seconds. Returns the angle, rad.
+    pub(crate) fn turn(&self, agent: &mut AgentState, dt_s: f32) -> f32 {
+        let turn = self.yaw_rate_rad_s * dt_s;
+        if self.yaw_rate_rad_s != 0.0 {
+            agent.yaw_rad = dwell_scene::math::wrap_angle(agent.yaw_rad + turn);
+        }
+        turn
+    }
+
+    /// Raises or lowers an agent's look for `dt_s` seconds.
+    pub(crate) fn look(&self, agent: &mut AgentState, dt_s: f32) {
+        let pitch = agent.pitch_rad + self.pitch_rate_rad_s * dt_s;
+        agent.pitch_rad = pitch.clamp(-STEEPEST_LOOK_RAD, STEEPEST_LOOK_RAD);
+    }
+
+    /// The displacement in world space in `dt_s` seconds, m.
+    pub(crate) fn displacement(&self, yaw_rad: f32, dt_s: f32) -> Vec3 {
+        let forward = dwell_scene::space::forward_from_yaw(yaw_rad);
+        let right = Vec3::new(-forward.z, 0.0, forward.x);
+        (forward * self.forward_m_s + right * self.right_m_s) * dt_s
+    }
+}

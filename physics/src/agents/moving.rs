@@ -1,0 +1,243 @@
+//! All agents' movements in one physics step.
+
+use super::{AgentControl, Probe, Push, Shell, Walk};
+use crate::actions::{ActionCode, ActionOutcome, Notice};
+use crate::bases;
+use crate::world::PhysicsWorld;
+use dwell_scene::{AgentBody, AgentId, AgentState, Gait, Id, Locomotion, State};
+use glam::Vec3;
+
+/// What an agent wanted to do and did in a control step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    start: Vec3,
+    /// How it gets about in this world.
+    locomotion: Locomotion,
+    wanted_m: f32,
+    made_m: f32,
+    turned_rad: f32,
+}
+
+impl Way {
+    /// The ways of all agents at the beginning of a control step.
+    pub(crate) fn all(state: &State) -> Vec<Self> {
+        let way = |(id, agent): (AgentId, &AgentState)| Self {
+            start: agent.position,
+            locomotion: state.locomotion(id),
+            wanted_m: 0.0,
+            made_m: 0.0,
+            turned_rad: 0.0,
+        };
+        state.agents.iter_ids().map(way).collect()
+    }
+}
+
+impl PhysicsWorld {
+    /// Moves all agents for one physics step; `first`: the control step's first.
+    pub(crate) fn move_agents(
+        &mut self,
+        state: &mut State,
+        controls: &[AgentControl],
+        ways: &mut [Way],
+        first: bool,
+    ) {
+        let dt_s = self.settings.dt_s;
+        for (index, way) in ways.iter_mut().enumerate() {
+            let id = AgentId::from_index(index);
+            let control = controls.get(index).copied().unwrap_or_default();
+            let mut agent = state.agents[id];
+            control.look(&mut agent, dt_s);
+            let driven = bases::drive(&mut agent, &way.locomotion, &control, |_| {}, dt_s);
+            let motion = match (&driven, way.locomotion) {
+                (Some(motion), _) => {
+                    motion.turn(&mut agent);
+                    way.turned_rad += motion.turn_rad;
+                    motion.displacement
+                }
+                (None, Locomotion::Walking(gait)) => {
+                    way.turned_rad += control.turn(&mut agent, dt_s);
+                    if first {
+                        self.set_stance(state, id, &mut agent, &gait, control.crouch);
+                    }
+                    stride(&agent, &gait, &control, dt_s)
+                }
+                (None, _) => Vec3::ZERO,
+            };
+            let loose = self.loose[index];
+            let idle = motion == Vec3::ZERO && agent.grounded && loose == super::Loose::default();
+            if idle && !first {
+                state.agents[id] = agent;
+                continue;
+            }
+            let before = agent.position;
+            let pushes = self.walk(state, id, &mut agent, motion);
+            let length = motion.length();
+            if length > 0.0 {
+                let made = (agent.position - before).dot(motion / length);
+                way.wanted_m += length;
+                way.made_m += made.clamp(0.0, length);
+            }
+            if let Some(motion) = &driven {
+                motion.settle(&mut agent, before);
+            }
+            state.agents[id] = agent;
+            if agent.position != before
+                && let Some(rigid) = self.engine.bodies.get_mut(self.agents[index].handle)
+            {
+                rigid.set_next_kinematic_translation(agent.position);
+            }
+            for push in pushes {
+                self.push(&push);
+            }
+        }
+    }
+
+    /// What surrounds an agent, which has the height it has now.
+    fn probe<'a>(&'a self, agent: &AgentState, id: AgentId, others: &'a [Shell]) -> Probe<'a> {
+        Probe {
+            engine: &self.engine,
+            model: &self.model,
+            entries: &self.entries,
+            bodies: &self.bodies,
+            holds: &self.holds,
+            excluded: &self.excluded,
+            others,
+            agent: id,
+            body: AgentBody {
+                height_m: agent.height_m(),
+                ..agent.body
+            },
+        }
+    }
+
+    fn walk(
+        &mut self,
+        state: &State,
+        id: AgentId,
+        agent: &mut AgentState,
+        motion: Vec3,
+    ) -> Vec<Push> {
+        let mut loose = self.loose[id.index()];
+        let others = shells(state, id);
+        let mut walk = Walk {
+            probe: self.probe(agent, id, &others),
+            pushes: Vec::new(),
+            dt_s: self.settings.dt_s,
+            gravity_m_s2: self.engine.gravity.length(),
+        };
+        walk.step(agent, &mut loose, motion);
+        let pushes = walk.pushes;
+        self.loose[id.index()] = loose;
+        pushes
+    }
+
+    /// Crouches, or stands up where there is room.
+    fn set_stance(
+        &mut self,
+        state: &State,
+        id: AgentId,
+        agent: &mut AgentState,
+        gait: &Gait,
+        crouch: bool,
+    ) {
+        let body = &agent.body;
+        let lowest = gait.crouched_height_m.max(2.0 * body.radius_m);
+        let wanted = if crouch {
+            (body.height_m - lowest).max(0.0)
+        } else {
+            0.0
+        };
+        if wanted == agent.crouched_by_m {
+            return;
+        }
+        let up = agent.crouched_by_m - wanted;
+        let others = shells(state, id);
+        if up > 0.0
+            && !self
+                .probe(agent, id, &others)
+                .room_above(agent.position, up)
+        {
+            self.notices.push(Notice {
+                agent: Some(id),
+                outcome: ActionOutcome {
+                    success: false,
+                    code: ActionCode::Blocked,
+                    sentence: "Something is overhead: you cannot stand up here. Move out from under it first."
+                        .to_owned(),
+                    object: None,
+                },
+            });
+            return;
+        }
+        agent.crouched_by_m = wanted;
+        super::reshape(&mut self.engine, &self.agents[id.index()], agent);
+    }
+
+    /// Pushes a light body, with no more than the config's force.
+    fn push(&mut self, push: &Push) {
+        let body = push.body as usize;
+        let handle = self.bodies[body].handle;
+        let dt_s = self.settings.dt_s;
+        let most = self.settings.config.push_force_n * dt_s;
+        let jointed = self.model.bodies[body].joint.is_some();
+        let Some(rigid) = self.engine.bodies.get(handle) else {
+            return;
+        };
+        // A free body is pushed at the height of its centre of mass, so that it slides instead of tipping.
+        let mut point = push.point;
+        if !jointed {
+            point.y = rigid.center_of_mass().y;
+        }
+        let speed = push.speed_m_s - rigid.velocity_at_point(point).dot(push.direction);
+        // A leaf on a hinge resists at its edge like a third of its mass.
+        let mass = if jointed {
+            rigid.mass() / 3.0
+        } else {
+            rigid.mass()
+        };
+        let impulse = (speed * mass).min(most);
+        if impulse <= 0.0 {
+            return;
+        }
+        self.engine
+            .islands
+            .wake_up(&mut self.engine.bodies, handle, true);
+        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+            rigid.apply_impulse_at_point(push.direction * impulse, point, false);
+        }
+    }
+
+    /// Ends a control step: what each agent's movement came to.
+    pub(crate) fn end_ways(&self, state: &mut State, ways: &[Way]) {
+        let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
+        for (agent, way) in state.agents.iter_mut().zip(ways) {
+            agent.velocity = (agent.position - way.start) / step_s;
+            agent.collided = way.made_m + 1e-4 + 1e-3 * way.wanted_m < way.wanted_m;
+            agent.gyro_rad_s = way.turned_rad / step_s;
+        }
+    }
+}
+
+/// Where a walker goes in one physics step if nothing stops it: as told, up to its fastest.
+fn stride(agent: &AgentState, gait: &Gait, control: &AgentControl, dt_s: f32) -> Vec3 {
+    let fastest = if agent.crouched_by_m > 0.0 {
+        gait.max_crouched_speed_m_s.min(gait.max_speed_m_s)
+    } else {
+        gait.max_speed_m_s
+    };
+    let motion = control.displacement(agent.yaw_rad, dt_s);
+    motion.clamp_length_max(fastest * dt_s)
+}
+
+fn shells(state: &State, except: AgentId) -> Vec<Shell> {
+    state
+        .agents
+        .iter_ids()
+        .filter(|(id, _)| *id != except)
+        .map(|(_, agent)| Shell {
+            feet: agent.position,
+            radius_m: agent.body.radius_m,
+            height_m: agent.height_m(),
+        })
+        .collect()
+}

@@ -1,0 +1,73 @@
+//! Slopes that are too steep to stand on.
+//!
+//! Feet hold on a slope like a block with the friction `tan(max_slope)`: up to the steepest slope that the body walks
+//! up, and not beyond. There it slides along the surface with `g (sin a - tan(max_slope) cos a)`, and on the level it
+//! comes to rest under the same friction.
+
+use super::walk::Walk;
+use dwell_scene::math;
+use glam::Vec3;
+
+/// How much less level than the limit counts as too steep (difference of cosines).
+const MARGIN: f32 = 1e-3;
+/// Highest speed of a slide, m/s.
+const FASTEST_M_S: f32 = 30.0;
+
+impl Walk<'_> {
+    /// Whether the surface under the middle of the feet, near `height_m`, is too steep to walk up.
+    pub(super) fn is_too_steep(&self, feet: Vec3, height_m: f32) -> bool {
+        let steepest = math::cos(self.probe.body.max_slope_rad);
+        self.probe
+            .surface(feet, height_m)
+            .is_some_and(|normal| normal.y < steepest - MARGIN && normal.y > MARGIN)
+    }
+
+    /// The slide's level velocity after a step in which the agent made the way `made`: what is in the way ends it.
+    pub(super) fn slide_left(&self, slide: Vec3, made: Vec3) -> Vec3 {
+        let speed = slide.length();
+        if speed == 0.0 {
+            return slide;
+        }
+        let along = made.dot(slide) / (speed * self.dt_s);
+        slide * (along.clamp(0.0, speed) / speed)
+    }
+
+    /// The slide's level velocity after a step on the ground at `feet`.
+    pub(super) fn slide_on(&self, feet: Vec3, slide: Vec3) -> Vec3 {
+        let resting = slide == Vec3::ZERO;
+        let Some(normal) = self.probe.surface(feet, feet.y) else {
+            return if resting {
+                slide
+            } else {
+                self.braked(slide, 1.0)
+            };
+        };
+        let limit = self.probe.body.max_slope_rad;
+        if normal.y >= math::cos(limit) - MARGIN || normal.y <= MARGIN {
+            return if resting {
+                slide
+            } else {
+                self.braked(slide, normal.y)
+            };
+        }
+        let level = Vec3::new(normal.x, 0.0, normal.z);
+        let steepness = level.length();
+        let downhill = level / steepness;
+        let along = self.gravity_m_s2 * (steepness - math::tan(limit) * normal.y) * self.dt_s;
+        // The level part of the velocity along the surface.
+        let speed = slide.dot(downhill).max(0.0) + along.max(0.0) * normal.y;
+        downhill * speed.min(FASTEST_M_S)
+    }
+
+    /// A slide after a step of friction on a surface that faces up by `levelness`.
+    fn braked(&self, slide: Vec3, levelness: f32) -> Vec3 {
+        let friction = math::tan(self.probe.body.max_slope_rad).max(0.1);
+        let lost = self.gravity_m_s2 * friction * levelness * self.dt_s;
+        let speed = slide.length();
+        if speed <= lost {
+            Vec3::ZERO
+        } else {
+            slide * (1.0 - lost / speed)
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Two driven wheels side by side.
+
+use super::Twist;
+use dwell_scene::DifferentialDrive;
+
+/// The geometry of a differential drive: what decides how wheels move the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wheels {
+    /// Radius of the left and right wheel, m.
+    pub radius_m: [f64; 2],
+    /// Distance between the points where they touch the floor, m.
+    pub base_m: f64,
+}
+
+impl From<&DifferentialDrive> for Wheels {
+    fn from(drive: &DifferentialDrive) -> Self {
+        Self {
+            radius_m: [drive.left_wheel_radius_m, drive.right_wheel_radius_m].map(f64::from),
+            base_m: f64::from(drive.wheel_base_m),
+        }
+    }
+}
+
+impl Wheels {
+    /// How the body moves when the left and right wheel turn at these rates (rad/s) and roll without slip: the mean of
+    /// both speeds forward, their difference over the wheel base to the left.
+    ///
+    /// # Source
+    /// R. Siegwart, I. R. Nourbakhsh, Introduction to Autonomous Mobile Robots (2004), section 3.2.
+    pub fn twist(&self, wheel_rad_s: [f64; 2]) -> Twist {
+        let [left, right] = [0, 1].map(|side| self.radius_m[side] * wheel_rad_s[side]);
+        Twist {
+            forward_m_s: 0.5 * (left + right),
+            left_m_s: 0.0,
+            yaw_rate_rad_s: (right - left) / self.base_m,
+        }
+    }
+
+    /// The rates of the left and right wheel (rad/s) that make the body go forward and turn so; [`Wheels::twist`]
+    /// backwards. Such wheels cannot go sideways.
+    pub fn rates(&self, forward_m_s: f64, yaw_rate_rad_s: f64) -> [f64; 2] {
+        let turn = 0.5 * self.base_m * yaw_rate_rad_s;
+        [
+            (forward_m_s - turn) / self.radius_m[0],
+            (forward_m_s + turn) / self.radius_m[1],
+        ]
+    }
+}
+
+/// What the wheels are told: rates of the left and right one, rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WheelCommand(pub(crate) [f64; 2]);
+
+impl WheelCommand {
+    /// A forward speed and a rate of turn, as the base's own geometry makes them. What is too fast for a wheel is slowed
+    /// down as a whole, so that the way keeps its curvature.
+    pub(crate) fn from_twist(nominal: &Wheels, forward: f64, yaw_rate: f64, fastest: f64) -> Self {
+        let rates = nominal.rates(forward, yaw_rate);
+        let most = rates[0].abs().max(rates[1].abs());
+        let part = if most > fastest { fastest / most } else { 1.0 };
+        Self(rates.map(|rate| rate * part))
+    }
+}
+
+/// What two wheels do in one physics step; laws change it before it becomes a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rolling {
+    /// The true geometry.
+    pub(crate) wheels: Wheels,
+    /// Mean rate of each wheel over the step, rad/s.
+    pub(crate) rate_rad_s: [f64; 2],
+    /// Mean acceleration of each wheel over the step, rad/s².
+    pub(crate) acceleration_rad_s2: [f64; 2],
+    /// The part of each wheel's way that is lost: the body's way is `r w (1 - slip)`.
+    pub(crate) slip: [f64; 2],
+}
+
+impl Rolling {
+    /// How the body moves.
+    pub(crate) fn twist(&self) -> Twist {
+        let gripping = [0, 1].map(|side| self.rate_rad_s[side] * (1.0 - self.slip[side]));
+        self.wheels.twist(gripping)
+    }
+}
+
+/// A speed that goes towards `target` with at most `acceleration` (> 0) for `dt_s`: the speed at the end, and the mean
+/// over the time.
+pub(crate) fn ramp(now: f64, target: f64, acceleration: f64, dt_s: f64) -> (f64, f64) {
+    let change = target - now;
+    let needed_s = change.abs() / acceleration;
+    if needed_s >= dt_s {
+        let end = now + acceleration.copysign(change) * dt_s;
+        (end, 0.5 * (now + end))
+    } else {
+        let ramped = needed_s / dt_s;
+        (target, target - 0.5 * change * ramped)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bases::PlanarPose;
+    use proptest::prelude::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    fn wheels(radii: [f64; 2], base: f64) -> Wheels {
+        Wheels {
+            radius_m: radii,
+            base_m: base,
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn rates_are_the_inverse_of_the_twist(
+            l in 0.01..0.5_f64, r in 0.01..0.5_f64, b in 0.05..2.0_f64, v in -3.0..3.0_f64, w in -6.0..6.0_f64,
+        ) {
+            let wheels = wheels([l, r], b);
+            let twist = wheels.twist(wheels.rates(v, w));
+            prop_assert!((twist.forward_m_s - v).abs() < 1e-12 && (twist.yaw_rate_rad_s - w).abs() < 1e-11);
+        }
+
+        /// The mean over a step is what many smaller steps travel.
+        #[test]
+        fn a_ramp_in_one_step_or_many_covers_the_same_way(now in -5.0..5.0_f64, target in -5.0..5.0_f64, a in 0.5..50.0_f64) {
+            let (end, mean) = ramp(now, target, a, 0.1);
+            let (mut speed, mut way) = (now, 0.0);
+            for _ in 0..64 {
+                let (next, mean) = ramp(speed, target, a, 0.1 / 64.0);
+                way += mean * 0.1 / 64.0;
+                speed = next;
+            }
+            prop_assert!((speed - end).abs() < 1e-12 && (way - mean * 0.1).abs() < 1e-12);
+        }
+    }
+
+    /// The square of Borenstein and Feng, driven both ways by a robot that trusts its nominal numbers. Unequal wheels add
+    /// to the turning in one direction and take from it in the other (type B), a wrong base does the same in both (type A).
+    ///
+    /// # Source
+    /// J. Borenstein, L. Feng, Measurement and correction of systematic odometry errors in mobile robots, IEEE
+    /// Transactions on Robotics and Automation 12, 869 (1996), section III.
+    #[test]
+    fn a_square_ends_with_the_heading_error_of_its_wheels_and_base() {
+        let nominal = wheels([0.05, 0.05], 0.3);
+        let side = 4.0;
+        let heading = |truth: &Wheels, direction: f64| {
+            let mut pose = PlanarPose::default();
+            for _ in 0..4 {
+                for (forward, yaw, seconds) in [(1.0, 0.0, side), (0.0, direction, FRAC_PI_2)] {
+                    let twist = truth.twist(nominal.rates(forward, yaw));
+                    pose = pose.advanced(&twist, seconds);
+                }
+            }
+            pose.heading_rad
+        };
+        // Unequal wheels: the heading bends by (d_r - d_l) / b on each metre, whatever the direction of the square.
+        let ratio = 1.004;
+        let (left, right) = (0.1 / (1.0 + ratio), 0.1 / (1.0 + 1.0 / ratio));
+        let unequal = wheels([left, right], 0.3);
+        let bend = (right - left) / 0.05 / 0.3 * 4.0 * side;
+        for direction in [1.0, -1.0] {
+            let error = heading(&unequal, direction) - direction * 2.0 * PI;
+            // The turns on the spot are made by the mean radius, which is nominal.
+            assert!((error - bend).abs() < 1e-12, "{error} {bend}");
+        }
+        // A wrong base: every turn is too small by b / b_true.
+        let wide = wheels([0.05, 0.05], 0.3 * 1.01);
+        for direction in [1.0, -1.0] {
+            let error = heading(&wide, direction) - direction * 2.0 * PI;
+            let expected = direction * 2.0 * PI * (1.0 / 1.01 - 1.0);
+            assert!((error - expected).abs() < 1e-12, "{error} {expected}");
+        }
+    }
+}

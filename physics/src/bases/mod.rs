@@ -1,0 +1,17 @@
+//! Wheeled bases: how wheels move a body over a floor, in closed form.
+//!
+//! Poses and twists are planar, in the frame of robotics: X forward, Y to the left, headings positive to the left. A
+//! world's agent at yaw 0 faces -Z, so that X is -Z and Y is -X there.
+//!
+//! What a base cannot do it does not do: wheels that push against a wall go on turning and slip on the floor, so that
+//! their odometry counts a way that was not made, as a real robot's does. A body that leaves the floor keeps its
+//! velocity and its heading until it lands. Along a wall that it meets at an angle it scrapes as a walker does.
+
+mod differential;
+mod drive;
+mod holonomic;
+mod planar;
+
+pub use differential::Wheels;
+pub(crate) use drive::drive;
+pub use planar::{PlanarPose, Twist};
