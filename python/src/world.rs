@@ -152,6 +152,7 @@ impl PyWorld {
                 right_m_s: row[1],
                 yaw_rate_rad_s: row[2],
                 pitch_rate_rad_s: row[3],
+                ..AgentControl::default()
             })
             .collect();
         self.with(py, |running| Ok(running.world.step(&controls)?))

@@ -181,6 +181,7 @@ fn it_comes_off_a_table_at_any_speed() {
         };
         let id = run.agent_with(body, Vec3::new(3.0, 1.0, 3.1), 0.0);
         run.walk((0.6 / speed * 20.0) as usize, &[forward(speed)]);
+        run.steps(20);
         let at = run.state.agents[id].position;
         assert!(
             at.y < 0.01 && at.z < 2.81,
