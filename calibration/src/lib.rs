@@ -20,6 +20,7 @@ mod fit;
 mod options;
 mod progress;
 mod report;
+pub mod rollout;
 mod select;
 mod twin;
 mod words;
@@ -58,6 +59,14 @@ pub fn calibrate(
         Kind::Trajectory => Box::new(FlightTwin::new(&bundle, options)?),
         Kind::Servo => Box::new(ServoTwin::new(&bundle, options)?),
         Kind::ImpulseResponse => Box::new(RoomTwin::new(&bundle, options)?),
+        Kind::PoseTrajectory => {
+            return Err(CalibrationError::field(
+                bundle.name,
+                "kind",
+                "pose_trajectory",
+                "a kind whose causes are named; roll-outs are judged by `rollout::study`",
+            ));
+        }
     };
     let findings = select::explain(twin.as_mut(), options, &progress)?;
     let report = report::build(&bundle, twin.as_ref(), &findings);

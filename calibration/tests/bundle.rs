@@ -35,7 +35,7 @@ fn faults_are_named_with_file_line_and_field() {
             "manifest.json",
             "\"version\": 1",
             "\"version\": 7",
-            &["manifest.json", "version is 7", "1, the version"],
+            &["manifest.json", "version is 7", "1 to 2, the versions"],
         ),
         (
             "manifest.json",

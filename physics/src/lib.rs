@@ -45,7 +45,7 @@ mod world;
 
 pub use actions::{Action, ActionCode, ActionOutcome, Notice};
 pub use agents::AgentControl;
-pub use config::PhysicsConfig;
+pub use config::{ContactFriction, PhysicsConfig};
 pub use contact::{ContactEvent, Toucher};
 pub use error::PhysicsError;
 pub use model::PhysicsModel;

@@ -1,8 +1,8 @@
 //! How hard contacts are: rapier's parameters for them.
 
-use crate::config::Settings;
+use crate::config::{ContactFriction, Settings};
 use crate::laws::Compliance;
-use rapier3d::dynamics::{IntegrationParameters, SpringCoefficients};
+use rapier3d::dynamics::{FrictionModel, IntegrationParameters, SpringCoefficients};
 use std::f64::consts::TAU;
 
 /// Natural frequency of contacts, as a share of the substep rate. A body sinks by g over its square: 0.04 mm at 4 substeps
@@ -18,6 +18,13 @@ const LONGEST_RUN_RAD: f64 = 0.1;
 /// Sweeps over the contacts of a run, where rapier sweeps twice with 1 each.
 const SOFT_SWEEPS: usize = 4;
 
+fn friction(settings: &Settings) -> FrictionModel {
+    match settings.config.contact_friction {
+        ContactFriction::Patch => FrictionModel::Simplified,
+        ContactFriction::Point => FrictionModel::Coulomb,
+    }
+}
+
 /// Contacts as hard as the rate allows.
 pub(crate) fn rigid(settings: &Settings) -> IntegrationParameters {
     let substeps = settings.config.solver_substeps as f32;
@@ -32,6 +39,7 @@ pub(crate) fn rigid(settings: &Settings) -> IntegrationParameters {
         num_solver_iterations: settings.config.solver_substeps as usize,
         contact_softness: softness(CONTACT_FREQUENCY),
         static_contact_softness: softness(STATIC_CONTACT_FREQUENCY),
+        friction_model: friction(settings),
         ..IntegrationParameters::default()
     }
 }
@@ -80,6 +88,7 @@ pub(crate) fn soft(settings: &Settings, compliance: Compliance) -> (IntegrationP
         static_contact_softness: softness,
         normalized_prediction_distance: 0.0,
         normalized_max_corrective_velocity: f32::MAX,
+        friction_model: friction(settings),
         ..IntegrationParameters::default()
     };
     (parameters, runs)

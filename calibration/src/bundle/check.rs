@@ -1,7 +1,7 @@
 //! Whether a bundle says what it must, in ranges that make sense.
 
-use super::file::{Kind, Manifest, Surface, VERSION};
-use super::{Bundle, limits};
+use super::file::{Body, Kind, Manifest, Surface, VERSION};
+use super::{Bundle, limits, poses};
 use crate::error::CalibrationError;
 use dwell_scene::material::library;
 use std::collections::BTreeMap;
@@ -12,6 +12,8 @@ type Checked = Result<(), CalibrationError>;
 pub(crate) const SIDES: [&str; 6] = ["floor", "ceiling", "west", "east", "north", "south"];
 /// Episodes below which nothing can be held out.
 const FEWEST_EPISODES: usize = 4;
+/// Poses of an episode below which nothing can be predicted from them.
+const FEWEST_POSES: usize = 6;
 
 /// Names of a manifest by position.
 pub(super) struct Names {
@@ -118,8 +120,8 @@ pub(super) fn place(at: &str, field: &str, point: [f64; 3], manifest: &Manifest)
 
 /// The manifest's own ranges.
 pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
-    if manifest.version != VERSION {
-        let allowed = format!("{VERSION}, the version this build reads");
+    if !(1..=VERSION).contains(&manifest.version) {
+        let allowed = format!("1 to {VERSION}, the versions this build reads");
         return Err(CalibrationError::field(
             at,
             "version",
@@ -158,7 +160,14 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
         let of = |field: &str| format!("scene.bodies[{k}].{field}");
         name(at, &of("name"), &body.name)?;
         range(at, &of("mass_kg"), body.mass_kg, 1e-6, 1e4)?;
-        range(at, &of("radius_m"), body.radius_m, 1e-3, 10.0)?;
+        shape(at, &of, body)?;
+    }
+    if let Some(board) = &scene.board {
+        range(at, "scene.board.friction", board.friction, 0.0, 10.0)?;
+        range(at, "scene.board.restitution", board.restitution, 0.0, 1.0)?;
+    }
+    if manifest.kind == Kind::PoseTrajectory {
+        pose_form(at, manifest)?;
     }
     for (k, joint) in scene.joints.iter().enumerate() {
         let of = |field: &str| format!("scene.joints[{k}].{field}");
@@ -209,6 +218,78 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
         }
     }
     channels(at, manifest)
+}
+
+/// A sphere or a box, and an inertia that such a body can have.
+fn shape(at: &str, of: &dyn Fn(&str) -> String, body: &Body) -> Checked {
+    match (body.radius_m, body.half_extents_m) {
+        (Some(radius), None) => range(at, &of("radius_m"), radius, 1e-3, 10.0)?,
+        (None, Some(half)) => {
+            for half in half {
+                range(at, &of("half_extents_m"), half, 1e-3, 10.0)?;
+            }
+        }
+        (found, _) => {
+            let found = if found.is_some() { "both" } else { "neither" };
+            let allowed = "one of them: a sphere or a box";
+            let field = of("radius_m and half_extents_m");
+            return Err(CalibrationError::field(at, field, found, allowed));
+        }
+    }
+    if let Some(inertia) = body.inertia_kg_m2 {
+        for moment in inertia {
+            range(at, &of("inertia_kg_m2"), moment, 1e-12, 1e6)?;
+        }
+        let [x, y, z] = inertia;
+        if x > y + z || y > x + z || z > x + y {
+            let allowed = "three moments of which none is larger than the sum of the others";
+            let found = format!("{inertia:?}");
+            return Err(CalibrationError::field(
+                at,
+                of("inertia_kg_m2"),
+                found,
+                allowed,
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn pose_form(at: &str, manifest: &Manifest) -> Checked {
+    if manifest.version < 2 {
+        let allowed = "2 for pose trajectories";
+        return Err(CalibrationError::field(
+            at,
+            "version",
+            manifest.version,
+            allowed,
+        ));
+    }
+    let Some(form) = &manifest.poses else {
+        return Err(missing(
+            at,
+            "poses",
+            "the rate and the frame of the velocities must be said",
+        ));
+    };
+    range(at, "poses.rate_hz", form.rate_hz, 10.0, 1000.0)?;
+    if manifest.scene.board.is_none() {
+        return Err(missing(
+            at,
+            "scene.board",
+            "its friction and restitution before any fit",
+        ));
+    }
+    if manifest.scene.bodies.len() != 1 {
+        let found = manifest.scene.bodies.len();
+        return Err(CalibrationError::field(
+            at,
+            "scene.bodies",
+            found,
+            "exactly one body",
+        ));
+    }
+    Ok(())
 }
 
 fn surface_of(at: &str, side: &str, surface: &Surface) -> Checked {
@@ -265,7 +346,7 @@ fn channels(at: &str, manifest: &Manifest) -> Checked {
     let (allowed, unit): (&[&str], &str) = match manifest.kind {
         Kind::Trajectory => (&["x", "y", "z"], "m"),
         Kind::Servo => (&["position"], "rad"),
-        Kind::ImpulseResponse => return Ok(()),
+        Kind::ImpulseResponse | Kind::PoseTrajectory => return Ok(()),
     };
     for (k, channel) in manifest.channels.iter().enumerate() {
         let of = |field: &str| format!("channels[{k}].{field}");
@@ -324,6 +405,13 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
                 "a trajectory needs the body that flew",
             ));
         }
+        Kind::Trajectory if scene.bodies.iter().any(|body| body.radius_m.is_none()) => {
+            return Err(missing(
+                &at,
+                "scene.bodies[].radius_m",
+                "free flight is computed for spheres",
+            ));
+        }
         Kind::Servo if scene.joints.len() != 1 || !scene.bodies.is_empty() => {
             return Err(CalibrationError::field(
                 at,
@@ -370,6 +458,16 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
                     needed,
                 });
             }
+            Kind::PoseTrajectory if episode.poses.len() < FEWEST_POSES => {
+                let (what, found, needed) =
+                    ("rows of poses.csv", episode.poses.len(), FEWEST_POSES);
+                return Err(CalibrationError::TooFew {
+                    at,
+                    what,
+                    found,
+                    needed,
+                });
+            }
             Kind::Trajectory
                 if episode
                     .samples
@@ -392,8 +490,9 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
             }
             _ => {}
         }
-        let span =
-            |f: fn(f64, f64) -> f64, from: f64| episode.samples.iter().map(|s| s.t_s).fold(from, f);
+        let samples = episode.samples.iter().map(|s| s.t_s);
+        let times: Vec<f64> = samples.chain(episode.poses.iter().map(|p| p.t_s)).collect();
+        let span = |f: fn(f64, f64) -> f64, from: f64| times.iter().copied().fold(from, f);
         let duration = span(f64::max, f64::NEG_INFINITY) - span(f64::min, f64::INFINITY);
         if duration > 600.0 {
             return Err(CalibrationError::field(
@@ -403,6 +502,9 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
                 "at most 600 s",
             ));
         }
+    }
+    if bundle.kind() == Kind::PoseTrajectory {
+        poses::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?;
     }
     Ok(())
 }

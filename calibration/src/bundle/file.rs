@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The version of the bundle's form that this build reads.
-pub const VERSION: u32 = 1;
+/// The version of the bundle's form that this build writes; it reads this one and those before it.
+///
+/// 1: flights, servos, impulse responses. 2: pose trajectories of bodies that touch a board (`poses.csv`, `starts.csv`).
+pub const VERSION: u32 = 2;
 
 /// `manifest.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +25,9 @@ pub struct Manifest {
     /// What the numbers of `trajectory.csv` mean.
     #[serde(default)]
     pub channels: Vec<Channel>,
+    /// What the numbers of `poses.csv` and `starts.csv` mean (kind `pose_trajectory`).
+    #[serde(default)]
+    pub poses: Option<PoseForm>,
     /// Anything else.
     #[serde(default)]
     pub notes: String,
@@ -38,6 +43,31 @@ pub enum Kind {
     Servo,
     /// Impulse responses of a room.
     ImpulseResponse,
+    /// Poses of a rigid body that flies, hits a flat board, slides, rolls and comes to rest.
+    PoseTrajectory,
+}
+
+/// What the numbers of `poses.csv` mean.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PoseForm {
+    /// Samples per second, Hz; the samples of an episode are evenly spaced.
+    pub rate_hz: f64,
+    /// The frame of `wx, wy, wz`.
+    pub angular_velocity: AngularFrame,
+    /// What was done to the numbers before (`"median 3"`, `"none"`); empty: unknown.
+    #[serde(default)]
+    pub filtering: String,
+}
+
+/// The frame in which an angular velocity is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AngularFrame {
+    /// Along the axes of the body.
+    Body,
+    /// Along the axes of the world.
+    World,
 }
 
 /// The situation in which was measured.
@@ -56,6 +86,19 @@ pub struct Scene {
     /// The room of impulse responses.
     #[serde(default)]
     pub room: Option<Room>,
+    /// The board of pose trajectories: the plane y = 0.
+    #[serde(default)]
+    pub board: Option<Board>,
+}
+
+/// A flat board, the plane y = 0, with the contact values that are taken for it and the body before any fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Board {
+    /// Coulomb friction of the pair, 0 to 10.
+    pub friction: f64,
+    /// Restitution of the pair, 0 to 1.
+    pub restitution: f64,
 }
 
 /// Air and place; `null` where it was not measured.
@@ -72,16 +115,23 @@ pub struct Environment {
     pub g_m_s2: Option<f64>,
 }
 
-/// A body that is tracked: a sphere.
+/// A body that is tracked: a sphere or a box.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
-    /// The name that `trajectory.csv` uses as its entity.
+    /// The name that the tables use as its entity.
     pub name: String,
     /// kg.
     pub mass_kg: f64,
-    /// m.
-    pub radius_m: f64,
+    /// Of a sphere, m; `null` for a box.
+    #[serde(default)]
+    pub radius_m: Option<f64>,
+    /// Half of each edge of a box, m; `null` for a sphere.
+    #[serde(default)]
+    pub half_extents_m: Option<[f64; 3]>,
+    /// Principal moments of inertia about the body's axes, kg·m²; `null`: those of a solid body.
+    #[serde(default)]
+    pub inertia_kg_m2: Option<[f64; 3]>,
 }
 
 /// A joint that is tracked and driven: a hinge about the vertical, on which gravity does nothing.
@@ -209,4 +259,52 @@ pub struct ResponseRow {
     pub receiver_z: f64,
     /// Sample rate, Hz; the WAV file's own must be the same.
     pub rate_hz: u32,
+}
+
+/// A row of `poses.csv`. Axes are the world's (right-handed, y up); the velocities may be empty, all six at once.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "position in m, quaternion world from body, velocities in m/s and rad/s, by axis"
+)]
+pub struct PoseRow {
+    /// The episode.
+    pub episode: String,
+    /// Time on the tracker's clock, s.
+    pub t_s: f64,
+    /// The body.
+    pub entity: String,
+    pub x: f64,
+    pub y: f64,
+    pub z: f64,
+    pub qx: f64,
+    pub qy: f64,
+    pub qz: f64,
+    pub qw: f64,
+    pub vx: Option<f64>,
+    pub vy: Option<f64>,
+    pub vz: Option<f64>,
+    pub wx: Option<f64>,
+    pub wy: Option<f64>,
+    pub wz: Option<f64>,
+}
+
+/// A row of `starts.csv`: the sample from which an episode is rolled out, and velocities there that were fitted to the
+/// flight before it. An episode without a row starts at its first sample, as it was measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "velocities in m/s and rad/s, by axis, in the frames of `poses.csv`"
+)]
+pub struct StartRow {
+    /// The episode.
+    pub episode: String,
+    /// The sample, counted from 0.
+    pub sample: u32,
+    pub vx: f64,
+    pub vy: f64,
+    pub vz: f64,
+    pub wx: f64,
+    pub wy: f64,
+    pub wz: f64,
 }

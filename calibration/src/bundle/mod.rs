@@ -7,6 +7,8 @@
 //! | `trajectory.csv` | `episode, t_s, entity, channel, value` (kinds trajectory and servo) |
 //! | `command.csv` | `episode, t_s, actuator, kind, value` (kind servo) |
 //! | `ir.csv` | `episode, file, source_x, source_y, source_z, receiver_x, receiver_y, receiver_z, rate_hz` (kind `impulse_response`) |
+//! | `poses.csv` | `episode, t_s, entity, x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`) |
+//! | `starts.csv` | `episode, sample, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`; may be absent) |
 //! | `ir/*.wav` | the responses that `ir.csv` names |
 //!
 //! Everything is SI; axes are the engine's (right-handed, y up).
@@ -15,10 +17,12 @@ pub mod file;
 
 mod check;
 mod limits;
+mod poses;
 mod read;
 mod wav;
 
 use file::{CommandRow, Kind, Manifest};
+use glam::{DQuat, DVec3};
 
 /// A bundle that was read and checked.
 #[derive(Clone, Debug)]
@@ -41,6 +45,33 @@ pub(crate) struct Episode {
     /// By actuator, each by time.
     pub(crate) commands: Vec<CommandRow>,
     pub(crate) responses: Vec<Response>,
+    /// By time.
+    pub(crate) poses: Vec<PoseSample>,
+    /// The sample to roll out from, and the velocities there; `None`: the first, as measured.
+    pub(crate) start: Option<(usize, Rates)>,
+}
+
+/// A measured pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PoseSample {
+    pub(crate) t_s: f64,
+    /// Position in the manifest's bodies.
+    pub(crate) entity: usize,
+    /// m.
+    pub(crate) position: DVec3,
+    /// World from body, unit length.
+    pub(crate) rotation: DQuat,
+    /// Where the tracker gives them.
+    pub(crate) rates: Option<Rates>,
+}
+
+/// Velocities, both along the axes of the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rates {
+    /// m/s.
+    pub(crate) linear: DVec3,
+    /// rad/s.
+    pub(crate) angular: DVec3,
 }
 
 /// One measured number.
@@ -72,4 +103,5 @@ impl Bundle {
 }
 
 pub(crate) use check::SIDES;
+pub(crate) use poses::turn;
 pub(crate) use read::read;

@@ -3,7 +3,7 @@
 use super::check::{self, Names};
 use super::file::{CommandRow, EpisodeRow, Kind, Manifest, ResponseRow, TrajectoryRow};
 use super::limits;
-use super::{Bundle, Episode, Response, Sample, wav};
+use super::{Bundle, Episode, Response, Sample, poses, wav};
 use crate::error::CalibrationError;
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,6 +36,15 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
         }
         Kind::ImpulseResponse => {
             responses(folder, &bundle.manifest, &by_name, &mut bundle.episodes)?;
+        }
+        Kind::PoseTrajectory => {
+            poses::read(
+                folder,
+                &names,
+                &by_name,
+                &bundle.manifest,
+                &mut bundle.episodes,
+            )?;
         }
     }
     check::complete(&bundle)?;
@@ -108,7 +117,7 @@ fn manifest(folder: &Path) -> Result<Manifest, CalibrationError> {
 }
 
 /// Calls `row` with every row of a table and its place.
-fn table<T: DeserializeOwned>(
+pub(super) fn table<T: DeserializeOwned>(
     folder: &Path,
     name: &str,
     mut row: impl FnMut(T, &str) -> Result<(), CalibrationError>,
@@ -173,7 +182,7 @@ fn episodes(folder: &Path) -> Result<Vec<Episode>, CalibrationError> {
 }
 
 /// The position of an episode.
-fn episode(
+pub(super) fn episode(
     at: &str,
     by_name: &BTreeMap<String, usize>,
     name: &str,

@@ -1,5 +1,8 @@
-//! Fitting: damped Gauss-Newton over shared parameters and each episode's own nuisances.
+//! Fitting: damped Gauss-Newton over shared parameters and each episode's own nuisances; evolution where there are no
+//! derivatives.
 
+#[cfg(test)]
+mod cma_es;
 mod gauss_newton;
 mod normal;
 mod robust;

@@ -69,7 +69,8 @@ impl FlightTwin {
         let size_m = (4.0 * reach + 40.0).min(1000.0) as f32;
         let mut stages = Vec::new();
         for body in &manifest.scene.bodies {
-            let ball = Thing::ball(&body.name, body.mass_kg, body.radius_m);
+            // `bundle::read` has asked for the radius.
+            let ball = Thing::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
             let config = PhysicsConfig {
                 control_rate_hz: options.physics_rate_hz as f32,
                 physics_rate_hz: options.physics_rate_hz as f32,

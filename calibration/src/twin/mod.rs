@@ -5,7 +5,7 @@ mod flight;
 mod parameter;
 mod room;
 mod servo;
-mod stage;
+pub(crate) mod stage;
 
 pub(crate) use flight::FlightTwin;
 pub(crate) use parameter::{Cause, Experiment, Parameter};

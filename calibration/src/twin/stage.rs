@@ -12,27 +12,37 @@ use std::sync::Arc;
 
 /// Half the edge of the box that stands for all that a servo turns, m.
 const ARM_HALF_EDGE_M: f32 = 0.1;
+/// What everything that is tracked is made of here.
+pub(crate) const THING_SUBSTANCE: &str = "rubber";
+/// What the board is made of here; its contact values with the thing are overridden.
+pub(crate) const BOARD_SUBSTANCE: &str = "plywood";
+/// Half the board's edge, m.
+const BOARD_HALF_EDGE_M: f32 = 4.0;
+/// Where a thing waits above the board until it is put somewhere, m.
+const WAITING_HEIGHT_M: f32 = 2.0;
 
 /// A physics world at its start, to be copied for every simulation.
 #[derive(Clone)]
-pub(super) struct Stage {
-    pub(super) house: Arc<House>,
-    pub(super) world: PhysicsWorld,
-    pub(super) state: State,
+pub(crate) struct Stage {
+    pub(crate) house: Arc<House>,
+    pub(crate) world: PhysicsWorld,
+    pub(crate) state: State,
 }
 
 /// What is simulated.
-pub(super) struct Thing {
-    pub(super) name: String,
-    pub(super) mass_kg: f32,
-    pub(super) collider: Collider,
+pub(crate) struct Thing {
+    pub(crate) name: String,
+    pub(crate) mass_kg: f32,
+    pub(crate) collider: Collider,
     /// The servo and Coulomb friction of its hinge; `None`: it is free.
-    pub(super) hinge: Option<(Servo, f32)>,
+    pub(crate) hinge: Option<(Servo, f32)>,
+    /// Whether it lies in wait above a board, the plane y = 0.
+    pub(crate) board: bool,
 }
 
 impl Thing {
     /// A ball.
-    pub(super) fn ball(name: &str, mass_kg: f64, radius_m: f64) -> Self {
+    pub(crate) fn ball(name: &str, mass_kg: f64, radius_m: f64) -> Self {
         Self {
             name: name.to_owned(),
             mass_kg: mass_kg as f32,
@@ -41,11 +51,22 @@ impl Thing {
                 radius: radius_m as f32,
             },
             hinge: None,
+            board: false,
+        }
+    }
+
+    /// A box above a board.
+    pub(crate) fn tossed(name: &str, mass_kg: f64, half_extents_m: [f64; 3]) -> Self {
+        let half = Vec3::from(half_extents_m.map(|half| half as f32));
+        Self {
+            collider: Collider::cuboid(-half, half),
+            board: true,
+            ..Self::ball(name, mass_kg, 0.1)
         }
     }
 
     /// A box on a vertical hinge with this moment of inertia about it.
-    pub(super) fn arm(name: &str, inertia_kg_m2: f64, hinge: (Servo, f32)) -> Self {
+    pub(crate) fn arm(name: &str, inertia_kg_m2: f64, hinge: (Servo, f32)) -> Self {
         let half = ARM_HALF_EDGE_M;
         Self {
             name: name.to_owned(),
@@ -53,6 +74,7 @@ impl Thing {
             mass_kg: (inertia_kg_m2 * 12.0 / f64::from(8.0 * half * half)) as f32,
             collider: Collider::cuboid(Vec3::splat(-half), Vec3::splat(half)),
             hinge: Some(hinge),
+            board: false,
         }
     }
 }
@@ -60,7 +82,7 @@ impl Thing {
 impl Stage {
     /// A closed box of `size_m` around the origin with one thing in it. Near the origin single precision is finest: a
     /// flight through larger coordinates would be rough by more than what is looked for.
-    pub(super) fn new(
+    pub(crate) fn new(
         size_m: f32,
         thing: &Thing,
         config: PhysicsConfig,
@@ -84,6 +106,9 @@ impl Stage {
             piece.room = None;
         }
         put(&mut data, thing);
+        if thing.board {
+            put_board(&mut data);
+        }
         let house = Arc::new(House::new(data).map_err(|e| fault(&e))?);
         let mut state = State::new(&house);
         let (world, report) =
@@ -99,7 +124,7 @@ impl Stage {
     }
 
     /// Installs laws and overrides into a copy.
-    pub(super) fn with(
+    pub(crate) fn with(
         &self,
         laws: Vec<LawSpec>,
         overrides: &[(&str, f64)],
@@ -124,13 +149,13 @@ impl Stage {
     }
 
     /// Takes over what was changed in the state.
-    pub(super) fn adopt(&mut self) -> Result<(), CalibrationError> {
+    pub(crate) fn adopt(&mut self) -> Result<(), CalibrationError> {
         let adopted = self.world.adopt(&mut self.state);
         adopted.map_err(|error| CalibrationError::simulation("a start", error))
     }
 
     /// One step.
-    pub(super) fn step(&mut self) -> Result<(), CalibrationError> {
+    pub(crate) fn step(&mut self) -> Result<(), CalibrationError> {
         let mut events = Vec::new();
         let stepped = self.world.step(&mut self.state, &[], &mut events);
         stepped.map_err(|error| CalibrationError::simulation("a step", error))
@@ -138,9 +163,10 @@ impl Stage {
 }
 
 fn put(data: &mut HouseData, thing: &Thing) {
-    let material = data
-        .materials
-        .push(Material::of("thing", library().get_or_default("rubber")));
+    let material = data.materials.push(Material::of(
+        "thing",
+        library().get_or_default(THING_SUBSTANCE),
+    ));
     let mesh = data.meshes.push(Arc::new(octahedron()));
     let (object, part) = (
         ObjectId(data.objects.len() as u32),
@@ -167,7 +193,11 @@ fn put(data: &mut HouseData, thing: &Thing) {
         object,
         name: "part".into(),
         fixed: false,
-        world_from_part: Pose::IDENTITY,
+        world_from_part: if thing.board {
+            Pose::from_position(Vec3::new(0.0, WAITING_HEIGHT_M, 0.0))
+        } else {
+            Pose::IDENTITY
+        },
         mesh,
         part_from_mesh: Affine3A::from_scale(Vec3::splat(ARM_HALF_EDGE_M)),
         materials: vec![material],
@@ -184,6 +214,48 @@ fn put(data: &mut HouseData, thing: &Thing) {
             ..Articulation::new(&thing.name, object, part, JointKind::Hinge, Vec3::Y)
         });
     }
+}
+
+/// The board: a slab below the plane y = 0, one convex piece without inner edges.
+fn put_board(data: &mut HouseData) {
+    let material = data.materials.push(Material::of(
+        "board",
+        library().get_or_default(BOARD_SUBSTANCE),
+    ));
+    let mesh = data.meshes.push(Arc::new(octahedron()));
+    let (object, part) = (
+        ObjectId(data.objects.len() as u32),
+        PartId(data.parts.len() as u32),
+    );
+    data.objects.push(Object {
+        name: "board".into(),
+        source_id: String::new(),
+        model: String::new(),
+        category: Category::default(),
+        level: LevelId(0),
+        room: None,
+        mobility: Mobility::Fixed,
+        pickable: false,
+        switch: None,
+        first_part: part,
+        part_count: 1,
+    });
+    let (half, thickness) = (BOARD_HALF_EDGE_M, 0.5);
+    data.parts.push(Part {
+        object,
+        name: "part".into(),
+        fixed: true,
+        world_from_part: Pose::IDENTITY,
+        mesh,
+        part_from_mesh: Affine3A::from_scale(Vec3::splat(ARM_HALF_EDGE_M)),
+        materials: vec![material],
+        colliders: vec![Collider::cuboid(
+            Vec3::new(-half, -thickness, -half),
+            Vec3::new(half, 0.0, half),
+        )],
+        mass_kg: None,
+        density_kg_m3: 1000.0,
+    });
 }
 
 /// Something to see, as every part must have.
@@ -216,7 +288,7 @@ fn octahedron() -> Mesh {
 }
 
 /// A quantity with its rate of change at equal steps, read between them by cubic Hermite interpolation.
-pub(super) fn between(track: &[(f64, f64)], step_s: f64, t_s: f64) -> f64 {
+pub(crate) fn between(track: &[(f64, f64)], step_s: f64, t_s: f64) -> f64 {
     let last = track.len() - 1;
     let place = (t_s / step_s).clamp(0.0, last as f64);
     let k = (place.floor() as usize).min(last.saturating_sub(1));

@@ -1,0 +1,264 @@
+//! Pose trajectories: what stands in `poses.csv` and `starts.csv`, and whether it can be what it says.
+
+use super::check::{self, Names};
+use super::file::{AngularFrame, Manifest, PoseRow, StartRow};
+use super::read::{episode, table};
+use super::{Episode, PoseSample, Rates};
+use crate::error::CalibrationError;
+use glam::{DQuat, DVec3};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// How far a quaternion's length may be from one.
+const UNIT_TOLERANCE: f64 = 1e-3;
+/// How far a sample's time may be from its place in an even row, as a share of the spacing.
+const SPACING_TOLERANCE: f64 = 0.05;
+/// Share of the turning speed, or of the speed, that a test of the velocities must leave unexplained before it speaks.
+const WRONG_SHARE: f64 = 0.5;
+/// Below this speed, m/s or rad/s, a sample says nothing about frames or units.
+const TELLING_SPEED: f64 = 0.5;
+/// Samples that must be telling before a test speaks.
+const FEWEST_TELLING: usize = 50;
+
+type Checked = Result<(), CalibrationError>;
+
+/// Reads both tables into the episodes.
+pub(super) fn read(
+    folder: &Path,
+    names: &Names,
+    by_name: &BTreeMap<String, usize>,
+    manifest: &Manifest,
+    episodes: &mut [Episode],
+) -> Checked {
+    // `check::manifest` has asked for the form.
+    let frame = manifest
+        .poses
+        .as_ref()
+        .map_or(AngularFrame::World, |form| form.angular_velocity);
+    table(folder, "poses.csv", |row: PoseRow, at| {
+        let sample = PoseSample {
+            t_s: row.t_s,
+            entity: names.entity(at, "entity", &row.entity)?,
+            position: DVec3::new(row.x, row.y, row.z),
+            rotation: unit(at, DQuat::from_xyzw(row.qx, row.qy, row.qz, row.qw))?,
+            rates: None,
+        };
+        check::time(at, row.t_s)?;
+        for (field, value) in [("x", row.x), ("y", row.y), ("z", row.z)] {
+            check::finite(at, field, value, 1e3)?;
+        }
+        let rates = rates(at, &row, sample.rotation, frame)?;
+        episodes[episode(at, by_name, &row.episode)?]
+            .poses
+            .push(PoseSample { rates, ..sample });
+        Ok(())
+    })?;
+    for episode in episodes.iter_mut() {
+        episode.poses.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+    }
+    if folder.join("starts.csv").exists() {
+        starts(folder, by_name, frame, episodes)?;
+    }
+    Ok(())
+}
+
+fn starts(
+    folder: &Path,
+    by_name: &BTreeMap<String, usize>,
+    frame: AngularFrame,
+    episodes: &mut [Episode],
+) -> Checked {
+    table(folder, "starts.csv", |row: StartRow, at| {
+        let index = episode(at, by_name, &row.episode)?;
+        let episode = &mut episodes[index];
+        if episode.start.is_some() {
+            let found = format!("{:?} again", row.episode);
+            return Err(CalibrationError::field(at, "episode", found, "each once"));
+        }
+        let sample = row.sample as usize;
+        let Some(pose) = episode.poses.get(sample) else {
+            let allowed = format!("below {}, the episode's samples", episode.poses.len());
+            return Err(CalibrationError::field(at, "sample", row.sample, allowed));
+        };
+        for (field, value) in [
+            ("vx", row.vx),
+            ("vy", row.vy),
+            ("vz", row.vz),
+            ("wx", row.wx),
+            ("wy", row.wy),
+            ("wz", row.wz),
+        ] {
+            check::finite(at, field, value, 1e4)?;
+        }
+        let rates = Rates {
+            linear: DVec3::new(row.vx, row.vy, row.vz),
+            angular: in_world(frame, pose.rotation, DVec3::new(row.wx, row.wy, row.wz)),
+        };
+        episode.start = Some((sample, rates));
+        Ok(())
+    })
+}
+
+fn unit(at: &str, rotation: DQuat) -> Result<DQuat, CalibrationError> {
+    let length = rotation.length();
+    if (length - 1.0).abs() <= UNIT_TOLERANCE {
+        return Ok(rotation.normalize());
+    }
+    let allowed = format!("1 within {UNIT_TOLERANCE}: x, y, z and w of a unit quaternion");
+    Err(CalibrationError::field(
+        at,
+        "the length of qx, qy, qz, qw",
+        length,
+        allowed,
+    ))
+}
+
+fn rates(
+    at: &str,
+    row: &PoseRow,
+    rotation: DQuat,
+    frame: AngularFrame,
+) -> Result<Option<Rates>, CalibrationError> {
+    let all = [row.vx, row.vy, row.vz, row.wx, row.wy, row.wz];
+    let given: Vec<f64> = all.iter().flatten().copied().collect();
+    let [vx, vy, vz, wx, wy, wz] = given[..] else {
+        if given.is_empty() {
+            return Ok(None);
+        }
+        let found = format!("{} of 6", given.len());
+        return Err(CalibrationError::field(
+            at,
+            "vx to wz",
+            found,
+            "all six, or none",
+        ));
+    };
+    for (field, value) in ["vx", "vy", "vz", "wx", "wy", "wz"].iter().zip(&given) {
+        check::finite(at, field, *value, 1e4)?;
+    }
+    Ok(Some(Rates {
+        linear: DVec3::new(vx, vy, vz),
+        angular: in_world(frame, rotation, DVec3::new(wx, wy, wz)),
+    }))
+}
+
+fn in_world(frame: AngularFrame, world_from_body: DQuat, angular: DVec3) -> DVec3 {
+    match frame {
+        AngularFrame::Body => world_from_body * angular,
+        AngularFrame::World => angular,
+    }
+}
+
+/// Whether the poses of all episodes are what the manifest says: evenly spaced, long enough, and with velocities that
+/// agree with the poses in unit, sign, frame and clock.
+pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) -> Checked {
+    let Some(form) = &manifest.poses else {
+        return Ok(());
+    };
+    let step_s = 1.0 / form.rate_hz;
+    for episode in episodes {
+        let at = format!("{name}, episode {}", episode.name);
+        let first = episode.poses.first().map_or(0.0, |sample| sample.t_s);
+        for (k, sample) in episode.poses.iter().enumerate() {
+            let off = (sample.t_s - first - k as f64 * step_s) / step_s;
+            if off.abs() > SPACING_TOLERANCE {
+                let allowed = format!(
+                    "{:.6}, sample {k} of an even row at {} Hz",
+                    first + k as f64 * step_s,
+                    form.rate_hz
+                );
+                return Err(CalibrationError::field(at, "t_s", sample.t_s, allowed));
+            }
+            if sample.entity != episode.poses[0].entity {
+                return Err(CalibrationError::field(
+                    at,
+                    "entity",
+                    "more than one",
+                    "one body an episode",
+                ));
+            }
+        }
+    }
+    velocities(name, form.angular_velocity, step_s, episodes)
+}
+
+/// Sums of squares over samples that move fast enough to tell.
+#[derive(Default)]
+struct Mismatch {
+    told: f64,
+    left: f64,
+    other_left: f64,
+    count: usize,
+}
+
+impl Mismatch {
+    fn add(&mut self, from_poses: DVec3, told: DVec3, other: DVec3) {
+        if from_poses.length() < TELLING_SPEED || !from_poses.is_finite() {
+            return;
+        }
+        self.count += 1;
+        self.told += from_poses.length_squared();
+        self.left += (told - from_poses).length_squared();
+        self.other_left += (other - from_poses).length_squared();
+    }
+
+    /// The share of the motion that the told velocities miss; `None` where too little moves.
+    fn share(&self) -> Option<f64> {
+        (self.count >= FEWEST_TELLING).then(|| (self.left / self.told).sqrt())
+    }
+}
+
+/// Velocities against differences of the poses: body against world, units, sign, and the clock's scale.
+fn velocities(name: &str, frame: AngularFrame, step_s: f64, episodes: &[Episode]) -> Checked {
+    let (mut linear, mut angular) = (Mismatch::default(), Mismatch::default());
+    for episode in episodes {
+        for pair in episode.poses.windows(3) {
+            let Some(rates) = pair[1].rates else { continue };
+            let moved = (pair[2].position - pair[0].position) / (2.0 * step_s);
+            linear.add(moved, rates.linear, rates.linear);
+            let turned = turn(pair[0].rotation, pair[2].rotation) / (2.0 * step_s);
+            // What was told, read in the other frame.
+            let other = match frame {
+                AngularFrame::Body => pair[1].rotation.inverse() * rates.angular,
+                AngularFrame::World => pair[1].rotation * rates.angular,
+            };
+            angular.add(turned, rates.angular, other);
+        }
+    }
+    if let Some(share) = linear.share().filter(|share| *share > WRONG_SHARE) {
+        return Err(CalibrationError::field(
+            format!("{name}/poses.csv"),
+            "vx, vy, vz against differences of x, y, z: the share that disagrees",
+            format!("{share:.2}"),
+            format!("at most {WRONG_SHARE}; check units, axes and rate_hz"),
+        ));
+    }
+    if let Some(share) = angular.share().filter(|share| *share > WRONG_SHARE) {
+        let hint = if angular.other_left < 0.25 * angular.left {
+            "; they agree in the other frame: angular_velocity is wrong"
+        } else {
+            "; check units, the quaternion's order (x, y, z, w) and rate_hz"
+        };
+        return Err(CalibrationError::field(
+            format!("{name}/poses.csv"),
+            "wx, wy, wz against differences of the quaternions: the share that disagrees",
+            format!("{share:.2}"),
+            format!("at most {WRONG_SHARE}{hint}"),
+        ));
+    }
+    Ok(())
+}
+
+/// The rotation vector that leads from `a` to `b`, along the axes of the world, rad.
+pub(crate) fn turn(a: DQuat, b: DQuat) -> DVec3 {
+    let mut between = b * a.inverse();
+    if between.w < 0.0 {
+        between = -between;
+    }
+    let axis = DVec3::new(between.x, between.y, between.z);
+    let sine = axis.length();
+    if sine < 1e-12 {
+        return 2.0 * axis;
+    }
+    axis * (2.0 * libm::atan2(sine, between.w) / sine)
+}

@@ -1,0 +1,124 @@
+//! The simulation of a body above a board, ready to be started from any motion.
+
+use super::motion::Motion;
+use super::track::Tracks;
+use crate::error::CalibrationError;
+use crate::twin::stage::{BOARD_SUBSTANCE, Stage, THING_SUBSTANCE, Thing};
+use dwell_physics::{ContactFriction, PhysicsConfig};
+use dwell_scene::{LawSpec, PartId};
+use glam::{DQuat, DVec3, Quat, Vec3};
+
+/// Physics steps between two samples, as the published evaluation of cube tosses has them.
+pub const STEPS_PER_SAMPLE: u32 = 10;
+
+/// The body's only part.
+const BODY: PartId = PartId(0);
+
+/// A tiny house, a body above a board, to be copied for every roll-out.
+#[derive(Clone)]
+pub struct Rig {
+    stage: Stage,
+}
+
+/// What a rig is set to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// Values by address: `friction` and `restitution` of the pair, or any other of the state.
+    pub friction: f64,
+    /// Restitution of the pair.
+    pub restitution: f64,
+    /// Laws that are installed.
+    pub laws: Vec<LawSpec>,
+}
+
+impl Rig {
+    /// Builds the house and its physics.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Simulation`] for a body that physics does not take.
+    pub fn new(
+        tracks: &Tracks,
+        contact_friction: ContactFriction,
+    ) -> Result<Self, CalibrationError> {
+        let body = &tracks.body;
+        let thing = Thing::tossed(&body.name, body.mass_kg, body.half_extents_m);
+        let rate_hz = tracks.rate_hz as f32;
+        let config = PhysicsConfig {
+            control_rate_hz: rate_hz,
+            physics_rate_hz: rate_hz * STEPS_PER_SAMPLE as f32,
+            solver_substeps: 1,
+            contact_friction,
+            sleeping: false,
+            ..PhysicsConfig::default()
+        };
+        let stage = Stage::new(20.0, &thing, config)?;
+        let gravity = [("world/gravity_m_s2", tracks.gravity_m_s2)];
+        let rig = Self {
+            stage: stage.with(Vec::new(), &gravity)?,
+        };
+        rig.set(&Settings {
+            friction: tracks.nominal.friction,
+            restitution: tracks.nominal.restitution,
+            laws: Vec::new(),
+        })
+    }
+
+    /// A copy with other contact values and laws.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Simulation`] for a value or law that physics does not take.
+    pub fn set(&self, settings: &Settings) -> Result<Self, CalibrationError> {
+        let pair = format!("pair/{THING_SUBSTANCE}~{BOARD_SUBSTANCE}");
+        let (friction, restitution) = (format!("{pair}/friction"), format!("{pair}/restitution"));
+        let values = [
+            (friction.as_str(), settings.friction),
+            (restitution.as_str(), settings.restitution),
+        ];
+        Ok(Self {
+            stage: self.stage.with(settings.laws.clone(), &values)?,
+        })
+    }
+
+    /// The motions at the `samples` samples that follow `start`.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Simulation`] for a start that is not finite.
+    pub fn roll(&self, start: &Motion, samples: usize) -> Result<Vec<Motion>, CalibrationError> {
+        let mut stage = self.stage.clone();
+        // Near the origin single precision is finest, and the board is the same everywhere.
+        let origin = DVec3::new(start.position.x, 0.0, start.position.z);
+        let pose = &mut stage.state.part_pose[BODY];
+        pose.position = (start.position - origin).as_vec3();
+        pose.rotation = start.rotation.as_quat().normalize();
+        let velocity = &mut stage.state.part_velocity[BODY];
+        velocity.linear = start.linear.as_vec3();
+        velocity.angular = start.angular.as_vec3();
+        stage.adopt()?;
+        let mut motions = Vec::with_capacity(samples);
+        for _ in 0..samples {
+            stage.step()?;
+            motions.push(read(
+                origin,
+                stage.state.part_pose[BODY].position,
+                stage.state.part_pose[BODY].rotation,
+                &stage.state.part_velocity[BODY],
+            ));
+        }
+        Ok(motions)
+    }
+}
+
+fn read(origin: DVec3, position: Vec3, rotation: Quat, velocity: &dwell_scene::Velocity) -> Motion {
+    let quat = DQuat::from_xyzw(
+        f64::from(rotation.x),
+        f64::from(rotation.y),
+        f64::from(rotation.z),
+        f64::from(rotation.w),
+    );
+    Motion {
+        position: origin + position.as_dvec3(),
+        rotation: quat.normalize(),
+        linear: velocity.linear.as_dvec3(),
+        angular: velocity.angular.as_dvec3(),
+    }
+}

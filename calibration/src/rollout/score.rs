@@ -1,0 +1,66 @@
+//! Whole episodes: roll out from the start to the last sample, and compare.
+
+use super::motion::Deviation;
+use super::rig::Rig;
+use super::track::{Track, Tracks};
+use crate::error::CalibrationError;
+use dwell_scene::parallel::Threads;
+use serde::Serialize;
+
+/// Means over the samples of an episode, from its start to its last sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Score {
+    /// Distance, as a share of the body's width.
+    pub position_widths: f64,
+    /// Angle, degrees.
+    pub rotation_deg: f64,
+    /// [`Deviation::e_q`].
+    pub e_q: f64,
+}
+
+impl Score {
+    fn of(deviations: &[Deviation], half_width_m: f64) -> Self {
+        let count = deviations.len().max(1) as f64;
+        let mean = |f: &dyn Fn(&Deviation) -> f64| deviations.iter().map(f).sum::<f64>() / count;
+        Self {
+            position_widths: mean(&|d| d.position_m) / (2.0 * half_width_m),
+            rotation_deg: mean(&|d| d.rotation_rad).to_degrees(),
+            e_q: mean(&|d| d.e_q(half_width_m)),
+        }
+    }
+}
+
+/// The deviations of an episode's roll-out, sample by sample, the start (no deviation) first.
+///
+/// # Errors
+/// [`CalibrationError::Simulation`] for a start that is not finite.
+pub fn deviations(rig: &Rig, track: &Track) -> Result<Vec<Deviation>, CalibrationError> {
+    let ahead = &track.motions[track.start + 1..];
+    let rolled = rig.roll(&track.start_motion, ahead.len())?;
+    let rest = rolled
+        .iter()
+        .zip(ahead)
+        .map(|(p, m)| Deviation::between(p, m));
+    Ok(std::iter::once(Deviation::default()).chain(rest).collect())
+}
+
+/// The scores of the episodes `which`, in that order.
+///
+/// # Errors
+/// As [`deviations`].
+///
+/// # Determinism
+/// The same bits for any number of threads.
+pub fn scores(
+    rig: &Rig,
+    tracks: &Tracks,
+    which: &[usize],
+    threads: Threads,
+) -> Result<Vec<Score>, CalibrationError> {
+    let half_width_m = tracks.body.half_width_m();
+    let one = |k: usize| {
+        let deviations = deviations(rig, &tracks.episodes[which[k]])?;
+        Ok(Score::of(&deviations, half_width_m))
+    };
+    threads.map(which.len(), one).into_iter().collect()
+}

@@ -1,0 +1,187 @@
+//! Measured episodes as rows of motions at even spacing.
+
+use super::motion::Motion;
+use super::regime::{self, Regime};
+use crate::bundle::{self, Bundle, Episode, Rates, turn};
+use crate::error::CalibrationError;
+use dwell_scene::units::STANDARD_GRAVITY_M_S2;
+use glam::DVec3;
+use std::path::Path;
+
+/// What was measured of a body above a board.
+#[derive(Clone, Debug)]
+pub struct Tracks {
+    /// The bundle's title.
+    pub title: String,
+    /// The licence of the data.
+    pub licence: String,
+    /// The body.
+    pub body: TrackedBody,
+    /// The contact values of body and board before any fit.
+    pub nominal: Nominal,
+    /// Samples per second, Hz.
+    pub rate_hz: f64,
+    /// Acceleration of free fall, m/s².
+    pub gravity_m_s2: f64,
+    /// The episodes, in the order of the file.
+    pub episodes: Vec<Track>,
+}
+
+/// The body that was tracked: a box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackedBody {
+    /// Its name.
+    pub name: String,
+    /// kg.
+    pub mass_kg: f64,
+    /// Half of each edge, m.
+    pub half_extents_m: [f64; 3],
+    /// Principal moments of inertia about its axes, kg·m².
+    pub inertia_kg_m2: [f64; 3],
+}
+
+/// Contact values before any fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nominal {
+    /// Coulomb friction of the pair.
+    pub friction: f64,
+    /// Restitution of the pair.
+    pub restitution: f64,
+}
+
+/// One episode.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track {
+    /// Its name.
+    pub name: String,
+    /// Episodes of one group are held out together.
+    pub group: String,
+    /// What was measured. Shape (sample,).
+    pub motions: Vec<Motion>,
+    /// What the body did at each sample. Shape (sample,).
+    pub regimes: Vec<Regime>,
+    /// The sample that whole roll-outs start from.
+    pub start: usize,
+    /// The motion there, with velocities fitted to the flight before it where the bundle has them.
+    pub start_motion: Motion,
+}
+
+impl TrackedBody {
+    /// Half of the mean edge, m.
+    pub fn half_width_m(&self) -> f64 {
+        self.half_extents_m.iter().sum::<f64>() / 3.0
+    }
+
+    /// The moments of a solid box of this mass and size, kg·m².
+    pub fn solid_inertia_kg_m2(&self) -> [f64; 3] {
+        solid(self.mass_kg, self.half_extents_m)
+    }
+}
+
+fn solid(mass_kg: f64, half: [f64; 3]) -> [f64; 3] {
+    let [x, y, z] = half.map(|half| half * half);
+    [y + z, x + z, x + y].map(|sum| mass_kg * sum / 3.0)
+}
+
+impl Tracks {
+    /// Reads a measured bundle of pose trajectories.
+    ///
+    /// # Errors
+    /// [`CalibrationError`] for a bundle that cannot be read, and for one of another kind.
+    pub fn read(folder: &Path) -> Result<Self, CalibrationError> {
+        Self::of(&bundle::read(folder)?)
+    }
+
+    pub(crate) fn of(bundle: &Bundle) -> Result<Self, CalibrationError> {
+        let scene = &bundle.manifest.scene;
+        let (Some(form), Some(board), Some(body)) =
+            (&bundle.manifest.poses, &scene.board, scene.bodies.first())
+        else {
+            return Err(CalibrationError::field(
+                bundle.name.clone(),
+                "kind",
+                format!("{:?}", bundle.kind()),
+                "pose_trajectory",
+            ));
+        };
+        let Some(half) = body.half_extents_m else {
+            return Err(CalibrationError::Missing {
+                at: format!("{}/manifest.json", bundle.name),
+                what: "scene.bodies[0].half_extents_m".to_owned(),
+                needed: "roll-outs are computed for boxes".to_owned(),
+            });
+        };
+        let tracked = TrackedBody {
+            name: body.name.clone(),
+            mass_kg: body.mass_kg,
+            half_extents_m: half,
+            inertia_kg_m2: body.inertia_kg_m2.unwrap_or(solid(body.mass_kg, half)),
+        };
+        let gravity = scene.environment.g_m_s2;
+        let gravity_m_s2 = gravity.unwrap_or(f64::from(STANDARD_GRAVITY_M_S2));
+        let step_s = 1.0 / form.rate_hz;
+        let episodes = bundle
+            .episodes
+            .iter()
+            .map(|episode| track(episode, &tracked, step_s, gravity_m_s2))
+            .collect();
+        Ok(Self {
+            title: bundle.manifest.title.clone(),
+            licence: bundle.manifest.licence.clone(),
+            body: tracked,
+            nominal: Nominal {
+                friction: board.friction,
+                restitution: board.restitution,
+            },
+            rate_hz: form.rate_hz,
+            gravity_m_s2,
+            episodes,
+        })
+    }
+
+    /// Seconds between samples.
+    pub fn step_s(&self) -> f64 {
+        1.0 / self.rate_hz
+    }
+}
+
+fn track(episode: &Episode, body: &TrackedBody, step_s: f64, gravity_m_s2: f64) -> Track {
+    let poses = &episode.poses;
+    let motions: Vec<Motion> = (0..poses.len())
+        .map(|k| {
+            let rates = poses[k].rates.unwrap_or_else(|| {
+                // Backward differences; the first sample has what the second has.
+                let k = k.max(1);
+                let (a, b) = (&poses[k - 1], &poses[k]);
+                Rates {
+                    linear: (b.position - a.position) / step_s,
+                    angular: turn(a.rotation, b.rotation) / step_s,
+                }
+            });
+            Motion {
+                position: poses[k].position,
+                rotation: poses[k].rotation,
+                linear: rates.linear,
+                angular: rates.angular,
+            }
+        })
+        .collect();
+    let (start, rates) = match &episode.start {
+        Some((start, rates)) => (*start, Some(*rates)),
+        None => (0, None),
+    };
+    let measured = motions[start];
+    let start_motion = rates.map_or(measured, |rates| Motion {
+        linear: rates.linear,
+        angular: rates.angular,
+        ..measured
+    });
+    Track {
+        name: episode.name.clone(),
+        group: episode.group.clone(),
+        regimes: regime::of(&motions, body, step_s, DVec3::NEG_Y * gravity_m_s2),
+        motions,
+        start,
+        start_motion,
+    }
+}

@@ -1,0 +1,160 @@
+//! Roll-outs against closed forms, and the harness around them.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test stops at the first surprise, in its helpers too"
+)]
+
+use dwell_calibration::rollout::{
+    HORIZONS, Motion, Nominal, Regime, Rig, Settings, Track, TrackedBody, Tracks, scores, windows,
+};
+use dwell_physics::ContactFriction;
+use dwell_scene::parallel::Threads;
+use glam::{DQuat, DVec3};
+
+const HALF_M: f64 = 0.0524;
+const RATE_HZ: f64 = 148.0;
+const GRAVITY_M_S2: f64 = 9.81;
+
+fn tracks(episodes: Vec<Track>) -> Tracks {
+    let body = TrackedBody {
+        name: "cube".into(),
+        mass_kg: 0.37,
+        half_extents_m: [HALF_M; 3],
+        inertia_kg_m2: [0.37 * 2.0 * HALF_M * HALF_M / 3.0; 3],
+    };
+    Tracks {
+        title: "made up".into(),
+        licence: "CC0-1.0".into(),
+        body,
+        nominal: Nominal {
+            friction: 0.3,
+            restitution: 0.0,
+        },
+        rate_hz: RATE_HZ,
+        gravity_m_s2: GRAVITY_M_S2,
+        episodes,
+    }
+}
+
+fn rig(friction: f64) -> Rig {
+    let rig = Rig::new(&tracks(Vec::new()), ContactFriction::Point).unwrap();
+    let settings = Settings {
+        friction,
+        restitution: 0.0,
+        laws: Vec::new(),
+    };
+    rig.set(&settings).unwrap()
+}
+
+fn motion(height_m: f64, linear: DVec3, angular: DVec3) -> Motion {
+    Motion {
+        position: DVec3::new(0.4, height_m, -0.7),
+        rotation: DQuat::IDENTITY,
+        linear,
+        angular,
+    }
+}
+
+/// A parabola, and a spin about a principal axis: 0.2 mm and 0.05 degrees are a tenth of what is looked for at 40 samples.
+/// Ten first-order steps a sample shift a fall by g t dt / 2, which is taken off.
+#[test]
+fn a_flight_is_a_parabola_and_a_steady_spin() {
+    let (v, w) = (DVec3::new(1.0, 1.5, -0.4), DVec3::new(0.0, 6.0, 0.0));
+    let start = motion(0.8, v, w);
+    let found = rig(0.3).roll(&start, 40).unwrap();
+    for (k, there) in found.iter().enumerate() {
+        let t = (k + 1) as f64 / RATE_HZ;
+        let dt = 0.1 / RATE_HZ;
+        let fall = DVec3::NEG_Y * (0.5 * GRAVITY_M_S2 * t * (t + dt));
+        assert!((there.position - (start.position + v * t + fall)).length() < 2e-4);
+        let turned = DQuat::from_rotation_y(6.0 * t);
+        assert!(there.rotation.angle_between(turned) < 1e-3, "{k}");
+    }
+}
+
+/// A cube that lies on the board and is given 1 m/s stops after v²/(2 μ g): within 1 % with friction by patch. Friction by
+/// point loses up to 7 % of it: rapier turns each point's impulse towards the velocity that friction itself would cause,
+/// so that a part of it points sideways, and points on both sides cancel.
+#[test]
+fn a_sliding_cube_stops_where_coulomb_says() {
+    for (way, least, most) in [
+        (ContactFriction::Patch, 0.99, 1.01),
+        (ContactFriction::Point, 0.99, 1.08),
+    ] {
+        let plain = Rig::new(&tracks(Vec::new()), way).unwrap();
+        for friction in [0.15, 0.3] {
+            let settings = Settings {
+                friction,
+                restitution: 0.0,
+                laws: Vec::new(),
+            };
+            let start = motion(HALF_M, DVec3::X, DVec3::ZERO);
+            let found = plain.set(&settings).unwrap().roll(&start, 160).unwrap();
+            let path = found.last().unwrap().position.x - start.position.x;
+            let share = path * 2.0 * friction * GRAVITY_M_S2;
+            assert!((least..most).contains(&share), "{way:?}: {share}");
+            assert!(found.last().unwrap().linear.length() < 1e-3);
+        }
+    }
+}
+
+/// Tosses made by the same engine with this friction.
+fn tossed(friction: f64, count: usize) -> Tracks {
+    let rig = rig(friction);
+    let episodes = (0..count)
+        .map(|k| {
+            let turn = DQuat::from_rotation_x(0.4 * k as f64) * DQuat::from_rotation_z(0.3);
+            let start = Motion {
+                rotation: turn,
+                ..motion(
+                    0.2,
+                    DVec3::new(1.2, -0.4, 0.3),
+                    DVec3::new(3.0, -2.0, k as f64),
+                )
+            };
+            let mut motions = vec![start];
+            motions.extend(rig.roll(&start, 60).unwrap());
+            Track {
+                name: format!("toss {k}"),
+                group: format!("toss {k}"),
+                regimes: vec![Regime::Flight; motions.len()],
+                motions,
+                start: 0,
+                start_motion: start,
+            }
+        })
+        .collect();
+    tracks(episodes)
+}
+
+/// A roll-out of what the engine itself made has no error, another friction has one, and threads change no bit.
+#[test]
+fn roll_outs_meet_their_own_tosses_and_threads_change_nothing() {
+    let tracks = tossed(0.25, 5);
+    let all: Vec<usize> = (0..5).collect();
+    let own = scores(&rig(0.25), &tracks, &all, Threads::ONE).unwrap();
+    assert!(own.iter().all(|score| score.e_q < 1e-12), "{own:?}");
+    let other = scores(&rig(0.4), &tracks, &all, Threads::ONE).unwrap();
+    assert!(
+        other.iter().all(|score| score.position_widths > 0.01),
+        "{other:?}"
+    );
+    let rig = rig(0.4);
+    let rigs = vec![&rig; 5];
+    let one = windows(&rigs, &tracks, &all, 7, Threads::ONE).unwrap();
+    for threads in [2, 7] {
+        let threads = Threads::exactly(threads);
+        assert_eq!(scores(&rig, &tracks, &all, threads).unwrap(), other);
+        assert_eq!(windows(&rigs, &tracks, &all, 7, threads).unwrap(), one);
+    }
+    // Errors grow with the horizon, and every horizon is there.
+    let total: Vec<f64> = HORIZONS
+        .iter()
+        .map(|h| {
+            let all = one.iter().find(|w| w.horizon == *h && w.regime.is_none());
+            all.unwrap().position_rms_mm
+        })
+        .collect();
+    assert!(total.windows(2).all(|pair| pair[0] < pair[1]), "{total:?}");
+}
