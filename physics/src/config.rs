@@ -10,8 +10,7 @@ pub enum ContactFriction {
     /// One friction force for the patch, and one torque about its normal: cheaper.
     #[default]
     Patch,
-    /// Coulomb's law in every point by itself: closer to measured tosses of a cube, by a third of the rotation error
-    /// (docs/cube-tosses.md).
+    /// Coulomb's law in every point by itself: dearer, and closer to measured tosses of a cube.
     Point,
 }
 

@@ -1,7 +1,7 @@
 //! The simulation of a body above a board, ready to be started from any motion.
 
 use super::motion::Motion;
-use super::track::Tracks;
+use super::track::{TrackedBody, Tracks};
 use crate::error::CalibrationError;
 use crate::twin::stage::{BOARD_SUBSTANCE, Stage, THING_SUBSTANCE, Thing};
 use dwell_physics::{ContactFriction, PhysicsConfig};
@@ -18,12 +18,14 @@ const BODY: PartId = PartId(0);
 #[derive(Clone)]
 pub struct Rig {
     stage: Stage,
+    /// What turns the inertia of a solid body into the one that was measured.
+    inertia: LawSpec,
 }
 
 /// What a rig is set to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// Values by address: `friction` and `restitution` of the pair, or any other of the state.
+    /// Coulomb friction of the pair.
     pub friction: f64,
     /// Restitution of the pair.
     pub restitution: f64,
@@ -55,6 +57,7 @@ impl Rig {
         let gravity = [("world/gravity_m_s2", tracks.gravity_m_s2)];
         let rig = Self {
             stage: stage.with(Vec::new(), &gravity)?,
+            inertia: inertia(&tracks.body),
         };
         rig.set(&Settings {
             friction: tracks.nominal.friction,
@@ -74,8 +77,10 @@ impl Rig {
             (friction.as_str(), settings.friction),
             (restitution.as_str(), settings.restitution),
         ];
+        let laws = std::iter::once(&self.inertia).chain(&settings.laws);
         Ok(Self {
-            stage: self.stage.with(settings.laws.clone(), &values)?,
+            stage: self.stage.with(laws.cloned().collect(), &values)?,
+            inertia: self.inertia.clone(),
         })
     }
 
@@ -120,5 +125,18 @@ fn read(origin: DVec3, position: Vec3, rotation: Quat, velocity: &dwell_scene::V
         rotation: quat.normalize(),
         linear: velocity.linear.as_dvec3(),
         angular: velocity.angular.as_dvec3(),
+    }
+}
+
+/// The law that gives a solid box other principal moments.
+fn inertia(body: &TrackedBody) -> LawSpec {
+    let moments = body.inertia_kg_m2.iter().zip(body.solid_inertia_kg_m2());
+    let errors = moments.map(|(moment, solid)| moment / solid - 1.0);
+    let names = ["x", "y", "z"].map(str::to_owned);
+    LawSpec {
+        id: "inertia_error".to_owned(),
+        version: 1,
+        target: Some(body.name.clone()),
+        params: names.into_iter().zip(errors).collect(),
     }
 }

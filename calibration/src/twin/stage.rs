@@ -255,6 +255,7 @@ fn put_board(data: &mut HouseData) {
         )],
         mass_kg: None,
         density_kg_m3: 1000.0,
+        inertial: None,
     });
 }
 
