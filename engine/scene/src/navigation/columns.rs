@@ -1,195 +1,261 @@
 //! Columns of space above the cells of a grid, and what fills them.
 
+use super::clip::Polygon;
+use super::config::NavConfig;
 use crate::bounds::Aabb;
+use crate::math;
 use glam::{Vec2, Vec3};
 
-/// The grid seen from above, and for each cell the heights at which some triangle crosses its column.
-#[derive(Clone, Debug)]
-pub(super) struct Columns {
-    pub(super) origin: Vec2,
-    pub(super) cell_m: f32,
-    /// Cells along x.
-    pub(super) width: usize,
-    /// Cells along z.
-    pub(super) depth: usize,
-    /// For each cell, disjoint `[low, high]` from below. Shape (depth, width).
-    pub(super) spans: Vec<Vec<[f32; 2]>>,
+/// Surfaces nearer than this on top of each other are one, m.
+const TOUCHING_M: f32 = 1e-3;
+
+/// What fills a column between two heights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    pub(super) low: f32,
+    pub(super) high: f32,
+    /// The highest point of its triangles that are flat enough to walk on; minus infinity without one.
+    pub(super) flat: f32,
 }
 
-impl Columns {
-    /// Empty columns over `bounds`, one cell wider on every side.
-    pub(super) fn new(bounds: &Aabb, cell_m: f32) -> Self {
+/// Sorts spans and joins those that touch. The result depends on the set of them only, and joining what was joined before
+/// changes nothing.
+pub(super) fn join(spans: &mut Vec<Span>) {
+    spans.sort_by(|a, b| a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)));
+    let mut kept = 0_usize;
+    for k in 0..spans.len() {
+        let span = spans[k];
+        match kept.checked_sub(1).map(|last| &mut spans[last]) {
+            Some(last) if span.low <= last.high + TOUCHING_M => {
+                last.high = last.high.max(span.high);
+                last.flat = last.flat.max(span.flat);
+            }
+            _ => {
+                spans[kept] = span;
+                kept += 1;
+            }
+        }
+    }
+    spans.truncate(kept);
+}
+
+/// The grid seen from above.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Frame {
+    /// The corner of column 0 at the lowest x and z, m.
+    pub(super) origin: Vec2,
+    pub(super) cell_m: f32,
+    /// Columns along x.
+    pub(super) width: usize,
+    /// Columns along z.
+    pub(super) depth: usize,
+    /// What lies wholly below or above is left out, m.
+    heights: [f32; 2],
+    /// Cosine of the steepest slope to walk on.
+    flat: f32,
+}
+
+impl Frame {
+    /// Columns over `bounds`, one cell wider on every side; none over an empty box.
+    pub(super) fn new(bounds: &Aabb, heights: [f32; 2], config: &NavConfig) -> Self {
         let size = bounds.size();
-        let count = |length: f32| (length / cell_m).ceil() as usize + 2;
-        let (width, depth) = (count(size.x), count(size.z));
-        let origin = Vec2::new(bounds.min.x - cell_m, bounds.min.z - cell_m);
+        let count = |length: f32| {
+            let cells = (length / config.cell_m).ceil() as usize + 2;
+            if bounds.is_empty() { 0 } else { cells }
+        };
         Self {
-            origin,
-            cell_m,
-            width,
-            depth,
-            spans: vec![Vec::new(); width * depth],
+            origin: Vec2::new(bounds.min.x - config.cell_m, bounds.min.z - config.cell_m),
+            cell_m: config.cell_m,
+            width: count(size.x),
+            depth: count(size.z),
+            heights,
+            // A slope of the very angle counts as flat.
+            flat: math::cos(config.max_slope_rad) - 1e-4,
         }
     }
 
-    /// Adds a triangle: its exact range of heights in every column it crosses, between `low_y` and `high_y`.
-    pub(super) fn add_triangle(&mut self, corners: [Vec3; 3], low_y: f32, high_y: f32) {
+    /// The number of columns.
+    pub(super) fn count(&self) -> usize {
+        self.width * self.depth
+    }
+
+    /// The columns that a range of coordinates along one axis touches; empty outside the grid.
+    fn touched(&self, low: f32, high: f32, origin: f32, count: usize) -> std::ops::Range<usize> {
+        let index = |value: f32| ((value - origin) / self.cell_m).floor();
+        let first = index(low).max(0.0);
+        let last = index(high).min(count as f32 - 1.0);
+        if first > last {
+            0..0
+        } else {
+            first as usize..last as usize + 1
+        }
+    }
+
+    /// Calls `found` for every column that a triangle crosses, with its exact range of heights there.
+    pub(super) fn cross(&self, corners: [Vec3; 3], mut found: impl FnMut(usize, Span)) {
         let bounds = Aabb::from_points(corners);
-        if bounds.is_empty() || bounds.max.y < low_y || bounds.min.y > high_y {
+        let [low, high] = self.heights;
+        if bounds.is_empty() || bounds.max.y < low || bounds.min.y > high {
             return;
         }
-        let index = |value: f32, origin: f32, count: usize| {
-            (((value - origin) / self.cell_m).floor().max(0.0) as usize).min(count - 1)
+        let xs = self.touched(bounds.min.x, bounds.max.x, self.origin.x, self.width);
+        let zs = self.touched(bounds.min.z, bounds.max.z, self.origin.y, self.depth);
+        if xs.is_empty() || zs.is_empty() {
+            return;
+        }
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        let is_flat = normal.y.abs() >= self.flat * normal.length();
+        let span = |[low, high]: [f32; 2]| Span {
+            low,
+            high,
+            flat: if is_flat { high } else { f32::NEG_INFINITY },
         };
-        let (x0, x1) = (
-            index(bounds.min.x, self.origin.x, self.width),
-            index(bounds.max.x, self.origin.x, self.width),
-        );
-        let (z0, z1) = (
-            index(bounds.min.z, self.origin.y, self.depth),
-            index(bounds.max.z, self.origin.y, self.depth),
-        );
-        if x0 == x1 && z0 == z1 {
+        let inside = |low: f32, high: f32, origin: f32, count: usize| {
+            low >= origin && high <= origin + count as f32 * self.cell_m
+        };
+        if xs.len() == 1
+            && zs.len() == 1
+            && inside(bounds.min.x, bounds.max.x, self.origin.x, self.width)
+            && inside(bounds.min.z, bounds.max.z, self.origin.y, self.depth)
+        {
             // Most triangles of furniture.
-            self.spans[z0 * self.width + x0].push([bounds.min.y, bounds.max.y]);
+            found(
+                zs.start * self.width + xs.start,
+                span([bounds.min.y, bounds.max.y]),
+            );
             return;
         }
         let triangle = Polygon::new(&corners);
-        for z in z0..=z1 {
+        for z in zs {
             let z_low = self.origin.y + z as f32 * self.cell_m;
-            let row = if z0 == z1 {
-                triangle
-            } else {
-                triangle.clipped(2, z_low, z_low + self.cell_m)
-            };
-            for x in x0..=x1 {
+            let row = triangle.clipped(2, z_low, z_low + self.cell_m);
+            for x in xs.clone() {
                 let x_low = self.origin.x + x as f32 * self.cell_m;
-                let inside = row.clipped(0, x_low, x_low + self.cell_m);
-                if let Some(range) = inside.heights() {
-                    self.spans[z * self.width + x].push(range);
+                let piece = row.clipped(0, x_low, x_low + self.cell_m);
+                if let Some(range) = piece.heights() {
+                    found(z * self.width + x, span(range));
                 }
             }
         }
     }
-
-    /// Sorts and joins the ranges of every column.
-    pub(super) fn finish(&mut self) {
-        for spans in &mut self.spans {
-            spans.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-            let mut joined: Vec<[f32; 2]> = Vec::with_capacity(spans.len());
-            for span in spans.iter() {
-                match joined.last_mut() {
-                    Some(last) if span[0] <= last[1] + 1e-3 => last[1] = last[1].max(span[1]),
-                    _ => joined.push(*span),
-                }
-            }
-            *spans = joined;
-        }
-    }
 }
 
-/// A convex polygon: a triangle cut by at most four planes has at most seven corners.
-#[derive(Clone, Copy)]
-struct Polygon {
-    corners: [Vec3; 8],
-    count: usize,
+/// The spans of all columns, one column after the other.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Columns {
+    /// Where each column begins, and the end. Shape (column + 1,).
+    first: Vec<u32>,
+    spans: Vec<Span>,
 }
 
-impl Polygon {
-    fn new(corners: &[Vec3; 3]) -> Self {
-        let mut polygon = Self {
-            corners: [Vec3::ZERO; 8],
-            count: 3,
+impl Columns {
+    /// Joins the spans of each column.
+    pub(super) fn new(mut raw: Vec<Vec<Span>>) -> Self {
+        let mut columns = Self {
+            first: Vec::with_capacity(raw.len() + 1),
+            spans: Vec::new(),
         };
-        polygon.corners[..3].copy_from_slice(corners);
-        polygon
-    }
-
-    /// The part between two planes across an axis.
-    fn clipped(&self, axis: usize, low: f32, high: f32) -> Self {
-        self.half(axis, low, true).half(axis, high, false)
-    }
-
-    /// The part on one side of a plane across an axis (Sutherland and Hodgman, 1974).
-    fn half(&self, axis: usize, at: f32, keep_above: bool) -> Self {
-        let inside = |p: Vec3| {
-            if keep_above {
-                p[axis] >= at
-            } else {
-                p[axis] <= at
-            }
-        };
-        let mut kept = Self {
-            corners: [Vec3::ZERO; 8],
-            count: 0,
-        };
-        for k in 0..self.count {
-            let (a, b) = (
-                self.corners[(k + self.count - 1) % self.count],
-                self.corners[k],
-            );
-            if inside(a) != inside(b) {
-                let t = ((at - a[axis]) / (b[axis] - a[axis])).clamp(0.0, 1.0);
-                let mut crossing = a + (b - a) * t;
-                crossing[axis] = at;
-                kept.push(crossing);
-            }
-            if inside(b) {
-                kept.push(b);
-            }
+        columns.first.push(0);
+        for spans in &mut raw {
+            join(spans);
+            columns.spans.extend_from_slice(spans);
+            columns.first.push(columns.spans.len() as u32);
         }
-        kept
+        columns
     }
 
-    fn push(&mut self, corner: Vec3) {
-        // Rounding cannot make more than eight corners of seven; one that did would change no height.
-        if let Some(place) = self.corners.get_mut(self.count) {
-            *place = corner;
-            self.count += 1;
-        }
+    /// What fills a column, from below.
+    pub(super) fn at(&self, column: usize) -> &[Span] {
+        &self.spans[self.first[column] as usize..self.first[column + 1] as usize]
     }
 
-    /// The lowest and the highest corner's height; nothing when no corner is left.
-    fn heights(&self) -> Option<[f32; 2]> {
-        let heights = self.corners[..self.count].iter().map(|p| [p.y; 2]);
-        heights.reduce(|[low, high], [y, _]| [low.min(y), high.max(y)])
+    /// Whether nothing fills any column.
+    pub(super) fn is_empty(&self) -> bool {
+        self.spans.is_empty()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::{Key, Stream};
 
-    /// Against dense sampling: every sampled point of random triangles lies in its column's range, and ranges are no
-    /// wider than the samples show (within the sampling distance).
+    fn frame() -> Frame {
+        let bounds = Aabb::new(Vec3::ZERO, Vec3::new(1.0, 2.0, 1.0));
+        let config = NavConfig {
+            cell_m: 0.25,
+            ..NavConfig::default()
+        };
+        Frame::new(&bounds, [-1.0, 3.0], &config)
+    }
+
+    /// Against dense sampling: every sampled point of random triangles lies in its column's range.
     #[test]
     fn ranges_equal_what_sampling_finds() {
-        let mut stream = crate::random::Key::root(3).stream();
+        let mut stream = Key::root(3).stream();
         for _ in 0..50 {
-            let corner = |s: &mut crate::random::Stream| {
-                Vec3::new(s.range(0.0, 1.0), s.range(0.0, 2.0), s.range(0.0, 1.0))
-            };
+            let corner =
+                |s: &mut Stream| Vec3::new(s.range(0.0, 1.0), s.range(0.0, 2.0), s.range(0.0, 1.0));
             let corners = [
                 corner(&mut stream),
                 corner(&mut stream),
                 corner(&mut stream),
             ];
-            let mut columns = Columns::new(&Aabb::new(Vec3::ZERO, Vec3::new(1.0, 2.0, 1.0)), 0.25);
-            columns.add_triangle(corners, -1.0, 3.0);
-            columns.finish();
+            let frame = frame();
+            let mut raw = vec![Vec::new(); frame.count()];
+            frame.cross(corners, |column, span| raw[column].push(span));
+            let columns = Columns::new(raw);
             let steps = 200;
             for i in 0..=steps {
                 for j in 0..=steps - i {
                     let (u, v) = (i as f32 / steps as f32, j as f32 / steps as f32);
                     let p = corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v;
-                    let x = ((p.x - columns.origin.x) / 0.25) as usize;
-                    let z = ((p.z - columns.origin.y) / 0.25) as usize;
-                    let hit = columns.spans[z * columns.width + x]
+                    let x = ((p.x - frame.origin.x) / 0.25) as usize;
+                    let z = ((p.z - frame.origin.y) / 0.25) as usize;
+                    let spans = columns.at(z * frame.width + x);
+                    let hit = spans
                         .iter()
-                        .any(|s| p.y >= s[0] - 1e-3 && p.y <= s[1] + 1e-3);
-                    assert!(hit, "{p} in {:?}", columns.spans[z * columns.width + x]);
+                        .any(|s| p.y >= s.low - 1e-3 && p.y <= s.high + 1e-3);
+                    assert!(hit, "{p} in {spans:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn what_lies_outside_fills_no_column() {
+        let frame = frame();
+        let beside = [
+            Vec3::new(9.0, 0.0, 0.5),
+            Vec3::new(9.1, 0.0, 0.5),
+            Vec3::new(9.0, 1.0, 0.6),
+        ];
+        frame.cross(beside, |column, _| panic!("column {column}"));
+        let above = beside.map(|p| p + Vec3::new(-8.5, 9.0, 0.0));
+        frame.cross(above, |column, _| panic!("column {column}"));
+    }
+
+    #[test]
+    fn joining_in_parts_equals_joining_at_once() {
+        let mut stream = Key::root(8).stream();
+        for _ in 0..200 {
+            let mut all: Vec<Span> = (0..12)
+                .map(|_| {
+                    let low = stream.range(0.0, 3.0);
+                    let high = low + stream.range(0.0, 0.3);
+                    Span {
+                        low,
+                        high,
+                        flat: high - 0.1,
+                    }
+                })
+                .collect();
+            let mut parts = all[..5].to_vec();
+            join(&mut parts);
+            parts.extend_from_slice(&all[5..]);
+            join(&mut parts);
+            join(&mut all);
+            assert_eq!(parts, all);
         }
     }
 }

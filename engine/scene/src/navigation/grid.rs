@@ -1,427 +1,269 @@
 //! The walkable grid.
 
-use super::columns::Columns;
-use crate::bounds::Aabb;
+use super::columns::{Span, join};
+use super::config::{Doors, NavConfig, range};
+use super::ground::{Ground, MAX_CELLS, around, blocks};
+use super::layers::{DOORWAY, FREE, INDOORS, Layers, NOWHERE, ON_FLOOR, middle};
+use super::obstacles::{Obstacles, openness, stands_open};
 use crate::error::SceneError;
-use crate::house::{House, StructureKind, SurfaceOwner};
-use crate::ids::{Id, LevelId};
+use crate::house::House;
+use crate::ids::LevelId;
 use crate::random::Key;
 use crate::state::State;
-use glam::{Affine3A, Vec3};
-use serde::{Deserialize, Serialize};
+use glam::Vec3;
+use std::sync::Arc;
 
-/// Whether doors count as they stand or as open.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Doors {
-    /// Every joint where the state has it.
-    #[default]
-    AsTheyStand,
-    /// Every hinged or sliding door of the house fully open: where someone who opens doors can go.
-    Open,
-}
-
-/// Who walks, and how finely that is looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct NavConfig {
-    /// Edge of a cell, m; 0.02 to 1, default 0.1.
-    pub cell_m: f32,
-    /// Radius of the walker, m; 0 to 2, default 0.2.
-    pub radius_m: f32,
-    /// Height of the walker, m; 0.1 to 3, default 1.5.
-    pub height_m: f32,
-    /// The highest step it climbs, m; 0 to 1, default 0.2.
-    pub step_m: f32,
-    /// How doors count.
-    pub doors: Doors,
-}
-
-impl Default for NavConfig {
-    fn default() -> Self {
-        Self {
-            cell_m: 0.1,
-            radius_m: 0.2,
-            height_m: 1.5,
-            step_m: 0.2,
-            doors: Doors::AsTheyStand,
-        }
-    }
-}
-
-/// A cell of a grid; cells of all storeys count in one row.
+/// A place to stand: one surface of one column of the grid. Cells keep their numbers when things move elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Cell(pub u32);
 
-/// One storey of the grid.
-#[derive(Clone, Debug)]
-pub(super) struct Storey {
-    pub(super) columns: Columns,
-    /// The house's own floors and the ground outside, without furniture.
-    pub(super) floors: Columns,
-    /// The number of its first cell.
-    pub(super) first: usize,
-}
-
-/// Where an agent can walk in a house, as it stands in one state.
+/// Where an agent can walk in a house, as it stands in one state: surfaces above each other in the columns of a grid over
+/// all storeys, joined by floors, steps, stairs and slopes.
 #[derive(Clone, Debug)]
 pub struct NavGrid {
     pub(super) config: NavConfig,
-    pub(super) storeys: Vec<Storey>,
-    /// Height of the surface to stand on, m; NaN where nobody can. Shape (cell,).
-    pub(super) floor_y: Vec<f32>,
-    /// Which cells hang together, numbered from the one with most cells on rooms' floors; `u32::MAX` where nobody can stand.
-    pub(super) island: Vec<u32>,
+    pub(super) ground: Arc<Ground>,
+    obstacles: Obstacles,
+    /// What fills the columns in which something that moves stands; `None`: the ground alone.
+    mixed: Vec<Option<Box<[Span]>>>,
+    pub(super) layers: Layers,
+    /// Shape (cell,); [`NOWHERE`] where nobody can stand.
+    island: Vec<u32>,
+    /// How far each passage is open.
+    pub(super) openness: Vec<f32>,
+}
+
+/// What [`NavGrid::update`] did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rebuilt {
+    /// Parts that stand elsewhere than before.
+    pub parts: usize,
+    /// Columns in which something stands now that did not, or stood and does not.
+    pub columns: usize,
+    /// Columns whose room was looked at again: those within the walker's radius.
+    pub looked_at: usize,
+}
+
+/// A storey from above.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Occupancy {
+    /// Cells along x.
+    pub width: usize,
+    /// Cells along z.
+    pub depth: usize,
+    /// The corner of the first cell at the lowest x and z, m.
+    pub corner: [f32; 2],
+    /// Edge of a cell, m.
+    pub cell_m: f32,
+    /// 1 where someone can stand, else 0; row by row along z. Shape (depth, width).
+    pub free: Vec<u8>,
 }
 
 impl NavGrid {
-    /// The largest number of cells: 32 million would be 100 by 100 m in 1.8 cm cells, or a town in 10 cm cells.
-    const MAX_CELLS: usize = 1 << 25;
-
     /// Looks at all triangles of the house where `state` has them. Agents are not obstacles; held things are not either.
     ///
     /// # Errors
-    /// [`SceneError::Range`] for a setting out of range, or a house too large for the cell size.
+    /// [`SceneError::Range`] for a setting out of range, a house too large for the cell size, or another house's state.
     pub fn build(house: &House, state: &State, config: &NavConfig) -> Result<Self, SceneError> {
-        let range = |field: &'static str, ok: bool, found: f32, allowed: &'static str| {
-            let at = "navigation".to_owned();
-            if ok {
-                Ok(())
-            } else {
-                Err(SceneError::Range {
-                    at,
-                    field,
-                    found: found.to_string(),
-                    allowed,
-                })
-            }
-        };
-        range(
-            "cell_m",
-            (0.02..=1.0).contains(&config.cell_m),
-            config.cell_m,
-            "0.02 to 1",
-        )?;
-        range(
-            "radius_m",
-            (0.0..=2.0).contains(&config.radius_m),
-            config.radius_m,
-            "0 to 2",
-        )?;
-        range(
-            "height_m",
-            (0.1..=3.0).contains(&config.height_m),
-            config.height_m,
-            "0.1 to 3",
-        )?;
-        range(
-            "step_m",
-            (0.0..=1.0).contains(&config.step_m),
-            config.step_m,
-            "0 to 1",
-        )?;
+        config.check()?;
+        let ground = Arc::new(Ground::new(house, config)?);
+        let columns = ground.frame.count();
         let mut grid = Self {
             config: *config,
-            storeys: Vec::new(),
-            floor_y: Vec::new(),
+            obstacles: Obstacles::new(house),
+            mixed: vec![None; columns],
+            layers: Layers::new(columns),
             island: Vec::new(),
+            openness: vec![0.0; ground.passages.len()],
+            ground,
         };
-        let levels: Vec<Aabb> = house
-            .levels
-            .iter()
-            .map(|level| level.bounds)
-            .filter(|b| !b.is_empty())
-            .collect();
-        for (k, bounds) in levels.iter().enumerate() {
-            let size = bounds.size() / config.cell_m;
-            let cells = (size.x + 3.0) * (size.z + 3.0);
-            range(
-                "cell_m",
-                cells < Self::MAX_CELLS as f32,
-                config.cell_m,
-                "a cell size that gives fewer than 2^25 cells",
-            )?;
-            let top = levels
-                .get(k + 1)
-                .map_or(f32::INFINITY, |next| next.min.y.max(bounds.min.y + 1.0));
-            grid.add_storey(house, state, bounds, top);
-        }
-        grid.drop_what_stands_on_nothing();
-        grid.find_islands(house);
+        grid.check_state(house, state)?;
+        grid.follow(house, state);
+        let all: Vec<usize> = (0..columns).collect();
+        grid.settle(house, &all, &all, &all)?;
         Ok(grid)
     }
 
-    fn add_storey(&mut self, house: &House, state: &State, bounds: &Aabb, top: f32) {
-        let mut columns = Columns::new(bounds, self.config.cell_m);
-        let mut floors = columns.clone();
-        for placed in &house.geometry().placed {
-            let world_from_mesh = match placed.owner {
-                SurfaceOwner::Part(part) if !house.parts[part].fixed => {
-                    if state.held_by[house.parts[part].object].is_some() {
-                        continue;
-                    }
-                    self.place_of_part(house, state, part) * placed.part_from_mesh
-                }
-                _ => placed.world_from_mesh,
-            };
-            let mesh = &house.meshes[placed.mesh];
-            let points: Vec<Vec3> = mesh
-                .positions
-                .iter()
-                .map(|p| world_from_mesh.transform_point3(*p))
-                .collect();
-            let is_floor = matches!(placed.owner, SurfaceOwner::Structure(id)
-                if matches!(house.structure[id].kind, StructureKind::Floor | StructureKind::Ground));
-            let (low_y, high_y) = (bounds.min.y - 0.5, top + self.config.height_m);
-            for triangle in &mesh.triangles {
-                let corners = triangle.map(|v| points[v as usize]);
-                columns.add_triangle(corners, low_y, high_y);
-                if is_floor {
-                    floors.add_triangle(corners, low_y, high_y);
-                }
-            }
-        }
-        columns.finish();
-        floors.finish();
-        let first = self.floor_y.len();
-        let lowest: Vec<f32> = columns
-            .spans
+    /// Follows what has moved since the grid was built or last updated: only columns near parts that stand elsewhere are
+    /// looked at; islands are numbered anew. The result is, bit for bit, what building anew gives.
+    ///
+    /// # Errors
+    /// [`SceneError::Range`] for another house than the grid was built for.
+    pub fn update(&mut self, house: &House, state: &State) -> Result<Rebuilt, SceneError> {
+        self.check_state(house, state)?;
+        let moved = self.follow(house, state);
+        let mut rebuilt = Rebuilt {
+            parts: moved.parts,
+            columns: moved.columns.len(),
+            looked_at: 0,
+        };
+        let filled: Vec<usize> = moved
+            .columns
             .iter()
-            .map(|spans| self.lowest_floor(spans, top))
+            .map(|column| *column as usize)
             .collect();
-        for z in 0..columns.depth {
-            for x in 0..columns.width {
-                let y = lowest[z * columns.width + x];
-                let free = y.is_finite() && self.room_around(&columns, x, z, y);
-                self.floor_y.push(if free { y } else { f32::NAN });
+        let near = self.grown(&filled, self.config.radius_m);
+        let linked = self.grown(&near, self.config.cell_m);
+        rebuilt.looked_at = near.len();
+        self.settle(house, &filled, &near, &linked)?;
+        Ok(rebuilt)
+    }
+
+    fn check_state(&self, house: &House, state: &State) -> Result<(), SceneError> {
+        let same = house.geometry().movable.len() == self.obstacles.len()
+            && house.parts.len() == self.ground.passage_of_part.len()
+            && state.part_pose.len() == house.parts.len()
+            && state.joint_position.len() == house.joints.len()
+            && state.held_by.len() == house.objects.len();
+        if same {
+            Ok(())
+        } else {
+            let allowed = "as many as the house of the grid has";
+            Err(range("parts", state.part_pose.len() as f32, allowed))
+        }
+    }
+
+    /// Moves obstacles and doors to where the state has them.
+    fn follow(&mut self, house: &House, state: &State) -> super::obstacles::Moved {
+        for (k, open) in self.openness.iter_mut().enumerate() {
+            *open = openness(house, state, &self.ground, k);
+        }
+        self.obstacles
+            .follow(house, state, &self.ground, &self.config)
+    }
+
+    /// The columns within `radius_m` of some of `columns`, in order.
+    fn grown(&self, columns: &[usize], radius_m: f32) -> Vec<usize> {
+        let mut all: Vec<usize> = columns
+            .iter()
+            .flat_map(|column| around(&self.ground.frame, *column, radius_m))
+            .map(|(column, _)| column)
+            .collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Brings surfaces (`filled`), their room (`near`), their links (`linked`) and all islands up to date.
+    fn settle(
+        &mut self,
+        house: &House,
+        filled: &[usize],
+        near: &[usize],
+        linked: &[usize],
+    ) -> Result<(), SceneError> {
+        for &column in filled {
+            self.fill(column);
+            let spans = spans_at(&self.mixed, &self.ground, column);
+            self.layers.stand(column, spans, &self.config);
+            if self.layers.height.len() >= MAX_CELLS {
+                let allowed = "a walker so tall that there are fewer than 2^25 surfaces";
+                return Err(range("height_m", self.config.height_m, allowed));
             }
         }
-        self.storeys.push(Storey {
-            columns,
-            floors,
-            first,
+        self.layers.trim();
+        for &column in near {
+            let cells: Vec<usize> = self.layers.cells_of(column).collect();
+            for (layer, cell) in cells.into_iter().enumerate() {
+                self.layers.flags[cell] = self.flags(house, column, layer, cell);
+            }
+        }
+        self.mark_doorways();
+        for &column in linked {
+            self.layers.link(column, &self.ground.frame, &self.config);
+        }
+        self.island = self.layers.islands();
+        Ok(())
+    }
+
+    fn fill(&mut self, column: usize) {
+        let mut moving = self.obstacles.at(column as u32).peekable();
+        self.mixed[column] = moving.peek().is_some().then(|| {
+            let fixed = self.ground.fixed.at(column).iter().copied();
+            let mut spans: Vec<Span> = fixed.chain(moving).collect();
+            join(&mut spans);
+            spans.into_boxed_slice()
         });
     }
 
-    fn place_of_part(&self, house: &House, state: &State, part: crate::PartId) -> Affine3A {
-        if self.config.doors == Doors::Open
-            && let Some(joint) = house.joints.iter().find(|joint| joint.child == part)
-        {
-            let parent = joint
-                .parent
-                .map_or(crate::Pose::IDENTITY, |parent| state.part_pose[parent]);
-            return joint.world_from_child(&parent, joint.open).to_affine();
+    fn flags(&self, house: &House, column: usize, layer: usize, cell: usize) -> u8 {
+        let spans = |column: usize| spans_at(&self.mixed, &self.ground, column);
+        let frame = &self.ground.frame;
+        if !self.layers.has_room(cell, frame, &self.config, spans) {
+            return 0;
         }
-        state.part_pose[part].to_affine()
+        let y = self.layers.height[cell];
+        let floors = &self.ground.floors;
+        let over = |floor: &Span| (y - floor.high).abs() <= self.config.step_m + 1e-4;
+        // A house whose file names no floors is walked on its lowest surfaces.
+        let on_floor = if floors.is_empty() {
+            layer == 0
+        } else {
+            floors.at(column).iter().any(over)
+        };
+        let room = house.room_at(middle(frame, column, y) + Vec3::Y * 0.1);
+        let indoors = room.is_some_and(|room| (y - house.rooms[room].floor_y).abs() < 0.5);
+        FREE + ON_FLOOR * u8::from(on_floor) + INDOORS * u8::from(indoors)
     }
 
-    /// The lowest surface with the walker's height free above it; infinite where there is none.
-    fn lowest_floor(&self, spans: &[[f32; 2]], top: f32) -> f32 {
-        let above = |k: usize| spans.get(k + 1).map_or(f32::INFINITY, |next| next[0]);
-        let fits =
-            |k: &usize| above(*k) - spans[*k][1] >= self.config.height_m && spans[*k][1] < top;
-        (0..spans.len())
-            .find(fits)
-            .map_or(f32::INFINITY, |k| spans[k][1])
-    }
-
-    /// Whether no column within the radius has an obstacle between a step and the walker's height above `y`.
-    fn room_around(&self, columns: &Columns, x: usize, z: usize, y: f32) -> bool {
-        let reach = (self.config.radius_m / self.config.cell_m).ceil() as isize;
-        let (low, high) = (y + self.config.step_m, y + self.config.height_m);
-        for dz in -reach..=reach {
-            for dx in -reach..=reach {
-                // The distance from the cell's middle to the nearest point of the other cell.
-                let gap = |d: isize| (d.unsigned_abs() as f32 - 0.5).max(0.0) * self.config.cell_m;
-                if gap(dx).hypot(gap(dz)) >= self.config.radius_m.max(1e-6) {
-                    continue;
-                }
-                let (Some(i), Some(j)) = (x.checked_add_signed(dx), z.checked_add_signed(dz))
-                else {
-                    continue;
-                };
-                if i >= columns.width || j >= columns.depth {
-                    continue;
-                }
-                if columns.spans[j * columns.width + i]
-                    .iter()
-                    .any(|span| span[1] > low && span[0] < high)
-                {
-                    return false;
-                }
-            }
-        }
-        true
-    }
-
-    /// Keeps what hangs together with a floor of the house by steps that the walker climbs: no beds, no tops of walls. A
-    /// house whose file names no floors keeps everything.
-    fn drop_what_stands_on_nothing(&mut self) {
-        let no_floors = |storey: &Storey| storey.floors.spans.iter().all(Vec::is_empty);
-        if self.storeys.iter().all(no_floors) {
+    /// Marks what lies under the leaves of doors that are shut, where opening them has a price.
+    fn mark_doorways(&mut self) {
+        if self.config.doors != Doors::Priced {
             return;
         }
-        let mut reached = vec![false; self.floor_y.len()];
-        let mut stack = Vec::new();
-        for storey in &self.storeys {
-            for (k, spans) in storey.floors.spans.iter().enumerate() {
-                let cell = storey.first + k;
-                let y = self.floor_y[cell];
-                let over = |span: &[f32; 2]| (y - span[1]).abs() <= self.config.step_m + 1e-4;
-                if spans.iter().any(over) {
-                    reached[cell] = true;
-                    stack.push(Cell(cell as u32));
+        for clear in [true, false] {
+            for (k, passage) in self.ground.passages.iter().enumerate() {
+                if !clear && stands_open(self.openness[k]) {
+                    continue;
                 }
-            }
-        }
-        while let Some(cell) = stack.pop() {
-            for (next, _) in self.neighbours(cell) {
-                if !std::mem::replace(&mut reached[next.0 as usize], true) {
-                    stack.push(next);
-                }
-            }
-        }
-        for (y, reached) in self.floor_y.iter_mut().zip(reached) {
-            *y = if reached { *y } else { f32::NAN };
-        }
-    }
-
-    /// Numbers the islands by how many of their cells lie on a room's floor, then by size: roofs and wall tops come last.
-    fn find_islands(&mut self, house: &House) {
-        let mut island = vec![u32::MAX; self.floor_y.len()];
-        let mut sizes = Vec::new();
-        for start in 0..self.floor_y.len() {
-            if island[start] != u32::MAX || self.floor_y[start].is_nan() {
-                continue;
-            }
-            let label = sizes.len() as u32;
-            let (mut stack, mut size) = (vec![Cell(start as u32)], (0_usize, 0_usize));
-            island[start] = label;
-            while let Some(cell) = stack.pop() {
-                size.0 += usize::from(self.is_on_a_floor(house, cell));
-                size.1 += 1;
-                for (next, _) in self.neighbours(cell) {
-                    let mark = &mut island[next.0 as usize];
-                    if *mark == u32::MAX {
-                        *mark = label;
-                        stack.push(next);
-                    }
-                }
-            }
-            sizes.push(size);
-        }
-        let mut order: Vec<usize> = (0..sizes.len()).collect();
-        order.sort_by_key(|k| (std::cmp::Reverse(sizes[*k]), *k));
-        let mut rank = vec![0; sizes.len()];
-        for (new, old) in order.into_iter().enumerate() {
-            rank[old] = new as u32;
-        }
-        for label in &mut island {
-            if *label != u32::MAX {
-                *label = rank[*label as usize];
-            }
-        }
-        self.island = island;
-    }
-
-    /// Whether a cell lies on the floor of a room, or on something low on it.
-    fn is_on_a_floor(&self, house: &House, cell: Cell) -> bool {
-        let place = self.position(cell);
-        let room = house.room_at(place + Vec3::Y * 0.1);
-        room.is_some_and(|room| (place.y - house.rooms[room].floor_y).abs() < 0.5)
-    }
-
-    /// The number of cells, walkable or not.
-    pub fn len(&self) -> usize {
-        self.floor_y.len()
-    }
-
-    /// Whether the grid has no cell.
-    pub fn is_empty(&self) -> bool {
-        self.floor_y.is_empty()
-    }
-
-    /// Whether someone can stand in the middle of a cell.
-    pub fn is_walkable(&self, cell: Cell) -> bool {
-        self.floor_y
-            .get(cell.0 as usize)
-            .is_some_and(|y| !y.is_nan())
-    }
-
-    /// The island that a walkable cell belongs to, 0 being the one with most cells on rooms' floors.
-    pub fn island(&self, cell: Cell) -> Option<u32> {
-        self.island
-            .get(cell.0 as usize)
-            .copied()
-            .filter(|label| *label != u32::MAX)
-    }
-
-    /// All walkable cells, in order.
-    pub fn walkable(&self) -> impl Iterator<Item = Cell> + '_ {
-        (0..self.floor_y.len() as u32)
-            .map(Cell)
-            .filter(|cell| self.is_walkable(*cell))
-    }
-
-    pub(super) fn place(&self, cell: Cell) -> (&Storey, usize, usize) {
-        let k = self
-            .storeys
-            .partition_point(|storey| storey.first <= cell.0 as usize)
-            - 1;
-        let storey = &self.storeys[k];
-        let local = cell.0 as usize - storey.first;
-        (
-            storey,
-            local % storey.columns.width,
-            local / storey.columns.width,
-        )
-    }
-
-    /// The middle of a walkable cell on its surface, m.
-    pub fn position(&self, cell: Cell) -> Vec3 {
-        let (storey, x, z) = self.place(cell);
-        let Columns { origin, cell_m, .. } = storey.columns;
-        let middle = |k: usize| (k as f32 + 0.5) * cell_m;
-        Vec3::new(
-            origin.x + middle(x),
-            self.floor_y[cell.0 as usize],
-            origin.y + middle(z),
-        )
-    }
-
-    /// The walkable cell nearest to `point`, at most `within_m` away (heights count).
-    pub fn nearest(&self, point: Vec3, within_m: f32) -> Option<Cell> {
-        let mut best: Option<(f32, Cell)> = None;
-        for storey in &self.storeys {
-            let Columns {
-                origin,
-                cell_m,
-                width,
-                depth,
-                ..
-            } = storey.columns;
-            let range = |value: f32, origin: f32, count: usize| {
-                let low = ((value - within_m - origin) / cell_m)
-                    .floor()
-                    .clamp(0.0, count as f32) as usize;
-                let high = ((value + within_m - origin) / cell_m)
-                    .ceil()
-                    .clamp(0.0, count as f32) as usize;
-                low..high
-            };
-            for z in range(point.z, origin.y, depth) {
-                for x in range(point.x, origin.x, width) {
-                    let cell = Cell((storey.first + z * width + x) as u32);
-                    if self.is_walkable(cell) {
-                        let distance = (self.position(cell) - point).length();
-                        if distance <= within_m && best.is_none_or(|(least, _)| distance < least) {
-                            best = Some((distance, cell));
+                for (column, leaf) in &passage.shut {
+                    let cells: Vec<usize> = self.layers.cells_of(*column as usize).collect();
+                    for cell in cells {
+                        let y = self.layers.height[cell];
+                        if clear {
+                            self.layers.flags[cell] &= !DOORWAY;
+                        } else if blocks(std::slice::from_ref(leaf), y, &self.config) {
+                            self.layers.flags[cell] |= DOORWAY;
                         }
                     }
                 }
             }
         }
-        best.map(|(_, cell)| cell)
+    }
+
+    /// The number of cells, walkable or not.
+    pub fn len(&self) -> usize {
+        self.island.len()
+    }
+
+    /// Whether the grid has no cell.
+    pub fn is_empty(&self) -> bool {
+        self.island.is_empty()
+    }
+
+    /// Whether someone can stand in the middle of a cell.
+    pub fn is_walkable(&self, cell: Cell) -> bool {
+        self.island(cell).is_some()
+    }
+
+    /// The island that a walkable cell belongs to, 0 being the one with most cells on rooms' floors.
+    pub fn island(&self, cell: Cell) -> Option<u32> {
+        let label = self.island.get(cell.0 as usize).copied();
+        label.filter(|label| *label != NOWHERE)
+    }
+
+    /// All walkable cells, in order.
+    pub fn walkable(&self) -> impl Iterator<Item = Cell> + '_ {
+        let walkable = |(_, label): &(usize, &u32)| **label != NOWHERE;
+        let cells = self.island.iter().enumerate().filter(walkable);
+        cells.map(|(cell, _)| Cell(cell as u32))
+    }
+
+    /// All cells to which a way leads from `start`, itself included, in order; none if nobody can stand there.
+    pub fn reachable(&self, start: Cell) -> impl Iterator<Item = Cell> + '_ {
+        let label = self.island(start);
+        let same = move |cell: &Cell| label.is_some() && self.island(*cell) == label;
+        self.walkable().filter(same)
     }
 
     /// A walkable cell, uniform over those for which `allowed` holds.
@@ -430,30 +272,80 @@ impl NavGrid {
         key.stream().choose(&cells).copied()
     }
 
-    /// A storey from above: 1 where someone can stand, else 0. Returns (cells along x, cells along z, the corner's x and
-    /// z in m, cells row by row along z).
-    pub fn occupancy(&self, level: LevelId) -> Option<(usize, usize, [f32; 2], Vec<u8>)> {
-        let storey = self.storeys.get(level.index())?;
-        let Columns {
-            origin,
-            width,
-            depth,
-            ..
-        } = storey.columns;
-        let cells = storey.first..storey.first + width * depth;
-        Some((
-            width,
-            depth,
-            origin.to_array(),
-            self.floor_y[cells]
-                .iter()
-                .map(|y| u8::from(!y.is_nan()))
-                .collect(),
-        ))
+    /// A cell to which a way leads from `start`, uniform over all of them.
+    pub fn sample_reachable(&self, key: Key, start: Cell) -> Option<Cell> {
+        let cells: Vec<Cell> = self.reachable(start).collect();
+        key.stream().choose(&cells).copied()
+    }
+
+    /// The middle of a walkable cell on its surface, m.
+    pub fn position(&self, cell: Cell) -> Vec3 {
+        let cell = cell.0 as usize;
+        let column = cell % self.layers.columns;
+        middle(&self.ground.frame, column, self.layers.height[cell])
+    }
+
+    /// The storey of a walkable cell.
+    pub fn level(&self, cell: Cell) -> Option<LevelId> {
+        self.island(cell)?;
+        self.ground.level(self.layers.height[cell.0 as usize])
+    }
+
+    /// The walkable cell nearest to `point`, at most `within_m` away (heights count).
+    pub fn nearest(&self, point: Vec3, within_m: f32) -> Option<Cell> {
+        let frame = &self.ground.frame;
+        let along = |value: f32, origin: f32, count: usize| {
+            let index = |value: f32| ((value - origin) / frame.cell_m).clamp(0.0, count as f32);
+            index(value - within_m).floor() as usize..index(value + within_m).ceil() as usize
+        };
+        let mut best: Option<(f32, Cell)> = None;
+        for z in along(point.z, frame.origin.y, frame.depth) {
+            for x in along(point.x, frame.origin.x, frame.width) {
+                for cell in self.layers.cells_of(z * frame.width + x) {
+                    let cell = Cell(cell as u32);
+                    if !self.is_walkable(cell) {
+                        continue;
+                    }
+                    let distance = (self.position(cell) - point).length();
+                    if distance <= within_m && best.is_none_or(|(least, _)| distance < least) {
+                        best = Some((distance, cell));
+                    }
+                }
+            }
+        }
+        best.map(|(_, cell)| cell)
+    }
+
+    /// A storey from above, in the frame that all storeys of the grid share; `None` for a storey that does not exist.
+    pub fn occupancy(&self, level: LevelId) -> Option<Occupancy> {
+        if !self.ground.has_level(level) {
+            return None;
+        }
+        let frame = &self.ground.frame;
+        let mut free = vec![0; frame.count()];
+        for cell in self
+            .walkable()
+            .filter(|cell| self.level(*cell) == Some(level))
+        {
+            free[cell.0 as usize % frame.count()] = 1;
+        }
+        Some(Occupancy {
+            width: frame.width,
+            depth: frame.depth,
+            corner: frame.origin.to_array(),
+            cell_m: frame.cell_m,
+            free,
+        })
     }
 
     /// The settings.
     pub fn config(&self) -> &NavConfig {
         &self.config
     }
+}
+
+fn spans_at<'a>(mixed: &'a [Option<Box<[Span]>>], ground: &'a Ground, column: usize) -> &'a [Span] {
+    mixed[column]
+        .as_deref()
+        .unwrap_or_else(|| ground.fixed.at(column))
 }

@@ -1,0 +1,80 @@
+//! Who walks, how finely that is looked at, and how doors count.
+
+use crate::error::SceneError;
+use serde::{Deserialize, Serialize};
+
+/// How doors count that stand in the way of a walker: joints whose shut leaf stands where one could walk without it. All
+/// other joints (drawers, cupboards) stand as the state has them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Doors {
+    /// As the state has them: a shut door is an obstacle, and so is the leaf of an open one.
+    #[default]
+    AsTheyStand,
+    /// Fully open, the leaf where it then stands: where someone who opens doors can go.
+    Open,
+    /// As [`Doors::Open`], but passing a door that does not stand open adds [`NavConfig::door_price_m`] to the way.
+    Priced,
+}
+
+/// Who walks, and how finely that is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct NavConfig {
+    /// Edge of a cell, m; 0.02 to 1, default 0.1.
+    pub cell_m: f32,
+    /// Radius of the walker, m; 0 to 2, default 0.2.
+    pub radius_m: f32,
+    /// Height of the walker, m; 0.1 to 3, default 1.5.
+    pub height_m: f32,
+    /// The highest step it climbs, m; 0 to 1, default 0.2.
+    pub step_m: f32,
+    /// The steepest slope it walks on, rad; 0 to 1.5, default 0.785.
+    pub max_slope_rad: f32,
+    /// How doors count.
+    pub doors: Doors,
+    /// What opening a door adds to a way under [`Doors::Priced`], m; 0 to 1000, default 2.
+    pub door_price_m: f32,
+}
+
+impl Default for NavConfig {
+    fn default() -> Self {
+        Self {
+            cell_m: 0.1,
+            radius_m: 0.2,
+            height_m: 1.5,
+            step_m: 0.2,
+            max_slope_rad: 0.785,
+            doors: Doors::AsTheyStand,
+            door_price_m: 2.0,
+        }
+    }
+}
+
+impl NavConfig {
+    pub(super) fn check(&self) -> Result<(), SceneError> {
+        let checks = [
+            ("cell_m", self.cell_m, 0.02, 1.0, "0.02 to 1"),
+            ("radius_m", self.radius_m, 0.0, 2.0, "0 to 2"),
+            ("height_m", self.height_m, 0.1, 3.0, "0.1 to 3"),
+            ("step_m", self.step_m, 0.0, 1.0, "0 to 1"),
+            ("max_slope_rad", self.max_slope_rad, 0.0, 1.5, "0 to 1.5"),
+            ("door_price_m", self.door_price_m, 0.0, 1e3, "0 to 1000"),
+        ];
+        for (field, found, low, high, allowed) in checks {
+            if !(low..=high).contains(&found) {
+                return Err(range(field, found, allowed));
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn range(field: &'static str, found: f32, allowed: &'static str) -> SceneError {
+    SceneError::Range {
+        at: "navigation".to_owned(),
+        field,
+        found: found.to_string(),
+        allowed,
+    }
+}

@@ -1,0 +1,117 @@
+//! Doors as edges between the islands of a grid.
+
+use super::grid::{Cell, NavGrid};
+use super::ground::{around, blocks};
+use super::obstacles::stands_open;
+use crate::ids::JointId;
+
+/// A door in the way of walkers, as the grid has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Door {
+    /// Its joint.
+    pub joint: JointId,
+    /// How far it was open when the grid was last updated, 0 to 1.
+    pub openness: f32,
+    /// Whether it stands open far enough to pass (0.8 and more).
+    pub is_open: bool,
+    /// The walkable cells on which its leaf stands when it is shut; none while the leaf or something else blocks them.
+    pub cells: Vec<Cell>,
+    /// The islands beside it, in order: two, if it parts them now; one, if there is a way between its sides.
+    pub islands: Vec<u32>,
+}
+
+impl NavGrid {
+    /// The doors in the way of walkers, by joint.
+    pub fn doors(&self) -> Vec<Door> {
+        (0..self.ground.passages.len())
+            .map(|k| self.door(k))
+            .collect()
+    }
+
+    fn door(&self, passage: usize) -> Door {
+        let openness = self.openness[passage];
+        let mut islands: Vec<u32> = Vec::new();
+        // Where a walker stands in front of the shut leaf, and a cell or two more for what the grid rounds.
+        let reach = self.config.radius_m + 2.5 * self.config.cell_m;
+        for (column, _) in &self.ground.passages[passage].shut {
+            for (beside, _) in around(&self.ground.frame, *column as usize, reach) {
+                let cells = self.layers.cells_of(beside).map(|cell| Cell(cell as u32));
+                let here = cells.filter(|cell| self.is_beside(passage, *cell));
+                islands.extend(here.filter_map(|cell| self.island(cell)));
+            }
+        }
+        islands.sort_unstable();
+        islands.dedup();
+        Door {
+            joint: self.ground.passages[passage].joint,
+            openness,
+            is_open: stands_open(openness),
+            cells: self.doorway(passage),
+            islands,
+        }
+    }
+
+    /// Whether a walker on `cell` is as high as the door's leaf.
+    fn is_beside(&self, passage: usize, cell: Cell) -> bool {
+        let y = self.layers.height[cell.0 as usize];
+        let leaf = &self.ground.passages[passage].shut;
+        leaf.iter()
+            .any(|(_, span)| blocks(std::slice::from_ref(span), y, &self.config))
+    }
+
+    /// The walkable cells under the shut leaf of a door.
+    fn doorway(&self, passage: usize) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        for (column, leaf) in &self.ground.passages[passage].shut {
+            for cell in self.layers.cells_of(*column as usize) {
+                let y = self.layers.height[cell];
+                let walkable = self.is_walkable(Cell(cell as u32));
+                if walkable && blocks(std::slice::from_ref(leaf), y, &self.config) {
+                    cells.push(Cell(cell as u32));
+                }
+            }
+        }
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
+
+    /// The shut doors that straight pieces between `corners` pass, in order.
+    pub(super) fn shut_doors_on(&self, corners: &[Cell]) -> Vec<JointId> {
+        let crosses = |ends: &[Cell]| {
+            let crossing = self.straight_between(ends[0], ends[1]);
+            crossing.is_some_and(|crossing| crossing.thresholds > 0)
+        };
+        let mut passed: Vec<JointId> = Vec::new();
+        for ends in corners.windows(2).filter(|ends| crosses(ends)) {
+            let (a, b) = (self.position(ends[0]), self.position(ends[1]));
+            let pieces = ((b - a).length() / (0.25 * self.config.cell_m))
+                .ceil()
+                .max(1.0) as usize;
+            let mut met: Vec<(usize, JointId)> = Vec::new();
+            for (k, passage) in self.ground.passages.iter().enumerate() {
+                if stands_open(self.openness[k]) {
+                    continue;
+                }
+                let doorway = self.doorway(k);
+                let reach = self.config.cell_m;
+                let at = (0..=pieces).find(|step| {
+                    let point = a.lerp(b, *step as f32 / pieces as f32);
+                    let near = |cell: &Cell| {
+                        let apart = self.position(*cell) - point;
+                        apart.x.abs().max(apart.z.abs()) <= 0.5 * reach + 1e-4
+                    };
+                    doorway.iter().any(near)
+                });
+                met.extend(at.map(|step| (step, passage.joint)));
+            }
+            met.sort_unstable();
+            for (_, joint) in met {
+                if !passed.contains(&joint) {
+                    passed.push(joint);
+                }
+            }
+        }
+        passed
+    }
+}

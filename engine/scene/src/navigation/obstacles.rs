@@ -1,0 +1,177 @@
+//! What moves: the parts of things, and the columns that each of them fills where it stands.
+
+use super::columns::{Frame, Span, join};
+use super::config::{Doors, NavConfig};
+use super::ground::{Ground, leaf_at};
+use crate::house::House;
+use crate::ids::PartId;
+use crate::state::State;
+use glam::{Affine3A, Vec3};
+use std::collections::BTreeMap;
+
+/// A door counts as open from this openness on.
+const STANDS_OPEN: f32 = 0.8;
+
+/// A part that moves.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Obstacle {
+    pub(super) part: PartId,
+    /// Where it stands; `None` while someone holds it.
+    world_from_part: Option<Affine3A>,
+    /// The columns that it fills, in order.
+    columns: Vec<(u32, Span)>,
+}
+
+/// All parts that move, and what they fill.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Obstacles {
+    parts: Vec<Obstacle>,
+    /// For each column with something that moves, its spans by position in `parts`.
+    filled: BTreeMap<u32, Vec<(u32, Span)>>,
+}
+
+/// What [`Obstacles::follow`] found.
+pub(super) struct Moved {
+    /// How many parts stand elsewhere.
+    pub(super) parts: usize,
+    /// The columns they left or came to, in order, each once.
+    pub(super) columns: Vec<u32>,
+}
+
+impl Obstacles {
+    /// All parts that move, standing nowhere yet.
+    pub(super) fn new(house: &House) -> Self {
+        let nowhere = |part: &PartId| Obstacle {
+            part: *part,
+            world_from_part: None,
+            columns: Vec::new(),
+        };
+        Self {
+            parts: house.geometry().movable.iter().map(nowhere).collect(),
+            filled: BTreeMap::new(),
+        }
+    }
+
+    /// How many parts there are.
+    pub(super) fn len(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// Moves every part to where `state` has it.
+    pub(super) fn follow(
+        &mut self,
+        house: &House,
+        state: &State,
+        ground: &Ground,
+        config: &NavConfig,
+    ) -> Moved {
+        let mut moved = Moved {
+            parts: 0,
+            columns: Vec::new(),
+        };
+        for (k, obstacle) in self.parts.iter_mut().enumerate() {
+            let place = place_of(house, state, ground, config, obstacle.part);
+            if place == obstacle.world_from_part {
+                continue;
+            }
+            let columns = place.map_or_else(Vec::new, |world_from_part| {
+                raster(house, &ground.frame, obstacle.part, &world_from_part)
+            });
+            moved.parts += 1;
+            for (column, _) in &obstacle.columns {
+                if let Some(spans) = self.filled.get_mut(column) {
+                    spans.retain(|(part, _)| *part as usize != k);
+                    if spans.is_empty() {
+                        self.filled.remove(column);
+                    }
+                }
+            }
+            for (column, span) in &columns {
+                let spans = self.filled.entry(*column).or_default();
+                let place = spans.partition_point(|(part, _)| *part as usize <= k);
+                spans.insert(place, (k as u32, *span));
+            }
+            let touched = obstacle.columns.iter().chain(&columns);
+            moved.columns.extend(touched.map(|(column, _)| *column));
+            obstacle.world_from_part = place;
+            obstacle.columns = columns;
+        }
+        moved.columns.sort_unstable();
+        moved.columns.dedup();
+        moved
+    }
+
+    /// The spans of the parts in a column.
+    pub(super) fn at(&self, column: u32) -> impl Iterator<Item = Span> + '_ {
+        let spans = self.filled.get(&column).map_or(&[][..], Vec::as_slice);
+        spans.iter().map(|(_, span)| *span)
+    }
+}
+
+/// How far a passage's door is open in `state`, 0 to 1.
+pub(super) fn openness(house: &House, state: &State, ground: &Ground, passage: usize) -> f32 {
+    let id = ground.passages[passage].joint;
+    house.joints[id].openness(state.joint_position[id])
+}
+
+/// Whether a door of this openness lets a walker pass.
+pub(super) fn stands_open(openness: f32) -> bool {
+    openness >= STANDS_OPEN
+}
+
+/// Where a part counts as standing; `None` while it is held.
+fn place_of(
+    house: &House,
+    state: &State,
+    ground: &Ground,
+    config: &NavConfig,
+    part: PartId,
+) -> Option<Affine3A> {
+    if state.held_by[house.parts[part].object].is_some() {
+        return None;
+    }
+    if let Some(passage) = ground.passage_of_part[part] {
+        let open = stands_open(openness(house, state, ground, passage as usize));
+        let opened = match config.doors {
+            Doors::AsTheyStand => false,
+            Doors::Open => true,
+            Doors::Priced => !open,
+        };
+        if opened {
+            let joint = &house.joints[ground.passages[passage as usize].joint];
+            return Some(leaf_at(state, joint, joint.open));
+        }
+    }
+    Some(state.part_pose[part].to_affine())
+}
+
+/// The columns that a part crosses where it stands, in order, with disjoint spans.
+pub(super) fn raster(
+    house: &House,
+    frame: &Frame,
+    part: PartId,
+    world_from_part: &Affine3A,
+) -> Vec<(u32, Span)> {
+    let part = &house.parts[part];
+    let world_from_mesh = *world_from_part * part.part_from_mesh;
+    let mesh = &house.meshes[part.mesh];
+    let points: Vec<Vec3> = mesh
+        .positions
+        .iter()
+        .map(|p| world_from_mesh.transform_point3(*p))
+        .collect();
+    let mut crossed: Vec<(u32, Span)> = Vec::new();
+    for triangle in &mesh.triangles {
+        frame.cross(triangle.map(|v| points[v as usize]), |column, span| {
+            crossed.push((column as u32, span));
+        });
+    }
+    crossed.sort_by_key(|(column, _)| *column);
+    let mut columns = Vec::new();
+    for spans in crossed.chunk_by(|a, b| a.0 == b.0) {
+        let mut joined: Vec<Span> = spans.iter().map(|(_, span)| *span).collect();
+        join(&mut joined);
+        columns.extend(joined.into_iter().map(|span| (spans[0].0, span)));
+    }
+    columns
+}
