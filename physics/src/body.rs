@@ -10,7 +10,7 @@ use dwell_scene::{House, ObjectId, PartId, Pose, State, Velocity};
 use rapier3d::dynamics::{
     CoefficientCombineRule, RigidBodyBuilder, RigidBodyHandle, RigidBodyType,
 };
-use rapier3d::geometry::{Collider, ColliderBuilder, ColliderHandle};
+use rapier3d::geometry::{Collider, ColliderBuilder, ColliderHandle, InteractionGroups};
 use rapier3d::math::Pose as RapierPose;
 use rapier3d::pipeline::{ActiveEvents, ActiveHooks};
 
@@ -102,7 +102,9 @@ pub(crate) fn insert_body(
         .pose(place.world_from_body)
         .can_sleep(place.sleeping_allowed);
     if let Some(inertia) = &place.inertia {
-        builder = builder.additional_mass_properties(inertia.properties());
+        builder = builder
+            .additional_mass_properties(inertia.properties())
+            .gravity_scale(inertia.gravity_scale);
     }
     let handle = engine.bodies.insert(builder);
     for piece in &plan.pieces {
@@ -157,6 +159,10 @@ pub(crate) fn redress(collider: &mut Collider, (own, special): (PairContact, boo
     collider.set_friction(own.friction);
     collider.set_restitution(own.restitution);
     collider.set_active_hooks(hooks);
+    // rapier keeps the values of contacts that hardly move; it looks anew where a collider's groups changed.
+    let groups = collider.solver_groups();
+    collider.set_solver_groups(InteractionGroups::none());
+    collider.set_solver_groups(groups);
 }
 
 /// What the densities of each body are multiplied with, so that overridden objects weigh what they should. Shape (body,).

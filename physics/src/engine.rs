@@ -79,6 +79,11 @@ impl Engine {
         };
     }
 
+    /// Length of one run of rapier, s: the time over which it keeps impulses.
+    pub(crate) fn run_s(&self) -> f32 {
+        self.parameters.dt
+    }
+
     /// One physics step.
     pub(crate) fn step(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
         let parameters = self.parameters;

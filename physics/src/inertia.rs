@@ -13,6 +13,8 @@ pub(crate) struct Inertia {
     pub(crate) center: Vec3,
     /// About the centre of mass, kg·m².
     pub(crate) tensor: Mat3,
+    /// Weight over mass times gravity.
+    pub(crate) gravity_scale: f32,
 }
 
 impl Inertia {
@@ -27,6 +29,7 @@ impl Inertia {
             mass_kg: all.mass(),
             center: all.local_com,
             tensor: all.reconstruct_inertia_matrix(),
+            gravity_scale: 1.0,
         }
     }
 

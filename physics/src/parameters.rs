@@ -59,6 +59,7 @@ impl PhysicsWorld {
             let handle = self.bodies[index].handle;
             if let Some(rigid) = self.engine.bodies.get_mut(handle) {
                 rigid.set_additional_mass_properties(properties, false);
+                rigid.set_gravity_scale(inertia.map_or(1.0, |i| i.gravity_scale), false);
             }
         }
         for agent in 0..self.agents.len() {

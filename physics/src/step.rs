@@ -107,6 +107,11 @@ impl PhysicsWorld {
         let mut stage = Stage {
             engine: &mut self.engine,
             bodies: &self.bodies,
+            entries: &self.entries,
+            house: &self.model.house,
+            table: &self.table,
+            dt_s: self.settings.dt_s,
+            tick: self.tick,
         };
         for installed in &mut self.laws {
             each(&mut *installed.law, &mut stage);

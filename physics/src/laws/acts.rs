@@ -1,12 +1,13 @@
 //! What a law can do to a world.
 
 use crate::body::Body;
-use crate::contact::Toucher;
+use crate::contact::{ContactTable, Entry, Toucher};
 use crate::engine::Engine;
 use crate::inertia::Inertia;
 use crate::laws::target::Scope;
-use dwell_scene::JointId;
+use dwell_scene::{House, JointId};
 use glam::{Quat, Vec3};
+use rapier3d::dynamics::RigidBody;
 use std::fmt::Debug;
 
 /// A law at work in a world. Every method has a default that does nothing; a law writes those it needs.
@@ -56,6 +57,44 @@ pub(crate) struct Stage<'a> {
     pub(crate) engine: &'a mut Engine,
     /// By the number of the body's plan in the model.
     pub(crate) bodies: &'a [Body],
+    /// What each collider stands for, by its user data.
+    pub(crate) entries: &'a [Entry],
+    pub(crate) house: &'a House,
+    pub(crate) table: &'a ContactTable,
+    /// Length of a physics step, s.
+    pub(crate) dt_s: f32,
+    /// Physics steps since the world was made.
+    pub(crate) tick: u64,
+}
+
+impl Stage<'_> {
+    /// Time since the world was made, s.
+    pub(crate) fn time_s(&self) -> f64 {
+        self.tick as f64 * f64::from(self.dt_s)
+    }
+
+    /// A body that moves freely; `None` for one that is held, frozen or has no mass.
+    pub(crate) fn free(&mut self, body: u32) -> Option<&RigidBody> {
+        let rigid = self.engine.bodies.get(self.bodies[body as usize].handle)?;
+        (rigid.is_dynamic() && rigid.mass() > 0.0).then_some(rigid)
+    }
+
+    /// A body that moves freely and is awake.
+    pub(crate) fn moving(&mut self, body: u32) -> Option<&mut RigidBody> {
+        let handle = self.bodies[body as usize].handle;
+        if self.free(body)?.is_sleeping() {
+            return None;
+        }
+        self.engine.bodies.get_mut(handle)
+    }
+
+    /// Wakes a body and keeps it awake for as long as one that was just woken.
+    pub(crate) fn wake(&mut self, body: u32) {
+        let handle = self.bodies[body as usize].handle;
+        self.engine
+            .islands
+            .wake_up(&mut self.engine.bodies, handle, true);
+    }
 }
 
 /// One of the two things that touch.

@@ -30,9 +30,15 @@ type Install = fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Box<dyn A
 /// The laws of this engine.
 static LAWS: &[Law] = &[
     bodies::drag::LAW,
+    bodies::viscous_damping::LAW,
+    bodies::magnus::LAW,
+    bodies::buoyancy::LAW,
+    bodies::wind::LAW,
     bodies::center_of_mass::LAW,
     bodies::inertia_error::LAW,
     contacts::compliance::LAW,
+    contacts::rolling::LAW,
+    contacts::torsional::LAW,
     contacts::stribeck::LAW,
     contacts::anisotropic_friction::LAW,
     contacts::velocity_restitution::LAW,

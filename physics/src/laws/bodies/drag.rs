@@ -1,13 +1,12 @@
 //! Quadratic air drag.
 
+use super::size::cross_section_m2;
 use crate::error::PhysicsError;
 use crate::laws::target::free_bodies;
 use crate::laws::{Acts, Law, Stage, value};
-use crate::model::{BodyPlan, PhysicsModel};
+use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
-use rapier3d::geometry::{SharedShape, TypedShape};
-use std::f32::consts::PI;
 
 pub(in crate::laws) const LAW: Law = Law {
     info: LawInfo {
@@ -82,53 +81,16 @@ fn install(
     Ok(Box::new(Drag { bodies }))
 }
 
-/// The mean cross-section of a body's pieces: a quarter of their surface.
-pub(super) fn cross_section_m2(plan: &BodyPlan) -> f32 {
-    plan.pieces
-        .iter()
-        .map(|piece| surface_m2(&piece.shape))
-        .sum::<f32>()
-        * 0.25
-}
-
-fn surface_m2(shape: &SharedShape) -> f32 {
-    match shape.as_typed_shape() {
-        TypedShape::Ball(ball) => 4.0 * PI * ball.radius * ball.radius,
-        TypedShape::Cuboid(cuboid) => {
-            let h = cuboid.half_extents;
-            8.0 * (h.x * h.y + h.y * h.z + h.z * h.x)
-        }
-        TypedShape::Cylinder(cylinder) => {
-            2.0 * PI * cylinder.radius * (2.0 * cylinder.half_height + cylinder.radius)
-        }
-        TypedShape::ConvexPolyhedron(hull) => {
-            let (points, triangles) = hull.to_trimesh();
-            let area = |t: &[u32; 3]| {
-                let [a, b, c] = t.map(|k| points[k as usize]);
-                0.5 * (b - a).cross(c - a).length()
-            };
-            triangles.iter().map(area).sum()
-        }
-        _ => 0.0,
-    }
-}
-
 impl Acts for Drag {
     fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
-            let handle = stage.bodies[*body as usize].handle;
-            let Some(rigid) = stage.engine.bodies.get(handle) else {
+            let Some(rigid) = stage.moving(*body) else {
                 continue;
             };
-            if rigid.is_sleeping() || !rigid.is_dynamic() || rigid.mass() <= 0.0 {
-                continue;
-            }
             // The exact solution of m dv/dt = -k |v| v over the half step; it never turns the velocity round.
             let velocity = rigid.linvel();
             let slowed = velocity / (1.0 + gain / rigid.mass() * velocity.length() * half_dt_s);
-            if let Some(rigid) = stage.engine.bodies.get_mut(handle) {
-                rigid.set_linvel(slowed, false);
-            }
+            rigid.set_linvel(slowed, false);
         }
     }
 

@@ -138,6 +138,7 @@ mod tests {
             mass_kg: 2.0,
             center: Vec3::X,
             tensor: Mat3::from_diagonal(Vec3::new(1.0, 4.0, 9.0)),
+            gravity_scale: 1.0,
         };
         let mut found = own;
         law.weigh(2, &mut found);

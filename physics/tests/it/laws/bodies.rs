@@ -3,8 +3,9 @@
 use super::{spec, tower};
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::PhysicsConfig;
-use dwell_scene::{LawSpec, State};
+use dwell_scene::{LawSpec, ObjectId, State};
 use glam::{Quat, Vec3};
+use std::f32::consts::PI;
 
 /// `v(t) = v_inf tanh(g t / v_inf), v_inf = sqrt(2 m g / (rho c_d A))`; a ball's mean cross-section is pi r^2.
 #[test]
@@ -15,9 +16,8 @@ fn drag_slows_a_fall_as_the_hyperbolic_tangent() {
     let mut run = Run::from_state(house, PhysicsConfig::default(), state);
     let ball = run.house.object_named("ball").unwrap();
     let other = run.house.object_named("other").unwrap();
-    let pi = std::f32::consts::PI;
-    let mass = 30.0 * 4.0 / 3.0 * pi * 0.001;
-    let terminal = (2.0 * mass * gravity() / (1.204 * 0.8 * pi * 0.01)).sqrt();
+    let mass = 30.0 * 4.0 / 3.0 * PI * 0.001;
+    let terminal = (2.0 * mass * gravity() / (1.204 * 0.8 * PI * 0.01)).sqrt();
     for step in 1..=80 {
         run.steps(1);
         let t = step as f32 / 20.0;
@@ -190,4 +190,137 @@ fn a_box_tips_once_its_centre_of_mass_is_beyond_its_edge() {
         let up = run.state.part_pose[run.root(object)].rotation * Vec3::Y;
         assert_eq!(up.y < 0.5, tips, "{shift} m: {up}");
     }
+}
+
+/// A ball of a tenth of a metre radius that floats in a room, without weight, and its mass.
+fn weightless_ball(laws: Vec<LawSpec>) -> (Run, ObjectId, f32) {
+    let mut build = Build::room([40.0, 40.0, 40.0]);
+    let ball = build.movable("ball", Piece::ball(0.1, Vec3::splat(20.0)).density(30.0));
+    let house = build.house();
+    let mut state = State::new(&house);
+    let gravity = "world/gravity_m_s2".parse().unwrap();
+    state.set_parameter(&house, &gravity, 0.0).unwrap();
+    state.laws = laws;
+    let run = Run::from_state(house, PhysicsConfig::default(), state);
+    (run, ball, 30.0 * 4.0 / 3.0 * PI * 1e-3)
+}
+
+/// `v = v_0 exp(-c t)` and `x = v_0 (1 - exp(-c t)) / c`, and the same for the spin.
+#[test]
+fn viscous_damping_takes_the_same_share_in_each_second() {
+    let params = [("linear_per_s", 0.7), ("angular_per_s", 1.1)];
+    let (mut run, ball, _) = weightless_ball(vec![spec("viscous_damping", Some("ball"), &params)]);
+    let (root, from) = (run.root(ball), run.position(ball));
+    run.state.part_velocity[root].angular = Vec3::new(0.0, 4.0, 0.0);
+    run.throw(ball, Vec3::new(3.0, 0.0, 0.0));
+    for step in 1..=40 {
+        run.steps(1);
+        let t = step as f32 / 20.0;
+        let slowed = (-0.7 * t).exp();
+        assert!((run.velocity(ball).x / (3.0 * slowed) - 1.0).abs() < 1e-4);
+        let spin = run.state.part_velocity[root].angular.y;
+        // rapier rounds the spin anew in each substep.
+        let expected = 4.0 * (-1.1 * t).exp();
+        assert!((spin / expected - 1.0).abs() < 1e-3, "{t} s: {spin} rad/s");
+        let way = run.position(ball).x - from.x;
+        assert!(
+            (way / (3.0 * (1.0 - slowed) / 0.7) - 1.0).abs() < 1e-3,
+            "{t} s: {way} m"
+        );
+    }
+}
+
+/// Without weight the lift of a constant spin across the flight bends it to a circle of radius `m v / (1/2 rho A r c_l w)`
+/// at constant speed, to the side that the sense of the spin says.
+#[test]
+fn magnus_lift_bends_a_flight_to_a_circle() {
+    for sense in [1.0_f32, -1.0] {
+        let params = [("c_l", 1.0), ("area_m2", 0.0)];
+        let (mut run, ball, mass) = weightless_ball(vec![spec("magnus", None, &params)]);
+        let (root, from) = (run.root(ball), run.position(ball));
+        run.state.part_velocity[root].angular = Vec3::new(0.0, sense * 80.0, 0.0);
+        run.throw(ball, Vec3::new(5.0, 0.0, 0.0));
+        let gain = 0.5 * 1.204 * PI * 0.01 * 0.1;
+        let rate = gain * 80.0 / mass;
+        let radius = 5.0 / rate;
+        // w x v of +Y and +X is -Z.
+        let center = from + Vec3::new(0.0, 0.0, -sense * radius);
+        for step in 1..=40 {
+            run.steps(1);
+            assert!((run.velocity(ball).length() / 5.0 - 1.0).abs() < 1e-4);
+            let angle = rate * step as f32 / 20.0;
+            let expected = center + Vec3::new(angle.sin(), 0.0, sense * angle.cos()) * radius;
+            let error = (run.position(ball) - expected).length();
+            assert!(
+                error < 5e-3 * radius,
+                "{angle} rad: {error} m of {radius} m"
+            );
+        }
+    }
+}
+
+/// `a = -g (m - rho V) / (m + c rho V)`: a light ball falls slower than a heavy one, and one lighter than the fluid rises.
+#[test]
+fn buoyancy_and_added_mass_slow_a_fall() {
+    for (density, fluid, added) in [
+        (30.0, 1.204, 0.5),
+        (3000.0, 1.204, 0.5),
+        (0.5, 1.204, 0.5),
+        (30.0, 5.0, 0.0),
+    ] {
+        let mut build = Build::room([4.0, 20.0, 4.0]);
+        let at = Vec3::new(2.0, 10.0, 2.0);
+        let ball = build.movable("ball", Piece::ball(0.1, at).density(density));
+        let house = build.house();
+        let mut state = State::new(&house);
+        let params = [
+            ("fluid_density_kg_m3", f64::from(fluid)),
+            ("added_mass", f64::from(added)),
+        ];
+        state.laws = vec![spec("buoyancy", Some("ball"), &params)];
+        let mut run = Run::from_state(house, PhysicsConfig::default(), state);
+        run.steps(16);
+        let expected = -gravity() * 0.8 * (density - fluid) / (density + added * fluid);
+        let found = run.velocity(ball).y;
+        assert!(
+            (found / expected - 1.0).abs() < 1e-3,
+            "{density} in {fluid} kg/m3: {found} m/s, expected {expected} m/s"
+        );
+    }
+}
+
+/// The velocity against the air falls as `u_0 / (1 + k u_0 t / m)`, so that a ball at rest is blown along by the rest.
+#[test]
+fn wind_carries_a_ball_along() {
+    let params = [("x_m_s", 3.0), ("z_m_s", -4.0), ("c_d", 0.5)];
+    let (mut run, ball, mass) = weightless_ball(vec![spec("wind", Some("ball"), &params)]);
+    let gain = 0.5 * 1.204 * 0.5 * PI * 0.01 / mass;
+    for step in 1..=60 {
+        run.steps(1);
+        let left = 5.0 / (1.0 + gain * 5.0 * (step as f32 / 20.0));
+        let expected = Vec3::new(0.6, 0.0, -0.8) * (5.0 - left);
+        assert!((run.velocity(ball) - expected).length() < 1e-3);
+    }
+}
+
+/// In the calm both sleep; the gust wakes the light ball, which rolls away, and leaves the heavy box asleep.
+#[test]
+fn a_gust_wakes_what_it_can_move() {
+    let mut build = Build::room([8.0, 3.0, 4.0]);
+    let light = Piece::ball(0.1, Vec3::new(2.0, 0.1, 1.0)).density(2.0);
+    let ball = build.movable("ball", light);
+    let heavy = Piece::cuboid(Vec3::splat(0.2), Vec3::new(2.0, 0.2, 3.0)).density(2000.0);
+    let block = build.movable("block", heavy);
+    let house = build.house();
+    let mut state = State::new(&house);
+    let params = [("x_m_s", 1.0), ("period_s", 12.0), ("blowing_share", 0.5)];
+    state.laws = vec![spec("wind", None, &params)];
+    let mut run = Run::from_state(house, PhysicsConfig::default(), state);
+    run.steps(119);
+    assert_eq!(run.world.awake_count(), 0);
+    let (ball_at, block_at) = (run.position(ball), run.position(block));
+    run.steps(60);
+    assert_eq!(run.world.awake_count(), 1);
+    assert!(run.position(ball).x > ball_at.x + 0.2);
+    assert_eq!(run.position(block), block_at);
 }

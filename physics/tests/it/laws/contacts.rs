@@ -228,3 +228,102 @@ fn stribeck_friction_brakes_a_sled_by_its_speed() {
         "{found} m, expected {expected} m"
     );
 }
+
+/// A ball that rolls along the floor with `v`, or down a slope.
+fn rolling(c_rr: f64, slope_rad: f32, speed_m_s: f32) -> (Run, ObjectId) {
+    let mut build = Build::room_of([20.0, 6.0, 4.0], "rubber");
+    let turn = Quat::from_rotation_z(slope_rad);
+    let at = Vec3::new(10.0, 2.0, 2.0);
+    let lane = Piece::cuboid(Vec3::new(9.0, 0.1, 1.0), at);
+    build.fixed("lane", lane.of("rubber").turned(turn));
+    let on = at + turn * Vec3::new(2.0, 0.2, 0.0);
+    let ball = build.movable("ball", Piece::ball(0.1, on).of("rubber").density(200.0));
+    let law = spec("rolling_resistance", Some("rubber~ball"), &[("c_rr", c_rr)]);
+    let config = PhysicsConfig {
+        sleeping: false,
+        ..PhysicsConfig::default()
+    };
+    let mut run = run_with(build, vec![law], config);
+    let root = run.root(ball);
+    run.state.part_velocity[root].angular = Vec3::new(0.0, 0.0, speed_m_s / 0.1);
+    run.throw(ball, turn * Vec3::X * -speed_m_s);
+    (run, ball)
+}
+
+/// `v^2 / (2 a)` with `a = 5/7 c_rr g`, rolling all the way; and it stays where it stops.
+#[test]
+fn rolling_resistance_stops_a_ball() {
+    for (c_rr, speed) in [(0.02, 1.0_f32), (0.05, 1.5)] {
+        let (mut run, ball) = rolling(c_rr, 0.0, speed);
+        let from = run.position(ball);
+        run.steps(20);
+        let (v, w) = (
+            run.velocity(ball),
+            run.state.part_velocity[run.root(ball)].angular,
+        );
+        assert!(
+            (v.length() / (0.1 * w.length()) - 1.0).abs() < 0.01,
+            "{v} {w}"
+        );
+        run.steps(300);
+        let expected = speed * speed * 1.4 / (2.0 * c_rr as f32 * gravity());
+        let found = (run.position(ball) - from).length();
+        assert!(
+            (found / expected - 1.0).abs() < 0.02,
+            "{found} m, expected {expected} m"
+        );
+        assert!(run.velocity(ball).length() < 1e-4);
+    }
+}
+
+/// It holds a ball on a slope up to `tan(t) = c_rr`, and beyond lets it roll with `5/7 g (sin(t) - c_rr cos(t))`. Held means
+/// that it creeps by less than 1 mm/s: the torque comes once a step, gravity all the time.
+#[test]
+fn rolling_resistance_holds_a_ball_on_a_gentle_slope() {
+    let (mut run, ball) = rolling(0.05, 0.045, 0.0);
+    run.steps(20);
+    let from = run.position(ball);
+    run.steps(100);
+    let crept = (run.position(ball) - from).length();
+    assert!(crept < 5e-3, "{crept} m in 5 s");
+    let (mut run, ball) = rolling(0.05, 0.1, 0.0);
+    run.steps(20);
+    let before = run.velocity(ball).length();
+    run.steps(20);
+    let found = run.velocity(ball).length() - before;
+    let expected = gravity() / 1.4 * (0.1_f32.sin() - 0.05 * 0.1_f32.cos());
+    assert!(
+        (found / expected - 1.0).abs() < 0.03,
+        "{found} m/s2, expected {expected} m/s2"
+    );
+}
+
+/// `dw/dt = -mu m g r / I` about the vertical, and nothing once it stands or in flight.
+#[test]
+fn torsional_friction_slows_a_spinning_ball_evenly() {
+    let (mu, _) = pair("rubber", "rubber");
+    let law = spec("torsional_friction", Some("ball"), &[("radius_m", 0.002)]);
+    let (mut run, ball) = drop_from(0.0, vec![law], PhysicsConfig::default());
+    run.steps(10);
+    let root = run.root(ball);
+    run.state.part_velocity[root].angular = Vec3::new(0.0, 10.0, 0.0);
+    run.world.adopt(&mut run.state).unwrap();
+    let slowing = mu * gravity() * 0.002 / (0.4 * 0.01);
+    for step in 1..=60 {
+        run.steps(1);
+        let expected = (10.0 - slowing * step as f32 / 20.0).max(0.0);
+        let found = run.state.part_velocity[root].angular.y;
+        assert!(
+            (found - expected).abs() < 0.1,
+            "{step}: {found} rad/s, expected {expected} rad/s"
+        );
+    }
+    let law = spec("torsional_friction", Some("ball"), &[("radius_m", 0.002)]);
+    let (mut run, ball) = drop_from(5.0, vec![law], PhysicsConfig::default());
+    let root = run.root(ball);
+    run.state.part_velocity[root].angular = Vec3::new(0.0, 10.0, 0.0);
+    run.world.adopt(&mut run.state).unwrap();
+    run.steps(10);
+    let kept = run.state.part_velocity[root].angular.y;
+    assert!((kept - 10.0).abs() < 1e-3, "{kept} rad/s");
+}

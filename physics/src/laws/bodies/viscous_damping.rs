@@ -1,0 +1,83 @@
+//! Damping in proportion to speed.
+
+use crate::error::PhysicsError;
+use crate::laws::target::free_bodies;
+use crate::laws::{Acts, Law, Stage, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{LawInfo, LawSpec, State, math};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "viscous_damping",
+        version: 1,
+        name: "linear drag (viscous damping)",
+        equation: "dv/dt = -linear_per_s v and dw/dt = -angular_per_s w, with v the velocity of the centre of mass (m/s) and \
+                   w the spin (rad/s); whatever the mass",
+        source: "G. G. Stokes, Trans. Cambridge Phil. Soc. 9 (1851): drag in proportion to speed at low Reynolds numbers; \
+                 L. D. Landau, E. M. Lifshitz, Fluid Mechanics (1987), section 20",
+        engine: ActsIn::Physics,
+        acts_on: "object",
+        params: &[
+            ParamInfo {
+                name: "linear_per_s",
+                unit: "1/s",
+                default: 0.0,
+                low: 0.0,
+                high: 100.0,
+                plausible: [0.0, 0.5],
+            },
+            ParamInfo {
+                name: "angular_per_s",
+                unit: "1/s",
+                default: 0.0,
+                low: 0.0,
+                high: 100.0,
+                plausible: [0.0, 0.5],
+            },
+        ],
+        rivals: &["drag", "rolling_resistance", "torsional_friction"],
+        separating_experiment: "let the object move freely at speeds that differ by a factor of three or more: linear drag \
+                                takes the same share of the speed in each second, quadratic drag a share that grows with \
+                                it; friction acts in contact only",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Viscous {
+    bodies: Vec<u32>,
+    linear_per_s: f32,
+    angular_per_s: f32,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    let bodies = free_bodies(spec, info, model)?;
+    Ok(Box::new(Viscous {
+        bodies: bodies.into_iter().map(|(index, _)| index).collect(),
+        linear_per_s: value(spec, info, "linear_per_s"),
+        angular_per_s: value(spec, info, "angular_per_s"),
+    }))
+}
+
+impl Acts for Viscous {
+    fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
+        let linear = math::exp(-self.linear_per_s * half_dt_s);
+        let angular = math::exp(-self.angular_per_s * half_dt_s);
+        for body in &self.bodies {
+            if let Some(rigid) = stage.moving(*body) {
+                rigid.set_linvel(rigid.linvel() * linear, false);
+                rigid.set_angvel(rigid.angvel() * angular, false);
+            }
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

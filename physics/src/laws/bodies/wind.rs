@@ -1,0 +1,162 @@
+//! Moving air.
+
+use super::size::cross_section_m2;
+use crate::error::PhysicsError;
+use crate::laws::target::free_bodies;
+use crate::laws::{Acts, Law, Stage, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{LawInfo, LawSpec, State};
+use glam::Vec3;
+
+/// Share of its weight with which the air must push a body to keep it awake.
+const WAKING_SHARE: f32 = 1e-3;
+
+const fn speed(name: &'static str) -> ParamInfo {
+    ParamInfo {
+        name,
+        unit: "m/s",
+        default: 0.0,
+        low: -50.0,
+        high: 50.0,
+        plausible: [-1.0, 1.0],
+    }
+}
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "wind",
+        version: 1,
+        name: "wind, draught, fan",
+        equation: "F = 1/2 rho c_d A |u - v| (u - v), with u = (x_m_s, y_m_s, z_m_s) the air's velocity while it blows and 0 \
+                   while it pauses, v the velocity of the centre of mass (m/s), rho the air density (kg/m3), A the \
+                   cross-section (m2; 0 takes a quarter of the surface of the collision pieces). With a period T > 0 it \
+                   blows in the last blowing_share of each T. It includes the drag: leave the law of drag out for the same \
+                   object. A sleeping object is woken, and kept awake, by a push of more than a thousandth of its weight",
+        source: "L. D. Landau, E. M. Lifshitz, Fluid Mechanics (1987), section 45, in the frame of the air",
+        engine: ActsIn::Physics,
+        acts_on: "object",
+        params: &[
+            speed("x_m_s"),
+            speed("y_m_s"),
+            speed("z_m_s"),
+            ParamInfo {
+                name: "period_s",
+                unit: "s",
+                default: 0.0,
+                low: 0.0,
+                high: 3600.0,
+                plausible: [0.0, 60.0],
+            },
+            ParamInfo {
+                name: "blowing_share",
+                unit: "1",
+                default: 0.5,
+                low: 0.0,
+                high: 1.0,
+                plausible: [0.0, 1.0],
+            },
+            ParamInfo {
+                name: "c_d",
+                unit: "1",
+                default: 1.0,
+                low: 0.0,
+                high: 20.0,
+                plausible: [0.1, 2.0],
+            },
+            ParamInfo {
+                name: "area_m2",
+                unit: "m2",
+                default: 0.0,
+                low: 0.0,
+                high: 100.0,
+                plausible: [0.0, 4.0],
+            },
+            ParamInfo {
+                name: "air_density_kg_m3",
+                unit: "kg/m3",
+                default: 1.204,
+                low: 0.0,
+                high: 1000.0,
+                plausible: [1.0, 1.4],
+            },
+        ],
+        rivals: &["frame_tilt", "drag", "magnus"],
+        separating_experiment: "put a light and a heavy object of one shape side by side, or switch the fan off: wind moves \
+                                the light one, a tilted floor or frame both",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Wind {
+    /// Body and `1/2 rho c_d A`, kg/m.
+    bodies: Vec<(u32, f32)>,
+    velocity: Vec3,
+    period_s: f32,
+    blowing_share: f32,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    let (c_d, area) = (value(spec, info, "c_d"), value(spec, info, "area_m2"));
+    let density = value(spec, info, "air_density_kg_m3");
+    let bodies = free_bodies(spec, info, model)?
+        .into_iter()
+        .map(|(index, plan)| {
+            let area = if area > 0.0 {
+                area
+            } else {
+                cross_section_m2(plan)
+            };
+            (index, 0.5 * density * c_d * area)
+        })
+        .collect();
+    let velocity = ["x_m_s", "y_m_s", "z_m_s"].map(|name| value(spec, info, name));
+    Ok(Box::new(Wind {
+        bodies,
+        velocity: Vec3::from_array(velocity),
+        period_s: value(spec, info, "period_s"),
+        blowing_share: value(spec, info, "blowing_share"),
+    }))
+}
+
+impl Wind {
+    /// The air's velocity at a time since the world was made, m/s.
+    fn air(&self, time_s: f64) -> Vec3 {
+        let period = f64::from(self.period_s);
+        let pauses = period > 0.0
+            && time_s.rem_euclid(period) < (1.0 - f64::from(self.blowing_share)) * period;
+        if pauses { Vec3::ZERO } else { self.velocity }
+    }
+}
+
+impl Acts for Wind {
+    fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
+        let air = self.air(stage.time_s());
+        let gravity = stage.engine.gravity.length();
+        for (body, gain) in &self.bodies {
+            let Some(rigid) = stage.free(*body) else {
+                continue;
+            };
+            let (mass, against) = (rigid.mass(), rigid.linvel() - air);
+            let push = gain * against.length_squared();
+            if air != Vec3::ZERO && push > WAKING_SHARE * mass * gravity {
+                stage.wake(*body);
+            }
+            if let Some(rigid) = stage.moving(*body) {
+                // The exact solution of m du/dt = -k |u| u for the velocity against the air over the half step.
+                let slowed = against / (1.0 + gain / mass * against.length() * half_dt_s);
+                rigid.set_linvel(air + slowed, false);
+            }
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

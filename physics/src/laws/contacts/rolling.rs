@@ -1,0 +1,78 @@
+//! What brings a rolling thing to rest.
+
+use super::load::loads;
+use crate::error::PhysicsError;
+use crate::laws::target::Scope;
+use crate::laws::{Acts, Law, Stage, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{LawInfo, LawSpec, State};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "rolling_resistance",
+        version: 1,
+        name: "rolling resistance",
+        equation: "a torque M = c_rr N r against the rolling, which also holds what would begin to roll by less; N the normal \
+                   force of the last step (N), r the distance of the centre of mass from the contact plane (m), rolling the \
+                   spin of the two against each other along the plane. A ball slows by c_rr g / (1 + I / (m r^2)), with \
+                   I / (m r^2) = 2/5 where it is solid",
+        source: "K. L. Johnson, Contact Mechanics (1985), section 9.3; N. V. Brilliantov, T. Poeschel, Europhys. Lett. 42, \
+                 511 (1998)",
+        engine: ActsIn::Physics,
+        acts_on: "contact",
+        params: &[ParamInfo {
+            name: "c_rr",
+            unit: "1",
+            default: 0.0,
+            low: 0.0,
+            high: 1.0,
+            plausible: [0.0005, 0.1],
+        }],
+        rivals: &["frame_tilt", "drag", "viscous_damping"],
+        separating_experiment: "let the ball roll in two opposite directions and at speeds that differ by a factor of three: \
+                                rolling resistance slows it alike each time, a tilted floor helps one way, air takes more \
+                                from the faster one",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Rolling {
+    scope: Scope,
+    c_rr: f32,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    Ok(Box::new(Rolling {
+        scope: Scope::of(spec, info, model)?,
+        c_rr: value(spec, info, "c_rr"),
+    }))
+}
+
+impl Acts for Rolling {
+    fn before_step(&mut self, stage: &mut Stage<'_>) {
+        for load in loads(stage, &self.scope) {
+            // The spin at the end of the step, if nothing resisted.
+            let spin = load.spin(stage) + load.gravity_turn(stage) * stage.dt_s;
+            let rolling = spin - load.normal * spin.dot(load.normal);
+            let speed = rolling.length();
+            if speed <= 0.0 {
+                continue;
+            }
+            let axis = rolling / speed;
+            let most = self.c_rr * load.normal_force_n * load.radius_m(stage) * stage.dt_s;
+            let stops = load.inertia(stage, axis, true) * speed;
+            load.turn(stage, -axis * most.min(stops));
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}
