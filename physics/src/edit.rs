@@ -103,17 +103,33 @@ impl PhysicsWorld {
         if stands_up {
             agents::reshape(&mut self.engine, &self.agents[agent.index()], &here);
         }
-        if let Some(grip) = self.grips.iter().find(|grip| grip.agent == agent) {
-            let hand = to_rapier(&agents::hand_pose(grip, &here));
-            let handle = self.bodies[grip.body as usize].handle;
-            if let Some(rigid) = self.engine.bodies.get_mut(handle) {
-                rigid.set_position(hand, true);
-                rigid.set_linvel(Vec3::ZERO, true);
-            }
+        if let Some(place) = self.grips.iter().position(|grip| grip.agent == agent) {
+            self.bring_held(state, place, &here);
         }
         self.flush();
         self.write_bodies(state);
         Ok(())
+    }
+
+    /// Brings what an agent holds to where its hand is now: as near to the hand as nothing is in the way, never beyond a
+    /// wall. Where there is no room at all, the agent lets go of it, and it stays where it was.
+    fn bring_held(&mut self, state: &mut State, place: usize, here: &AgentState) {
+        let grip = self.grips[place];
+        let body = grip.body as usize;
+        let hand = to_rapier(&agents::hand_pose(&grip, here));
+        let mut eye = hand;
+        let middle = self.model.bodies[body].bounds(&hand).center();
+        eye.translation += here.eye_position() - middle;
+        let clear = self.clear_between(body, here, &eye, &hand);
+        if clear.is_none() {
+            self.ungrip(state, place);
+        }
+        let handle = self.bodies[body].handle;
+        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+            rigid.set_position(clear.unwrap_or(*rigid.position()), true);
+            rigid.set_linvel(Vec3::ZERO, true);
+            rigid.set_angvel(Vec3::ZERO, true);
+        }
     }
 
     /// Takes over poses, velocities and joint positions that were set in `state` from outside: what differs from where

@@ -43,7 +43,7 @@ mod start;
 mod step;
 mod world;
 
-pub use actions::{Action, ActionCode, ActionOutcome, Notice};
+pub use actions::{Action, ActionCode, ActionOutcome, Grasp, Notice, Pointed, Target};
 pub use agents::AgentControl;
 pub use config::{ContactFriction, PhysicsConfig};
 pub use contact::{ContactEvent, Toucher};

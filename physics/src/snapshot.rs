@@ -5,6 +5,7 @@
 //! the state's parameters, in the same order, at the bodies' places. Between steps no collider is marked as changed, so
 //! that a world built this way is the same, bit for bit.
 
+use crate::actions::Shove;
 use crate::agents::{self, Grip, Loose};
 use crate::body::Hold;
 use crate::config::PhysicsConfig;
@@ -23,7 +24,7 @@ use std::borrow::Cow;
 use xxhash_rust::xxh3::xxh3_64;
 
 const MAGIC: &[u8; 4] = b"dwph";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.
@@ -36,6 +37,7 @@ struct Memory {
     grips: Vec<Grip>,
     parting: Vec<(u32, AgentId)>,
     drives: Drives,
+    shoves: Vec<Shove>,
     pulls: Vec<Option<Pull>>,
     impacts: Impacts,
     laws: Vec<Vec<f32>>,
@@ -94,6 +96,7 @@ impl PhysicsWorld {
                 grips: self.grips.clone(),
                 parting: self.parting.clone(),
                 drives: self.drives.clone(),
+                shoves: self.shoves.clone(),
                 pulls: self.pulls.clone(),
                 impacts: self.impacts.clone(),
                 laws: self
@@ -235,6 +238,7 @@ impl PhysicsWorld {
         self.grips = memory.grips;
         self.parting = memory.parting;
         self.drives = memory.drives;
+        self.shoves = memory.shoves;
         self.pulls = memory.pulls;
         for joint in &mut self.joints {
             let articulation = &model.house.joints[joint.id];

@@ -44,7 +44,9 @@ impl PhysicsWorld {
         for substep in 0..self.settings.steps_per_control {
             self.move_agents(state, controls, &mut ways, substep == 0);
             self.carry_held(state);
+            self.shove_on(state);
             self.physics_step(state, events);
+            self.keep_held_inside();
         }
         self.end_ways(state, &ways);
         self.part_ways(state);
@@ -168,13 +170,47 @@ impl PhysicsWorld {
         }
     }
 
+    /// Takes back what was pressed through a sheet in the last physics step. Contacts stop what is held, but a hand that
+    /// presses a thin card against a thin wall overcomes them.
+    fn keep_held_inside(&mut self) {
+        let mut moved = false;
+        for place in 0..self.grips.len() {
+            let grip = self.grips[place];
+            let handle = self.bodies[grip.body as usize].handle;
+            let Some(now) = self
+                .engine
+                .bodies
+                .get(handle)
+                .map(|rigid| *rigid.position())
+            else {
+                continue;
+            };
+            let middle = grip.middle_at(&now);
+            if middle == grip.middle || self.barred_by(grip.middle, middle).is_none() {
+                continue;
+            }
+            if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+                let mut back = now;
+                back.translation += grip.middle - middle;
+                rigid.set_position(back, true);
+                rigid.set_linvel(Vec3::ZERO, true);
+                moved = true;
+            }
+        }
+        if moved {
+            self.flush();
+        }
+    }
+
     fn carry_held(&mut self, state: &mut State) {
         let mut place = 0;
         while place < self.grips.len() {
             let agent = state.agents[self.grips[place].agent];
             let body = self.bodies[self.grips[place].body as usize];
             let grip = &mut self.grips[place];
-            let slips = agents::carry(&mut self.engine, &body, grip, &agent, self.settings.dt_s);
+            let substeps = self.settings.config.solver_substeps as f32;
+            let times = (self.settings.dt_s, substeps);
+            let slips = agents::carry(&mut self.engine, &body, grip, &agent, times);
             if !slips {
                 place += 1;
                 continue;
@@ -184,14 +220,11 @@ impl PhysicsWorld {
             let name = self.call(object);
             self.notices.push(Notice {
                 agent: Some(holder),
-                outcome: ActionOutcome {
-                    success: false,
-                    code: ActionCode::Slipped,
-                    sentence: format!(
-                        "The {name} was caught on something and slipped from your hand."
-                    ),
-                    object: Some(object),
-                },
+                outcome: ActionOutcome::failed(
+                    ActionCode::Slipped,
+                    format!("The {name} was caught on something and slipped from your hand."),
+                    Some(object),
+                ),
             });
         }
     }

@@ -1,6 +1,6 @@
 //! A running physics world.
 
-use crate::actions::Notice;
+use crate::actions::{Notice, Shove};
 use crate::agents::{Agent, Grip, Loose};
 use crate::body::{self, Body, BodyPlace, Hold};
 use crate::config::{PhysicsConfig, Settings};
@@ -52,6 +52,7 @@ pub struct PhysicsWorld {
     /// Bodies that were let go and still overlap the agent that held them.
     pub(crate) parting: Vec<(u32, AgentId)>,
     pub(crate) drives: Drives,
+    pub(crate) shoves: Vec<Shove>,
     pub(crate) laws: Vec<Installed>,
     /// Physics steps since the world was made.
     pub(crate) tick: u64,
@@ -190,6 +191,7 @@ impl PhysicsWorld {
             grips: Vec::new(),
             parting: Vec::new(),
             drives: Drives::new(),
+            shoves: Vec::new(),
             laws,
             tick: 0,
             impacts: Impacts::new(),

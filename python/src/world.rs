@@ -76,11 +76,11 @@ impl Running {
         let object = || self.object(settings.object.as_ref().unwrap_or(&serde_json::Value::Null));
         Ok(match settings.kind.as_str() {
             "drop" => Action::Drop,
-            "pick" => Action::Pick { object: object()? },
-            "open" => Action::Open { object: object()? },
-            "close" => Action::Close { object: object()? },
-            "toggle" => Action::Toggle { object: object()? },
-            "place" => Action::Place { on: object()? },
+            "pick" => Action::pick(object()?),
+            "open" => Action::open(object()?),
+            "close" => Action::close(object()?),
+            "toggle" => Action::toggle(object()?),
+            "place" => Action::place(object()?),
             other => {
                 return Err(Fault::Config(format!(
                     "kind is {other:?}; allowed are pick, drop, place, open, close, toggle"

@@ -98,7 +98,7 @@ fn what_a_hand_takes_moves_with_the_agent_and_is_known_as_held() {
         let yaw = dwell_scene::space::yaw_from_forward(center - *place);
         world.place_agent(AGENT, *place, yaw).unwrap();
         world.step(&[AgentControl::default()]).unwrap();
-        world.act(AGENT, &Action::Pick { object }).success
+        world.act(AGENT, &Action::pick(object)).success
     });
     assert!(taken.is_some(), "{} can be taken from nowhere", thing.name);
     assert_eq!(world.state().held_by[object], Some(AGENT));

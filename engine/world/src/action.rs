@@ -156,20 +156,11 @@ impl World {
         *control = stride.control(action, self.config().step_s());
         self.step(&controls)?;
         Ok(outcome.unwrap_or_else(|| {
-            let collided = self.state().agents[agent].collided;
-            let (code, sentence) = if collided {
-                (
-                    ActionCode::Blocked,
-                    "Something is in the way. Turn or step aside.".to_owned(),
-                )
+            if self.state().agents[agent].collided {
+                let sentence = "Something is in the way. Turn or step aside.";
+                ActionOutcome::failed(ActionCode::Blocked, sentence, None)
             } else {
-                (ActionCode::Done, String::new())
-            };
-            ActionOutcome {
-                success: !collided,
-                code,
-                sentence,
-                object: None,
+                ActionOutcome::done(ActionCode::Done, "", None)
             }
         }))
     }
@@ -178,22 +169,18 @@ impl World {
     fn use_hand(&mut self, agent: AgentId, action: DiscreteAction) -> Option<ActionOutcome> {
         let on_target: fn(dwell_scene::ObjectId) -> Action = match action {
             DiscreteAction::Drop => return Some(self.act(agent, &Action::Drop)),
-            DiscreteAction::Pick => |object| Action::Pick { object },
-            DiscreteAction::Open => |object| Action::Open { object },
-            DiscreteAction::Close => |object| Action::Close { object },
-            DiscreteAction::Toggle => |object| Action::Toggle { object },
+            DiscreteAction::Pick => Action::pick,
+            DiscreteAction::Open => |object| Action::open(object),
+            DiscreteAction::Close => |object| Action::close(object),
+            DiscreteAction::Toggle => |object| Action::toggle(object),
             _ => return None,
         };
-        Some(match self.gaze_target(agent) {
-            Some(object) => self.act(agent, &on_target(object)),
-            None => ActionOutcome {
-                success: false,
-                code: ActionCode::NoTarget,
-                sentence:
-                    "You look at nothing that you could take, open or switch. Turn towards it."
-                        .to_owned(),
-                object: None,
-            },
+        Some(if let Some(object) = self.gaze_target(agent) {
+            self.act(agent, &on_target(object))
+        } else {
+            let sentence =
+                "You look at nothing that you could take, open or switch. Turn towards it.";
+            ActionOutcome::failed(ActionCode::NoTarget, sentence, None)
         })
     }
 }

@@ -1,60 +1,91 @@
 //! Opening and closing.
 
-use super::outcome::{ActionCode, ActionOutcome, Notice, done, fail};
+use super::outcome::{ActionCode, Notice, done, fail};
+use super::request::Target;
+use super::target::Aim;
+use super::{Actor, Told};
 use crate::contact::Toucher;
 use crate::joints::{self, Drive, Joint, Progress};
 use crate::world::PhysicsWorld;
-use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentId, JointCommand, JointId, ObjectId, State};
+use dwell_scene::{JointCommand, JointId, ObjectId, State};
 
 /// Openness from which a thing counts as open, and below which as closed.
 const OPEN: f32 = 0.95;
 const CLOSED: f32 = 0.02;
+/// How near to a wanted openness a thing counts as being there.
+const THERE: f32 = 0.02;
 
 impl PhysicsWorld {
     pub(super) fn swing(
         &mut self,
         state: &mut State,
-        rays: &RayScene,
-        agent: AgentId,
-        object: ObjectId,
-        open: bool,
-    ) -> ActionOutcome {
-        let holder = state.agents[agent];
+        actor: Actor<'_>,
+        target: &Target,
+        fraction: f32,
+    ) -> Told {
+        let (object, aim) = self.aim_at_object(state, actor, target)?;
         let name = self.call(object);
+        let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
+        if !(0.0..=1.0).contains(&fraction) {
+            let sentence =
+                format!("Nothing opens to {fraction}; give a number from 0 (closed) to 1 (open).");
+            return refuse(ActionCode::BadNumber, sentence);
+        }
         let house = self.model().house.clone();
-        let ids: Vec<JointId> = house
-            .joints_of(object)
-            .filter(|id| house.joints[*id].opens())
-            .collect();
+        let ids = self.joints_meant(object, &aim);
+        let verb = if fraction > 0.0 { "open" } else { "close" };
         if ids.is_empty() {
-            let verb = if open { "open" } else { "close" };
             let sentence =
                 format!("The {name} has nothing to {verb}. Choose a door, drawer or lid.");
-            return fail(ActionCode::NotOpenable, sentence, Some(object));
+            return refuse(ActionCode::NotOpenable, sentence);
         }
         let openness = |id: &JointId| house.joints[*id].openness(state.joint_position[*id]);
-        if open && ids.iter().all(|id| openness(id) >= OPEN) {
+        let all = |there: &dyn Fn(f32) -> bool| ids.iter().all(|id| there(openness(id)));
+        if fraction >= OPEN && all(&|share| share >= OPEN) {
             let sentence = format!("The {name} is open already.");
-            return fail(ActionCode::AlreadyOpen, sentence, Some(object));
+            return refuse(ActionCode::AlreadyOpen, sentence);
         }
-        if !open && ids.iter().all(|id| openness(id) <= CLOSED) {
+        if fraction <= CLOSED && all(&|share| share <= CLOSED) {
             let sentence = format!("The {name} is closed already.");
-            return fail(ActionCode::AlreadyClosed, sentence, Some(object));
+            return refuse(ActionCode::AlreadyClosed, sentence);
         }
-        if let Some(refusal) = self.refuse_reach(state, rays, &holder, object) {
-            return refusal;
+        if all(&|share| (share - fraction).abs() <= THERE) {
+            let percent = (fraction * 100.0).round();
+            let sentence = format!("The {name} is {percent:.0} % open already.");
+            return refuse(ActionCode::AlreadyOpen, sentence);
+        }
+        if let Some(refusal) = self.refuse_reach(state, actor, object) {
+            return Ok(refusal);
         }
         for id in ids {
             let joint = &house.joints[id];
-            let goal = if open { joint.open } else { joint.closed };
+            // Exactly at its stop, so that rounding leaves no gap.
+            let goal = if fraction >= 1.0 {
+                joint.open
+            } else {
+                joint.position_at(fraction)
+            };
             state.joint_command[id] = JointCommand::Position(goal);
-            let drive = Drive::new(goal, state.joint_position[id], Some(agent));
+            let drive = Drive::new(goal, state.joint_position[id], Some(actor.id));
             self.drives.insert(id, drive);
         }
-        let verb = if open { "open" } else { "close" };
         let sentence = format!("You {verb} the {name}; it takes a moment.");
-        done(ActionCode::Started, sentence, Some(object))
+        Ok(done(ActionCode::Started, sentence, Some(object)))
+    }
+
+    /// The joints of an object that are meant: the one that moves the part that was named or met, or all.
+    fn joints_meant(&self, object: ObjectId, aim: &Aim) -> Vec<JointId> {
+        let house = &self.model().house;
+        let moved_by = |part| {
+            let body = self.model().body_of_part[part]?;
+            self.model().bodies[body as usize].joint
+        };
+        let opens = |id: &JointId| house.joints[*id].opens();
+        let one = aim.part.and_then(moved_by).filter(opens);
+        one.map_or_else(
+            || house.joints_of(object).filter(opens).collect(),
+            |joint| vec![joint],
+        )
     }
 
     /// Takes a hand off a joint that has arrived or is blocked, and says so.
@@ -84,9 +115,14 @@ impl PhysicsWorld {
         }
         let share = (articulation.openness(position) * 100.0).round();
         let outcome = if progress == Progress::Arrived {
-            let shut = drive.goal == articulation.closed;
-            let word = if shut { "closed" } else { "open" };
-            let sentence = format!("The {name} is {word}.");
+            let asked = articulation.openness(drive.goal);
+            let sentence = if asked <= CLOSED {
+                format!("The {name} is closed.")
+            } else if asked >= OPEN {
+                format!("The {name} is open.")
+            } else {
+                format!("The {name} is {share:.0} % open.")
+            };
             done(ActionCode::Done, sentence, Some(object))
         } else {
             let what = self.in_the_way(state, joint).map_or_else(

@@ -1,12 +1,15 @@
 //! Taking and letting go.
 
 use super::outcome::{ActionCode, ActionOutcome, done, fail};
+use super::request::{Grasp, Target};
+use super::{Actor, Told};
 use crate::agents::{Grip, hand_pose, release};
 use crate::body::Hold;
 use crate::convert::{from_rapier, to_rapier};
 use crate::world::PhysicsWorld;
-use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentId, Mobility, ObjectId, State};
+use dwell_scene::{AgentId, AgentState, Mobility, ObjectId, State};
+use glam::Vec3;
+use rapier3d::math::Pose as RapierPose;
 
 /// Places between the hand and where a thing lies that are tried for it when it is taken.
 const TRIES: u32 = 6;
@@ -15,35 +18,46 @@ impl PhysicsWorld {
     pub(super) fn pick(
         &mut self,
         state: &mut State,
-        rays: &RayScene,
-        agent: AgentId,
-        object: ObjectId,
-    ) -> ActionOutcome {
-        let holder = state.agents[agent];
+        actor: Actor<'_>,
+        target: &Target,
+        grasp: Grasp,
+    ) -> Told {
+        let holder = actor.body;
+        let (object, _) = self.aim_at_object(state, actor, target)?;
         let name = self.call(object);
+        let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
+        if !grasp.is_valid() {
+            let sentence = format!(
+                "{grasp:?} cannot be; a spring's frequency is 0.5 to 20 Hz, its damping ratio 0.05 to 4."
+            );
+            return refuse(ActionCode::BadNumber, sentence);
+        }
         if let Some(held) = holder.holding {
             let held = self.call(held);
             let sentence = format!("You hold the {held} already. Drop it first.");
-            return fail(ActionCode::HandFull, sentence, Some(object));
+            return refuse(ActionCode::HandFull, sentence);
         }
         if let Some(other) = state.held_by[object] {
             let sentence = format!("Agent {} holds the {name}. Wait until it is free.", other.0);
-            return fail(ActionCode::HeldByOther, sentence, Some(object));
+            return refuse(ActionCode::HeldByOther, sentence);
         }
         let thing = &self.model().house.objects[object];
         let bodies: Vec<usize> = self.bodies_of(object);
         let whole = thing.mobility == Mobility::Movable && bodies.len() == 1;
         if !thing.pickable || !whole {
             let sentence = format!("The {name} is not a thing to take. Choose something that is.");
-            return fail(ActionCode::NotPickable, sentence, Some(object));
+            return refuse(ActionCode::NotPickable, sentence);
         }
         let body = bodies[0];
-        if let Some(refusal) = self.refuse_reach(state, rays, &holder, object) {
-            return refusal;
+        if let Some(refusal) = self.refuse_stood_on(state, actor.id, object) {
+            return Ok(refusal);
+        }
+        if let Some(refusal) = self.refuse_reach(state, actor, object) {
+            return Ok(refusal);
         }
         if self.holds[body] != Hold::Free {
             let sentence = format!("The {name} is stuck where it stands. Choose something else.");
-            return fail(ActionCode::Stuck, sentence, Some(object));
+            return refuse(ActionCode::Stuck, sentence);
         }
         let rigid = &self.engine.bodies[self.bodies[body].handle];
         let (mass, lift) = (rigid.mass(), holder.body.lift_kg);
@@ -51,7 +65,7 @@ impl PhysicsWorld {
             let sentence = format!(
                 "The {name} weighs {mass:.1} kg; you lift {lift:.1} kg. Choose something lighter."
             );
-            return fail(ActionCode::TooHeavy, sentence, Some(object));
+            return refuse(ActionCode::TooHeavy, sentence);
         }
         let place = *rigid.position();
         let size = self.model().bodies[body]
@@ -63,48 +77,66 @@ impl PhysicsWorld {
             let sentence = format!(
                 "The {name} is {size:.1} m long; you carry up to {most:.1} m. Choose something smaller."
             );
-            return fail(ActionCode::TooLarge, sentence, Some(object));
+            return refuse(ActionCode::TooLarge, sentence);
         }
+        // What stands on it or lies in it comes along if it is moved gently.
+        let house = &self.model().house;
+        let loaded = house
+            .objects
+            .ids()
+            .any(|other| state.rests_on(house, other).contains(&Some(object)));
         let grip = Grip::new(
             self.model(),
             body as u32,
-            agent,
+            actor.id,
             &holder,
             &from_rapier(&place),
+            (grasp, loaded),
         );
         self.grips.push(grip);
         self.grips.sort_by_key(|grip| grip.agent);
-        self.excluded.carry(body as u32, agent);
+        self.excluded.carry(body as u32, actor.id);
         let target = to_rapier(&hand_pose(&grip, &holder));
-        let clear = self.clear_between(body, &place, &target);
+        let clear = if loaded {
+            None
+        } else {
+            self.clear_between(body, &holder, &place, &target)
+        };
         if let Some(rigid) = self.engine.bodies.get_mut(self.bodies[body].handle) {
-            rigid.set_gravity_scale(0.0, true);
-            rigid.set_linvel(glam::Vec3::ZERO, true);
-            rigid.set_angvel(glam::Vec3::ZERO, true);
+            rigid.set_gravity_scale(if grasp == Grasp::Kinematic { 0.0 } else { 1.0 }, true);
+            rigid.set_linvel(Vec3::ZERO, true);
+            rigid.set_angvel(Vec3::ZERO, true);
+            // What has been in a hand may be thin and fast.
+            rigid.enable_ccd(true);
             if let Some(clear) = clear {
                 rigid.set_position(clear, true);
             }
         }
-        state.agents[agent].holding = Some(object);
-        state.held_by[object] = Some(agent);
+        state.agents[actor.id].holding = Some(object);
+        state.held_by[object] = Some(actor.id);
         self.flush();
         self.write_bodies(state);
         let sentence = format!("You hold the {name}.");
-        done(ActionCode::Done, sentence, Some(object))
+        Ok(done(ActionCode::Done, sentence, Some(object)))
     }
 
-    /// The place nearest to the hand, on the straight way to where a thing is, where it overlaps nothing solid.
-    fn clear_between(
+    /// The first place on the straight way from `to` back to `from` where a body overlaps nothing solid and is not
+    /// beyond a wall, seen from its holder's eye.
+    pub(crate) fn clear_between(
         &self,
         body: usize,
-        from: &rapier3d::math::Pose,
-        to: &rapier3d::math::Pose,
-    ) -> Option<rapier3d::math::Pose> {
+        holder: &AgentState,
+        from: &RapierPose,
+        to: &RapierPose,
+    ) -> Option<RapierPose> {
+        let eye = holder.eye_position();
         (0..TRIES).find_map(|k| {
             let share = k as f32 / TRIES as f32;
             let mut place = *to;
             place.translation = to.translation.lerp(from.translation, share);
-            self.is_clear(body, &place).then_some(place)
+            let middle = self.model().bodies[body].bounds(&place).center();
+            let open = self.barred_by(eye, middle).is_none();
+            (open && self.is_clear(body, &place)).then_some(place)
         })
     }
 

@@ -1,54 +1,8 @@
-//! Actions of the hand, and what comes of them.
+//! What comes of the hand's actions.
 
-use dwell_scene::{AgentId, ObjectId};
+use dwell_scene::{AgentId, EntityId, ObjectId};
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
-
-/// Something an agent's hand does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "action", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Action {
-    /// Takes an object.
-    Pick {
-        /// What to take.
-        object: ObjectId,
-    },
-    /// Lets go of what it holds.
-    Drop,
-    /// Puts what it holds on top of an object.
-    Place {
-        /// What to put it on.
-        on: ObjectId,
-    },
-    /// Opens a door, drawer or lid.
-    Open {
-        /// What to open.
-        object: ObjectId,
-    },
-    /// Closes a door, drawer or lid.
-    Close {
-        /// What to close.
-        object: ObjectId,
-    },
-    /// Switches something on or off.
-    Toggle {
-        /// What to switch.
-        object: ObjectId,
-    },
-}
-
-impl Action {
-    /// The object it is done to.
-    pub fn object(&self) -> Option<ObjectId> {
-        match *self {
-            Self::Pick { object }
-            | Self::Open { object }
-            | Self::Close { object }
-            | Self::Toggle { object }
-            | Self::Place { on: object } => Some(object),
-            Self::Drop => None,
-        }
-    }
-}
 
 /// Why an action did or did not work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -61,10 +15,20 @@ pub enum ActionCode {
     Started,
     /// Nothing was meant.
     NoTarget,
+    /// A state of another house or world.
+    ForeignState,
     /// No such agent.
     UnknownAgent,
     /// No such object.
     UnknownObject,
+    /// A number that is not finite or out of its range.
+    BadNumber,
+    /// The agent itself.
+    Oneself,
+    /// A wall, a floor or somebody else: no thing for a hand.
+    NotAThing,
+    /// Somebody stands on it.
+    StoodOn,
     /// Out of reach.
     TooFar,
     /// Something stands between.
@@ -87,6 +51,18 @@ pub enum ActionCode {
     HeldByOther,
     /// There is nowhere to put it.
     NoSpace,
+    /// Nothing carries it there.
+    NoSupport,
+    /// It holds nothing inside.
+    NotContainer,
+    /// The container is closed.
+    Closed,
+    /// The container has no room left.
+    Full,
+    /// It stands firm.
+    NotMovable,
+    /// It is shut, and stays so until it is opened.
+    Shut,
     /// It has no joint.
     NotOpenable,
     /// It is open already.
@@ -101,8 +77,19 @@ pub enum ActionCode {
     Slipped,
 }
 
+/// What an agent points at.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pointed {
+    /// The sensors' id.
+    pub entity: EntityId,
+    /// Where, m.
+    pub point: Vec3,
+    /// From the eye, m.
+    pub distance_m: f32,
+}
+
 /// What came of an action.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActionOutcome {
     /// Whether it worked, or began to.
     pub success: bool,
@@ -112,10 +99,33 @@ pub struct ActionOutcome {
     pub sentence: String,
     /// The object it was about.
     pub object: Option<ObjectId>,
+    /// What was pointed at, after [`crate::Action::Point`].
+    pub pointed: Option<Pointed>,
+}
+
+impl ActionOutcome {
+    /// A success.
+    pub fn done(code: ActionCode, sentence: impl Into<String>, object: Option<ObjectId>) -> Self {
+        Self {
+            success: true,
+            code,
+            sentence: sentence.into(),
+            object,
+            pointed: None,
+        }
+    }
+
+    /// A failure.
+    pub fn failed(code: ActionCode, sentence: impl Into<String>, object: Option<ObjectId>) -> Self {
+        Self {
+            success: false,
+            ..Self::done(code, sentence, object)
+        }
+    }
 }
 
 /// What came later of something that an agent began.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Notice {
     /// Whose action it was; `None` when the state asked for it.
     pub agent: Option<AgentId>,
@@ -128,12 +138,7 @@ pub(super) fn fail(
     sentence: impl Into<String>,
     object: Option<ObjectId>,
 ) -> ActionOutcome {
-    ActionOutcome {
-        success: false,
-        code,
-        sentence: sentence.into(),
-        object,
-    }
+    ActionOutcome::failed(code, sentence, object)
 }
 
 pub(super) fn done(
@@ -141,10 +146,5 @@ pub(super) fn done(
     sentence: impl Into<String>,
     object: Option<ObjectId>,
 ) -> ActionOutcome {
-    ActionOutcome {
-        success: true,
-        code,
-        sentence: sentence.into(),
-        object,
-    }
+    ActionOutcome::done(code, sentence, object)
 }

@@ -1,157 +1,262 @@
-//! Putting what is held on top of something.
+//! Putting what is held down on something.
 
+use super::open_way::Ground;
 use super::outcome::{ActionCode, ActionOutcome, done, fail};
-use crate::agents::release;
-use crate::model::shapes;
+use super::request::Target;
+use super::stance::Stance;
+use super::{Actor, Told};
+use crate::agents::Grip;
 use crate::world::PhysicsWorld;
-use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentId, Id, ObjectId, State};
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::space::rotation_from_yaw_pitch;
+use dwell_scene::{Entity, ObjectId, State, SurfaceOwner};
 use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
 
 /// Places a side that are tried on top of a thing.
-const GRID: u32 = 9;
-/// Gap under what was put down, m.
-const GAP_M: f32 = 0.004;
-/// How much lower the surface under a thing's corners may be than under its middle, m.
-const UNEVEN_M: f32 = 0.02;
+const GRID: u32 = 13;
+/// Distances between the rings of places that are tried around a point, and their number.
+const RING_M: f32 = 0.06;
+const RINGS: u32 = 8;
+/// Directions of view, across and down, in which a surface is looked for.
+const LOOKS: [i32; 2] = [9, 9];
+const LOOK_STEP_RAD: f32 = 0.1;
+/// Above a thing's top by so much rays down begin, m.
+const ABOVE_M: f32 = 0.5;
+
+/// Where something was put, and on what.
+struct Spot {
+    pose: RapierPose,
+    on: Option<ObjectId>,
+    name: String,
+}
 
 impl PhysicsWorld {
     pub(super) fn put_on(
         &mut self,
         state: &mut State,
-        rays: &RayScene,
-        agent: AgentId,
-        on: ObjectId,
-    ) -> ActionOutcome {
-        let holder = state.agents[agent];
-        let Some(place) = self.grips.iter().position(|grip| grip.agent == agent) else {
-            return fail(
-                ActionCode::HandEmpty,
-                "You hold nothing. Pick something first.",
-                Some(on),
-            );
+        actor: Actor<'_>,
+        on: Option<&Target>,
+    ) -> Told {
+        let grip = self.grip_of(actor)?;
+        let stances = self.stances(grip.body as usize);
+        let spot = match on {
+            Some(target) => self.spot_on(state, actor, &grip, &stances, target)?,
+            None => self.spot_in_view(actor, &grip, &stances)?,
         };
-        let grip = self.grips[place];
-        if grip.object == on {
-            let sentence = "A thing cannot stand on itself. Choose something else.";
-            return fail(ActionCode::NoSpace, sentence, Some(on));
-        }
-        if let Some(refusal) = self.refuse_reach(state, rays, &holder, on) {
-            return refusal;
-        }
-        let (held, below) = (self.call(grip.object), self.call(on));
-        let eye = holder.eye_position();
-        let Some(spot) = self.free_spot(state, grip.body as usize, on, eye, holder.body.reach_m)
-        else {
-            let sentence = format!(
-                "There is no free space for the {held} on the {below} within your reach. Clear it or walk around it."
-            );
-            return fail(ActionCode::NoSpace, sentence, Some(on));
-        };
-        self.ungrip(state, place);
-        let body = self.bodies[grip.body as usize];
-        if let Some(rigid) = self.engine.bodies.get_mut(body.handle) {
-            rigid.set_position(spot, true);
-        }
-        release(&mut self.engine, &body, Vec3::ZERO);
-        self.flush();
-        self.write_bodies(state);
-        let sentence = format!("You put the {held} on the {below}.");
-        done(ActionCode::Done, sentence, Some(on))
+        self.put_down(state, actor, &spot.pose);
+        let sentence = format!(
+            "You put the {} on the {}.",
+            self.call(grip.object),
+            spot.name
+        );
+        Ok(done(ActionCode::Done, sentence, spot.on))
     }
 
-    /// The spot nearest to the eye where a body stands on an object without touching anything else.
-    fn free_spot(
+    /// The agent's grip, or the refusal for an empty hand.
+    pub(super) fn grip_of(&self, actor: Actor<'_>) -> Result<Grip, Box<ActionOutcome>> {
+        let grip = self.grips.iter().find(|grip| grip.agent == actor.id);
+        grip.copied().ok_or_else(|| {
+            let sentence = "You hold nothing. Pick something first.";
+            Box::new(fail(ActionCode::HandEmpty, sentence, None))
+        })
+    }
+
+    /// Opens a hand and leaves what it held under a pose, at rest.
+    pub(super) fn put_down(&mut self, state: &mut State, actor: Actor<'_>, pose: &RapierPose) {
+        let Some(place) = self.grips.iter().position(|grip| grip.agent == actor.id) else {
+            return;
+        };
+        let handle = self.bodies[self.grips[place].body as usize].handle;
+        self.ungrip(state, place);
+        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+            rigid.set_position(*pose, true);
+            rigid.set_linvel(Vec3::ZERO, true);
+            rigid.set_angvel(Vec3::ZERO, true);
+        }
+        self.flush();
+        self.write_bodies(state);
+    }
+
+    fn spot_on(
+        &self,
+        state: &State,
+        actor: Actor<'_>,
+        grip: &Grip,
+        stances: &[Stance],
+        target: &Target,
+    ) -> Result<Spot, Box<ActionOutcome>> {
+        let refuse = |code, sentence: String, on| Err(Box::new(fail(code, sentence, on)));
+        let held = self.call(grip.object);
+        let aim = self.aim(state, actor, target)?;
+        let (ground, on, name) = match aim.entity {
+            Entity::Object(object) if object == grip.object => {
+                let sentence = "A thing cannot stand on itself. Choose something else.";
+                return refuse(ActionCode::NoSpace, sentence.to_owned(), Some(object));
+            }
+            Entity::Object(object) => (Ground::Object(object), Some(object), self.call(object)),
+            Entity::Structure(id) => {
+                let name = self.surface_name(SurfaceOwner::Structure(id));
+                (Ground::Building, None, name)
+            }
+            _ => {
+                let sentence = "Nothing can be put on somebody. Choose a surface.".to_owned();
+                return refuse(ActionCode::NotAThing, sentence, None);
+            }
+        };
+        let eye = actor.body.eye_position();
+        let reach = actor.body.body.reach_m;
+        if let Some(object) = on {
+            if let Some(holder) = state.held_by[object] {
+                let sentence = format!(
+                    "Agent {} holds the {name}. Choose something else.",
+                    holder.0
+                );
+                return refuse(ActionCode::HeldByOther, sentence, on);
+            }
+            if let Some(refusal) = self.refuse_reach(state, actor, object) {
+                return Err(Box::new(refusal));
+            }
+        }
+        let feet = match (aim.point, on) {
+            (Some(point), _) => self.feet_around(grip.body as usize, ground, point),
+            (None, Some(object)) => self.feet_on(state, grip.body as usize, object, eye, reach),
+            (None, None) => {
+                let below = eye + dwell_scene::space::forward_from_yaw(actor.body.yaw_rad) * 0.5;
+                let floor = actor.body.position.y;
+                self.feet_around(
+                    grip.body as usize,
+                    ground,
+                    Vec3::new(below.x, floor, below.z),
+                )
+            }
+        };
+        let pose = self.first_spot(actor, grip.body as usize, stances, &feet);
+        pose.map(|pose| Spot { pose, on, name: name.clone() }).ok_or_else(|| {
+            let sentence = format!(
+                "There is no free space for the {held} on the {name} within your reach and sight. Clear it or walk around it."
+            );
+            Box::new(fail(ActionCode::NoSpace, sentence, on))
+        })
+    }
+
+    /// A spot on whatever level surface is in view, nearest to the middle of the view.
+    fn spot_in_view(
+        &self,
+        actor: Actor<'_>,
+        grip: &Grip,
+        stances: &[Stance],
+    ) -> Result<Spot, Box<ActionOutcome>> {
+        let house = &self.model().house;
+        let held = house.entity_of_object(grip.object);
+        let eye = actor.body.eye_position();
+        let (yaw, pitch) = (actor.body.yaw_rad, actor.body.pitch_rad);
+        let half = LOOKS.map(|count| count / 2);
+        let mut looks: Vec<(i32, i32, i32)> = (-half[0]..=half[0])
+            .flat_map(|x| (-half[1]..=half[1]).map(move |y| (x * x + y * y, x, y)))
+            .collect();
+        looks.sort_unstable();
+        for (_, x, y) in looks {
+            let turned = rotation_from_yaw_pitch(
+                yaw + LOOK_STEP_RAD * x as f32,
+                pitch + LOOK_STEP_RAD * y as f32,
+            );
+            let ray = Ray::new(eye, turned * Vec3::NEG_Z).between(0.0, actor.body.body.reach_m);
+            let Some(hit) = actor.rays.closest_without(&ray, RayMask::EYE, held) else {
+                continue;
+            };
+            let surface = actor.rays.surface(&hit);
+            if surface.normal.y.abs() < 0.9 {
+                continue;
+            }
+            let (ground, on) = match surface.owner {
+                SurfaceOwner::Structure(_) => (Ground::Building, None),
+                SurfaceOwner::Part(part) => {
+                    let object = house.parts[part].object;
+                    (Ground::Object(object), Some(object))
+                }
+            };
+            let foot = ray.at(hit.distance_m) + Vec3::Y * RING_M;
+            let feet: Vec<Vec3> = self
+                .levels_under(grip.body as usize, ground, foot, 2.0 * RING_M)
+                .into_iter()
+                .map(|height| Vec3::new(foot.x, height, foot.z))
+                .collect();
+            if let Some(pose) = self.first_spot(actor, grip.body as usize, stances, &feet) {
+                let name = self.surface_name(surface.owner);
+                return Ok(Spot { pose, on, name });
+            }
+        }
+        let sentence = format!(
+            "You see no free surface for the {} within your reach. Turn towards one.",
+            self.call(grip.object)
+        );
+        Err(Box::new(fail(ActionCode::NoSpace, sentence, None)))
+    }
+
+    /// The first of `feet` on which the body can stand, within reach and sight; upright before lying.
+    fn first_spot(
+        &self,
+        actor: Actor<'_>,
+        body: usize,
+        stances: &[Stance],
+        feet: &[Vec3],
+    ) -> Option<RapierPose> {
+        let eye = actor.body.eye_position();
+        let reach = actor.body.body.reach_m;
+        stances.iter().find_map(|stance| {
+            feet.iter().find_map(|foot| {
+                let middle = *foot + Vec3::Y * (0.5 * stance.size().y);
+                let near = (*foot - eye).length() <= reach;
+                if !near || self.barred_by(eye, middle).is_some() {
+                    return None;
+                }
+                self.stand_at(body, stance, *foot).ok()
+            })
+        })
+    }
+
+    /// All places on an object's level surfaces within reach, the nearest to the eye first.
+    fn feet_on(
         &self,
         state: &State,
         body: usize,
-        on: ObjectId,
+        object: ObjectId,
         eye: Vec3,
         reach_m: f32,
-    ) -> Option<RapierPose> {
-        let plan = &self.model().bodies[body];
-        let now = *self.engine.bodies.get(self.bodies[body].handle)?.position();
-        let standing = RapierPose::from_rotation(now.rotation);
-        let local = plan.bounds(&standing);
-        let top = self.model().house.object_bounds(state, on);
-        let mut spots: Vec<(f32, Vec3)> = Vec::new();
+    ) -> Vec<Vec3> {
+        let all = self.model().house.object_bounds(state, object);
+        let low = all.min.max(eye - Vec3::splat(reach_m));
+        let high = all.max.min(eye + Vec3::splat(reach_m));
+        let mut feet = Vec::new();
         for k in 0..GRID * GRID {
             let share = |k: u32| (k as f32 + 0.5) / GRID as f32;
-            let x = top.min.x + top.size().x * share(k % GRID);
-            let z = top.min.z + top.size().z * share(k / GRID);
-            let Some(height) = self.height_of(on, Vec3::new(x, top.max.y + 0.5, z)) else {
-                continue;
-            };
-            let spot = Vec3::new(x, height, z);
-            let distance = (spot - eye).length();
-            if distance <= reach_m {
-                spots.push((distance, spot));
+            let x = low.x + (high.x - low.x) * share(k % GRID);
+            let z = low.z + (high.z - low.z) * share(k / GRID);
+            let from = Vec3::new(x, all.max.y + ABOVE_M, z);
+            let down_m = all.size().y + 2.0 * ABOVE_M;
+            let levels = self.levels_under(body, Ground::Object(object), from, down_m);
+            feet.extend(levels.into_iter().map(|height| Vec3::new(x, height, z)));
+        }
+        feet.retain(|foot| (*foot - eye).length() <= reach_m);
+        feet.sort_by(|a, b| (*a - eye).length().total_cmp(&(*b - eye).length()));
+        feet
+    }
+
+    /// Places on rings around a point, the nearest first.
+    fn feet_around(&self, body: usize, ground: Ground, point: Vec3) -> Vec<Vec3> {
+        let mut feet = Vec::new();
+        for ring in 0..RINGS {
+            let count = if ring == 0 { 1 } else { 6 * ring };
+            for k in 0..count {
+                let angle = std::f32::consts::TAU * k as f32 / count as f32;
+                let (s, c) = dwell_scene::math::sin_cos(angle);
+                let radius = RING_M * ring as f32;
+                let from = point + Vec3::new(radius * c, RING_M, radius * s);
+                let levels = self.levels_under(body, ground, from, 2.0 * RING_M);
+                feet.extend(levels.first().map(|height| from.with_y(*height)));
             }
         }
-        spots.sort_by(|a, b| a.0.total_cmp(&b.0));
-        spots.into_iter().find_map(|(_, spot)| {
-            let even = [-0.4, 0.4].iter().all(|dx| {
-                [-0.4, 0.4].iter().all(|dz| {
-                    let corner = spot + Vec3::new(dx * local.size().x, 0.5, dz * local.size().z);
-                    self.height_of(on, corner)
-                        .is_some_and(|height| (height - spot.y).abs() < UNEVEN_M)
-                })
-            });
-            let base = Vec3::new(local.center().x, local.min.y - GAP_M, local.center().z);
-            let mut place = standing;
-            place.translation = spot - base;
-            (even && self.is_clear(body, &place)).then_some(place)
-        })
-    }
-
-    /// The height at which a ray straight down from a point meets an object first, before anything else, m.
-    fn height_of(&self, object: ObjectId, from: Vec3) -> Option<f32> {
-        let queries = self
-            .engine
-            .queries(rapier3d::pipeline::QueryFilter::default());
-        let ray = rapier3d::geometry::Ray::new(from, Vec3::NEG_Y);
-        let (handle, hit) = queries.cast_ray_and_get_normal(&ray, 10.0, true)?;
-        let collider = self.engine.colliders.get(handle)?;
-        let entry = &self.entries[crate::contact::entry_index(collider)];
-        let owner = match entry.toucher? {
-            crate::contact::Toucher::Part(part) => self.model().house.parts[part].object,
-            _ => return None,
-        };
-        let level = hit.normal.y > 0.9 && hit.time_of_impact > 0.0;
-        (owner == object && level).then_some(from.y - hit.time_of_impact)
-    }
-
-    /// Whether a body would overlap nothing under a pose, besides agents that hold it.
-    pub(crate) fn is_clear(&self, body: usize, place: &RapierPose) -> bool {
-        let queries = self
-            .engine
-            .queries(rapier3d::pipeline::QueryFilter::default());
-        let excluded = |collider: &rapier3d::geometry::Collider| {
-            let entry = &self.entries[crate::contact::entry_index(collider)];
-            entry.body == Some(body as u32)
-                || entry.agent().is_some_and(|agent| {
-                    let pair = (body as u32, agent);
-                    agent.index() < self.agents.len()
-                        && self.excluded.carriers.binary_search(&pair).is_ok()
-                })
-        };
-        self.model().bodies[body].pieces.iter().all(|piece| {
-            let at = *place * piece.place;
-            let bounds = shapes::bounds(&piece.shape, &at);
-            let aabb = rapier3d::geometry::Aabb::new(bounds.min, bounds.max);
-            queries
-                .intersect_aabb_conservative(aabb)
-                .filter(|(_, collider)| !excluded(collider))
-                .all(|(_, collider)| {
-                    let overlap = rapier3d::parry::query::intersection_test(
-                        collider.position(),
-                        collider.shape(),
-                        &at,
-                        &*piece.shape,
-                    );
-                    !overlap.is_ok_and(|overlap| overlap.intersecting)
-                })
-        })
+        feet
     }
 }

@@ -1,26 +1,33 @@
 //! Whether a hand reaches a thing and its eye sees it.
 
+use super::Actor;
 use super::outcome::{ActionCode, ActionOutcome, fail};
 use crate::body;
+use crate::contact::{Toucher, entry_index};
 use crate::model::PhysicsModel;
 use crate::world::PhysicsWorld;
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, AgentState, ObjectId, State};
+use dwell_scene::{Aabb, AgentId, AgentState, ObjectId, State};
 use glam::Vec3;
+use rapier3d::geometry::{Ball, Collider, ColliderHandle};
+use rapier3d::math::Pose as RapierPose;
+use rapier3d::parry::query::ShapeCastOptions;
+use rapier3d::pipeline::QueryFilter;
 
 /// Distance from the middle of the body within which a thing is never "behind", m.
 const AT_THE_FEET_M: f32 = 0.5;
+/// How far above and below the feet the thing that carries somebody is looked for, m.
+const SOLE_M: f32 = 0.06;
 
 impl PhysicsWorld {
     /// The refusal for an object that is out of reach, behind, or hidden.
     pub(super) fn refuse_reach(
         &self,
         state: &State,
-        rays: &RayScene,
-        agent: &AgentState,
+        actor: Actor<'_>,
         object: ObjectId,
     ) -> Option<ActionOutcome> {
+        let agent = &actor.body;
         let name = self.call(object);
         let eye = agent.eye_position();
         let (distance, nearest) = self.distance_m(state, object, eye);
@@ -41,7 +48,7 @@ impl PhysicsWorld {
             let sentence = format!("The {name} is behind you. Turn around.");
             return Some(fail(ActionCode::Behind, sentence, Some(object)));
         }
-        if let Some(blocker) = self.hidden_by(state, rays, agent, object, nearest) {
+        if let Some(blocker) = self.hidden_by(state, actor, object, nearest) {
             let sentence =
                 format!("You cannot see the {name}: the {blocker} is in between. Step aside.");
             return Some(fail(ActionCode::NotVisible, sentence, Some(object)));
@@ -88,11 +95,11 @@ impl PhysicsWorld {
     fn hidden_by(
         &self,
         state: &State,
-        rays: &RayScene,
-        agent: &AgentState,
+        actor: Actor<'_>,
         object: ObjectId,
         nearest: Vec3,
     ) -> Option<String> {
+        let (agent, rays) = (&actor.body, actor.rays);
         let house = &self.model().house;
         let eye = agent.eye_position();
         let own = house.entity_of_object(object);
@@ -117,7 +124,7 @@ impl PhysicsWorld {
         Some(blocker.unwrap_or_else(|| "way".to_owned()))
     }
 
-    fn surface_name(&self, owner: dwell_scene::SurfaceOwner) -> String {
+    pub(super) fn surface_name(&self, owner: dwell_scene::SurfaceOwner) -> String {
         let house = &self.model().house;
         match owner {
             dwell_scene::SurfaceOwner::Structure(id) => {
@@ -133,6 +140,70 @@ impl PhysicsWorld {
                 .to_owned()
             }
             dwell_scene::SurfaceOwner::Part(part) => self.call(house.parts[part].object),
+        }
+    }
+}
+
+impl PhysicsWorld {
+    /// The objects that people stand on: what carries them, and what carries that.
+    pub(super) fn stood_on(&self, state: &State) -> Vec<(AgentId, ObjectId)> {
+        let house = &self.model().house;
+        let mut found = Vec::new();
+        for (id, agent) in state.agents.iter_ids() {
+            let mut open: Vec<ObjectId> = self.carrier_of(agent).into_iter().collect();
+            while let Some(object) = open.pop() {
+                if found.contains(&(id, object)) {
+                    continue;
+                }
+                found.push((id, object));
+                open.extend(state.rests_on(house, object).into_iter().flatten());
+            }
+        }
+        found
+    }
+
+    /// The refusal for an object that somebody stands on.
+    pub(super) fn refuse_stood_on(
+        &self,
+        state: &State,
+        agent: AgentId,
+        object: ObjectId,
+    ) -> Option<ActionOutcome> {
+        let on_it = self.stood_on(state);
+        let (who, _) = on_it.into_iter().find(|(_, carrier)| *carrier == object)?;
+        let name = self.call(object);
+        let sentence = if who == agent {
+            format!("You stand on the {name}. Step off it first.")
+        } else {
+            format!(
+                "Agent {} stands on the {name}. Wait until it is free.",
+                who.0
+            )
+        };
+        Some(fail(ActionCode::StoodOn, sentence, Some(object)))
+    }
+
+    /// The object right under somebody's feet.
+    fn carrier_of(&self, agent: &AgentState) -> Option<ObjectId> {
+        let seen = |_: ColliderHandle, collider: &Collider| {
+            self.entries[entry_index(collider)].agent().is_none()
+        };
+        let queries = self.engine.queries(QueryFilter::default().predicate(&seen));
+        let radius = 0.5 * agent.body.radius_m;
+        let start = agent.position + Vec3::Y * (radius + SOLE_M);
+        let options = ShapeCastOptions {
+            max_time_of_impact: 1.0,
+            target_distance: 0.0,
+            stop_at_penetration: true,
+            compute_impact_geometry_on_penetration: false,
+        };
+        let place = RapierPose::from_translation(start);
+        let down = Vec3::NEG_Y * (2.0 * SOLE_M);
+        let (handle, _) = queries.cast_shape(&place, down, &Ball::new(radius), options)?;
+        let collider = self.engine.colliders.get(handle)?;
+        match self.entries[entry_index(collider)].toucher {
+            Some(Toucher::Part(part)) => Some(self.model().house.parts[part].object),
+            _ => None,
         }
     }
 }

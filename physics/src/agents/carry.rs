@@ -1,11 +1,13 @@
 //! Carrying: a held thing follows the hand in front of the eye as a rigid body, so that walls stop it.
 
+use crate::actions::Grasp;
 use crate::body::Body;
 use crate::engine::Engine;
 use crate::model::PhysicsModel;
 use dwell_scene::{AgentId, AgentState, ObjectId, Pose};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
+use std::f32::consts::TAU;
 
 /// Space between the body and what it holds, m.
 const GAP_M: f32 = 0.12;
@@ -23,6 +25,14 @@ const FAR_M: f32 = 0.35;
 const GRIP_S: f32 = 0.5;
 /// Force of the hand besides the thing's weight, N.
 const HAND_FORCE_N: f32 = 150.0;
+/// Highest acceleration of the hand, m/s².
+const HAND_M_S2: f32 = 150.0;
+/// Share of the speed from which the hand could still stop in time.
+const CAREFUL: f32 = 0.8;
+/// How a loaded thing is brought to the hand: highest speed, m/s, acceleration, m/s², and how long it may take, s.
+const GENTLE_M_S: f32 = 0.6;
+const GENTLE_M_S2: f32 = 3.0;
+const GENTLE_S: f32 = 4.0;
 
 /// A hand that holds something.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,7 +46,12 @@ pub(crate) struct Grip {
     middle_in_body: Vec3,
     /// Half of its largest horizontal edge, m.
     half_m: f32,
+    /// Where its middle was before the last physics step, m.
+    pub(crate) middle: Vec3,
     stuck_s: f32,
+    grasp: Grasp,
+    /// Whether something stands on it or lies in it: then it is moved gently.
+    loaded: bool,
 }
 
 impl Grip {
@@ -47,6 +62,7 @@ impl Grip {
         agent: AgentId,
         holder: &AgentState,
         world_from_body: &Pose,
+        (grasp, loaded): (Grasp, bool),
     ) -> Self {
         let plan = &model.bodies[body as usize];
         let yaw = dwell_scene::space::rotation_from_yaw_pitch(holder.yaw_rad, 0.0);
@@ -62,7 +78,10 @@ impl Grip {
             hand_from_body: (yaw.inverse() * world_from_body.rotation).normalize(),
             middle_in_body: local.center(),
             half_m: 0.5 * size.x.max(size.z),
+            middle: world_from_body.transform_point(local.center()),
             stuck_s: 0.0,
+            grasp,
+            loaded,
         }
     }
 }
@@ -84,7 +103,7 @@ pub(crate) fn carry(
     body: &Body,
     grip: &mut Grip,
     holder: &AgentState,
-    dt_s: f32,
+    (dt_s, substeps): (f32, f32),
 ) -> bool {
     let target = hand_pose(grip, holder);
     engine
@@ -95,19 +114,54 @@ pub(crate) fn carry(
         return true;
     };
     let now = *rigid.position();
+    grip.middle = now * grip.middle_in_body;
     let away = target.position - now.translation;
     let turn = {
         let q = target.rotation * now.rotation.inverse();
         let q = if q.w < 0.0 { -q } else { q };
         q.to_scaled_axis()
     };
-    let angular = (turn / dt_s).clamp_length_max(FASTEST_TURN_RAD_S);
-    let arm = rigid.center_of_mass() - now.translation;
-    let wanted = (away / dt_s).clamp_length_max(FASTEST_HAND_M_S) + angular.cross(arm);
     let mass = rigid.mass().max(1e-6);
-    let most = (HAND_FORCE_N / mass + gravity) * dt_s;
-    let change = (wanted - rigid.linvel()).clamp_length_max(most);
-    let linear = rigid.linvel() + change;
+    let (linear, angular) = match grip.grasp {
+        Grasp::Kinematic => {
+            let angular = (turn / dt_s).clamp_length_max(FASTEST_TURN_RAD_S);
+            let arm = rigid.center_of_mass() - now.translation;
+            let spin = angular.cross(arm);
+            if grip.loaded {
+                let wanted = holder.velocity + (away / dt_s).clamp_length_max(GENTLE_M_S) + spin;
+                let most = GENTLE_M_S2 * dt_s;
+                let change = (wanted - rigid.linvel()).clamp_length_max(most);
+                (rigid.linvel() + change, angular.clamp_length_max(1.0))
+            } else {
+                let strongest = (HAND_FORCE_N / mass + gravity).min(HAND_M_S2);
+                let in_time = CAREFUL * (2.0 * strongest * away.length()).sqrt();
+                let fastest = in_time.min(FASTEST_HAND_M_S);
+                let wanted = (away / dt_s).clamp_length_max(fastest) + spin;
+                let change = (wanted - rigid.linvel()).clamp_length_max(strongest * dt_s);
+                (rigid.linvel() + change, angular)
+            }
+        }
+        Grasp::Spring {
+            frequency_hz,
+            damping_ratio,
+        } => {
+            let spring = Spring {
+                rate_rad_s: TAU * frequency_hz,
+                damping_ratio,
+                dt_s,
+            };
+            let most = (HAND_FORCE_N / mass + gravity).min(HAND_M_S2) * dt_s;
+            // The weight acts in the substeps of the same step: this is the mean velocity that it adds.
+            let falls = 0.5 * (1.0 + 1.0 / substeps) * dt_s;
+            let falling = Vec3::NEG_Y * (gravity * falls);
+            let pull = spring.change(away, rigid.linvel() + falling - holder.velocity);
+            let twist = spring.change(turn, rigid.angvel());
+            (
+                rigid.linvel() + pull.clamp_length_max(most),
+                (rigid.angvel() + twist).clamp_length_max(FASTEST_TURN_RAD_S),
+            )
+        }
+    };
     rigid.set_linvel(linear, false);
     rigid.set_angvel(angular, false);
     if away.length() > FAR_M {
@@ -115,7 +169,32 @@ pub(crate) fn carry(
     } else {
         grip.stuck_s = 0.0;
     }
-    grip.stuck_s > GRIP_S
+    grip.stuck_s > if grip.loaded { GENTLE_S } else { GRIP_S }
+}
+
+/// A damped spring that is stepped implicitly, so that no stiffness makes it grow.
+struct Spring {
+    rate_rad_s: f32,
+    damping_ratio: f32,
+    dt_s: f32,
+}
+
+impl Spring {
+    /// The change of a velocity in one step, `away` from the target (m or rad); `velocity`: relative to the target, as the
+    /// step would end without the spring.
+    fn change(&self, away: Vec3, velocity: Vec3) -> Vec3 {
+        let k = self.rate_rad_s * self.rate_rad_s;
+        let d = 2.0 * self.damping_ratio * self.rate_rad_s;
+        let dt = self.dt_s;
+        (k * (away - dt * velocity) - d * velocity) * (dt / (1.0 + d * dt + k * dt * dt))
+    }
+}
+
+impl Grip {
+    /// Where a held body's middle is, m.
+    pub(crate) fn middle_at(&self, world_from_body: &rapier3d::math::Pose) -> Vec3 {
+        *world_from_body * self.middle_in_body
+    }
 }
 
 /// Lets go of a body: it has its weight again and the speed of whoever held it.

@@ -159,13 +159,11 @@ impl PhysicsWorld {
         {
             self.notices.push(Notice {
                 agent: Some(id),
-                outcome: ActionOutcome {
-                    success: false,
-                    code: ActionCode::Blocked,
-                    sentence: "Something is overhead: you cannot stand up here. Move out from under it first."
-                        .to_owned(),
-                    object: None,
-                },
+                outcome: ActionOutcome::failed(
+                    ActionCode::Blocked,
+                    "Something is overhead: you cannot stand up here. Move out from under it first.",
+                    None,
+                ),
             });
             return;
         }

@@ -1,8 +1,11 @@
 //! Who touches whom.
 
 use super::entry::{Entry, Toucher, entry_index};
-use dwell_scene::Contact;
+use dwell_scene::{Contact, Rest};
 use rapier3d::geometry::{ColliderSet, NarrowPhase};
+
+/// How much a normal must face up to carry: the cosine of 60 degrees.
+const CARRIES: f32 = 0.5;
 
 /// All pairs of parts, and of parts with the structure, that stand at most `distance_m` apart; each once, sorted.
 pub(crate) fn touching(
@@ -14,12 +17,19 @@ pub(crate) fn touching(
 ) {
     out.clear();
     for pair in narrow_phase.contact_pairs() {
-        let near = pair.solver_manifolds().iter().any(|manifold| {
-            manifold
+        let (mut near, mut rest) = (false, Rest::Beside);
+        for manifold in pair.solver_manifolds() {
+            let touches = manifold
                 .points
                 .iter()
-                .any(|point| point.data.impulse > 0.0 || point.dist <= distance_m)
-        });
+                .any(|point| point.data.impulse > 0.0 || point.dist <= distance_m);
+            near |= touches;
+            // The normal points from the first collider to the second.
+            let up = manifold.data.normal.y;
+            if touches && up.abs() >= CARRIES {
+                rest = if up > 0.0 { Rest::BOnA } else { Rest::AOnB };
+            }
+        }
         if !near || !pair.has_any_active_contact() {
             continue;
         }
@@ -30,17 +40,35 @@ pub(crate) fn touching(
         let (Some(a), Some(b)) = (entry(pair.collider1), entry(pair.collider2)) else {
             continue;
         };
-        let contact = match (a, b) {
-            (Toucher::Part(a), Toucher::Part(b)) => Contact {
-                a: a.min(b),
-                b: Some(a.max(b)),
-            },
-            (Toucher::Part(part), Toucher::Structure(_))
-            | (Toucher::Structure(_), Toucher::Part(part)) => Contact { a: part, b: None },
+        let (first, second) = match (a, b) {
+            (Toucher::Part(a), Toucher::Part(b)) => (a, Some(b)),
+            (Toucher::Part(part), Toucher::Structure(_)) => (part, None),
+            (Toucher::Structure(_), Toucher::Part(part)) => {
+                rest = turned(rest);
+                (part, None)
+            }
             _ => continue,
+        };
+        let contact = match second {
+            Some(second) if second < first => Contact {
+                a: second,
+                b: Some(first),
+                rest: turned(rest),
+            },
+            b => Contact { a: first, b, rest },
         };
         out.push(contact);
     }
-    out.sort_unstable_by_key(|contact| (contact.a, contact.b));
-    out.dedup();
+    // A pair of parts may touch with several pieces: it is listed once, as carrying if any of them carries.
+    out.sort_unstable_by_key(|contact| (contact.a, contact.b, contact.rest == Rest::Beside));
+    out.dedup_by_key(|contact| (contact.a, contact.b));
+}
+
+/// The same seen from the other side.
+fn turned(rest: Rest) -> Rest {
+    match rest {
+        Rest::Beside => Rest::Beside,
+        Rest::AOnB => Rest::BOnA,
+        Rest::BOnA => Rest::AOnB,
+    }
 }

@@ -16,6 +16,8 @@ const HAND_PULL_M_S: f32 = 0.5;
 const HAND_LEAD: [f32; 2] = [0.3, 0.1];
 /// Speed under which a joint makes no progress, rad/s or m/s.
 const CREEP: f32 = 0.02;
+/// Speed under which a joint that reaches its stop has arrived, rad/s or m/s.
+const STOPPED: f32 = 0.2;
 /// How long a joint may make no progress before the hand gives up, s.
 const PATIENCE_S: f32 = 0.6;
 
@@ -61,10 +63,22 @@ impl Drive {
     }
 
     /// Moves the hand on by one control step and judges the joint.
-    fn follow(&mut self, kind: JointKind, position: f32, velocity: f32, step_s: f32) -> Progress {
+    fn follow(
+        &mut self,
+        kind: JointKind,
+        limits: Option<[f32; 2]>,
+        (position, velocity): (f32, f32),
+        step_s: f32,
+    ) -> Progress {
         let (rate, lead) = speed_and_lead(kind);
         let left = (position - self.goal).abs();
-        if left <= tolerance(kind) && velocity.abs() < 0.2 {
+        // Half open it must stand before the hand lets go, or it would coast on.
+        let slow = if limits.is_some_and(|limits| limits.contains(&self.goal)) {
+            STOPPED
+        } else {
+            CREEP
+        };
+        if left <= tolerance(kind) && velocity.abs() < slow {
             return Progress::Arrived;
         }
         let stride = rate * step_s;
@@ -125,7 +139,7 @@ pub(crate) fn advance(
     let Some(hand) = hand else {
         return (None, None);
     };
-    let progress = hand.follow(kind, position, velocity, step_s);
+    let progress = hand.follow(kind, articulation.limits, (position, velocity), step_s);
     let pull = (progress == Progress::Moving).then_some(Pull {
         target: hand.ramp,
         max_effort: hand_effort,

@@ -63,7 +63,7 @@ fn every_refusal_says_why_and_what_to_do() {
     let (agent, mug) = (k.agent, k.mug);
     let told = k.run.act(agent, Action::Drop);
     assert_eq!((told.success, told.code), (false, ActionCode::HandEmpty));
-    let told = k.run.act(agent, Action::Pick { object: k.anvil });
+    let told = k.run.act(agent, Action::pick(k.anvil));
     assert_eq!(told.code, ActionCode::TooHeavy);
     assert!(
         told.sentence.contains("62.4 kg") && told.sentence.contains("10.0 kg"),
@@ -71,40 +71,33 @@ fn every_refusal_says_why_and_what_to_do() {
         told.sentence
     );
     assert_eq!(
-        k.run.act(agent, Action::Pick { object: k.table }).code,
+        k.run.act(agent, Action::pick(k.table)).code,
         ActionCode::NotPickable
     );
     assert_eq!(
-        k.run.act(agent, Action::Open { object: k.table }).code,
+        k.run.act(agent, Action::open(k.table)).code,
         ActionCode::NotOpenable
     );
     assert_eq!(
-        k.run.act(agent, Action::Toggle { object: k.table }).code,
+        k.run.act(agent, Action::toggle(k.table)).code,
         ActionCode::NoSwitch
     );
     assert_eq!(
-        k.run
-            .act(
-                agent,
-                Action::Pick {
-                    object: ObjectId(999)
-                }
-            )
-            .code,
+        k.run.act(agent, Action::pick(ObjectId(999))).code,
         ActionCode::UnknownObject
     );
     assert_eq!(
         k.run.act(AgentId(7), Action::Drop).code,
         ActionCode::UnknownAgent
     );
-    let told = k.run.act(agent, Action::Pick { object: k.hidden });
+    let told = k.run.act(agent, Action::pick(k.hidden));
     assert_eq!(told.code, ActionCode::NotVisible, "{}", told.sentence);
     assert!(told.sentence.contains("screen"), "{}", told.sentence);
     k.run
         .world
         .place_agent(&mut k.run.state, agent, Vec3::new(3.0, 0.0, 5.0), 0.0)
         .unwrap();
-    let told = k.run.act(agent, Action::Pick { object: mug });
+    let told = k.run.act(agent, Action::pick(mug));
     assert_eq!(told.code, ActionCode::TooFar);
     assert_eq!(
         told.sentence,
@@ -114,7 +107,7 @@ fn every_refusal_says_why_and_what_to_do() {
         .world
         .place_agent(&mut k.run.state, agent, Vec3::new(3.0, 0.0, 3.1), PI)
         .unwrap();
-    let told = k.run.act(agent, Action::Pick { object: mug });
+    let told = k.run.act(agent, Action::pick(mug));
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (ActionCode::Behind, "The mug is behind you. Turn around.")
@@ -125,7 +118,7 @@ fn every_refusal_says_why_and_what_to_do() {
 #[test]
 fn a_thing_is_picked_carried_and_dropped() {
     let mut k = kitchen();
-    let told = k.run.act(k.agent, Action::Pick { object: k.mug });
+    let told = k.run.act(k.agent, Action::pick(k.mug));
     assert_eq!(
         (told.success, told.code, told.sentence.as_str()),
         (true, ActionCode::Done, "You hold the mug.")
@@ -133,7 +126,7 @@ fn a_thing_is_picked_carried_and_dropped() {
     assert_eq!(k.run.state.held_by[k.mug], Some(k.agent));
     assert_eq!(k.run.state.agents[k.agent].holding, Some(k.mug));
     assert_eq!(
-        k.run.act(k.agent, Action::Pick { object: k.hidden }).code,
+        k.run.act(k.agent, Action::pick(k.hidden)).code,
         ActionCode::HandFull
     );
     // It follows while the agent walks backwards and turns.
@@ -168,7 +161,7 @@ fn a_thing_is_picked_carried_and_dropped() {
 #[test]
 fn a_held_thing_never_passes_a_wall() {
     let mut k = kitchen();
-    k.run.act(k.agent, Action::Pick { object: k.mug });
+    k.run.act(k.agent, Action::pick(k.mug));
     k.run
         .world
         .place_agent(&mut k.run.state, k.agent, Vec3::new(3.0, 0.0, 5.0), PI)
@@ -196,8 +189,8 @@ fn a_held_thing_never_passes_a_wall() {
 #[test]
 fn a_thing_is_put_on_a_table_and_stays_there() {
     let mut k = kitchen();
-    k.run.act(k.agent, Action::Pick { object: k.mug });
-    let told = k.run.act(k.agent, Action::Place { on: k.table });
+    k.run.act(k.agent, Action::pick(k.mug));
+    let told = k.run.act(k.agent, Action::place(k.table));
     assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
     k.run.walk(30, &[]);
     let at = k.run.position(k.mug);
@@ -211,13 +204,13 @@ fn a_thing_is_put_on_a_table_and_stays_there() {
 #[test]
 fn a_lamp_is_switched_on_and_off() {
     let mut k = kitchen();
-    let told = k.run.act(k.agent, Action::Toggle { object: k.lamp });
+    let told = k.run.act(k.agent, Action::toggle(k.lamp));
     assert_eq!(
         (told.success, told.sentence.as_str()),
         (true, "You switch the lamp on.")
     );
     assert!(k.run.state.switched_on[k.lamp]);
-    let told = k.run.act(k.agent, Action::Toggle { object: k.lamp });
+    let told = k.run.act(k.agent, Action::toggle(k.lamp));
     assert_eq!(told.sentence, "You switch the lamp off.");
 }
 
@@ -225,8 +218,8 @@ fn a_lamp_is_switched_on_and_off() {
 fn nobody_takes_from_another_hand() {
     let mut k = kitchen();
     let other = k.run.agent(Vec3::new(2.6, 0.0, 3.0), 0.0);
-    k.run.act(k.agent, Action::Pick { object: k.mug });
-    let told = k.run.act(other, Action::Pick { object: k.mug });
+    k.run.act(k.agent, Action::pick(k.mug));
+    let told = k.run.act(other, Action::pick(k.mug));
     assert_eq!(told.code, ActionCode::HeldByOther, "{}", told.sentence);
     k.run.walk(5, &[forward(0.0)]);
     assert_eq!(k.run.state.held_by[k.mug], Some(k.agent));

@@ -4,9 +4,9 @@ use dwell_physics::{AgentControl, ContactEvent, PhysicsConfig, PhysicsWorld, Sta
 use dwell_scene::material::library;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    AgentBody, AgentId, AgentState, Articulation, Category, Collider, House, HouseData, Id,
-    JointId, JointKind, LevelId, Material, MaterialId, Mesh, Mobility, Object, ObjectId, Part,
-    PartId, Pose, RoomId, ShoeboxMaterials, State,
+    Aabb, AgentBody, AgentId, AgentState, Articulation, Category, Collider, Holding, House,
+    HouseData, Id, JointId, JointKind, LevelId, Material, MaterialId, Mesh, Mobility, Object,
+    ObjectId, Part, PartId, Pose, Receptacle, RoomId, ShoeboxMaterials, State,
 };
 use glam::{Affine3A, Quat, Vec3};
 use std::sync::Arc;
@@ -195,6 +195,48 @@ impl Build {
         (door, joint)
     }
 
+    /// A chest with one drawer that slides towards +Z, 0.5 m wide, 0.24 m high, 0.4 m deep, its foot's middle at `at`.
+    /// The drawer is marked as holding things inside.
+    pub(crate) fn chest(&mut self, at: Vec3) -> (ObjectId, JointId) {
+        let board = |half: Vec3, middle: Vec3| {
+            let mut piece = Piece::cuboid(half, at + middle);
+            piece.fixed = true;
+            piece
+        };
+        let sides = [
+            board(Vec3::new(0.01, 0.12, 0.2), Vec3::new(-0.24, 0.12, 0.0)),
+            board(Vec3::new(0.01, 0.12, 0.2), Vec3::new(0.24, 0.12, 0.0)),
+            board(Vec3::new(0.25, 0.01, 0.2), Vec3::new(0.0, 0.01, 0.0)),
+            board(Vec3::new(0.25, 0.01, 0.2), Vec3::new(0.0, 0.23, 0.0)),
+            board(Vec3::new(0.25, 0.12, 0.01), Vec3::new(0.0, 0.12, -0.19)),
+        ];
+        let mut pieces: Vec<Piece> = sides.into();
+        let half = Vec3::new(0.22, 0.09, 0.18);
+        pieces.push(Piece::cuboid(half, at + Vec3::new(0.0, 0.12, 0.01)));
+        let chest = self.object("chest_of_drawers", Mobility::Articulated, &pieces);
+        let leaf = self.data.objects[chest].parts().next_back().unwrap();
+        let wall = |low: [f32; 3], high: [f32; 3]| Collider::cuboid(low.into(), high.into());
+        self.data.parts[leaf].colliders = vec![
+            wall([-0.22, -0.09, -0.18], [0.22, -0.08, 0.18]),
+            wall([-0.22, -0.08, -0.18], [-0.21, 0.05, 0.18]),
+            wall([0.21, -0.08, -0.18], [0.22, 0.05, 0.18]),
+            wall([-0.21, -0.08, -0.18], [0.21, 0.05, -0.17]),
+            wall([-0.22, -0.09, 0.17], [0.22, 0.09, 0.18]),
+        ];
+        let origin = self.data.parts[leaf].world_from_part.position;
+        let joint = self.joint(chest, JointKind::Slide, Vec3::Z, origin, [0.0, 0.34]);
+        self.data.joints[joint].friction = 1.0;
+        self.data.joints[joint].damping = 8.0;
+        self.data.receptacles.push(Receptacle {
+            object: chest,
+            part: leaf,
+            name: "drawer".to_owned(),
+            holding: Holding::In,
+            space_in_part: Aabb::new(Vec3::new(-0.21, -0.08, -0.17), Vec3::new(0.21, 0.09, 0.17)),
+        });
+        (chest, joint)
+    }
+
     pub(crate) fn house(self) -> Arc<House> {
         Arc::new(House::new(self.data).unwrap())
     }
@@ -270,6 +312,21 @@ impl Run {
         let outcome = self.world.act(&mut self.state, &self.rays, agent, &action);
         self.rays.update(&self.state);
         outcome
+    }
+
+    /// Waits for the end of something that takes time.
+    pub(crate) fn told(&mut self, steps: usize) -> Option<dwell_physics::ActionOutcome> {
+        (0..steps).find_map(|_| {
+            self.walk(1, &[]);
+            self.world
+                .notices()
+                .first()
+                .map(|notice| notice.outcome.clone())
+        })
+    }
+
+    pub(crate) fn rotation(&self, object: ObjectId) -> Quat {
+        self.state.part_pose[self.root(object)].rotation
     }
 
     pub(crate) fn root(&self, object: ObjectId) -> PartId {

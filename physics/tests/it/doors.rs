@@ -23,7 +23,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
     let (door, joint) = build.wall_with_door(3.0, 6.0);
     let mut run = build.run();
     let id = run.agent(Vec3::new(2.6, 0.0, 4.0), 0.0);
-    let outcome = run.act(id, Action::Open { object: door });
+    let outcome = run.act(id, Action::open(door));
     assert_eq!(
         (outcome.success, outcome.code),
         (true, ActionCode::Started),
@@ -52,7 +52,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
     );
     assert!((run.state.joint_position[joint] - 1.6).abs() < 0.03);
     assert_eq!(
-        run.act(id, Action::Open { object: door }).code,
+        run.act(id, Action::open(door)).code,
         ActionCode::AlreadyOpen
     );
     run.walk(40, &[forward(1.0)]);
@@ -68,7 +68,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
         )
         .unwrap();
     run.rays.update(&run.state);
-    let outcome = run.act(id, Action::Close { object: door });
+    let outcome = run.act(id, Action::close(door));
     assert_eq!(outcome.code, ActionCode::Started, "{}", outcome.sentence);
     run.walk(60, &[]);
     assert_eq!(run.state.joint_position[joint], 0.0);
@@ -89,7 +89,7 @@ fn a_blocked_door_says_what_is_in_the_way() {
     );
     let mut run = build.run();
     let id = run.agent(Vec3::new(2.6, 0.0, 4.0), 0.0);
-    run.act(id, Action::Open { object: door });
+    run.act(id, Action::open(door));
     let mut told = None;
     for _ in 0..80 {
         run.walk(1, &[]);

@@ -7,16 +7,22 @@
 
 mod actions;
 mod agents;
+mod aim;
 mod bases;
+mod carry;
 mod common;
+mod containers;
 mod crowd;
 mod doors;
 mod events;
+mod force;
 mod gait;
+mod havoc;
 mod houses;
 mod joints;
 mod laws;
 mod motion;
 mod parameters;
+mod placing;
 mod snapshot;
 mod start;

@@ -81,7 +81,7 @@ fn gravity_wakes_what_sleeps() {
 fn an_overridden_mass_is_what_it_weighs() {
     let (mut run, sled) = sled();
     let agent = run.agent(Vec3::new(1.0, 0.0, 3.0), 0.0);
-    let told = |run: &mut Run| run.act(agent, dwell_physics::Action::Pick { object: sled });
+    let told = |run: &mut Run| run.act(agent, dwell_physics::Action::pick(sled));
     assert!(
         told(&mut run).sentence.contains("36.0 kg"),
         "{}",

@@ -41,9 +41,9 @@ fn busy() -> (Run, ObjectId, AgentId) {
     let agent = run.agent(Vec3::new(2.6, 0.0, 4.4), 0.0);
     run.agent(Vec3::new(1.0, 0.0, 4.0), 1.0);
     run.steps(5);
-    let told = run.act(agent, Action::Pick { object: mug });
+    let told = run.act(agent, Action::pick(mug));
     assert!(told.success, "{}", told.sentence);
-    let told = run.act(agent, Action::Open { object: door });
+    let told = run.act(agent, Action::open(door));
     assert!(told.success, "{}", told.sentence);
     (run, door, agent)
 }

@@ -6,6 +6,4 @@ mod triangles;
 
 pub use extent::Extent;
 pub use hull::Hull;
-pub(crate) use triangles::{
-    height_under, mapped_area_m2, object_triangles, ray_meets, structure_triangles,
-};
+pub(crate) use triangles::{height_under, mapped_area_m2, object_triangles, structure_triangles};

@@ -54,24 +54,6 @@ pub(crate) fn height_under([a, b, c]: [Vec3; 3], point: Vec3) -> Option<f32> {
     inside.then(|| a.y - (normal.x * (point.x - a.x) + normal.z * (point.z - a.z)) / normal.y)
 }
 
-/// Whether the ray from `origin` along `direction` meets the triangle from either side, at a positive distance.
-///
-/// # Source
-/// T. Möller, B. Trumbore, J. Graphics Tools 2, 21 (1997).
-pub(crate) fn ray_meets([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> bool {
-    let (ab, ac) = (b - a, c - a);
-    let p = direction.cross(ac);
-    let determinant = ab.dot(p);
-    if determinant.abs() < 1e-12 {
-        return false;
-    }
-    let offset = origin - a;
-    let u = offset.dot(p) / determinant;
-    let q = offset.cross(ab);
-    let v = direction.dot(q) / determinant;
-    u >= 0.0 && v >= 0.0 && u + v <= 1.0 && ac.dot(q) / determinant > 0.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,18 +69,5 @@ mod tests {
         assert_eq!(height_under(slope, Vec3::new(-0.1, 0.0, 0.5)), None);
         let wall = [Vec3::ZERO, Vec3::Y, Vec3::new(0.1, 1.0, 1.0)];
         assert_eq!(height_under(wall, Vec3::new(0.03, 0.0, 0.5)), None);
-    }
-
-    #[test]
-    fn rays_meet_what_lies_ahead_from_both_sides() {
-        let triangle = [
-            Vec3::new(0.0, -1.0, -1.0),
-            Vec3::new(0.0, 1.0, -1.0),
-            Vec3::new(0.0, 0.0, 1.0),
-        ];
-        assert!(ray_meets(triangle, Vec3::new(-1.0, 0.0, 0.0), Vec3::X));
-        assert!(ray_meets(triangle, Vec3::new(1.0, 0.0, 0.0), Vec3::NEG_X));
-        assert!(!ray_meets(triangle, Vec3::new(1.0, 0.0, 0.0), Vec3::X));
-        assert!(!ray_meets(triangle, Vec3::new(-1.0, 2.0, 0.0), Vec3::X));
     }
 }

@@ -3,11 +3,13 @@
 mod address;
 mod agent;
 mod locomotion;
+mod relations;
 mod snapshot;
 
 pub use address::{Address, Parameter};
 pub use agent::{AgentBody, AgentState, BaseState};
 pub use locomotion::{DifferentialDrive, Gait, HolonomicBase, Locomotion};
+pub use relations::{Contact, Rest};
 
 use crate::articulation::JointCommand;
 use crate::house::House;
@@ -64,15 +66,6 @@ pub struct Velocity {
     pub linear: Vec3,
     /// rad/s.
     pub angular: Vec3,
-}
-
-/// Two things that touch.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Contact {
-    /// The part whose number is lower.
-    pub a: PartId,
-    /// The other part; `None`: the structure of the house.
-    pub b: Option<PartId>,
 }
 
 impl State {

@@ -1,0 +1,251 @@
+//! What rests on what, and what lies in what: derived from contacts, places and geometry. The one definition of "in";
+//! engines and words ask here.
+
+use super::State;
+use crate::bounds::Aabb;
+use crate::fixtures::Holding;
+use crate::house::House;
+use crate::ids::{ObjectId, PartId};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// The share of a thing's box that must lie in the container's.
+const INSIDE_SHARE: f32 = 0.8;
+/// How far a thing may stick out of a container's box, m.
+const BRIM_M: f32 = 0.02;
+/// How far the middle of a thing may lie outside a marked space, m.
+const SPACE_MARGIN_M: f32 = 0.01;
+/// Of the rays from a thing's middle to the four sides and down, how many must meet what is around it.
+const WALLS: usize = 4;
+
+/// Which of two things that touch carries the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rest {
+    /// Neither: they stand side by side.
+    #[default]
+    Beside,
+    /// `a` rests on `b`: somewhere `b` holds it up, with a normal at most 60 degrees from upright.
+    AOnB,
+    /// `b` rests on `a`.
+    BOnA,
+}
+
+/// Two things that touch.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// The part whose number is lower.
+    pub a: PartId,
+    /// The other part; `None`: the structure of the house.
+    pub b: Option<PartId>,
+    /// Which of them carries the other.
+    pub rest: Rest,
+}
+
+impl State {
+    /// What carries an object: objects in order, `None` for the building. Empty while it is held, flies, or never moves
+    /// (physics finds no contacts between things that cannot move).
+    pub fn rests_on(&self, house: &House, object: ObjectId) -> Vec<Option<ObjectId>> {
+        if self.held_by[object].is_some() {
+            return Vec::new();
+        }
+        let owner = |part: PartId| house.parts[part].object;
+        let mut carriers: Vec<Option<ObjectId>> = self
+            .contacts
+            .iter()
+            .filter_map(|contact| {
+                let (a, b) = (owner(contact.a), contact.b.map(owner));
+                match contact.rest {
+                    Rest::AOnB if a == object => Some(b),
+                    Rest::BOnA if b == Some(object) => Some(Some(a)),
+                    _ => None,
+                }
+            })
+            .filter(|carrier| *carrier != Some(object))
+            .collect();
+        carriers.sort_unstable();
+        carriers.dedup();
+        carriers
+    }
+
+    /// The objects that an object lies in, in order. Nothing that is held lies in anything.
+    pub fn lies_in(&self, house: &House, object: ObjectId) -> Vec<ObjectId> {
+        if self.held_by[object].is_some() {
+            return Vec::new();
+        }
+        let inner = house.object_bounds(self, object);
+        house
+            .objects
+            .ids()
+            .filter(|container| *container != object)
+            .filter(|container| {
+                let outer = house.object_bounds(self, *container);
+                house.encloses(self, *container, &outer, &inner)
+            })
+            .collect()
+    }
+}
+
+impl House {
+    /// Whether the box `inner` (m, world space) lies in an object whose box is `outer`.
+    ///
+    /// Four fifths of it lie in the object's box (grown by 2 cm), it is the smaller of the two, and either its middle
+    /// lies in a space of the object that is marked as holding things inside, or the object is around it: of the five
+    /// rays from the middle to the four sides (along the object's own axes) and down, at least four meet the object. So a
+    /// bowl, a drawer, a sink and a shelf's compartment (open in front) contain things; a table does not contain what
+    /// lies under it.
+    pub fn encloses(&self, state: &State, container: ObjectId, outer: &Aabb, inner: &Aabb) -> bool {
+        // The smaller volume is the content; this keeps the relation one way.
+        let fits = inner.volume() < outer.volume()
+            && share_inside(inner, &outer.grown(BRIM_M)) >= INSIDE_SHARE;
+        let middle = inner.center();
+        fits && (self.in_marked_space(state, container, middle)
+            || self.surrounds(state, container, middle))
+    }
+
+    fn in_marked_space(&self, state: &State, container: ObjectId, point: Vec3) -> bool {
+        self.receptacles
+            .iter()
+            .filter(|space| space.object == container && space.holding == Holding::In)
+            .any(|space| {
+                let part_from_world = state.part_pose[space.part].inverse();
+                space
+                    .space_in_part
+                    .grown(SPACE_MARGIN_M)
+                    .contains(part_from_world.transform_point(point))
+            })
+    }
+
+    fn surrounds(&self, state: &State, container: ObjectId, point: Vec3) -> bool {
+        let root = self.objects[container].first_part;
+        let axes = state.part_pose[root].rotation;
+        let rays =
+            [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z, Vec3::NEG_Y].map(|axis| axes * axis);
+        let mut met = [false; 5];
+        for id in self.objects[container].parts() {
+            let part = &self.parts[id];
+            let mesh = &self.meshes[part.mesh];
+            let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
+            for triangle in 0..mesh.triangles.len() {
+                let corners = mesh
+                    .corners(triangle)
+                    .map(|corner| world_from_mesh.transform_point3(corner));
+                for (met, ray) in met.iter_mut().zip(rays) {
+                    *met = *met || ray_meets(corners, point, ray);
+                }
+            }
+        }
+        met.iter().filter(|met| **met).count() >= WALLS
+    }
+}
+
+fn share_inside(inner: &Aabb, outer: &Aabb) -> f32 {
+    let low = inner.min.max(outer.min);
+    let high = inner.max.min(outer.max);
+    let size = inner.size().max(Vec3::splat(1e-4));
+    ((high - low).max(Vec3::ZERO) / size)
+        .min(Vec3::ONE)
+        .element_product()
+}
+
+/// Whether the ray from `origin` along `direction` meets the triangle from either side, at a positive distance.
+///
+/// # Source
+/// T. Möller, B. Trumbore, J. Graphics Tools 2, 21 (1997).
+fn ray_meets([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> bool {
+    let (ab, ac) = (b - a, c - a);
+    let p = direction.cross(ac);
+    let determinant = ab.dot(p);
+    if determinant.abs() < 1e-12 {
+        return false;
+    }
+    let offset = origin - a;
+    let u = offset.dot(p) / determinant;
+    let q = offset.cross(ab);
+    let v = direction.dot(q) / determinant;
+    u >= 0.0 && v >= 0.0 && u + v <= 1.0 && ac.dot(q) / determinant > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ShoeboxMaterials;
+    use crate::ids::Id;
+
+    #[test]
+    fn rays_meet_what_lies_ahead_from_both_sides() {
+        let triangle = [
+            Vec3::new(0.0, -1.0, -1.0),
+            Vec3::new(0.0, 1.0, -1.0),
+            Vec3::new(0.0, 0.0, 1.0),
+        ];
+        assert!(ray_meets(triangle, Vec3::new(-1.0, 0.0, 0.0), Vec3::X));
+        assert!(ray_meets(triangle, Vec3::new(1.0, 0.0, 0.0), Vec3::NEG_X));
+        assert!(!ray_meets(triangle, Vec3::new(1.0, 0.0, 0.0), Vec3::X));
+        assert!(!ray_meets(triangle, Vec3::new(-1.0, 2.0, 0.0), Vec3::X));
+    }
+
+    #[test]
+    fn a_share_counts_the_volume_that_lies_inside() {
+        let outer = Aabb::new(Vec3::ZERO, Vec3::ONE);
+        let inner = Aabb::new(Vec3::splat(0.5), Vec3::new(0.75, 0.75, 1.5));
+        assert!((share_inside(&inner, &outer) - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn who_carries_whom_follows_the_contacts_and_the_hand() {
+        let house = House::shoebox([4.0, 3.0, 4.0], &ShoeboxMaterials::default()).unwrap();
+        let state = State::new(&house);
+        assert!(house.objects.is_empty() && state.contacts.is_empty());
+        // Contacts name parts; two objects of one part each.
+        let mut data = house.data().clone();
+        let mesh = data.meshes.push(std::sync::Arc::new(crate::Mesh::cuboid(
+            Vec3::ZERO,
+            Vec3::ONE,
+        )));
+        let material = crate::MaterialId(0);
+        for k in 0..2_u32 {
+            data.parts.push(crate::Part {
+                object: ObjectId(k),
+                name: "body".to_owned(),
+                fixed: false,
+                world_from_part: crate::Pose::IDENTITY,
+                mesh,
+                part_from_mesh: glam::Affine3A::IDENTITY,
+                materials: vec![material],
+                colliders: Vec::new(),
+                mass_kg: Some(1.0),
+                density_kg_m3: 100.0,
+            });
+            data.objects.push(crate::Object {
+                name: format!("thing_{k}"),
+                source_id: String::new(),
+                model: String::new(),
+                category: crate::Category::default(),
+                level: crate::LevelId(0),
+                room: None,
+                mobility: crate::Mobility::Movable,
+                pickable: true,
+                switch: None,
+                first_part: PartId::from_index(k as usize),
+                part_count: 1,
+            });
+        }
+        let house = House::new(data).unwrap();
+        let mut state = State::new(&house);
+        let contact = |a: u32, b: Option<u32>, rest| Contact {
+            a: PartId(a),
+            b: b.map(PartId),
+            rest,
+        };
+        state.contacts = vec![
+            contact(0, None, Rest::Beside),
+            contact(0, Some(1), Rest::AOnB),
+            contact(1, None, Rest::AOnB),
+        ];
+        assert_eq!(state.rests_on(&house, ObjectId(0)), [Some(ObjectId(1))]);
+        assert_eq!(state.rests_on(&house, ObjectId(1)), [None]);
+        state.held_by[ObjectId(0)] = Some(crate::AgentId(0));
+        assert!(state.rests_on(&house, ObjectId(0)).is_empty());
+    }
+}

@@ -1,0 +1,72 @@
+//! Putting what is held down at a point.
+
+use super::open_way::Ground;
+use super::outcome::{ActionCode, done, fail};
+use super::{Actor, Told};
+use crate::world::PhysicsWorld;
+use dwell_scene::State;
+use glam::Vec3;
+
+/// How far above or below the point a surface may lie, m.
+const SURFACE_M: f32 = 0.03;
+
+impl PhysicsWorld {
+    pub(super) fn put_at(&mut self, state: &mut State, actor: Actor<'_>, point: Vec3) -> Told {
+        let grip = self.grip_of(actor)?;
+        let held = self.call(grip.object);
+        let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(grip.object)));
+        if !point.is_finite() {
+            let sentence = format!("{point} is no place; give finite numbers.");
+            return refuse(ActionCode::BadNumber, sentence);
+        }
+        let eye = actor.body.eye_position();
+        let (distance, reach) = ((point - eye).length(), actor.body.body.reach_m);
+        if distance > reach {
+            let sentence = format!(
+                "That place is {distance:.1} m away; your reach is {reach:.1} m. Walk closer."
+            );
+            return refuse(ActionCode::TooFar, sentence);
+        }
+        let above = point + Vec3::Y * SURFACE_M;
+        if let Some(blocker) = self.barred_by(eye, above) {
+            let name = self.name_of_entry(blocker);
+            let sentence =
+                format!("The {name} is between you and that place. Choose one in the open.");
+            return refuse(ActionCode::NotVisible, sentence);
+        }
+        let body = grip.body as usize;
+        let levels = self.levels_under(body, Ground::Anything, above, 2.0 * SURFACE_M);
+        let Some(height) = levels
+            .into_iter()
+            .min_by(|a, b| (a - point.y).abs().total_cmp(&(b - point.y).abs()))
+        else {
+            let sentence =
+                format!("Nothing carries the {held} there. Choose a point on a level surface.");
+            return refuse(ActionCode::NoSupport, sentence);
+        };
+        let foot = point.with_y(height);
+        let mut blocker = None;
+        for stance in self.stances(body) {
+            match self.stand_at(body, &stance, foot) {
+                Ok(pose) => {
+                    self.put_down(state, actor, &pose);
+                    let sentence = format!("You put the {held} down there.");
+                    return Ok(done(ActionCode::Done, sentence, Some(grip.object)));
+                }
+                Err(found) => blocker = blocker.or(found),
+            }
+        }
+        match blocker {
+            Some(name) => refuse(
+                ActionCode::NoSpace,
+                format!(
+                    "The {held} does not fit there: the {name} is in the way. Choose another point."
+                ),
+            ),
+            None => refuse(
+                ActionCode::NoSupport,
+                format!("The {held} would not stand there. Choose a level spot away from edges."),
+            ),
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Pointing.
+
+use super::outcome::{ActionCode, Pointed, done, fail};
+use super::request::Target;
+use super::{Actor, Told};
+use crate::world::PhysicsWorld;
+use dwell_scene::{Entity, EntityId, State, SurfaceOwner};
+
+impl PhysicsWorld {
+    pub(super) fn point(&mut self, state: &State, actor: Actor<'_>, target: &Target) -> Told {
+        let aim = self.aim(state, actor, target)?;
+        let house = &self.model().house;
+        let eye = actor.body.eye_position();
+        let (entity, name, object, middle) = match aim.entity {
+            Entity::Object(id) => (
+                house.entity_of_object(id),
+                format!("the {}", self.call(id)),
+                Some(id),
+                house.object_bounds(state, id).center(),
+            ),
+            Entity::Structure(id) => (
+                house.entity_of_structure(id),
+                format!("the {}", self.surface_name(SurfaceOwner::Structure(id))),
+                None,
+                house.meshes[house.structure[id].mesh].bounds().center(),
+            ),
+            Entity::Agent(id) if id == actor.id => {
+                let sentence = "You cannot point at yourself. Point at something else.";
+                return Err(Box::new(fail(ActionCode::Oneself, sentence, None)));
+            }
+            Entity::Agent(id) => (
+                house.entity_of_agent(id),
+                format!("agent {}", id.0),
+                None,
+                state.agents[id].eye_position(),
+            ),
+            Entity::Void => (EntityId::VOID, "nothing".to_owned(), None, eye),
+        };
+        let point = aim.point.unwrap_or(middle);
+        let distance_m = (point - eye).length();
+        let sentence = format!("You point at {name}, {distance_m:.1} m away.");
+        let mut outcome = done(ActionCode::Done, sentence, object);
+        outcome.pointed = Some(Pointed {
+            entity,
+            point,
+            distance_m,
+        });
+        Ok(outcome)
+    }
+}

@@ -1,0 +1,192 @@
+//! Pushing and pulling: a force for a short while, and then how far the thing went.
+
+use super::outcome::{ActionCode, ActionOutcome, Notice, done, fail};
+use super::request::Target;
+use super::target::Aim;
+use super::{Actor, Told};
+use crate::body::Hold;
+use crate::world::PhysicsWorld;
+use dwell_scene::{AgentId, ObjectId, State};
+use glam::Vec3;
+use rapier3d::dynamics::RigidBody;
+use serde::{Deserialize, Serialize};
+
+/// How long a push lasts, s.
+const PUSH_S: f32 = 0.25;
+/// Beyond the reach by so much, a hand has lost what it pushes, m.
+const SLACK_M: f32 = 0.3;
+/// A way that counts as moved, m.
+const MOVED_M: f32 = 0.01;
+
+/// A push or pull that goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Shove {
+    agent: AgentId,
+    object: ObjectId,
+    body: u32,
+    /// Where the hand is on the body, m.
+    point_in_body: Vec3,
+    /// In world space, N.
+    force: Vec3,
+    left_s: f32,
+    /// Where the hand was at first, m.
+    start: Vec3,
+}
+
+impl PhysicsWorld {
+    pub(super) fn shove(
+        &mut self,
+        state: &State,
+        actor: Actor<'_>,
+        target: &Target,
+        force_n: Option<f32>,
+        way: f32,
+    ) -> Told {
+        let most = self.settings.config.push_force_n;
+        let verb = if way > 0.0 { "push" } else { "pull" };
+        let (object, aim) = self.aim_at_object(state, actor, target)?;
+        let name = self.call(object);
+        let wanted = force_n.unwrap_or(most);
+        if !wanted.is_finite() || wanted <= 0.0 {
+            let sentence = format!("You cannot {verb} with {wanted} N; give a force above 0.");
+            return Ok(fail(ActionCode::BadNumber, sentence, Some(object)));
+        }
+        if way < 0.0 && actor.body.holding.is_some() {
+            let sentence = "Your hand is full. Drop what you hold before you pull.";
+            return Ok(fail(ActionCode::HandFull, sentence, Some(object)));
+        }
+        if let Some(holder) = state.held_by[object] {
+            let sentence = format!(
+                "Agent {} holds the {name}. Choose something else.",
+                holder.0
+            );
+            return Ok(fail(ActionCode::HeldByOther, sentence, Some(object)));
+        }
+        let body = self.body_to_shove(object, &aim)?;
+        if let Some(refusal) = self.refuse_stood_on(state, actor.id, object) {
+            return Ok(refusal);
+        }
+        if let Some(refusal) = self.refuse_reach(state, actor, object) {
+            return Ok(refusal);
+        }
+        let handle = self.bodies[body].handle;
+        let Some(rigid) = self.engine.bodies.get(handle) else {
+            return Ok(fail(
+                ActionCode::NotMovable,
+                "It does not move.",
+                Some(object),
+            ));
+        };
+        let eye = actor.body.eye_position();
+        // Without a point, a free thing is pushed through its centre of mass, a leaf where its middle is.
+        let middle = self.model().bodies[body].bounds(rigid.position()).center();
+        let jointed = self.model().bodies[body].joint.is_some();
+        let point = aim.point.unwrap_or(if jointed {
+            middle
+        } else {
+            rigid.center_of_mass()
+        });
+        let level = Vec3::new(point.x - eye.x, 0.0, point.z - eye.z);
+        let ahead = dwell_scene::space::forward_from_yaw(actor.body.yaw_rad);
+        let direction = level.try_normalize().unwrap_or(ahead) * way;
+        let force = wanted.min(most);
+        let point_in_body = rigid.position().inverse() * point;
+        self.shoves.retain(|shove| shove.agent != actor.id);
+        self.shoves.push(Shove {
+            agent: actor.id,
+            object,
+            body: body as u32,
+            point_in_body,
+            force: direction * force,
+            left_s: PUSH_S,
+            start: point,
+        });
+        self.shoves.sort_by_key(|shove| shove.agent);
+        let limit = if force < wanted { ", all you have" } else { "" };
+        let sentence = format!("You {verb} the {name} with {force:.0} N{limit}.");
+        Ok(done(ActionCode::Started, sentence, Some(object)))
+    }
+
+    /// The body of an object that a push moves.
+    fn body_to_shove(&self, object: ObjectId, aim: &Aim) -> Result<usize, Box<ActionOutcome>> {
+        let name = self.call(object);
+        let model = self.model();
+        let refuse = |code, sentence: String| Err(Box::new(fail(code, sentence, Some(object))));
+        let bodies = match aim.part {
+            Some(part) => model.body_of_part[part]
+                .map(|body| body as usize)
+                .into_iter()
+                .collect(),
+            None => self.bodies_of(object),
+        };
+        if let Some(body) = bodies.iter().find(|body| self.holds[**body] == Hold::Free) {
+            return Ok(*body);
+        }
+        match bodies.first().map(|body| self.holds[*body]) {
+            None => refuse(
+                ActionCode::NotMovable,
+                format!("The {name} stands firm. Choose something loose."),
+            ),
+            Some(Hold::Latched) => refuse(
+                ActionCode::Shut,
+                format!("The {name} is shut and does not give way. Open it first."),
+            ),
+            Some(_) => refuse(
+                ActionCode::Stuck,
+                format!("The {name} is stuck where it stands. Choose something else."),
+            ),
+        }
+    }
+
+    /// Applies all pushes for one physics step and tells of those that end.
+    pub(crate) fn shove_on(&mut self, state: &State) {
+        let dt_s = self.settings.dt_s;
+        let mut place = 0;
+        while place < self.shoves.len() {
+            let shove = self.shoves[place];
+            let index = shove.body as usize;
+            let handle = self.bodies[index].handle;
+            let agent = &state.agents[shove.agent];
+            let reach = agent.body.reach_m + SLACK_M;
+            let free = self.holds[index] == Hold::Free && state.held_by[shove.object].is_none();
+            let point = self
+                .engine
+                .bodies
+                .get(handle)
+                .map(|rigid| *rigid.position() * shove.point_in_body);
+            let near =
+                point.is_some_and(|point| free && (point - agent.eye_position()).length() <= reach);
+            if shove.left_s > 0.5 * dt_s
+                && near
+                && let Some(point) = point
+            {
+                self.engine
+                    .islands
+                    .wake_up(&mut self.engine.bodies, handle, true);
+                if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+                    rigid.apply_impulse_at_point(shove.force * dt_s, point, false);
+                }
+                self.shoves[place].left_s -= dt_s;
+                place += 1;
+                continue;
+            }
+            self.shoves.remove(place);
+            let moved = point.map_or(0.0, |point| (point - shove.start).length());
+            let name = self.call(shove.object);
+            let outcome = if moved >= MOVED_M {
+                let sentence = format!("The {name} moved by {moved:.2} m.");
+                done(ActionCode::Done, sentence, Some(shove.object))
+            } else {
+                let mass = self.engine.bodies.get(handle).map_or(0.0, RigidBody::mass);
+                let sentence = format!(
+                    "The {name} ({mass:.1} kg) did not move. Use more force, or clear what holds it."
+                );
+                fail(ActionCode::Blocked, sentence, Some(shove.object))
+            };
+            self.notices.push(Notice {
+                agent: Some(shove.agent),
+                outcome,
+            });
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Putting what is held into a container.
+
+use super::open_way::Ground;
+use super::outcome::{ActionCode, done, fail};
+use super::request::Target;
+use super::stance::Stance;
+use super::target::Aim;
+use super::{Actor, Told};
+use crate::convert::to_rapier;
+use crate::model::BodyPlan;
+use crate::world::PhysicsWorld;
+use dwell_scene::{Aabb, Holding, Pose, Receptacle, State};
+use glam::Vec3;
+use rapier3d::math::Pose as RapierPose;
+
+/// Places a side that are tried inside.
+const GRID: u32 = 7;
+/// Beyond the reach by so much a hand still gets into a container, m.
+const STRETCH_M: f32 = 0.2;
+/// How far a thing may stick out of an open vessel on top, as a share of its height; what is shut must hold all of it.
+const STICKS_OUT: f32 = 0.6;
+/// From this openness on, nothing is said about closed doors.
+const OPEN: f32 = 0.7;
+
+/// What was found while looking for a spot inside.
+#[derive(Default)]
+struct Search {
+    pose: Option<RapierPose>,
+    fits: bool,
+    in_reach: bool,
+    in_sight: bool,
+}
+
+impl PhysicsWorld {
+    pub(super) fn put_in(
+        &mut self,
+        state: &mut State,
+        actor: Actor<'_>,
+        container: &Target,
+    ) -> Told {
+        let grip = self.grip_of(actor)?;
+        let (object, aim) = self.aim_at_object(state, actor, container)?;
+        let (held, name) = (self.call(grip.object), self.call(object));
+        let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
+        if grip.object == object {
+            let sentence = "A thing cannot be put into itself. Choose something else.";
+            return refuse(ActionCode::NoSpace, sentence.to_owned());
+        }
+        if let Some(holder) = state.held_by[object] {
+            let sentence = format!(
+                "Agent {} holds the {name}. Choose something else.",
+                holder.0
+            );
+            return refuse(ActionCode::HeldByOther, sentence);
+        }
+        let house = self.model().house.clone();
+        let spaces: Vec<&Receptacle> = house
+            .receptacles
+            .iter()
+            .filter(|space| space.object == object && space.holding == Holding::In)
+            .collect();
+        if spaces.is_empty() {
+            let sentence = format!(
+                "The {name} holds nothing inside. Choose a drawer, cupboard, bowl, box or basin."
+            );
+            return refuse(ActionCode::NotContainer, sentence);
+        }
+        if let Some(refusal) = self.refuse_reach(state, actor, object) {
+            return Ok(refusal);
+        }
+        let mut search = Search::default();
+        // The space that was pointed at comes first, then the others.
+        let meant = |space: &&Receptacle| is_meant(space, &aim, state);
+        let (first, rest): (Vec<_>, Vec<_>) = spaces.into_iter().partition(meant);
+        for space in first.into_iter().chain(rest) {
+            self.search_space(state, actor, grip.body as usize, space, &mut search);
+            if search.pose.is_some() {
+                break;
+            }
+        }
+        let Some(pose) = search.pose else {
+            let shut = house
+                .joints_of(object)
+                .any(|id| house.joints[id].openness(state.joint_position[id]) < OPEN);
+            return match search {
+                Search { fits: false, .. } => refuse(
+                    ActionCode::TooLarge,
+                    format!("The {held} is too large for the {name}. Choose something roomier."),
+                ),
+                Search {
+                    in_reach: false, ..
+                } => refuse(
+                    ActionCode::TooFar,
+                    format!("You do not reach into the {name}. Walk closer."),
+                ),
+                Search {
+                    in_sight: false, ..
+                } if shut => refuse(
+                    ActionCode::Closed,
+                    format!("The {name} is closed. Open it first."),
+                ),
+                Search {
+                    in_sight: false, ..
+                } => refuse(
+                    ActionCode::NotVisible,
+                    format!("You cannot get into the {name} from here. Step in front of it."),
+                ),
+                _ => refuse(
+                    ActionCode::Full,
+                    format!(
+                        "There is no room left for the {held} in the {name}. Take something out first."
+                    ),
+                ),
+            };
+        };
+        self.put_down(state, actor, &pose);
+        let sentence = format!("You put the {held} in the {name}.");
+        Ok(done(ActionCode::Done, sentence, Some(object)))
+    }
+
+    /// Looks for a spot in one space.
+    fn search_space(
+        &self,
+        state: &State,
+        actor: Actor<'_>,
+        body: usize,
+        space: &Receptacle,
+        search: &mut Search,
+    ) {
+        let house = &self.model().house;
+        let plan = &self.model().bodies[body];
+        let world_from_part = state.part_pose[space.part];
+        let inside = space.space_in_part;
+        let outer = house.object_bounds(state, space.object);
+        let eye = actor.body.eye_position();
+        let reach = actor.body.body.reach_m + STRETCH_M;
+        let sticks_out = if house.joints_of(space.object).next().is_some() {
+            0.0
+        } else {
+            STICKS_OUT
+        };
+        for stance in self.stances(body) {
+            let size = size_in(plan, &stance, &world_from_part);
+            let room = inside.size();
+            if size.x > room.x || size.z > room.z || size.y * (1.0 - sticks_out) > room.y {
+                continue;
+            }
+            search.fits = true;
+            for k in 0..GRID * GRID {
+                let share = |k: u32, size: f32, room: f32| {
+                    0.5 * size + (room - size) * (k as f32 + 0.5) / GRID as f32
+                };
+                let x = inside.min.x + share(k % GRID, size.x, room.x);
+                let z = inside.min.z + share(k / GRID, size.z, room.z);
+                let top = world_from_part.transform_point(Vec3::new(x, inside.max.y, z));
+                let levels = self.levels_under(body, Ground::Anything, top, room.y + 0.02);
+                for height in levels {
+                    let foot = top.with_y(height);
+                    let middle = foot + Vec3::Y * (0.5 * stance.size().y);
+                    if height + size.y * (1.0 - sticks_out) > top.y {
+                        continue;
+                    }
+                    if (foot - eye).length() > reach {
+                        continue;
+                    }
+                    search.in_reach = true;
+                    let inner = bounds_on(&stance, foot);
+                    if !house.encloses(state, space.object, &outer, &inner)
+                        || self.barred_by(eye, middle).is_some()
+                    {
+                        continue;
+                    }
+                    search.in_sight = true;
+                    if let Ok(pose) = self.stand_at(body, &stance, foot) {
+                        search.pose = Some(pose);
+                        return;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Whether a space is the one that was pointed at: by its part, or by the point.
+fn is_meant(space: &Receptacle, aim: &Aim, state: &State) -> bool {
+    match (aim.point, aim.part) {
+        (Some(point), _) => {
+            let point_in_part = state.part_pose[space.part].inverse().transform_point(point);
+            space.space_in_part.grown(0.05).contains(point_in_part)
+        }
+        (None, Some(part)) => space.part == part,
+        (None, None) => false,
+    }
+}
+
+/// The edges of a stance along a part's axes, m.
+fn size_in(plan: &BodyPlan, stance: &Stance, world_from_part: &Pose) -> Vec3 {
+    let turned = to_rapier(&Pose::new(
+        Vec3::ZERO,
+        world_from_part.rotation.inverse() * stance.rotation,
+    ));
+    plan.bounds(&turned).size()
+}
+
+/// The box around a stance on a foot, m.
+fn bounds_on(stance: &Stance, foot: Vec3) -> Aabb {
+    let half = 0.5 * stance.size();
+    let middle = foot + Vec3::Y * half.y;
+    Aabb::new(middle - half, middle + half)
+}

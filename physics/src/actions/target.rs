@@ -1,0 +1,198 @@
+//! What a target turns out to be: an object, a piece of the building, or somebody.
+
+use super::Actor;
+use super::outcome::{ActionCode, ActionOutcome, fail};
+use super::request::Target;
+use crate::world::PhysicsWorld;
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::{AgentId, Entity, EntityId, Id, ObjectId, PartId, State, SurfaceOwner};
+use glam::Vec3;
+
+/// How far a ray goes, m.
+const FAR_M: f32 = 100.0;
+/// How far from the origin a ray may start, m.
+const WORLD_M: f32 = 32_768.0;
+
+/// A thing that was meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Aim {
+    pub(super) entity: Entity,
+    /// The part that was named or met.
+    pub(super) part: Option<PartId>,
+    /// Where a ray met it, m.
+    pub(super) point: Option<Vec3>,
+}
+
+impl PhysicsWorld {
+    /// Finds what is meant.
+    pub(super) fn aim(
+        &self,
+        state: &State,
+        actor: Actor<'_>,
+        target: &Target,
+    ) -> Result<Aim, Box<ActionOutcome>> {
+        let house = &self.model().house;
+        let found = |entity, part, point| {
+            Ok(Aim {
+                entity,
+                part,
+                point,
+            })
+        };
+        let unknown = |what: String, count: usize, kind: &str| {
+            let sentence = format!("There is no {what}; there are {count} {kind}.");
+            Err(Box::new(fail(ActionCode::UnknownObject, sentence, None)))
+        };
+        match *target {
+            Target::Object(id) if id.index() < house.objects.len() => {
+                found(Entity::Object(id), None, None)
+            }
+            Target::Object(id) => {
+                unknown(format!("object {}", id.0), house.objects.len(), "objects")
+            }
+            Target::Part(id) if id.index() < house.parts.len() => {
+                found(Entity::Object(house.parts[id].object), Some(id), None)
+            }
+            Target::Part(id) => unknown(format!("part {}", id.0), house.parts.len(), "parts"),
+            Target::Entity(id) => {
+                let count = house.structure.len() + house.objects.len() + state.agents.len();
+                match house.entity(id) {
+                    Some(Entity::Agent(agent)) if agent.index() >= state.agents.len() => {
+                        unknown(format!("thing {}", id.0), count, "counted from 1")
+                    }
+                    Some(Entity::Void) | None => {
+                        unknown(format!("thing {}", id.0), count, "counted from 1")
+                    }
+                    Some(entity) => found(entity, None, None),
+                }
+            }
+            Target::Ray { origin, direction } => {
+                let good = origin.is_finite()
+                    && origin.abs().max_element() <= WORLD_M
+                    && direction.is_finite()
+                    && direction.length_squared() > 1e-12;
+                if !good {
+                    let sentence = format!(
+                        "A ray from {origin} along {direction} leads nowhere; give finite numbers and a direction that is not zero."
+                    );
+                    return Err(Box::new(fail(ActionCode::BadNumber, sentence, None)));
+                }
+                self.meet(state, actor, origin, direction)
+            }
+            Target::Gaze => {
+                let eye = actor.body.world_from_eye();
+                self.meet(
+                    state,
+                    actor,
+                    eye.position,
+                    eye.transform_vector(Vec3::NEG_Z),
+                )
+            }
+        }
+    }
+
+    /// As [`Self::aim`] where only an object will do.
+    pub(super) fn aim_at_object(
+        &self,
+        state: &State,
+        actor: Actor<'_>,
+        target: &Target,
+    ) -> Result<(ObjectId, Aim), Box<ActionOutcome>> {
+        let aim = self.aim(state, actor, target)?;
+        let (code, sentence) = match aim.entity {
+            Entity::Object(object) => return Ok((object, aim)),
+            Entity::Agent(agent) if agent == actor.id => (
+                ActionCode::Oneself,
+                "That is you. Choose a thing.".to_owned(),
+            ),
+            Entity::Agent(agent) => (
+                ActionCode::NotAThing,
+                format!("That is agent {}, not a thing. Choose a thing.", agent.0),
+            ),
+            Entity::Structure(id) => (
+                ActionCode::NotAThing,
+                format!(
+                    "The {} is part of the building. Choose a thing.",
+                    self.surface_name(SurfaceOwner::Structure(id))
+                ),
+            ),
+            Entity::Void => (
+                ActionCode::NoTarget,
+                "There is nothing. Choose a thing.".to_owned(),
+            ),
+        };
+        Err(Box::new(fail(code, sentence, None)))
+    }
+
+    /// The first thing on a ray; what the agent holds is looked past, and its own body.
+    fn meet(
+        &self,
+        state: &State,
+        actor: Actor<'_>,
+        origin: Vec3,
+        direction: Vec3,
+    ) -> Result<Aim, Box<ActionOutcome>> {
+        let house = &self.model().house;
+        let direction = direction.normalize_or_zero();
+        let ray = Ray::new(origin, direction).between(0.0, FAR_M);
+        let held = actor
+            .body
+            .holding
+            .map_or(EntityId::VOID, |held| house.entity_of_object(held));
+        let hit = actor.rays.closest_without(&ray, RayMask::EYE, held);
+        let until = hit.map_or(FAR_M, |hit| hit.distance_m);
+        if let Some((agent, distance)) = self.meet_agent(state, actor.id, origin, direction, until)
+        {
+            return Ok(Aim {
+                entity: Entity::Agent(agent),
+                part: None,
+                point: Some(origin + direction * distance),
+            });
+        }
+        let Some(hit) = hit else {
+            let sentence = "There is nothing in that direction. Point at something.";
+            return Err(Box::new(fail(ActionCode::NoTarget, sentence, None)));
+        };
+        let surface = actor.rays.surface(&hit);
+        let point = Some(origin + direction * hit.distance_m);
+        let (entity, part) = match surface.owner {
+            SurfaceOwner::Structure(id) => (Entity::Structure(id), None),
+            SurfaceOwner::Part(id) => (Entity::Object(house.parts[id].object), Some(id)),
+        };
+        Ok(Aim {
+            entity,
+            part,
+            point,
+        })
+    }
+
+    /// The nearest other agent's body on a ray.
+    fn meet_agent(
+        &self,
+        state: &State,
+        own: AgentId,
+        origin: Vec3,
+        direction: Vec3,
+        until_m: f32,
+    ) -> Option<(AgentId, f32)> {
+        let ray = rapier3d::geometry::Ray::new(origin, direction);
+        state
+            .agents
+            .ids()
+            .filter(|id| *id != own)
+            .filter_map(|id| {
+                let body = self.engine.bodies.get(self.agents[id.index()].handle)?;
+                let distance = body
+                    .colliders()
+                    .iter()
+                    .filter_map(|handle| {
+                        let collider = self.engine.colliders.get(*handle)?;
+                        let shape = collider.shape();
+                        shape.cast_ray(collider.position(), &ray, until_m, true)
+                    })
+                    .min_by(f32::total_cmp)?;
+                Some((id, distance))
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}

@@ -1,0 +1,75 @@
+//! Throwing.
+
+use super::outcome::{ActionCode, done, fail};
+use super::{Actor, Told};
+use crate::world::PhysicsWorld;
+use dwell_scene::State;
+use glam::Vec3;
+use rapier3d::dynamics::RigidBody;
+
+/// How far the hand goes with what it throws, m: an estimate of ours for an arm.
+const STROKE_M: f32 = 0.5;
+/// The fastest throw of the lightest thing, m/s: an estimate of ours for a person indoors.
+const FASTEST_M_S: f32 = 20.0;
+
+/// The fastest throw of a mass by a hand that lifts `lift_kg`: its force does work over the stroke,
+/// m v^2 / 2 = F s with F the weight that it lifts.
+fn fastest_m_s(lift_kg: f32, mass_kg: f32, gravity_m_s2: f32) -> f32 {
+    let work_j = lift_kg * gravity_m_s2 * STROKE_M;
+    (2.0 * work_j / mass_kg.max(1e-6)).sqrt().min(FASTEST_M_S)
+}
+
+impl PhysicsWorld {
+    pub(super) fn throw(
+        &mut self,
+        state: &mut State,
+        actor: Actor<'_>,
+        direction: Vec3,
+        speed_m_s: f32,
+    ) -> Told {
+        let grip = self.grip_of(actor)?;
+        let along = direction.normalize_or_zero();
+        let good = direction.is_finite() && along != Vec3::ZERO && speed_m_s.is_finite();
+        if !good || speed_m_s < 0.0 {
+            let sentence = format!(
+                "You cannot throw along {direction} at {speed_m_s} m/s; give a direction that is not zero and a speed from 0 up."
+            );
+            return Ok(fail(ActionCode::BadNumber, sentence, Some(grip.object)));
+        }
+        let handle = self.bodies[grip.body as usize].handle;
+        let mass = self.engine.bodies.get(handle).map_or(1.0, RigidBody::mass);
+        // Strength is told in kilograms of standard gravity.
+        let gravity = dwell_scene::units::STANDARD_GRAVITY_M_S2;
+        let most = fastest_m_s(actor.body.body.lift_kg, mass, gravity);
+        let speed = speed_m_s.min(most);
+        if let Some(place) = self.grips.iter().position(|grip| grip.agent == actor.id) {
+            self.ungrip(state, place);
+        }
+        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+            rigid.set_linvel(along * speed, true);
+            rigid.set_angvel(Vec3::ZERO, true);
+        }
+        self.flush();
+        self.write_bodies(state);
+        let name = self.call(grip.object);
+        let limit = if speed < speed_m_s {
+            ", as fast as you can"
+        } else {
+            ""
+        };
+        let sentence = format!("You throw the {name} at {speed:.1} m/s{limit}.");
+        Ok(done(ActionCode::Done, sentence, Some(grip.object)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fastest_throw_does_the_work_of_the_arm() {
+        let v = fastest_m_s(10.0, 5.0, 9.8);
+        assert!((0.5 * 5.0 * v * v - 49.0).abs() < 1e-4);
+        assert_eq!(fastest_m_s(10.0, 0.01, 9.8), FASTEST_M_S);
+    }
+}
