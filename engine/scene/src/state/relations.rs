@@ -216,6 +216,7 @@ mod tests {
                 colliders: Vec::new(),
                 mass_kg: Some(1.0),
                 density_kg_m3: 100.0,
+                inertial: None,
             });
             data.objects.push(crate::Object {
                 name: format!("thing_{k}"),
