@@ -40,6 +40,11 @@ impl World {
         config.check()?;
         let house = engines.house().clone();
         let mut state = State::new(&house);
+        // Agents come first: parameters and laws may name them.
+        let spot = default_spot(&house);
+        for body in &config.agents {
+            state.agents.push(AgentState::new(*body, spot, 0.0));
+        }
         for (address, value) in &config.parameters {
             let address: Address = address.parse()?;
             state.set_parameter(&house, &address, *value)?;
@@ -50,12 +55,8 @@ impl World {
             physics_rate_hz: config.physics_rate_hz as f32,
             ..PhysicsConfig::default()
         };
-        let (mut physics, start_report) =
+        let (physics, start_report) =
             PhysicsWorld::over(engines.physics().clone(), &physics_config, &mut state)?;
-        let spot = default_spot(&house);
-        for body in &config.agents {
-            physics.add_agent(&mut state, AgentState::new(*body, spot, 0.0))?;
-        }
         let mut rays = RayScene::new(house);
         rays.update(&state);
         let start = (state.clone(), physics.snapshot());

@@ -2,7 +2,7 @@
 
 use super::{AgentControl, Probe, Push, Shell, Walk};
 use crate::actions::{ActionCode, ActionOutcome, Notice};
-use crate::bases;
+use crate::bases::{self, Rolling};
 use crate::world::PhysicsWorld;
 use dwell_scene::{AgentBody, AgentId, AgentState, Gait, Id, Locomotion, State};
 use glam::Vec3;
@@ -47,7 +47,12 @@ impl PhysicsWorld {
             let control = controls.get(index).copied().unwrap_or_default();
             let mut agent = state.agents[id];
             control.look(&mut agent, dt_s);
-            let driven = bases::drive(&mut agent, &way.locomotion, &control, |_| {}, dt_s);
+            let laws = |rolling: &mut Rolling| {
+                for installed in &self.laws {
+                    installed.law.roll(id, rolling);
+                }
+            };
+            let driven = bases::drive(&mut agent, &way.locomotion, &control, laws, dt_s);
             let motion = match (&driven, way.locomotion) {
                 (Some(motion), _) => {
                     motion.turn(&mut agent);
@@ -208,10 +213,16 @@ impl PhysicsWorld {
     /// Ends a control step: what each agent's movement came to.
     pub(crate) fn end_ways(&self, state: &mut State, ways: &[Way]) {
         let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
-        for (agent, way) in state.agents.iter_mut().zip(ways) {
+        for (index, (agent, way)) in state.agents.iter_mut().zip(ways).enumerate() {
             agent.velocity = (agent.position - way.start) / step_s;
             agent.collided = way.made_m + 1e-4 + 1e-3 * way.wanted_m < way.wanted_m;
-            agent.gyro_rad_s = way.turned_rad / step_s;
+            let id = AgentId::from_index(index);
+            agent.gyro_rad_s = self
+                .laws
+                .iter()
+                .fold(way.turned_rad / step_s, |rate, installed| {
+                    installed.law.gyro(id, rate)
+                });
         }
     }
 }

@@ -12,6 +12,7 @@ mod drive;
 mod holonomic;
 mod planar;
 
+pub(crate) use differential::Rolling;
 pub use differential::Wheels;
 pub(crate) use drive::drive;
 pub use planar::{PlanarPose, Twist};

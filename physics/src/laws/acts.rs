@@ -1,11 +1,12 @@
 //! What a law can do to a world.
 
+use crate::bases::Rolling;
 use crate::body::Body;
 use crate::contact::{ContactTable, Entry, Toucher};
 use crate::engine::Engine;
 use crate::inertia::Inertia;
 use crate::laws::target::Scope;
-use dwell_scene::{House, JointId};
+use dwell_scene::{AgentId, House, JointId};
 use glam::{Quat, Vec3};
 use rapier3d::dynamics::RigidBody;
 use std::fmt::Debug;
@@ -38,6 +39,14 @@ pub(crate) trait Acts: Debug + Send + Sync {
     /// Where a joint's motor goes when its servo is told `target`.
     fn servo_target(&mut self, _joint: JointId, target: f32) -> f32 {
         target
+    }
+
+    /// Changes how the wheels of an agent's base roll in one physics step.
+    fn roll(&self, _agent: AgentId, _rolling: &mut Rolling) {}
+
+    /// What an agent's gyro reads when it turns with `rate_rad_s`.
+    fn gyro(&self, _agent: AgentId, rate_rad_s: f32) -> f32 {
+        rate_rad_s
     }
 
     /// What it remembers, for snapshots.

@@ -7,6 +7,7 @@
 
 mod acts;
 mod actuators;
+mod bases;
 mod bodies;
 mod contacts;
 mod target;
@@ -43,6 +44,9 @@ static LAWS: &[Law] = &[
     contacts::anisotropic_friction::LAW,
     contacts::velocity_restitution::LAW,
     actuators::backlash::LAW,
+    bases::unequal_wheels::LAW,
+    bases::wheel_slip::LAW,
+    bases::gyro_bias_scale::LAW,
 ];
 
 /// What is known about each law of this engine.

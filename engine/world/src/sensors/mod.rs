@@ -8,11 +8,13 @@ mod camera;
 mod compass;
 mod depth;
 mod gps;
+mod gyro;
 mod instance;
 mod instruction;
 mod instruction_tokens;
 mod rgb;
 mod semantic;
+mod wheel_odometry;
 
 pub use camera::{CameraConfig, EyeCamera};
 
@@ -140,6 +142,8 @@ pub fn all() -> &'static [SensorKind] {
         instruction_tokens::KIND,
         gps::KIND,
         compass::KIND,
+        wheel_odometry::KIND,
+        gyro::KIND,
     ]
 }
 

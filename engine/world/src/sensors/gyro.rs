@@ -1,0 +1,50 @@
+//! What an agent's gyro reads.
+
+use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site};
+use crate::error::WorldError;
+use dwell_scene::{AgentId, Id};
+
+const ABOUT: &str = "Rate of turn to the left as the agent's gyro reads it, rad/s: the mean over the last step, with the \
+                     errors that laws give it; shape (1,).";
+
+/// The end of its range, rad/s: 200 turns a second.
+const FULL_SCALE_RAD_S: f32 = 1257.0;
+
+pub(super) const KIND: SensorKind = SensorKind {
+    name: "gyro",
+    about: ABOUT,
+    build,
+};
+
+#[derive(Debug)]
+struct Gyro;
+
+#[expect(
+    clippy::unnecessary_wraps,
+    reason = "the signature of every sensor's builder"
+)]
+fn build(_: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    Ok(Box::new(Gyro))
+}
+
+impl Sensor for Gyro {
+    fn spec(&self) -> SensorSpec {
+        SensorSpec {
+            name: "gyro".to_owned(),
+            shape: vec![1],
+            dtype: Dtype::Float32,
+            unit: "rad/s",
+            low: f64::from(-FULL_SCALE_RAD_S),
+            high: f64::from(FULL_SCALE_RAD_S),
+            about: ABOUT,
+        }
+    }
+
+    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
+        if let (Some(agent), Out::Float32(out)) =
+            (seen.world.state().agents.get(AgentId::from_index(0)), out)
+        {
+            out[0] = agent.gyro_rad_s.clamp(-FULL_SCALE_RAD_S, FULL_SCALE_RAD_S);
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Where a base believes to be, from its wheels alone.
+
+use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site};
+use crate::error::WorldError;
+use dwell_scene::{AgentId, Id, math};
+
+const ABOUT: &str = "Where the base believes to be from its wheels and nominal geometry, since it was placed: metres \
+                     forward, metres to the left, radians to the left in (-pi, pi]; zeros without wheels; shape (3,).";
+
+/// Furthest way that is shown, m.
+const FURTHEST_M: f64 = 1000.0;
+
+pub(super) const KIND: SensorKind = SensorKind {
+    name: "wheel_odometry",
+    about: ABOUT,
+    build,
+};
+
+#[derive(Debug)]
+struct WheelOdometry;
+
+#[expect(
+    clippy::unnecessary_wraps,
+    reason = "the signature of every sensor's builder"
+)]
+fn build(_: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    Ok(Box::new(WheelOdometry))
+}
+
+impl Sensor for WheelOdometry {
+    fn spec(&self) -> SensorSpec {
+        SensorSpec {
+            name: "wheel_odometry".to_owned(),
+            shape: vec![3],
+            dtype: Dtype::Float32,
+            unit: "m, m, rad",
+            low: -FURTHEST_M,
+            high: FURTHEST_M,
+            about: ABOUT,
+        }
+    }
+
+    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
+        if let (Some(agent), Out::Float32(out)) =
+            (seen.world.state().agents.get(AgentId::from_index(0)), out)
+        {
+            let [forward, left, heading] = agent.base.odometry;
+            let shown = |way: f64| way.clamp(-FURTHEST_M, FURTHEST_M) as f32;
+            let turns = (heading / std::f64::consts::TAU).round();
+            let heading = (heading - turns * std::f64::consts::TAU) as f32;
+            out.copy_from_slice(&[shown(forward), shown(left), math::wrap_angle(heading)]);
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! A gyro that reads something at rest, and too much or too little in a turn.
+
+use super::Riders;
+use crate::error::PhysicsError;
+use crate::laws::{Acts, Law, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{AgentId, LawInfo, LawSpec, State};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "gyro_bias_scale",
+        version: 1,
+        name: "bias and scale of a gyro",
+        equation: "reading = scale * rate + bias_rad_s, with rate the mean rate of turn about up over a control step (rad/s)",
+        source: "IEEE Std 952-1997, section 4.2: gyro output as scale factor times input rate plus drift",
+        engine: ActsIn::Physics,
+        acts_on: "agent",
+        params: &[
+            ParamInfo {
+                name: "bias_rad_s",
+                unit: "rad/s",
+                default: 0.0,
+                low: -1.0,
+                high: 1.0,
+                plausible: [-0.01, 0.01],
+            },
+            ParamInfo {
+                name: "scale",
+                unit: "1",
+                default: 1.0,
+                low: 0.5,
+                high: 2.0,
+                plausible: [0.97, 1.03],
+            },
+        ],
+        rivals: &["unequal_wheels", "timestamp_offset"],
+        separating_experiment: "let it rest for a minute, then turn ten times on the spot each way: a bias drifts with \
+                                time also at rest, a scale errs with the angle and with its sign, and a wrong wheel base \
+                                shows in the wheels' odometry and not in the gyro",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Gyro {
+    riders: Riders,
+    bias_rad_s: f32,
+    scale: f32,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    _model: &PhysicsModel,
+    state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    Ok(Box::new(Gyro {
+        riders: Riders::of(spec, info, state)?,
+        bias_rad_s: value(spec, info, "bias_rad_s"),
+        scale: value(spec, info, "scale"),
+    }))
+}
+
+impl Acts for Gyro {
+    fn gyro(&self, agent: AgentId, rate_rad_s: f32) -> f32 {
+        if self.riders.holds(agent) {
+            self.scale * rate_rad_s + self.bias_rad_s
+        } else {
+            rate_rad_s
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,85 @@
+//! Wheels of unequal size, and a wheel base that is not as measured.
+
+use super::Riders;
+use crate::bases::Rolling;
+use crate::error::PhysicsError;
+use crate::laws::{Acts, Law};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{AgentId, LawInfo, LawSpec, State};
+
+const fn ratio(name: &'static str, plausible: [f64; 2]) -> ParamInfo {
+    ParamInfo {
+        name,
+        unit: "1",
+        default: 1.0,
+        low: 0.5,
+        high: 2.0,
+        plausible,
+    }
+}
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "unequal_wheels",
+        version: 1,
+        name: "unequal wheels and wheel base",
+        equation: "r_left = s r_left0 2 / (1 + e_d), r_right = s r_right0 2 e_d / (1 + e_d), b = e_b b0: e_d the right \
+                   wheel's radius over the left one's, e_b the wheel base over the nominal one, s the size of both \
+                   wheels over the nominal one; the mean radius is s times the nominal one",
+        source: "J. Borenstein, L. Feng, Measurement and correction of systematic odometry errors in mobile robots, IEEE \
+                 Transactions on Robotics and Automation 12, 869 (1996), equations 1 to 3",
+        engine: ActsIn::Physics,
+        acts_on: "agent",
+        params: &[
+            ratio("radius_ratio", [0.98, 1.02]),
+            ratio("base_ratio", [0.97, 1.03]),
+            ratio("radius_scale", [0.97, 1.03]),
+        ],
+        rivals: &["gyro_bias_scale", "wheel_slip", "length_scale"],
+        separating_experiment: "drive a square of several metres clockwise and counter-clockwise: unequal wheels bend both \
+                                the same way in space, a wrong base turns both too far or too little, and only straight \
+                                runs against a tape show the size; a gyro's bias grows with time also at rest",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Unequal {
+    riders: Riders,
+    radius_factors: [f64; 2],
+    base_factor: f64,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    _model: &PhysicsModel,
+    state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    let value = |name: &str| spec.value(info, name).unwrap_or(1.0);
+    let (ratio, scale) = (value("radius_ratio"), value("radius_scale"));
+    Ok(Box::new(Unequal {
+        riders: Riders::of(spec, info, state)?,
+        radius_factors: [
+            scale * 2.0 / (1.0 + ratio),
+            scale * 2.0 * ratio / (1.0 + ratio),
+        ],
+        base_factor: value("base_ratio"),
+    }))
+}
+
+impl Acts for Unequal {
+    fn roll(&self, agent: AgentId, rolling: &mut Rolling) {
+        if self.riders.holds(agent) {
+            for (radius, factor) in rolling.wheels.radius_m.iter_mut().zip(self.radius_factors) {
+                *radius *= factor;
+            }
+            rolling.wheels.base_m *= self.base_factor;
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

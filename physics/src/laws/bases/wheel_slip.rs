@@ -1,0 +1,72 @@
+//! Wheels that slip while they push.
+
+use super::Riders;
+use crate::bases::Rolling;
+use crate::error::PhysicsError;
+use crate::laws::{Acts, Law};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{AgentId, LawInfo, LawSpec, State};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "wheel_slip",
+        version: 1,
+        name: "slip of driven wheels",
+        equation: "v = r w (1 - s), s = k a, a = r dw/dt taken positive where the wheel gathers speed (m/s2), |s| at most \
+                   1: a wheel that drives turns further than the floor passes under it, one that brakes less far, and \
+                   one at a steady speed rolls; k in s2/m is slip over acceleration",
+        source: "J. Y. Wong, Theory of Ground Vehicles (2001), section 1.3: traction proportional to longitudinal slip at \
+                 small slips",
+        engine: ActsIn::Physics,
+        acts_on: "agent",
+        params: &[ParamInfo {
+            name: "slip_per_m_s2",
+            unit: "s2/m",
+            default: 0.0,
+            low: 0.0,
+            high: 10.0,
+            plausible: [0.001, 0.1],
+        }],
+        rivals: &["unequal_wheels", "length_scale"],
+        separating_experiment: "drive the same way once slowly and once with hard starts and soft stops: a wrong radius \
+                                errs with the way whatever the speed, slip only where the speed changes",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Slip {
+    riders: Riders,
+    slip_per_m_s2: f64,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    _model: &PhysicsModel,
+    state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    Ok(Box::new(Slip {
+        riders: Riders::of(spec, info, state)?,
+        slip_per_m_s2: spec.value(info, "slip_per_m_s2").unwrap_or(0.0),
+    }))
+}
+
+impl Acts for Slip {
+    fn roll(&self, agent: AgentId, rolling: &mut Rolling) {
+        if !self.riders.holds(agent) {
+            return;
+        }
+        for side in 0..2 {
+            let onward = rolling.rate_rad_s[side].signum();
+            let gathering = rolling.acceleration_rad_s2[side] * onward;
+            let slip = self.slip_per_m_s2 * rolling.wheels.radius_m[side] * gathering;
+            rolling.slip[side] = (rolling.slip[side] + slip).clamp(-1.0, 1.0);
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}
