@@ -22,14 +22,12 @@ impl Riders {
             .parse()
             .ok()
             .filter(|index| *index < state.agents.len());
-        match found {
-            Some(index) => Ok(Self(Some(AgentId::from_index(index)))),
-            None => {
-                let numbers: Vec<String> = (0..state.agents.len()).map(|k| k.to_string()).collect();
-                let names = numbers.iter().map(String::as_str);
-                Err(no_target(info.id, "agent", target, names))
-            }
-        }
+        let Some(index) = found else {
+            let numbers: Vec<String> = (0..state.agents.len()).map(|k| k.to_string()).collect();
+            let names = numbers.iter().map(String::as_str);
+            return Err(no_target(info.id, "agent", target, names));
+        };
+        Ok(Self(Some(AgentId::from_index(index))))
     }
 
     fn holds(self, agent: AgentId) -> bool {
