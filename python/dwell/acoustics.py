@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
+from dwell.arguments import finite, point, to_json, whole
 from dwell.house import House
 
 
@@ -29,7 +30,12 @@ class AcousticScene:
                 ``dwell_acoustics::AcousticConfig``.
         """
         self.house = house if isinstance(house, House) else House.open(house)
-        self._native = _native.AcousticScene(self.house.native, json.dumps(config))
+        self._native = _native.AcousticScene(self.house.native, to_json(config))
+        self._config = config
+
+    def __reduce__(self) -> tuple[Any, tuple[House, dict[str, Any]]]:
+        """House and settings."""
+        return _again, (self.house, self._config)
 
     @property
     def rate_hz(self) -> int:
@@ -59,18 +65,23 @@ class AcousticScene:
         Returns:
             Shape (1 or 2, samples). The first sample is the moment of the impulse.
         """
-        (sx, sy, sz), (mx, my, mz) = source, mic
         return self._native.impulse_response(
-            (sx, sy, sz), (mx, my, mz), yaw_deg=yaw_deg, ears=ears, seed=seed, threads=threads
+            point("source", source),
+            point("mic", mic),
+            yaw_deg=finite("yaw_deg", yaw_deg),
+            ears=ears,
+            seed=whole("seed", seed),
+            threads=None if threads is None else whole("threads", threads, low=1),
         )
 
     def metrics(
         self, source: Sequence[float], mic: Sequence[float], *, seed: int = 0
     ) -> list[dict[str, Any]]:
         """T20, T30, EDT, C50, C80, D50, Ts and DRR for each octave band."""
-        (sx, sy, sz), (mx, my, mz) = source, mic
         metrics: list[dict[str, Any]] = json.loads(
-            self._native.metrics_json((sx, sy, sz), (mx, my, mz), seed)
+            self._native.metrics_json(
+                point("source", source), point("mic", mic), whole("seed", seed)
+            )
         )
         return metrics
 
@@ -78,3 +89,7 @@ class AcousticScene:
         """What sound meets: areas, mean absorption, which materials are guesses."""
         explained: dict[str, Any] = json.loads(self._native.explain_json())
         return explained
+
+
+def _again(house: House, config: dict[str, Any]) -> AcousticScene:
+    return AcousticScene(house, **config)

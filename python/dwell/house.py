@@ -4,19 +4,31 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
 from typing import Any, Literal
 
-from dwell import _native
+from dwell import UsageError, _native
+from dwell.arguments import finite, whole
 
 Level = Literal["object", "room", "house", "graph", "instructions"]
 
 
 class House:
-    """A checked, immutable house."""
+    """A checked, immutable house. A copy is the same house; a pickle says how to open it again."""
 
-    def __init__(self, native: _native.House) -> None:
-        """Wraps a native house; use :meth:`open` or :meth:`shoebox`."""
+    def __init__(
+        self,
+        native: _native.House,
+        again: tuple[Callable[..., House], tuple[Any, ...]] | None = None,
+    ) -> None:
+        """Wraps a native house; use :meth:`open` or :meth:`shoebox`.
+
+        Args:
+            native: The built half.
+            again: A function and its arguments that give the house again, in another process too.
+        """
         self._native = native
+        self._again = again
 
     @classmethod
     def open(cls, house: str | os.PathLike[str]) -> House:
@@ -33,7 +45,8 @@ class House:
             HouseNotFoundError: There is nothing of that name.
             HouseError: It cannot be read; the message names file, node and field.
         """
-        return cls(_native.House.open(os.fspath(house)))
+        name = os.fspath(house)
+        return cls(_native.House.open(name), (House.open, (name,)))
 
     @classmethod
     def shoebox(
@@ -52,7 +65,9 @@ class House:
             absorption: Random-incidence absorption of energy, 0 to 1, at every frequency.
             scattering: Random-incidence scattering, 0 to 1, at every frequency.
         """
-        return cls(_native.House.shoebox(size_m, substance, absorption, scattering))
+        x, y, z = (finite(f"size_m[{k}]", edge) for k, edge in enumerate(size_m))
+        again = ((x, y, z), substance, absorption, scattering)
+        return cls(_native.House.shoebox(*again), (_shoebox, again))
 
     @property
     def native(self) -> _native.House:
@@ -82,7 +97,7 @@ class House:
                 ``graph`` (one JSON object), ``instructions`` (a JSON object each).
             seed: Draws the wording of instructions; without it each has its first wording.
         """
-        return self._native.describe(level, seed)
+        return self._native.describe(level, None if seed is None else whole("seed", seed))
 
     def semantic_classes(self) -> list[str]:
         """The names of the numbers in semantic images; 0 is void."""
@@ -92,6 +107,32 @@ class House:
         """Writes the house into a new folder; returns what the form cannot hold, in sentences."""
         return self._native.write(os.fspath(path), form)
 
+    def __copy__(self) -> House:
+        """The same: a house never changes."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> House:
+        """The same: a house never changes."""
+        return self
+
+    def __reduce__(self) -> tuple[Callable[..., House], tuple[Any, ...]]:
+        """How to open it again."""
+        if self._again is None:
+            raise UsageError(
+                f"{self!r} was put together in this process and cannot be pickled; "
+                "write it (house.write) and open what was written"
+            )
+        return self._again
+
     def __repr__(self) -> str:
         """The name."""
         return f"House({self.name!r})"
+
+
+def _shoebox(
+    size_m: tuple[float, float, float],
+    substance: str | None,
+    absorption: float | None,
+    scattering: float | None,
+) -> House:
+    return House.shoebox(size_m, substance=substance, absorption=absorption, scattering=scattering)

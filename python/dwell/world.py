@@ -10,8 +10,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import _native
+from dwell import ConfigError, _native
+from dwell.arguments import finite, point, to_json, whole
 from dwell.house import House
+from dwell.settings import Laws, world_settings
 
 Channel = Literal["rgb", "depth", "instance", "semantic"]
 
@@ -55,7 +57,10 @@ class Outcome:
 
 
 class World:
-    """A running world with its own state over a shared house."""
+    """A running world with its own state over a shared house.
+
+    A copy, or what comes out of a pickle, goes on from the moment it was made.
+    """
 
     def __init__(
         self,
@@ -63,7 +68,7 @@ class World:
         *,
         agents: int = 1,
         seed: int = 0,
-        laws: Sequence[Mapping[str, Any]] = (),
+        laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
         **config: Any,  # noqa: ANN401 - further fields of the native WorldConfig
     ) -> None:
@@ -73,18 +78,30 @@ class World:
             house: A house or a HOUSE string.
             agents: How many agents live in it.
             seed: The seed of everything random.
-            laws: Laws to install, as ``{"id", "version", "target", "params"}``.
-            parameters: Values by address, such as ``{"world/gravity_m_s2": 1.62}``.
+            laws: Laws to install, as ``{"id", "version", "target", "params"}``; or what calibration
+                found (laws and parameters), as a mapping or as the path of its ``found.json``.
+            parameters: Values by address, such as ``{"world/gravity_m_s2": 1.62}``; they go before
+                those that calibration found.
             **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``.
         """
         self.house = house if isinstance(house, House) else House.open(house)
-        settings = {
-            "agents": [{}] * agents,
-            "laws": list(laws),
-            "parameters": dict(parameters or {}),
-            **config,
-        }
-        self._native = _native.World(self.house.native, json.dumps(settings), seed)
+        bodies: list[dict[str, Any]] = [{}] * whole("agents", agents, high=64)
+        settings = {"agents": bodies, **world_settings(laws, parameters, config)}
+        self._config, self._seed = to_json(settings), whole("seed", seed)
+        self._native = _native.World(self.house.native, self._config, self._seed)
+
+    @classmethod
+    def _again(cls, house: House, config: str, seed: int, snapshot: bytes) -> World:
+        """A world as it was when it was pickled."""
+        world = cls.__new__(cls)
+        world.house, world._config, world._seed = house, config, seed
+        world._native = _native.World(house.native, config, seed)
+        world.restore(snapshot)
+        return world
+
+    def __reduce__(self) -> tuple[Any, tuple[House, str, int, bytes]]:
+        """House, settings and a snapshot."""
+        return World._again, (self.house, self._config, self._seed, self.snapshot())
 
     @property
     def native(self) -> _native.World:
@@ -118,19 +135,24 @@ class World:
         action: dict[str, Any] = {"kind": kind}
         if object is not None:
             action["object"] = object
-        return Outcome(**json.loads(self._native.act(agent, json.dumps(action))))
+        agent = whole("agent", agent)
+        return Outcome(**json.loads(self._native.act(agent, to_json(action))))
 
     def do(self, action: int | str, *, agent: int = 0) -> Outcome:
         """Makes one control step of a discrete action, by number or name (see :func:`actions`)."""
-        number = _native.actions().index(action) if isinstance(action, str) else action
+        names = _native.actions()
+        if isinstance(action, str) and action not in names:
+            raise ConfigError(f"no action {action!r}; there are {', '.join(names)}")
+        number = names.index(action) if isinstance(action, str) else action
+        number, agent = whole("action", number, high=len(names) - 1), whole("agent", agent)
         return Outcome(**json.loads(self._native.act_discrete(agent, number)))
 
     def place_agent(
         self, position: Sequence[float], yaw_deg: float = 0.0, *, agent: int = 0
     ) -> None:
         """Puts an agent somewhere, at rest. ``position``: the point between its feet, m."""
-        x, y, z = position
-        self._native.place_agent(agent, (x, y, z), yaw_deg)
+        place, yaw_deg = point("position", position), finite("yaw_deg", yaw_deg)
+        self._native.place_agent(whole("agent", agent), place, yaw_deg)
 
     def agents(self) -> list[dict[str, Any]]:
         """The agents' states."""
@@ -160,10 +182,11 @@ class World:
         """
         view: dict[str, Any] = dataclasses.asdict(camera or Camera())
         if position is None:
-            view["agent"] = 0 if agent is None else agent
+            view["agent"] = 0 if agent is None else whole("agent", agent)
         else:
-            view |= {"position": list(position), "yaw_deg": yaw_deg, "pitch_deg": pitch_deg}
-        return self._native.render(json.dumps(view), list(channels))
+            place = list(point("position", position))
+            view |= {"position": place, "yaw_deg": yaw_deg, "pitch_deg": pitch_deg}
+        return self._native.render(to_json(view), list(channels))
 
     def map(self, longest_edge: int = 512) -> tuple[NDArray[np.uint8], tuple[float, float], float]:
         """The lowest storey from above.
@@ -171,12 +194,14 @@ class World:
         Returns:
             The image (height, width, 3), the x and z of its upper left corner in m, pixels a metre.
         """
-        image, x, z, scale = self._native.map(longest_edge)
+        image, x, z, scale = self._native.map(
+            whole("longest_edge", longest_edge, low=1, high=2**32 - 1)
+        )
         return image, (x, z), scale
 
     def listen(self, samples: int = 800, *, agent: int = 0) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, (2, samples), Pa. Call once after each step."""
-        return self._native.listen(agent, samples)
+        return self._native.listen(whole("agent", agent), whole("samples", samples))
 
     def describe(self, level: str = "house") -> list[str]:
         """As :meth:`House.describe`, of the house as it is now."""
@@ -189,7 +214,7 @@ class World:
 
     def set_parameter(self, address: str, value: float) -> None:
         """Overrides a parameter from now on."""
-        self._native.set_parameter(address, value)
+        self._native.set_parameter(address, finite(address, value))
 
     def snapshot(self) -> bytes:
         """The whole world as bytes; no mesh is in them."""

@@ -40,7 +40,13 @@ impl PyHouse {
     fn open(py: Python<'_>, house: &str) -> PyResult<Self> {
         py.engine(|| -> Result<_, Fault> {
             let (house, report) = dwell_houses::open(house)?;
-            Ok(Self::from_house(house, serde_json::to_value(&report)?))
+            let mut rows = serde_json::to_value(&report)?;
+            if let Some(warnings) = rows["warnings"].as_array_mut() {
+                for (row, warning) in warnings.iter_mut().zip(report.warnings()) {
+                    row["sentence"] = warning.to_string().into();
+                }
+            }
+            Ok(Self::from_house(house, rows))
         })
     }
 

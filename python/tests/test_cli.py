@@ -111,3 +111,98 @@ def test_demo_writes_a_page_that_needs_no_network(tmp_path: Path) -> None:
         frames = sound.readframes(sound.getnframes())
     assert any(frames)
     assert dwell("demo", HOUSE, "--out", tmp_path).returncode == 1, "a folder that no demo wrote"
+
+
+def test_points_may_be_negative_and_must_be_finite(tmp_path: Path) -> None:
+    points = ("--source", "-2,1.5,6", "--mic", "-1.5,1.5,-6.5")
+    assert dwell("ir", HOUSE, *points, "--rays", "10", "--json").returncode == 0
+    for where in ("nan,0,0", "inf,0,0", "-1,nan,2"):
+        done = dwell("render", HOUSE, "--at", where, "--out", tmp_path / "x")
+        assert done.returncode == 2
+        assert "finite" in done.stderr
+
+
+def test_bad_files_and_numbers_get_a_sentence(tmp_path: Path) -> None:
+    path = tmp_path / "house.json"
+    for text in ('{"position": 1}', "[1]", '[{"position": [0, 0], "forward": [0, 0, 1]}]', "{"):
+        path.write_text(text, "utf-8")
+        done = dwell("bench", "render", HOUSE, "--views", path)
+        assert done.returncode == 1
+        assert str(path) in done.stderr
+        assert done.stderr.count("\n") == 1
+    path.write_text("[]", "utf-8")
+    assert "JSON object" in dwell("bench", "physics", HOUSE, "--boxes", path).stderr
+    done = dwell("describe", HOUSE, "--level", "instructions", "--seed", "-1")
+    assert done.returncode == 2
+    assert "whole number" in done.stderr
+    missing = dwell("describe", "nope.obj")
+    assert missing.stderr.count("nope.obj") == 1
+
+
+def test_a_bug_of_ours_is_a_sentence_too(monkeypatch: pytest.MonkeyPatch, capsys: object) -> None:
+    import dwell.cli as cli
+    from dwell.cli import info
+
+    def fall(_args: object) -> int:
+        raise IndexError("list index out of range")
+
+    monkeypatch.setattr(info, "run", fall)
+    assert cli.main(["info", HOUSE]) == 1
+    assert "report it: IndexError" in capsys.readouterr().err  # type: ignore[attr-defined]
+
+
+def test_only_the_chosen_command_is_imported() -> None:
+    program = (
+        "import sys; from dwell.cli import main; main(['info', 'builtin:castle']); "
+        "print(sorted(name for name in sys.modules if name.startswith('dwell.cli.')))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert done.stdout.strip() == "['dwell.cli.common', 'dwell.cli.info']"
+
+
+def test_an_interrupted_describe_goes_on_where_it_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from dwell.cli import describe, main
+    from dwell.house import House
+
+    names = [HOUSE]
+    for name in ("a.dwell", "b.dwell"):
+        House.open(HOUSE).write(tmp_path / name, "dwell")
+        names.append(str(tmp_path / name))
+    out = tmp_path / "lines.jsonl"
+    command = ["describe", *names, "--level", "room", "--out", str(out)]
+    opened: list[str] = []
+    real = describe._describe
+
+    def stop_at(last: int) -> None:
+        def watched(name: str, *rest: object) -> object:
+            if len(opened) == last:
+                raise KeyboardInterrupt
+            opened.append(name)
+            return real(name, *rest)  # type: ignore[arg-type]
+
+        monkeypatch.setattr(describe, "_describe", watched)
+
+    stop_at(2)
+    assert main(command) == 130
+    assert not out.exists()
+    # What a power cut left half written is written again.
+    journal = tmp_path / ".lines.jsonl.part"
+    journal.write_bytes(journal.read_bytes() + b'{"house": "b.dwe')
+    stop_at(99)
+    assert main(command) == 0
+    assert opened == names
+    rows = [json.loads(line) for line in out.read_text("utf-8").splitlines()]
+    assert [row["house"] for row in rows] == [name for name in names for _ in range(6)]
+    assert not journal.exists()
+    # Another job does not take over what this one left.
+    opened.clear()
+    stop_at(1)
+    assert main(command) == 130
+    opened.clear()
+    stop_at(99)
+    assert main([*command, "--seed", "1"]) == 0
+    assert opened == names

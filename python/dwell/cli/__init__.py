@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 
@@ -20,8 +21,8 @@ COMMANDS = {
 }
 
 
-def parser() -> argparse.ArgumentParser:
-    """The parser of all commands; a command's own options are added when it is chosen."""
+def parser(chosen: str | None = None) -> argparse.ArgumentParser:
+    """The parser of all commands; only the chosen one's file is imported and adds its options."""
     top = argparse.ArgumentParser(
         prog="dwell", description="A household that agents see, touch, hear and talk about."
     )
@@ -29,9 +30,10 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", metavar="COMMAND")
     for name, about in COMMANDS.items():
         command = commands.add_parser(name, help=about, description=about)
-        module = importlib.import_module(f"dwell.cli.{name}")
-        module.configure(command)
-        command.set_defaults(run=module.run)
+        if name == chosen:
+            module = importlib.import_module(f"dwell.cli.{name}")
+            module.configure(command)
+            command.set_defaults(run=module.run)
     return top
 
 
@@ -42,8 +44,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 done, 1 failed with a sentence on standard error, 2 bad usage, 130 interrupted.
     """
     from dwell import DwellError, __version__
+    from dwell.cli.common import join_negative_points
 
-    top = parser()
+    arguments = join_negative_points(sys.argv[1:] if arguments is None else arguments)
+    top = parser(next((word for word in arguments if not word.startswith("-")), None))
     try:
         args = top.parse_args(arguments)
     except SystemExit as stop:
@@ -63,4 +67,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 1
     except (DwellError, OSError, ValueError, ModuleNotFoundError) as error:
         print(f"dwell {args.command}: {error}", file=sys.stderr)
+        return 1
+    except Exception as error:
+        # A fault of ours. People get a sentence; who looks for it sets the variable.
+        if os.environ.get("DWELL_TRACEBACK"):
+            raise
+        print(
+            f"dwell {args.command}: a bug of dwell, please report it: "
+            f"{type(error).__name__}: {error} (DWELL_TRACEBACK=1 shows where)",
+            file=sys.stderr,
+        )
         return 1

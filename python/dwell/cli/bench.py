@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from pathlib import Path
 from typing import Any
 
-from dwell.cli.common import print_json
+from dwell.cli.common import count, print_json, read_json
 
 _STAGES = ("load", "render", "physics", "acoustics", "env")
 
@@ -25,13 +26,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="physics: JSON of fixed and dynamic boxes, density_kg_m3 and physics_rate_hz",
     )
-    parser.add_argument("--worlds", type=int, default=64, help="physics: worlds stepped together")
-    parser.add_argument("--resolution", type=int, default=128, help="pixels across and down")
+    parser.add_argument("--worlds", type=count, default=64, help="physics: worlds stepped together")
+    parser.add_argument("--resolution", type=count, default=128, help="pixels across and down")
     parser.add_argument("--preset", choices=("flat", "lit"), default="flat")
-    parser.add_argument("--threads", type=int)
-    parser.add_argument("--repeats", type=int, default=5, help="the median counts")
-    parser.add_argument("--envs", type=int, default=4)
-    parser.add_argument("--steps", type=int, default=200)
+    parser.add_argument("--threads", type=count, help="default: what the machine allows")
+    parser.add_argument("--repeats", type=count, default=5, help="the median counts")
+    parser.add_argument("--envs", type=count, default=4)
+    parser.add_argument("--steps", type=count, default=200)
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
@@ -44,10 +45,11 @@ def run(args: argparse.Namespace) -> int:
         for key in ("resolution", "preset", "threads", "repeats", "envs", "steps", "worlds")
     }
     if args.views:
-        rows = json.loads(args.views.read_text("utf-8"))
-        options["views"] = [{key: row[key] for key in ("position", "forward")} for row in rows]
+        options["views"] = _views(args.views)
     if args.boxes:
-        options["boxes"] = json.loads(args.boxes.read_text("utf-8"))
+        options["boxes"] = read_json(args.boxes)
+        if not isinstance(options["boxes"], dict):
+            raise ValueError(f"{args.boxes}: expected one JSON object of fixed and dynamic boxes")
     figures = json.loads(_native.bench_json(args.stage, args.house, json.dumps(options)))
     if args.json:
         print_json(figures)
@@ -55,3 +57,25 @@ def run(args: argparse.Namespace) -> int:
     for key, value in figures.items():
         print(f"{key}: {value:.4g}" if isinstance(value, float) else f"{key}: {value}")
     return 0
+
+
+def _views(path: Path) -> list[dict[str, Any]]:
+    """The views of a file; fields beside position and forward are left out."""
+    rows = read_json(path)
+    if not isinstance(rows, list):
+        raise ValueError(f"{path}: expected a JSON list of views, found {type(rows).__name__}")
+    keys = ("position", "forward")
+    for k, row in enumerate(rows):
+        if not isinstance(row, dict) or not all(_is_point(row.get(key)) for key in keys):
+            raise ValueError(
+                f"{path}: view {k}: expected position and forward, three finite numbers each"
+            )
+    return [{key: row[key] for key in keys} for row in rows]
+
+
+def _is_point(value: object) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) == 3
+        and all(isinstance(part, int | float) and math.isfinite(part) for part in value)
+    )

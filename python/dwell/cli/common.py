@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
+import re
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -24,7 +26,47 @@ def point(text: str) -> tuple[float, float, float]:
         x, y, z = (float(part) for part in text.split(","))
     except ValueError:
         raise argparse.ArgumentTypeError(f"expected X,Y,Z in metres, found {text!r}") from None
+    if not all(map(math.isfinite, (x, y, z))):
+        raise argparse.ArgumentTypeError(f"expected finite numbers X,Y,Z, found {text!r}")
     return x, y, z
+
+
+def number(text: str) -> float:
+    """Reads a finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a finite number, found {text!r}")
+    return value
+
+
+def count(text: str) -> int:
+    """Reads a whole number that is not negative: a seed, a size, how many."""
+    if not re.fullmatch(r"\+?[0-9]{1,19}", text.strip()):
+        raise argparse.ArgumentTypeError(f"expected a whole number from 0, found {text!r}")
+    return int(text)
+
+
+def join_negative_points(arguments: Sequence[str]) -> list[str]:
+    """``--mic -2,1,3`` as ``--mic=-2,1,3``: argparse takes what begins with a dash for an option."""
+    joined: list[str] = []
+    for argument in arguments:
+        option = joined[-1] if joined else ""
+        if re.match(r"-[0-9.][^,]*,", argument) and re.fullmatch(r"--[a-z-]+", option):
+            joined[-1] = f"{option}={argument}"
+        else:
+            joined.append(argument)
+    return joined
+
+
+def read_json(path: Path) -> Any:  # noqa: ANN401 - any JSON value
+    """Reads a JSON file; what is none is refused by name."""
+    try:
+        return json.loads(path.read_text("utf-8"))
+    except ValueError as error:
+        raise ValueError(f"{path}: no JSON: {error}") from error
 
 
 @contextmanager

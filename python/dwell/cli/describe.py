@@ -8,7 +8,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from dwell.cli.common import Bar, atomic
+from dwell.cli.common import Bar, count
+from dwell.cli.journal import Journal
 
 _LEVELS = ("object", "room", "house", "graph", "instructions")
 
@@ -17,42 +18,87 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("houses", metavar="HOUSE", nargs="+")
     parser.add_argument("--level", choices=_LEVELS, default="house")
-    parser.add_argument("--seed", type=int, help="draws the wording of instructions")
-    parser.add_argument("--out", type=Path, metavar="FILE.jsonl", help="one JSON object a line")
+    parser.add_argument("--seed", type=count, help="draws the wording of instructions")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE.jsonl",
+        help="one JSON object a line; a run that was stopped goes on",
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
 def run(args: argparse.Namespace) -> int:
     """Describes every house; one that cannot be opened is reported and skipped (status 1)."""
+    houses = list(dict.fromkeys(args.houses))
+    job = {"command": "describe", "level": args.level, "seed": args.seed, "houses": houses}
+    journal = Journal(args.out, job) if args.out else None
+    printer = _Printer(args.level) if args.json else None
+    failed = 0
+    bar = Bar()
+    try:
+        for k, name in enumerate(houses):
+            if journal is None or name not in journal.done:
+                rows = _describe(name, args.level, args.seed)
+                failed += rows is None
+                if journal is not None and rows is not None:
+                    journal.add(name, rows)
+                elif journal is None:
+                    for row in rows or []:
+                        (printer or _say)(row)
+            if len(houses) > 1:
+                bar((k + 1) / len(houses), name)
+    except BaseException:
+        if journal is not None:
+            journal.close()
+            kept = len(journal.done)
+            print(f"dwell describe: {kept} of {len(houses)} are kept; run again", file=sys.stderr)
+        raise
+    if journal is not None:
+        journal.finish()
+        if printer:
+            with args.out.open(encoding="utf-8") as file:
+                for line in file:
+                    printer(json.loads(line))
+    if printer:
+        printer.end()
+    return 1 if failed else 0
+
+
+class _Printer:
+    """One JSON object on standard output, printed row by row."""
+
+    def __init__(self, level: str) -> None:
+        self._before = f'{{"level": {json.dumps(level)}, "rows": ['
+
+    def __call__(self, row: dict[str, Any]) -> None:
+        sys.stdout.write(self._before + json.dumps(row, ensure_ascii=False))
+        self._before = ", "
+
+    def end(self) -> None:
+        sys.stdout.write(("" if self._before == ", " else self._before) + "]}\n")
+
+
+def _describe(name: str, level: Any, seed: int | None) -> list[dict[str, Any]] | None:  # noqa: ANN401
+    """The rows of a house; ``None``, and a sentence, for one that cannot be opened."""
     from dwell import DwellError
     from dwell.house import House
 
-    rows: list[dict[str, Any]] = []
-    failed = 0
-    bar = Bar()
-    for k, name in enumerate(args.houses):
-        try:
-            texts = House.open(name).describe(args.level, seed=args.seed)
-        except DwellError as error:
-            print(f"dwell describe: {name}: {error}", file=sys.stderr)
-            failed += 1
-            continue
-        for text in texts:
-            value = json.loads(text) if args.level in ("graph", "instructions") else text
-            rows.append({"house": name, "level": args.level, "text": value})
-        if len(args.houses) > 1:
-            bar((k + 1) / len(args.houses), name)
-    if args.out:
-        with atomic(args.out) as path:
-            path.write_text(
-                "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows), "utf-8"
-            )
-    if args.json:
-        sys.stdout.write(json.dumps({"level": args.level, "rows": rows}, ensure_ascii=False) + "\n")
-    elif not args.out:
-        for row in rows:
-            text = row["text"]
-            if isinstance(text, dict):
-                text = text.get("text") or json.dumps(text, ensure_ascii=False)
-            print(text)
-    return 1 if failed else 0
+    try:
+        texts = House.open(name).describe(level, seed=seed)
+    except DwellError as error:
+        said = str(error)
+        where = "" if said.startswith(name) else f"{name}: "
+        print(f"dwell describe: {where}{said}", file=sys.stderr)
+        return None
+    structured = level in ("graph", "instructions")
+    values = [json.loads(text) if structured else text for text in texts]
+    return [{"house": name, "level": level, "text": value} for value in values]
+
+
+def _say(row: dict[str, Any]) -> None:
+    """Prints a row for people."""
+    text = row["text"]
+    if isinstance(text, dict):
+        text = text.get("text") or json.dumps(text, ensure_ascii=False)
+    print(text)

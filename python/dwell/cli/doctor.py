@@ -16,9 +16,8 @@ _EXTRAS = {
     "PIL": ("pictures and the demo", "pip install pillow"),
     "rerun": (
         "`dwell demo` writes a recording for the Rerun viewer",
-        "pip install 'dwell[viewer]'",
+        "pip install rerun-sdk",
     ),
-    "pettingzoo": ("several agents in one house", "pip install 'dwell[multi]'"),
 }
 
 

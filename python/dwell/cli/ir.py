@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dwell.cli.common import atomic, point, print_json
+from dwell.cli.common import atomic, count, number, point, print_json
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -17,13 +17,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--source", type=point, metavar="X,Y,Z", help="where the impulse is made, m"
     )
     parser.add_argument("--mic", type=point, metavar="X,Y,Z", help="where it is heard, m")
-    parser.add_argument("--rate-hz", type=int, default=16_000)
+    parser.add_argument("--rate-hz", type=count, default=16_000)
     parser.add_argument(
         "--ears", action="store_true", help="two ears on a head instead of a microphone"
     )
-    parser.add_argument("--yaw-deg", type=float, default=0.0, help="where the head faces")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--rays", type=int, default=5000)
+    parser.add_argument("--yaw-deg", type=number, default=0.0, help="where the head faces")
+    parser.add_argument("--seed", type=count, default=0)
+    parser.add_argument("--rays", type=count, default=5000)
     parser.add_argument("--out", type=Path, metavar="FILE.wav", help="16 bit, peak at full scale")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from dwell.cli.common import atomic, point, print_json
+from dwell.cli.common import atomic, count, number, point, print_json
 
 _SENSORS = ("rgb", "depth", "instance", "semantic")
 
@@ -20,13 +20,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--at", type=point, metavar="X,Y,Z", help="where the eye is, m; default: every room"
     )
     parser.add_argument(
-        "--yaw-deg", type=float, default=0.0, help="positive to the left; 0 looks along -Z"
+        "--yaw-deg", type=number, default=0.0, help="positive to the left; 0 looks along -Z"
     )
-    parser.add_argument("--pitch-deg", type=float, default=0.0, help="positive up")
+    parser.add_argument("--pitch-deg", type=number, default=0.0, help="positive up")
     parser.add_argument("--sensors", default="rgb", help=f"some of {','.join(_SENSORS)}")
-    parser.add_argument("--width", type=int, default=640)
-    parser.add_argument("--height", type=int, default=480)
-    parser.add_argument("--fov-deg", type=float, default=90.0, help="horizontal field of view")
+    parser.add_argument("--width", type=count, default=640)
+    parser.add_argument("--height", type=count, default=480)
+    parser.add_argument("--fov-deg", type=number, default=90.0, help="horizontal field of view")
     parser.add_argument("--preset", choices=("flat", "lit"), default="lit")
     parser.add_argument("--out", type=Path, required=True, help="folder for the files")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")

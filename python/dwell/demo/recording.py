@@ -13,9 +13,7 @@ def write(house: House, errand: dict[str, Any], folder: Path) -> dict[str, str]:
     try:
         import rerun as rr
     except ImportError:
-        return {
-            "missing": "No recording: the Rerun SDK is not installed (pip install 'dwell[viewer]')."
-        }
+        return {"missing": "No recording: the Rerun SDK is not installed (pip install rerun-sdk)."}
     path = folder / "errand.rrd"
     rr.init("dwell demo")
     rr.save(str(path))

@@ -2,34 +2,42 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
+from dwell import ConfigError
+from dwell.arguments import to_json
 from dwell.house import House
+from dwell.settings import Laws, world_settings
 
-Houses = str | Sequence[str]
-Laws = str | os.PathLike[str] | Sequence[Mapping[str, Any]] | None
+Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | House]
 Sensors = Sequence[str] | Mapping[str, Mapping[str, Any]] | None
 
 
-def house_names(houses: Houses) -> list[str]:
-    """HOUSE strings; one string counts as a list of one."""
-    names = [houses] if isinstance(houses, str) else list(houses)
-    if not names:
-        raise ValueError("houses: expected at least one HOUSE string, found none")
-    return names
-
-
 class HouseShelf:
-    """Houses by name, opened at first use and kept."""
+    """Houses by number, those given by HOUSE string opened at first use and kept."""
 
-    def __init__(self, names: Sequence[str]) -> None:
-        """Keeps the names; opens nothing."""
-        self.names = list(names)
+    def __init__(self, houses: Houses) -> None:
+        """Keeps what it is given, one house counting as a list of one; opens nothing."""
+        alone = isinstance(houses, str | os.PathLike | House)
+        try:
+            rows = [houses] if alone else list(houses)  # type: ignore[arg-type] # not alone
+        except TypeError:
+            raise ConfigError(f"houses is {houses!r}; expected HOUSE strings or Houses") from None
+        if not rows:
+            raise ConfigError("houses: expected at least one HOUSE string or House, found none")
         self._open: dict[str, House] = {}
+        #: HOUSE strings; for a house that was handed over, its name, numbered where that is taken.
+        self.names: list[str] = []
+        for k, row in enumerate(rows):
+            if isinstance(row, House):
+                self.names.append(row.name if row.name not in self.names else f"{row.name}~{k}")
+                self._open[self.names[-1]] = row
+            elif isinstance(row, str | os.PathLike):
+                self.names.append(os.fspath(row))
+            else:
+                raise ConfigError(f"houses[{k}] is {row!r}; expected a HOUSE string or a House")
 
     def __getitem__(self, index: int) -> House:
         """House ``index`` modulo their number."""
@@ -37,16 +45,6 @@ class HouseShelf:
         if name not in self._open:
             self._open[name] = House.open(name)
         return self._open[name]
-
-
-def _laws(laws: Laws) -> list[dict[str, Any]]:
-    if laws is None:
-        return []
-    if not isinstance(laws, str | os.PathLike):
-        return [dict(law) for law in laws]
-    found = json.loads(Path(laws).read_text(encoding="utf-8"))
-    rows: list[dict[str, Any]] = found["laws"] if isinstance(found, dict) else found
-    return rows
 
 
 def env_json(
@@ -62,17 +60,13 @@ def env_json(
     """The native ``EnvConfig`` as JSON."""
     config: dict[str, Any] = {
         "task": task,
-        "world": {
-            "laws": _laws(laws),
-            "parameters": dict(parameters or {}),
-            **(world or {}),
-        },
+        "world": world_settings(laws, parameters, world),
     }
     if task_settings is not None:
-        config["task_settings"] = dict(task_settings)
+        config["task_settings"] = task_settings
     if stride is not None:
-        config["stride"] = dict(stride)
+        config["stride"] = stride
     if sensors is not None:
         rows = sensors.items() if isinstance(sensors, Mapping) else ((name, {}) for name in sensors)
-        config["sensors"] = [{"kind": name, "settings": dict(settings)} for name, settings in rows]
-    return json.dumps(config)
+        config["sensors"] = [{"kind": name, "settings": settings} for name, settings in rows]
+    return to_json(config)

@@ -8,23 +8,27 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium.utils import EzPickle
 from numpy.typing import NDArray
 
-from dwell import _native
-from dwell.envs.config import Houses, HouseShelf, Laws, Sensors, env_json, house_names
+from dwell import ConfigError, UsageError, _native
+from dwell.arguments import to_json, whole
+from dwell.envs.config import Houses, HouseShelf, Sensors, env_json
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.spaces import action_space, observation_space
+from dwell.settings import Laws
 from dwell.world import Camera
 
 #: The image that ``render()`` gives.
 RENDER_CAMERA = Camera(width=320, height=240, fov_deg=90.0)
 
 
-class DwellEnv(gymnasium.Env[dict[str, Any], np.int64]):
+class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     """A task in a house, with one agent.
 
     An episode's house is drawn from ``houses``, and everything else in it from the seed. The step
-    limit belongs to ``gymnasium.make`` (a ``TimeLimit`` wrapper).
+    limit belongs to ``gymnasium.make`` (a ``TimeLimit`` wrapper). A pickle holds the arguments:
+    what comes out of it is made anew and waits for ``reset``.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - gymnasium declares it an instance variable
@@ -50,19 +54,33 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64]):
 
         Args:
             task: The task's name.
-            houses: A HOUSE string or several.
+            houses: A HOUSE string or a :class:`dwell.House`, or several.
             sensors: Names of sensors, or settings by name; default the task's own choice.
-            laws: Laws to install, or the path of a JSON file with them.
-            parameters: Values by address.
+            laws: Laws to install; or what calibration found (laws and parameters), as a mapping or
+                as the path of its ``found.json``.
+            parameters: Values by address; they go before those that calibration found.
             task_settings: The task's own settings.
             stride: How far movement actions go: ``forward_m``, ``turn_deg``, ``look_deg``.
             world: Further fields of the native WorldConfig.
             threads: How many threads to use; results do not depend on it.
             render_mode: ``rgb_array`` or ``None``.
         """
+        EzPickle.__init__(
+            self,
+            task,
+            houses=houses,
+            sensors=sensors,
+            laws=laws,
+            parameters=parameters,
+            task_settings=task_settings,
+            stride=stride,
+            world=world,
+            threads=threads,
+            render_mode=render_mode,
+        )
         if render_mode not in (None, *self.metadata["render_modes"]):
             modes = self.metadata["render_modes"]
-            raise ValueError(f"render_mode: found {render_mode!r}, allowed are None and {modes}")
+            raise ConfigError(f"render_mode: found {render_mode!r}, allowed are None and {modes}")
         self.render_mode = render_mode
         self._config = env_json(
             task,
@@ -73,8 +91,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64]):
             stride=stride,
             world=world,
         )
-        self._shelf = HouseShelf(house_names(houses))
-        self._threads = threads
+        self._shelf = HouseShelf(houses)
+        self._threads = None if threads is None else whole("threads", threads, low=1)
+        self._closed = False
         self._runners: dict[int, Runner] = {}
         self._house = 0
         self._episode = 0
@@ -85,6 +104,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64]):
 
     @property
     def _runner(self) -> Runner:
+        if self._closed:
+            raise UsageError("this environment is closed; make a new one")
         if self._house not in self._runners:
             houses = [self._shelf[self._house]]
             self._runners[self._house] = Runner(houses, self._config, self._threads)
@@ -101,8 +122,17 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64]):
         return {
             "scene_id": self._shelf.names[self._house],
             "episode_id": f"{self._shelf.names[self._house]}#{self._seed}",
-            "seed": self._seed,
         }
+
+    def _replayed(self, episode_id: object) -> tuple[int, int]:
+        """House and seed of an earlier ``info["episode_id"]``."""
+        name, mark, seed = str(episode_id).rpartition("#")
+        if not mark or not seed.isdecimal() or name not in self._shelf.names:
+            raise ConfigError(
+                f"episode_id is {episode_id!r}; expected HOUSE#NUMBER, as info has it, of a house "
+                f"of this environment: {self._shelf.names[:12]}"
+            )
+        return self._shelf.names.index(name), whole("episode_id", int(seed))
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -112,19 +142,28 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64]):
         Args:
             seed: Seeds this and all following episodes.
             options: ``house``: the number of the house to play in; else it is drawn.
+                ``episode_id``: that of an earlier ``info``, to play the same episode again.
         """
         super().reset(seed=seed)
-        drawn = int(self.np_random.integers(len(self._shelf.names)))
-        self._house = int((options or {}).get("house", drawn)) % len(self._shelf.names)
-        self._seed = int(self.np_random.integers(2**63))
+        options = dict(options or {})
+        if unknown := sorted(set(options) - {"house", "episode_id"}):
+            raise ConfigError(f"options: no {unknown[0]!r}; allowed are house and episode_id")
+        house = int(self.np_random.integers(len(self._shelf.names)))
+        if "house" in options:
+            house = whole("options: house", options["house"], high=len(self._shelf.names) - 1)
+        episode = int(self.np_random.integers(2**63))
+        if "episode_id" in options:
+            house, episode = self._replayed(options["episode_id"])
+        self._house, self._seed = house, episode
         self._runner.batch.reset([self._seed])
         return self._observation(), self._info()
 
     def step(
         self, action: np.int64 | int
     ) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
-        """Makes one control step."""
-        answer = self._runner.batch.step(np.array([action], np.int64))
+        """Makes one control step; ``action``: a number of :meth:`actions`."""
+        number = whole("action", action, high=len(self.actions()) - 1)
+        answer = self._runner.batch.step(np.array([number], np.int64))
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
         info["action_error"] = answer["action_error"][0]
         terminated = bool(answer["terminated"][0])
@@ -144,12 +183,13 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64]):
         if self.render_mode is None:
             return None
         camera = {key: getattr(RENDER_CAMERA, key) for key in ("width", "height", "fov_deg")}
-        image: NDArray[np.uint8] = self._runner.batch.render(0, json.dumps(camera))
+        image: NDArray[np.uint8] = self._runner.batch.render(0, to_json(camera))
         return image
 
     def close(self) -> None:
-        """Lets go of the worlds; may be called again."""
+        """Lets go of the worlds; may be called again. After it everything else is refused."""
         self._runners.clear()
+        self._closed = True
 
     def expert_action(self) -> int:
         """What the task's scripted expert would do now."""

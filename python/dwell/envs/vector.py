@@ -6,20 +6,24 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from gymnasium.utils import EzPickle
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from dwell.envs.config import Houses, HouseShelf, Laws, Sensors, env_json, house_names
+from dwell import ConfigError, UsageError, _native
+from dwell.arguments import whole
+from dwell.envs.config import Houses, HouseShelf, Sensors, env_json
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.spaces import action_space, observation_space
+from dwell.settings import Laws
 
 
-class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]]):
+class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]], EzPickle):
     """``num_envs`` environments stepped together; number k plays in house k modulo their number.
 
     Observations are the environments' own buffers: copy what must outlive the next step, or say
-    ``copy=True``.
+    ``copy=True``. A pickle holds the arguments, as that of a single environment.
     """
 
     def __init__(
@@ -45,9 +49,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]])
         Args:
             num_envs: How many.
             task: The task's name.
-            houses: A HOUSE string or several.
+            houses: A HOUSE string or a :class:`dwell.House`, or several.
             sensors: Names of sensors, or settings by name.
-            laws: Laws to install, or the path of a JSON file with them.
+            laws: Laws to install, or what calibration found.
             parameters: Values by address.
             task_settings: The task's own settings.
             stride: How far movement actions go.
@@ -58,10 +62,26 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]])
             copy: Whether observations are copies.
             render_mode: ``None``; single environments render.
         """
-        if num_envs < 1:
-            raise ValueError(f"num_envs: found {num_envs}, allowed is at least 1")
+        EzPickle.__init__(
+            self,
+            num_envs,
+            task,
+            houses=houses,
+            sensors=sensors,
+            laws=laws,
+            parameters=parameters,
+            task_settings=task_settings,
+            stride=stride,
+            world=world,
+            threads=threads,
+            max_episode_steps=max_episode_steps,
+            autoreset_mode=autoreset_mode,
+            copy=copy,
+            render_mode=render_mode,
+        )
+        num_envs = whole("num_envs", num_envs, low=1, high=65_536)
         if render_mode is not None:
-            raise ValueError(f"render_mode: found {render_mode!r}, allowed is None")
+            raise ConfigError(f"render_mode: found {render_mode!r}, allowed is None")
         self.num_envs = num_envs
         self.render_mode = render_mode
         self.autoreset_mode = AutoresetMode(autoreset_mode)
@@ -75,7 +95,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]])
             stride=stride,
             world=world,
         )
-        shelf = HouseShelf(house_names(houses))
+        shelf = HouseShelf(houses)
+        threads = None if threads is None else whole("threads", threads, low=1)
         self._runner = Runner([shelf[k] for k in range(num_envs)], config, threads)
         self._limit = max_episode_steps if max_episode_steps and max_episode_steps > 0 else None
         self._copy = copy
@@ -116,20 +137,21 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]])
             seed: One seed (then environment k has ``seed + k``), or one for each environment.
             options: ``reset_mask``: which environments to reset, shape (num_envs,) bool.
         """
+        self._refuse_closed()
         mask = (options or {}).get("reset_mask")
         which = np.ones(self.num_envs, np.bool_) if mask is None else np.asarray(mask)
         if which.shape != (self.num_envs,) or which.dtype != np.bool_ or not which.any():
-            raise ValueError(
+            raise ConfigError(
                 f"reset_mask: expected bool of shape ({self.num_envs},) with a true element, "
                 f"found {which.dtype} of shape {which.shape}"
             )
         seeds: list[int | None] = [None] * self.num_envs
         if isinstance(seed, int | np.integer):
-            seeds = [int(seed) + k for k in range(self.num_envs)]
+            seeds = [whole("seed", seed) + k for k in range(self.num_envs)]
         elif seed is not None:
-            seeds = list(seed)
+            seeds = [None if one is None else whole("seed", one) for one in seed]
             if len(seeds) != self.num_envs:
-                raise ValueError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
+                raise ConfigError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
         for k in np.flatnonzero(which):
             if seeds[k] is not None or self._streams[k] is None:
                 self._streams[k] = np.random.default_rng(seeds[k])
@@ -143,16 +165,25 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]])
         dict[str, Any], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]
     ]:
         """Makes one control step in every environment."""
-        actions = np.asarray(actions, np.int64)
-        if actions.shape != (self.num_envs,):
-            raise ValueError(f"actions: expected shape ({self.num_envs},), found {actions.shape}")
+        self._refuse_closed()
+        if any(stream is None for stream in self._streams):
+            raise UsageError("step: no episode has begun; call reset first")
+        numbers = np.asarray(actions)
+        if numbers.shape != (self.num_envs,) or numbers.dtype.kind not in "iu":
+            raise ConfigError(
+                f"actions: expected whole numbers of shape ({self.num_envs},), "
+                f"found {numbers.dtype} of shape {numbers.shape}"
+            )
+        last = len(_native.actions()) - 1
+        if not ((numbers >= 0) & (numbers <= last)).all():
+            raise ConfigError(f"actions are {numbers.tolist()}; allowed are 0 to {last}")
         begins = self._done.copy()
         if begins.any() and self.autoreset_mode is not AutoresetMode.NEXT_STEP:
             which = np.flatnonzero(begins).tolist()
-            raise RuntimeError(f"environments {which} have ended; reset them with reset_mask first")
+            raise UsageError(f"environments {which} have ended; reset them with reset_mask first")
         if begins.any():
             self._start(begins)
-        answer = self._runner.batch.step(np.where(begins, -1, actions))
+        answer = self._runner.batch.step(np.where(begins, -1, numbers.astype(np.int64)))
         self._steps[~begins] += 1
         rewards = np.asarray(answer["reward"], np.float64)
         terminated = np.asarray(answer["terminated"], np.bool_)
@@ -169,11 +200,11 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]])
         infos["_action_error"] = stepped
         self._done = terminated | truncated
         if self._done.any() and self.autoreset_mode is AutoresetMode.SAME_STEP:
-            infos |= self._restart()
+            infos |= self._restart(infos)
         return self._observation(), rewards, terminated, truncated, infos
 
-    def _restart(self) -> dict[str, Any]:
-        """Starts ended environments anew within the step; their last observations go into infos."""
+    def _restart(self, infos: dict[str, Any]) -> dict[str, Any]:
+        """Starts ended environments anew within the step; what they ended with goes into infos."""
         ended = self._done.copy()
         last = self._runner.observation()
         final = np.full(self.num_envs, None, object)
@@ -182,9 +213,21 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]])
                 key: value[k] if isinstance(value, tuple) else value[k].copy()
                 for key, value in last.items()
             }
+        final_info: dict[str, Any] = {}
+        for key in (*INFO_KEYS, "action_error"):
+            final_info |= {key: infos[key].copy(), f"_{key}": ended}
         self._start(ended)
         self._runner.observe(ended)
-        return {"final_obs": final, "_final_obs": ended, "final_info": {}, "_final_info": ended}
+        return {
+            "final_obs": final,
+            "_final_obs": ended,
+            "final_info": final_info,
+            "_final_info": ended,
+        }
+
+    def _refuse_closed(self) -> None:
+        if self.closed:
+            raise UsageError("these environments are closed; make new ones")
 
     def expert_actions(self) -> NDArray[np.int64]:
         """What the task's scripted expert would do now, in every environment."""

@@ -1,0 +1,72 @@
+"""Arguments are checked where they enter, and refused with errors of dwell's own tree."""
+
+from __future__ import annotations
+
+import json
+import math
+import operator
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from dwell._native import ConfigError
+
+#: What the border holds: seeds and counts are unsigned and have 64 bits.
+_MOST = 2**64 - 1
+
+
+def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
+    """A whole number within bounds; ``True``, 1.0 and ``"1"`` are none."""
+    allowed = f"whole numbers from {low}" + (f" to {high}" if high != _MOST else "")
+    try:
+        number = operator.index(value)  # type: ignore[arg-type] # what this finds out
+    except TypeError:
+        raise ConfigError(f"{name} is {value!r}; allowed are {allowed}") from None
+    if isinstance(value, bool) or not low <= number <= high:
+        raise ConfigError(f"{name} is {value!r}; allowed are {allowed}")
+    return number
+
+
+def finite(name: str, value: object) -> float:
+    """A finite number as Python's own float."""
+    try:
+        number = float(value)  # type: ignore[arg-type] # what this finds out
+    except (TypeError, ValueError):
+        raise ConfigError(f"{name} is {value!r}; expected a number") from None
+    if not math.isfinite(number):
+        raise ConfigError(f"{name} is {number}; allowed are finite numbers")
+    return number
+
+
+def point(name: str, value: Sequence[float]) -> tuple[float, float, float]:
+    """A point (x, y, z) in metres, from any sequence or array of three finite numbers."""
+    try:
+        parts = list(value)
+    except TypeError:
+        parts = []
+    if len(parts) != 3:
+        raise ConfigError(f"{name}: expected three numbers (x, y, z) in metres, found {value!r}")
+    x, y, z = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts))
+    return x, y, z
+
+
+def _plain(at: str, value: object) -> Any:  # noqa: ANN401 - any JSON value
+    """``value`` as JSON knows it; ``at``: its place, for the error."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        dot = f"{at}." if at else ""
+        return {str(key): _plain(f"{dot}{key}", part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(f"{at}[{k}]", part) for k, part in enumerate(value)]
+    if isinstance(value, float):
+        return finite(at, value)
+    if value is None or isinstance(value, str | int):
+        return value
+    raise ConfigError(f"{at} is {value!r}; expected numbers, text, lists or mappings")
+
+
+def to_json(settings: Mapping[str, object]) -> str:
+    """Settings as JSON text for the native side; what JSON cannot hold is refused by its place."""
+    return json.dumps(_plain("", settings))

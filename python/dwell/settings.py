@@ -1,0 +1,66 @@
+"""What a world is told beside its house: laws, parameters, rates."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from dwell._native import ConfigError
+
+#: Laws to install; or what calibration found (laws and parameters), as a mapping or by path.
+Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[Mapping[str, Any]] | None
+
+_FOUND = {"laws", "parameters"}
+
+
+def _read(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401 - any JSON value
+    name = os.fspath(path)
+    try:
+        return json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigError(f"laws: {name}: {error.strerror or error}") from error
+    except ValueError as error:
+        raise ConfigError(f"laws: {name}: no JSON: {error}") from error
+
+
+def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
+    """Laws and parameters by address, from all forms in which they are given.
+
+    Raises:
+        ConfigError: It is neither a list of laws nor an object with ``laws`` and ``parameters``.
+    """
+    at = "laws"
+    if isinstance(laws, str | os.PathLike):
+        at = f"laws: {os.fspath(laws)}"
+        laws = _read(laws)
+    if laws is None:
+        return [], {}
+    parameters: Mapping[str, float] = {}
+    if isinstance(laws, Mapping):
+        if unknown := sorted(set(laws) - _FOUND):
+            raise ConfigError(f"{at}: no field {unknown[0]!r}; allowed are {sorted(_FOUND)}")
+        parameters = laws.get("parameters", {})
+        laws = laws.get("laws", [])
+    if not isinstance(laws, Sequence) or not all(isinstance(law, Mapping) for law in laws):
+        raise ConfigError(f"{at}: expected a list of laws, each {{id, version, target, params}}")
+    if not isinstance(parameters, Mapping):
+        raise ConfigError(f"{at}: parameters: expected values by address")
+    return [dict(law) for law in laws if isinstance(law, Mapping)], dict(parameters)
+
+
+def world_settings(
+    laws: Laws, parameters: Mapping[str, float] | None, further: Mapping[str, Any] | None
+) -> dict[str, Any]:
+    """The native WorldConfig. ``parameters`` go before those that stand beside the laws.
+
+    Raises:
+        ConfigError: ``further`` names what has an argument of its own.
+    """
+    further = dict(further or {})
+    for name in sorted(_FOUND & set(further)):
+        raise ConfigError(f"world: holds {name!r}; give it as the argument {name}= instead")
+    rows, values = found(laws)
+    return {"laws": rows, "parameters": {**values, **(parameters or {})}, **further}

@@ -1,0 +1,111 @@
+"""What users hand over is checked where it enters, and refused with a sentence of dwell's tree."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import dwell
+from dwell.envs import DwellEnv, DwellVectorEnv
+
+HOUSE = "builtin:apartment"
+SMALL = {"rgb": {"width": 16, "height": 16}, "instruction": {}}
+MOON = "world/gravity_m_s2"
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: dwell.World(HOUSE, agents=-1), "agents is -1"),
+        (lambda: dwell.World(HOUSE, seed=-1), "seed is -1"),
+        (lambda: dwell.World(HOUSE, control_rate_hz=math.nan), "control_rate_hz is nan"),
+        (lambda: dwell.World(HOUSE, parameters={MOON: math.nan}), f"{MOON} is nan"),
+        (
+            lambda: dwell.World(
+                HOUSE, laws=[{"id": "drag", "version": 1, "params": {"c_d": math.inf}}]
+            ),
+            "c_d is inf",
+        ),
+        (lambda: DwellEnv(stride={"turn_deg": math.nan}), "turn_deg is nan"),
+        (lambda: DwellEnv(threads=-1), "threads is -1"),
+        (lambda: DwellEnv(houses=7), "houses is 7"),  # type: ignore[arg-type]
+        (lambda: DwellEnv(houses=[]), "at least one"),
+        (lambda: DwellEnv(world={"laws": []}), "laws="),
+        (lambda: DwellEnv(world={"parameters": {}}), "parameters="),
+        (lambda: DwellVectorEnv(-1), "num_envs is -1"),
+    ],
+)
+def test_settings_that_cannot_be_are_refused(make: Callable[[], object], said: str) -> None:
+    with pytest.raises(dwell.ConfigError, match=said.replace("(", r"\(")):
+        make()
+
+
+def test_calls_of_a_world_say_what_they_expect(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    with pytest.raises(dwell.ConfigError, match="move_forward"):
+        world.do("forward")
+    with pytest.raises(dwell.ConfigError, match="action is -1"):
+        world.do(-1)
+    with pytest.raises(dwell.ConfigError, match="agent is -1"):
+        world.listen(agent=-1)
+    with pytest.raises(dwell.ConfigError, match=r"position\[0\] is nan"):
+        world.render(position=(math.nan, 0.0, 0.0))
+    with pytest.raises(dwell.ConfigError, match="three numbers"):
+        world.place_agent((1.0, 2.0))
+    with pytest.raises(dwell.ConfigError, match="nan"):
+        world.set_parameter(MOON, math.nan)
+    with pytest.raises(dwell.ConfigError, match="seed is -2"):
+        apartment.describe("instructions", seed=-2)
+
+
+def test_points_may_be_arrays(apartment: dwell.House) -> None:
+    world = dwell.World(apartment, agents=0)
+    place = (2.0, 1.5, 2.0)
+    camera = dwell.Camera(8, 8)
+    listed = world.render(position=place, camera=camera)["rgb"]
+    array = world.render(position=np.array(place, np.float32), camera=camera)["rgb"]
+    np.testing.assert_array_equal(listed, array)
+
+
+def test_what_calibration_found_reaches_worlds_and_environments(
+    apartment: dwell.House, tmp_path: Path
+) -> None:
+    found = {"laws": [], "parameters": {MOON: 1.62}}
+    path = tmp_path / "found.json"
+    path.write_text(json.dumps(found), "utf-8")
+    for laws in (path, str(path), found):
+        assert dwell.World(apartment, laws=laws).parameter(MOON)["value"] == pytest.approx(1.62)
+    nearer = dwell.World(apartment, laws=path, parameters={MOON: 3.7})
+    assert nearer.parameter(MOON)["value"] == pytest.approx(3.7)
+    hashes = []
+    for laws in (None, path):
+        env = DwellEnv(sensors=SMALL, laws=laws)
+        env.reset(seed=1)
+        hashes.append(env.state_hash())
+    assert hashes[0] != hashes[1]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("{junk", "no JSON"),
+        ("7", "list of laws"),
+        ('{"lows": []}', "lows"),
+        ('{"parameters": [1]}', "by address"),
+    ],
+)
+def test_files_of_laws_that_are_none_are_refused_by_name(
+    apartment: dwell.House, tmp_path: Path, text: str, said: str
+) -> None:
+    path = tmp_path / "found.json"
+    path.write_text(text, "utf-8")
+    with pytest.raises(dwell.ConfigError, match=said) as caught:
+        dwell.World(apartment, laws=path)
+    assert str(path) in str(caught.value)
+    with pytest.raises(dwell.ConfigError, match=r"nothing\.json"):
+        dwell.World(apartment, laws=tmp_path / "nothing.json")

@@ -1,0 +1,91 @@
+"""Environments refuse calls that make no sense, and say why."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import dwell
+from dwell.envs import DwellEnv, DwellVectorEnv
+
+SMALL = {"rgb": {"width": 16, "height": 16}, "instruction": {}}
+
+
+@pytest.mark.parametrize("action", [-1, 12, 1.7, "1", True, None])
+def test_a_step_takes_the_number_of_an_action(action: object) -> None:
+    env = DwellEnv(sensors=SMALL)
+    env.reset(seed=1)
+    before = env.state_hash()
+    with pytest.raises(dwell.ConfigError, match=r"action is .*0 to 11"):
+        env.step(action)  # type: ignore[arg-type]
+    assert env.state_hash() == before
+    env.step(np.int64(1))
+
+
+@pytest.mark.parametrize("actions", [[1, -1], [12, 1], [1.5, 1.0], [1], [[1], [1]]])
+def test_a_vector_step_takes_numbers_of_actions(actions: object) -> None:
+    env = DwellVectorEnv(2, sensors=SMALL)
+    env.reset(seed=1)
+    before = env.state_hashes()
+    with pytest.raises(dwell.ConfigError, match="actions"):
+        env.step(np.array(actions))
+    assert env.state_hashes() == before
+
+
+def test_a_step_before_reset_or_after_close_is_refused() -> None:
+    vector = DwellVectorEnv(2, sensors=SMALL)
+    with pytest.raises(dwell.UsageError, match="call reset first"):
+        vector.step(np.array([1, 1]))
+    vector.reset(seed=0)
+    vector.close()
+    with pytest.raises(dwell.UsageError, match="closed"):
+        vector.step(np.array([1, 1]))
+    with pytest.raises(dwell.UsageError, match="closed"):
+        vector.reset(seed=0)
+    env = DwellEnv(sensors=SMALL)
+    with pytest.raises(dwell.UsageError, match="call reset first"):
+        env.step(1)
+    env.reset(seed=0)
+    env.close()
+    env.close()
+    with pytest.raises(dwell.UsageError, match="closed"):
+        env.step(1)
+    with pytest.raises(dwell.UsageError, match="closed"):
+        env.reset(seed=0)
+
+
+def test_an_episode_id_plays_the_same_episode_again(apartment: dwell.House) -> None:
+    houses = ["builtin:apartment", apartment]
+    env = DwellEnv(sensors=SMALL, houses=houses)
+    for seed in range(4):
+        observation, info = env.reset(seed=seed)
+        once = (env.state_hash(), observation["instruction"], info["scene_id"])
+        env.step(1)
+        other = DwellEnv(sensors=SMALL, houses=houses)
+        observation, again = other.reset(options={"episode_id": info["episode_id"]})
+        assert (other.state_hash(), observation["instruction"], again["scene_id"]) == once
+        assert again == info
+    for wrong in ("castle#1", "builtin:apartment", "builtin:apartment#-1", 7):
+        with pytest.raises(dwell.ConfigError, match="HOUSE#NUMBER"):
+            env.reset(options={"episode_id": wrong})
+    with pytest.raises(dwell.ConfigError, match="hose"):
+        env.reset(options={"hose": 1})
+
+
+def test_houses_may_be_given_open(apartment: dwell.House) -> None:
+    env = DwellEnv(sensors=SMALL, houses=apartment)
+    _, info = env.reset(seed=3)
+    named = DwellEnv(sensors=SMALL)
+    named.reset(seed=3)
+    assert info["scene_id"] == "apartment"
+    assert env.state_hash() == named.state_hash()
+
+
+def test_what_an_episode_ended_with_stands_in_final_info() -> None:
+    env = DwellVectorEnv(2, sensors=SMALL, autoreset_mode="SameStep")
+    env.reset(seed=0)
+    *_, infos = env.step(np.array([0, 1]))
+    final = infos["final_info"]
+    assert final["_spl"].tolist() == infos["_final_info"].tolist() == [True, False]
+    assert final["distance_to_goal"][0] == infos["distance_to_goal"][0] > 0.0
+    assert final["path_length"][0] < 0.01
