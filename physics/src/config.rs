@@ -40,6 +40,11 @@ pub struct PhysicsConfig {
     pub event_min_speed_m_s: f32,
     /// Impulse from which a contact is an event, N·s; 1e-6 to 10, default 0.001.
     pub event_min_impulse_n_s: f32,
+    /// Speed from which slipping is scraping, and rolling is told, m/s; 0.005 to 10, default 0.02.
+    pub slide_min_speed_m_s: f32,
+    /// The most events of a control step; 1 to 100,000, default 128. Impacts come before scrapes and rolling, the strongest
+    /// first; the others are counted and summed.
+    pub max_events_per_step: usize,
     /// The strongest push of an agent's body, N; 0 to 10,000, default 100.
     pub push_force_n: f32,
     /// The strongest pull of a hand on a door or drawer, N·m or N; 0 to 10,000, default 40.
@@ -63,6 +68,8 @@ impl Default for PhysicsConfig {
             touch_distance_m: 0.002,
             event_min_speed_m_s: 0.1,
             event_min_impulse_n_s: 1e-3,
+            slide_min_speed_m_s: 0.02,
+            max_events_per_step: 128,
             push_force_n: 100.0,
             hand_effort: 40.0,
             max_carry_size_m: 1.0,
@@ -158,6 +165,20 @@ impl PhysicsConfig {
             1e-6,
             10.0,
             "1e-6 to 10",
+        )?;
+        range(
+            "slide_min_speed_m_s",
+            self.slide_min_speed_m_s,
+            0.005,
+            10.0,
+            "0.005 to 10",
+        )?;
+        range(
+            "max_events_per_step",
+            self.max_events_per_step as f32,
+            1.0,
+            1e5,
+            "1 to 100000",
         )?;
         range("push_force_n", self.push_force_n, 0.0, 1e4, "0 to 10000")?;
         range("hand_effort", self.hand_effort, 0.0, 1e4, "0 to 10000")?;

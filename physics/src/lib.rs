@@ -46,7 +46,7 @@ mod world;
 pub use actions::{Action, ActionCode, ActionOutcome, Grasp, Notice, Pointed, Target};
 pub use agents::AgentControl;
 pub use config::{ContactFriction, PhysicsConfig};
-pub use contact::{ContactEvent, Toucher};
+pub use contact::{ContactEvent, ContactKind, ContactPhase, MergedEvents, Toucher};
 pub use error::PhysicsError;
 pub use model::PhysicsModel;
 pub use report::{FrozenObject, MovedObject, PassingJoint, StartReport};

@@ -9,7 +9,7 @@ use crate::actions::Shove;
 use crate::agents::{self, Grip, Loose};
 use crate::body::Hold;
 use crate::config::PhysicsConfig;
-use crate::contact::{ContactTable, Dress, Excluded, Hooks, Impacts};
+use crate::contact::{ContactTable, Dress, Excluded, Hooks, Ongoing};
 use crate::engine::Engine;
 use crate::error::PhysicsError;
 use crate::joints::{self, Drives, Pull};
@@ -39,7 +39,7 @@ struct Memory {
     drives: Drives,
     shoves: Vec<Shove>,
     pulls: Vec<Option<Pull>>,
-    impacts: Impacts,
+    ongoing: Ongoing,
     laws: Vec<Vec<f32>>,
 }
 
@@ -98,7 +98,7 @@ impl PhysicsWorld {
                 drives: self.drives.clone(),
                 shoves: self.shoves.clone(),
                 pulls: self.pulls.clone(),
-                impacts: self.impacts.clone(),
+                ongoing: self.ongoing.clone(),
                 laws: self
                     .laws
                     .iter()
@@ -244,7 +244,7 @@ impl PhysicsWorld {
             let articulation = &model.house.joints[joint.id];
             joints::set_resistance(joint, articulation, state);
         }
-        self.impacts = memory.impacts;
+        self.ongoing = memory.ongoing;
         self.notices.clear();
         Ok(())
     }

@@ -3,7 +3,7 @@
 use crate::actions::{ActionCode, ActionOutcome, Notice};
 use crate::agents::{self, AgentControl, Way};
 use crate::body::Hold;
-use crate::contact::{Collector, ContactEvent, Dress, Hooks, note_motion};
+use crate::contact::{Collector, ContactEvent, Dress, Hooks, bound, note_motion};
 use crate::error::PhysicsError;
 use crate::joints::{self, Drive, Progress};
 use crate::laws::{Acts, Stage};
@@ -13,7 +13,9 @@ use glam::Vec3;
 
 impl PhysicsWorld {
     /// Makes one control step: agents move as `controls` say (those without one stand still), then bodies, joints and
-    /// contacts; `state` is brought up to date, and impacts are appended to `events` in the order of time and pair.
+    /// contacts; `state` is brought up to date, and impacts, scrapes and rolling are appended to `events` in the order of time
+    /// and pair: at most [`max_events_per_step`](crate::PhysicsConfig::max_events_per_step), see
+    /// [`PhysicsWorld::merged_events`].
     ///
     /// The state's `time_s` and `step` belong to whoever runs the world and are left alone.
     ///
@@ -38,6 +40,7 @@ impl PhysicsWorld {
             control.check(index, &agent.body.locomotion)?;
         }
         self.notices.clear();
+        let first_event = events.len();
         let asleep = self.engine.islands.num_active_bodies() == 0;
         self.drive_joints(state);
         let mut ways = Way::all(state);
@@ -48,6 +51,13 @@ impl PhysicsWorld {
             self.physics_step(state, events);
             self.keep_held_inside();
         }
+        self.ongoing
+            .tell(self.tick, &self.settings.config, &self.table, events);
+        self.merged_events = bound(
+            events,
+            first_event,
+            self.settings.config.max_events_per_step,
+        );
         self.end_ways(state, &ways);
         self.part_ways(state);
         // What slept all the time stands as it was written.
@@ -79,7 +89,7 @@ impl PhysicsWorld {
             law.half_step(stage, half);
             law.before_step(stage);
         });
-        note_motion(&self.engine, &mut self.motion);
+        note_motion(&self.engine, &self.ongoing, &mut self.motion);
         let hooks = Hooks {
             entries: &self.entries,
             dress: Dress {
@@ -90,16 +100,13 @@ impl PhysicsWorld {
             excluded: &self.excluded,
         };
         let config = &self.settings.config;
-        let collector = Collector::new(&self.entries, &self.motion, config.event_min_speed_m_s);
+        let slowest = config.event_min_speed_m_s.min(config.slide_min_speed_m_s);
+        let collector = Collector::new(&self.entries, &self.motion, slowest);
         self.engine.step(&hooks, &collector);
-        collector.settle(
-            self.tick,
-            1.0 / f64::from(config.physics_rate_hz),
-            &self.table,
-            config.event_min_impulse_n_s,
-            &mut self.impacts,
-            events,
-        );
+        self.ongoing
+            .settle(collector, self.tick, config, &self.table, events);
+        self.ongoing
+            .note_held_back(&self.engine, &self.motion, self.settings.dt_s);
         self.apply_laws(|law, stage| law.half_step(stage, half));
         self.tick += 1;
     }

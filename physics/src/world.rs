@@ -4,7 +4,9 @@ use crate::actions::{Notice, Shove};
 use crate::agents::{Agent, Grip, Loose};
 use crate::body::{self, Body, BodyPlace, Hold};
 use crate::config::{PhysicsConfig, Settings};
-use crate::contact::{ContactTable, Dress, Entry, Excluded, Hooks, Impacts, Motion, touching};
+use crate::contact::{
+    ContactTable, Dress, Entry, Excluded, Hooks, MergedEvents, Motion, Ongoing, touching,
+};
 use crate::convert::{from_rapier, to_rapier};
 use crate::engine::Engine;
 use crate::error::PhysicsError;
@@ -56,7 +58,9 @@ pub struct PhysicsWorld {
     pub(crate) laws: Vec<Installed>,
     /// Physics steps since the world was made.
     pub(crate) tick: u64,
-    pub(crate) impacts: Impacts,
+    pub(crate) ongoing: Ongoing,
+    /// What the last control step did not tell one by one.
+    pub(crate) merged_events: MergedEvents,
     pub(crate) notices: Vec<Notice>,
     pub(crate) motion: Vec<Motion>,
 }
@@ -194,7 +198,8 @@ impl PhysicsWorld {
             shoves: Vec::new(),
             laws,
             tick: 0,
-            impacts: Impacts::new(),
+            ongoing: Ongoing::default(),
+            merged_events: MergedEvents::default(),
             notices: Vec::new(),
             motion: Vec::new(),
         };
@@ -274,6 +279,11 @@ impl PhysicsWorld {
     /// What became, in the last step, of doors and grips that take time.
     pub fn notices(&self) -> &[Notice] {
         &self.notices
+    }
+
+    /// The events of the last control step beyond its limit: how many, and how strong together.
+    pub fn merged_events(&self) -> MergedEvents {
+        self.merged_events
     }
 
     /// Simulated time since the world was made, s.

@@ -164,6 +164,16 @@ class World:
         objects: list[dict[str, Any]] = json.loads(self._native.objects_json())
         return objects
 
+    def events(self) -> list[dict[str, Any]]:
+        """What touched in the last step: impacts, scrapes and rolling.
+
+        Each has kind, phase, time_s, duration_s, position, a, b, substance_a, substance_b,
+        impulse_n_s, tangential_impulse_n_s, relative_normal_speed_m_s,
+        relative_tangential_speed_m_s, rolling_speed_m_s.
+        """
+        events: list[dict[str, Any]] = json.loads(self._native.events_json())
+        return events
+
     def render(
         self,
         *,

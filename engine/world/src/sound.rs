@@ -5,7 +5,7 @@ use crate::engines::Engines;
 use crate::error::WorldError;
 use dwell_acoustics::{ActiveSource, Stream, StreamConfig};
 use dwell_acoustics::{ImpactSound, Receiver, signals};
-use dwell_physics::{ContactEvent, Toucher};
+use dwell_physics::{ContactEvent, ContactKind, Toucher};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
@@ -90,7 +90,7 @@ impl Sound {
         }
     }
 
-    /// Lets the contacts of the last step sound in the block that ends now.
+    /// Lets the impacts of the last step sound in the block that ends now; the acoustics have no sound of scraping yet.
     pub(crate) fn take_events(
         &mut self,
         house: &House,
@@ -99,7 +99,7 @@ impl Sound {
     ) {
         let mut hard: Vec<&ContactEvent> = events
             .iter()
-            .filter(|event| event.impulse_n_s >= FAINTEST_N_S)
+            .filter(|event| event.kind == ContactKind::Impact && event.impulse_n_s >= FAINTEST_N_S)
             .collect();
         hard.sort_by(|a, b| b.impulse_n_s.total_cmp(&a.impulse_n_s));
         let size = |toucher: Toucher| match toucher {

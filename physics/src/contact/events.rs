@@ -1,25 +1,47 @@
-//! Impacts: where two things hit, how hard and how fast.
+//! What touches tell the world: impacts, scrapes and rolling.
 
-use super::entry::{Entry, Toucher, entry_index};
-use super::substances::ContactTable;
-use crate::engine::Engine;
+use super::entry::Toucher;
 use glam::Vec3;
-use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, SoftBodySet, SoftBodyTearEvent};
-use rapier3d::geometry::{ColliderSet, CollisionEvent, ContactPair};
-use rapier3d::pipeline::EventHandler;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
 
-/// Physics steps over which one impact may last: the solver stops a body at the surface in one step and bounces it in
-/// the next.
-const LONGEST_IMPACT_STEPS: u8 = 3;
+/// How two things touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactKind {
+    /// They hit.
+    Impact,
+    /// One slides over the other.
+    Scrape,
+    /// One rolls over the other: the place where they touch moves, and they hardly slip there.
+    Roll,
+}
 
-/// Two things that hit each other.
+/// Where in its time an event stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactPhase {
+    /// All of it: an impact.
+    Once,
+    /// A scrape or rolling that began in this control step.
+    Begin,
+    /// One that went on in this control step.
+    Continue,
+    /// One that is over; impulse, force and speeds are 0.
+    End,
+}
+
+/// Two things that touched: an impact, or a control step of scraping or rolling.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ContactEvent {
-    /// Simulated time since the world was made, s.
+    /// What happened.
+    pub kind: ContactKind,
+    /// Whether it began, went on or ended.
+    pub phase: ContactPhase,
+    /// Simulated time since the world was made, s. Impacts: when the surfaces met, within the physics step, from their gap
+    /// and approach. Others: the first physics step of this control step in which they did so, or after the last one.
     pub time_s: f64,
+    /// How much of this control step it lasted, s; 0 for impacts and ends.
+    pub duration_s: f32,
     /// Where, m: the mean of the contact points, weighted by impulse.
     pub position: Vec3,
     /// The thing that sorts first: structure, then parts, then agents, each by number.
@@ -30,247 +52,69 @@ pub struct ContactEvent {
     pub substance_a: &'static str,
     /// What `b` is made of there.
     pub substance_b: &'static str,
-    /// The sum of all normal impulses of the impact, N·s.
+    /// The sum of all normal impulses of the impact, or of this control step, N·s.
     pub impulse_n_s: f32,
-    /// How fast they approached along the normal, m/s; at least 0.
+    /// The sum of all friction impulses of the same time, N·s.
+    pub tangential_impulse_n_s: f32,
+    /// Impacts: how fast they approached along the normal, m/s; at least 0. Others: 0.
     pub relative_normal_speed_m_s: f32,
+    /// How fast they slipped over each other where they touched, m/s: at the beginning of an impact, in the mean of a
+    /// scrape or rolling.
+    pub relative_tangential_speed_m_s: f32,
+    /// Rolling: how fast the place of contact moved, m/s; else 0.
+    pub rolling_speed_m_s: f32,
 }
 
-/// An impact that may still go on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Impact {
-    first_tick: u64,
-    steps: u8,
-    impulse_n_s: f32,
-    /// Sum of position times impulse.
-    moment: Vec3,
-    speed_m_s: f32,
-    classes: (u16, u16),
-}
-
-/// All impacts that may still go on, by the pair that hits.
-pub(crate) type Impacts = BTreeMap<(Toucher, Toucher), Impact>;
-
-/// What rapier reports of one pair of colliders in one step.
-struct Report {
-    pair: (Toucher, Toucher),
-    classes: (u16, u16),
-    impulse: f32,
-    moment: Vec3,
-    speed: f32,
-}
-
-/// Velocity of a body before the step, at its centre of mass.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Motion {
-    linear: Vec3,
-    angular: Vec3,
-    center: Vec3,
-    /// A bound on the speed of all its points, m/s.
-    fastest: f32,
-}
-
-impl Motion {
-    fn at(&self, point: Vec3) -> Vec3 {
-        self.linear + self.angular.cross(point - self.center)
-    }
-}
-
-/// Gathers impacts while rapier steps.
-pub(crate) struct Collector<'a> {
-    entries: &'a [Entry],
-    min_speed: f32,
-    /// Motion before the step of every body that was awake, by its arena index.
-    before: &'a [Motion],
-    reports: Mutex<Vec<Report>>,
-}
-
-/// Notes the motion of all bodies that are awake before a step.
-pub(crate) fn note_motion(engine: &Engine, out: &mut Vec<Motion>) {
-    out.clear();
-    for handle in engine.islands.active_bodies() {
-        let Some(body) = engine.bodies.get(handle) else {
-            continue;
-        };
-        let index = handle.into_raw_parts().0 as usize;
-        if out.len() <= index {
-            out.resize(index + 1, Motion::default());
-        }
-        let (linear, angular) = (body.linvel(), body.angvel());
-        let reach = body.mass_properties().max_extent();
-        out[index] = Motion {
-            linear,
-            angular,
-            center: body.center_of_mass(),
-            fastest: linear.length() + angular.length() * reach,
-        };
-    }
-}
-
-impl<'a> Collector<'a> {
-    pub(crate) fn new(entries: &'a [Entry], before: &'a [Motion], min_speed: f32) -> Self {
-        Self {
-            entries,
-            min_speed,
-            before,
-            reports: Mutex::new(Vec::new()),
+impl ContactEvent {
+    /// The mean normal force while it lasted, N; 0 for impacts and ends.
+    pub fn normal_force_n(&self) -> f32 {
+        if self.duration_s > 0.0 {
+            self.impulse_n_s / self.duration_s
+        } else {
+            0.0
         }
     }
 
-    fn motion(&self, body: Option<RigidBodyHandle>) -> Motion {
-        body.and_then(|body| self.before.get(body.into_raw_parts().0 as usize))
-            .copied()
-            .unwrap_or_default()
-    }
-
-    fn report(
-        &self,
-        bodies: &RigidBodySet,
-        colliders: &ColliderSet,
-        pair: &ContactPair,
-    ) -> Option<Report> {
-        let (one, two) = (&colliders[pair.collider1], &colliders[pair.collider2]);
-        let a = self.entries.get(entry_index(one))?;
-        let b = self.entries.get(entry_index(two))?;
-        let (touch_a, touch_b) = (a.toucher?, b.toucher?);
-        let (motion_a, motion_b) = (self.motion(one.parent()), self.motion(two.parent()));
-        if motion_a.fastest + motion_b.fastest < self.min_speed {
-            return None;
+    /// The mean friction force while it lasted, N; 0 for impacts and ends.
+    pub fn friction_force_n(&self) -> f32 {
+        if self.duration_s > 0.0 {
+            self.tangential_impulse_n_s / self.duration_s
+        } else {
+            0.0
         }
-        let (mut impulse, mut moment, mut speed) = (0.0, Vec3::ZERO, 0.0_f32);
-        let (mut strongest, mut classes) = (0.0, (0, 0));
-        for manifold in pair.solver_manifolds() {
-            let mut here = 0.0;
-            for contact in &manifold.data.solver_contacts {
-                let index = contact.contact_indices()[0] as usize;
-                let Some(point) = manifold.points.get(index) else {
-                    continue;
-                };
-                let push = point.data.impulse;
-                if push <= 0.0 {
-                    continue;
-                }
-                let (p, q) = manifold.data.solver_contact_world_points(contact, bodies);
-                let place = (p + q) * 0.5;
-                let relative = motion_a.at(place) - motion_b.at(place);
-                speed = speed.max(relative.dot(manifold.data.normal));
-                impulse += push;
-                here += push;
-                moment += place * push;
-            }
-            if here > strongest {
-                strongest = here;
-                classes = (
-                    a.surface.class(manifold.subshape1),
-                    b.surface.class(manifold.subshape2),
-                );
-            }
-        }
-        let fast = impulse > 0.0 && speed >= self.min_speed;
-        fast.then(|| {
-            let swap = touch_a > touch_b;
-            Report {
-                pair: if swap {
-                    (touch_b, touch_a)
-                } else {
-                    (touch_a, touch_b)
-                },
-                classes: if swap {
-                    (classes.1, classes.0)
-                } else {
-                    classes
-                },
-                impulse,
-                moment,
-                speed,
-            }
-        })
     }
+}
 
-    /// Adds the step's reports to the impacts that go on; moves those that are over to `out`.
-    pub(crate) fn settle(
-        self,
-        tick: u64,
-        dt_s: f64,
-        table: &ContactTable,
-        min_impulse: f32,
-        impacts: &mut Impacts,
-        out: &mut Vec<ContactEvent>,
-    ) {
-        let mut reports = self
-            .reports
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner);
-        // Sums over a pair's colliders must not depend on rapier's order of pairs.
-        reports.sort_by(|a, b| {
-            (a.pair, a.classes, a.impulse.to_bits()).cmp(&(b.pair, b.classes, b.impulse.to_bits()))
+/// Events of a control step beyond its limit, which are not told one by one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct MergedEvents {
+    /// How many.
+    pub count: usize,
+    /// The sum of their normal impulses, N·s.
+    pub impulse_n_s: f32,
+}
+
+/// Sorts the events from `first` on by time and pair, and keeps at most `most` of them: impacts before scrapes and rolling,
+/// the strongest impulse first.
+pub(crate) fn bound(events: &mut Vec<ContactEvent>, first: usize, most: usize) -> MergedEvents {
+    let new = &mut events[first..];
+    let mut merged = MergedEvents::default();
+    if new.len() > most {
+        new.sort_by(|x, y| {
+            let impact = |event: &ContactEvent| event.kind != ContactKind::Impact;
+            let strength = y.impulse_n_s.total_cmp(&x.impulse_n_s);
+            let order = impact(x).cmp(&impact(y)).then(strength);
+            order.then((x.a, x.b, x.kind, x.phase).cmp(&(y.a, y.b, y.kind, y.phase)))
         });
-        let mut seen: Vec<(Toucher, Toucher)> = Vec::new();
-        for report in reports {
-            let continues = seen.last() == Some(&report.pair);
-            let impact = impacts.entry(report.pair).or_insert(Impact {
-                first_tick: tick,
-                steps: 0,
-                impulse_n_s: 0.0,
-                moment: Vec3::ZERO,
-                speed_m_s: 0.0,
-                classes: report.classes,
-            });
-            if !continues {
-                impact.steps += 1;
-                seen.push(report.pair);
-            }
-            impact.impulse_n_s += report.impulse;
-            impact.moment += report.moment;
-            impact.speed_m_s = impact.speed_m_s.max(report.speed);
+        for event in &new[most..] {
+            merged.count += 1;
+            merged.impulse_n_s += event.impulse_n_s;
         }
-        if impacts.is_empty() {
-            return;
-        }
-        impacts.retain(|pair, impact| {
-            let goes_on = impact.steps < LONGEST_IMPACT_STEPS && seen.binary_search(pair).is_ok();
-            if !goes_on && impact.impulse_n_s >= min_impulse {
-                out.push(ContactEvent {
-                    time_s: impact.first_tick as f64 * dt_s,
-                    position: impact.moment / impact.impulse_n_s,
-                    a: pair.0,
-                    b: pair.1,
-                    substance_a: table.substance(impact.classes.0),
-                    substance_b: table.substance(impact.classes.1),
-                    impulse_n_s: impact.impulse_n_s,
-                    relative_normal_speed_m_s: impact.speed_m_s,
-                });
-            }
-            goes_on
-        });
+        events.truncate(first + most);
     }
-}
-
-impl EventHandler for Collector<'_> {
-    fn handle_collision_event(
-        &self,
-        _bodies: &RigidBodySet,
-        _colliders: &ColliderSet,
-        _event: CollisionEvent,
-        _pair: Option<&ContactPair>,
-    ) {
-    }
-
-    fn handle_contact_force_event(
-        &self,
-        _dt: f32,
-        bodies: &RigidBodySet,
-        colliders: &ColliderSet,
-        pair: &ContactPair,
-        _total_force: f32,
-    ) {
-        if let Some(report) = self.report(bodies, colliders, pair) {
-            self.reports
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .push(report);
-        }
-    }
-
-    fn handle_soft_body_tear_event(&self, _soft: &SoftBodySet, _event: &SoftBodyTearEvent) {}
+    events[first..].sort_by(|x, y| {
+        let order = x.time_s.total_cmp(&y.time_s);
+        order.then((x.a, x.b, x.kind, x.phase).cmp(&(y.a, y.b, y.kind, y.phase)))
+    });
+    merged
 }
