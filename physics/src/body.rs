@@ -1,10 +1,10 @@
 //! The rigid bodies of a world: making them, and reading where they are.
 
 use crate::contact::{Dress, Entry};
-use crate::convert::{from_rapier, to_rapier};
+use crate::convert::from_rapier;
 use crate::engine::Engine;
 use crate::inertia::Inertia;
-use crate::model::{BodyPlan, Owner, PhysicsModel, Piece, shapes};
+use crate::model::{BodyPlan, PhysicsModel, Piece};
 use dwell_scene::material::PairContact;
 use dwell_scene::{House, ObjectId, PartId, Pose, State, Velocity};
 use rapier3d::dynamics::{
@@ -67,16 +67,8 @@ pub(crate) fn insert_statics(
     values: Dress<'_>,
 ) -> Vec<Entry> {
     let ground = engine.bodies.insert(RigidBodyBuilder::fixed());
-    let mut entries = Vec::with_capacity(model.statics.len() + 1);
-    let (floor, place) = shapes::last_floor(&model.bounds);
-    let last_floor = Piece {
-        owner: Owner::LastFloor,
-        shape: floor,
-        place: to_rapier(&place),
-        density_kg_m3: 0.0,
-        cover: crate::model::Cover::One(None),
-    };
-    for piece in model.statics.iter().chain([&last_floor]) {
+    let mut entries = Vec::with_capacity(model.statics.len());
+    for piece in &model.statics {
         let entry = Entry::new(piece.owner, None, values.table.surface(&piece.cover));
         let builder = ColliderBuilder::new(piece.shape.clone())
             .position(piece.place)

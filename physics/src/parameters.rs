@@ -38,11 +38,8 @@ impl PhysicsWorld {
             .iter()
             .enumerate()
             .flat_map(|(body, plan)| plan.pieces.iter().map(move |piece| (piece, Some(body))));
-        // Entries stand in the order of insertion: statics, the last floor, bodies, agents.
+        // Entries stand in the order of insertion: statics, bodies, agents.
         for (piece, body) in statics.chain(moving) {
-            if body.is_some() && index == model.statics.len() {
-                index += 1;
-            }
             self.entries[index].surface = table.surface(&piece.cover);
             let density = body.map(|body| {
                 let altered = weights.altered[body].as_ref();

@@ -321,7 +321,7 @@ impl Start<'_> {
         match self.entries[entry].toucher {
             Some(crate::contact::Toucher::Structure(id)) => Owner::Structure(id),
             Some(crate::contact::Toucher::Part(id)) => Owner::Part(id),
-            _ => Owner::LastFloor,
+            _ => Owner::LastBox,
         }
     }
 }

@@ -291,6 +291,22 @@ impl Probe<'_> {
         Some(start.y - radius - fall * hit.time_of_impact)
     }
 
+    /// Whether something lies under the feet, however deep: no one walks out of the house onto nothing.
+    pub(crate) fn is_above_something(&self, feet: Vec3) -> bool {
+        let predicate = |_: ColliderHandle, collider: &Collider| {
+            let entry = self.entries.get(entry_index(collider));
+            entry.is_some_and(|entry| entry.toucher.is_some())
+                && self.sees(collider) != Seen::Nothing
+        };
+        let queries = self
+            .engine
+            .queries(QueryFilter::default().predicate(&predicate));
+        let start = feet + Vec3::Y * self.lower_end(false);
+        let deepest = (start.y - self.model.bounds.min.y).max(0.0) + ABOVE_GROUND_M;
+        let ray = Ray::new(start, Vec3::NEG_Y);
+        queries.cast_ray(&ray, deepest, true).is_some()
+    }
+
     /// The unit normal of the surface right under the middle, on its upper side; `None` without one near `height_m`.
     pub(crate) fn surface(&self, feet: Vec3, height_m: f32) -> Option<Vec3> {
         let predicate =

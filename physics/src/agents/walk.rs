@@ -84,10 +84,11 @@ impl Walk<'_> {
         if target == feet || self.probe.is_inside_something(target) {
             return feet;
         }
-        if !grounded {
-            return target;
-        }
         let step = self.probe.body.step_height_m;
+        if !grounded {
+            let leaves = self.probe.ground(target, step).is_none() && self.leaves(feet, target);
+            return if leaves { feet } else { target };
+        }
         if let Some(ground) = self.probe.ground(target, step) {
             let rise = ground - feet.y;
             if rise > step + 1e-3 {
@@ -103,8 +104,15 @@ impl Walk<'_> {
                 }
             }
             target.y = ground;
+        } else if self.leaves(feet, target) {
+            return feet;
         }
         target
+    }
+
+    /// Whether a movement leads from above something to above nothing at all: out of the house.
+    fn leaves(&self, feet: Vec3, target: Vec3) -> bool {
+        !self.probe.is_above_something(target) && self.probe.is_above_something(feet)
     }
 
     /// Goes as far as possible, along what is in the way.

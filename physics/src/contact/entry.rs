@@ -50,7 +50,7 @@ impl Surface {
 /// What a collider stands for.
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
-    /// What it is; `None` for the floor of last resort.
+    /// What it is; `None` for the box of last resort.
     pub(crate) toucher: Option<Toucher>,
     /// The rigid body it moves with, unless it is static or an agent's.
     pub(crate) body: Option<u32>,
@@ -62,7 +62,7 @@ impl Entry {
         let toucher = match owner {
             Owner::Structure(id) => Some(Toucher::Structure(id)),
             Owner::Part(id) => Some(Toucher::Part(id)),
-            Owner::LastFloor => None,
+            Owner::LastBox => None,
         };
         Self {
             toucher,

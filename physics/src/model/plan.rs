@@ -20,8 +20,8 @@ pub(crate) enum Owner {
     Structure(StructureId),
     /// A part of an object.
     Part(PartId),
-    /// The floor of last resort.
-    LastFloor,
+    /// The box of last resort around the house.
+    LastBox,
 }
 
 /// What a piece is made of.
@@ -240,6 +240,14 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
     }
     stand_ins.dedup();
     let bounds = bounds(&house, &statics, &bodies);
+    let sides = shapes::last_box(&bounds).map(|(shape, place)| Piece {
+        owner: Owner::LastBox,
+        shape,
+        place: to_rapier(&place),
+        density_kg_m3: 0.0,
+        cover: Cover::One(None),
+    });
+    statics.extend(sides);
     PhysicsModel {
         house,
         statics,
@@ -324,7 +332,7 @@ impl Owner {
         match self {
             Self::Structure(id) => house.structure[id].name.clone(),
             Self::Part(id) => house.objects[house.parts[id].object].name.clone(),
-            Self::LastFloor => "the floor of last resort".to_owned(),
+            Self::LastBox => "the box of last resort".to_owned(),
         }
     }
 }

@@ -168,17 +168,32 @@ pub(crate) fn bounds(shape: &SharedShape, world_from_shape: &RapierPose) -> Aabb
     Aabb::new(aabb.mins, aabb.maxs)
 }
 
-/// The floor of last resort: whatever leaves the house comes to rest on it.
-pub(crate) fn last_floor(house_bounds: &Aabb) -> (SharedShape, Pose) {
-    let half = Vec3::new(
-        house_bounds.size().x * 0.5 + 500.0,
-        0.5,
-        house_bounds.size().z * 0.5 + 500.0,
-    );
-    let center = house_bounds.center();
-    let top = house_bounds.min.y - 2.0;
-    let place = Pose::from_position(Vec3::new(center.x, top - half.y, center.z));
-    (SharedShape::cuboid(half.x, half.y, half.z), place)
+/// Gap between a house and the box of last resort, m.
+const LAST_GAP_M: f32 = 0.5;
+/// Thickness of that box's sides, m: more than anything falls in a physics step.
+const LAST_SIDE_M: f32 = 1.0;
+
+/// The box of last resort, side by side: whatever leaves the house through an open door or window stays in it.
+pub(crate) fn last_box(house_bounds: &Aabb) -> [(SharedShape, Pose); 6] {
+    let inner = house_bounds.grown(LAST_GAP_M);
+    let (half, center) = (inner.size() * 0.5, inner.center());
+    let side = |axis: usize, sign: f32| {
+        let mut side_half = half + LAST_SIDE_M;
+        side_half[axis] = 0.5 * LAST_SIDE_M;
+        let mut place = center;
+        place[axis] += sign * (half[axis] + 0.5 * LAST_SIDE_M);
+        let shape = SharedShape::cuboid(side_half.x, side_half.y, side_half.z);
+        (shape, Pose::from_position(place))
+    };
+    [
+        (1, -1.0),
+        (1, 1.0),
+        (0, -1.0),
+        (0, 1.0),
+        (2, -1.0),
+        (2, 1.0),
+    ]
+    .map(|(axis, sign)| side(axis, sign))
 }
 
 #[cfg(test)]
