@@ -31,7 +31,6 @@ impl PhysicsWorld {
             table: &table,
             laws: &laws,
         };
-        let mut index = 0;
         let statics = model.statics.iter().map(|piece| (piece, None));
         let moving = model
             .bodies
@@ -39,14 +38,13 @@ impl PhysicsWorld {
             .enumerate()
             .flat_map(|(body, plan)| plan.pieces.iter().map(move |piece| (piece, Some(body))));
         // Entries stand in the order of insertion: statics, bodies, agents.
-        for (piece, body) in statics.chain(moving) {
+        for (index, (piece, body)) in statics.chain(moving).enumerate() {
             self.entries[index].surface = table.surface(&piece.cover);
             let density = body.map(|body| {
                 let altered = weights.altered[body].as_ref();
                 body::density(piece, weights.factors[body], altered)
             });
             changed |= self.redress(index, values, density);
-            index += 1;
         }
         for (index, inertia) in weights.altered.iter().enumerate() {
             if *inertia == self.weights.altered[index] {

@@ -120,6 +120,25 @@ fn observations_and_states_do_not_depend_on_threads_or_company() {
     }
 }
 
+/// An episode is the same whether others were played before it or not.
+#[test]
+fn episodes_do_not_remember_earlier_ones() {
+    let play = |seeds: &[u64]| {
+        let mut batch = Batch::new(vec![dwell_tests::env(&all_sensors())], Threads::ONE).unwrap();
+        let mut last = Vec::new();
+        for seed in seeds {
+            batch.reset(&[Some(*seed)]).unwrap();
+            last = vec![(batch.envs()[0].world().hash(), observe(&mut batch))];
+            for action in [DiscreteAction::MoveForward, DiscreteAction::TurnRight] {
+                batch.step(&[Some(action)]).unwrap();
+                last.push((batch.envs()[0].world().hash(), observe(&mut batch)));
+            }
+        }
+        last
+    };
+    assert!(play(&[1, 2]) == play(&[2]));
+}
+
 /// Every task's expert succeeds in at least eight of ten fixed seeds.
 #[test]
 fn every_task_can_be_solved_by_its_expert() {

@@ -111,3 +111,94 @@ fn what_a_hand_takes_moves_with_the_agent_and_is_known_as_held() {
     assert!(world.act(AGENT, &Action::Drop).success);
     assert_eq!(world.state().held_by[object], None);
 }
+
+/// The newest samples at both ears.
+fn heard(world: &World, agent: AgentId, samples: usize) -> Vec<f32> {
+    let mut both = vec![0.0; 2 * samples];
+    for (channel, out) in both.chunks_exact_mut(samples).enumerate() {
+        world.heard(agent, channel, out);
+    }
+    both
+}
+
+/// A world with agents in the same room, each at another place.
+fn gathering(agents: usize) -> World {
+    let config = WorldConfig {
+        agents: vec![dwell_scene::AgentBody::default(); agents],
+        ..WorldConfig::default()
+    };
+    let engines = dwell_tests::apartment();
+    let stand = Vec3::from_array(dwell::viewpoints(&engines).unwrap()[0].stand);
+    let mut world = World::new(engines, &config).unwrap();
+    for agent in 0..agents as u32 {
+        let aside = Vec3::X * 0.5 * agent as f32;
+        world
+            .place_agent(AgentId(agent), stand + aside, 0.0)
+            .unwrap();
+    }
+    world
+}
+
+/// What an agent hears does not depend on who else listens, nor on how often it is asked.
+#[test]
+fn listening_changes_nothing() {
+    let run = |ears: &[(AgentId, usize)], asks: usize| {
+        let mut world = gathering(2);
+        let mut all = Vec::new();
+        for _ in 0..6 {
+            world.step(&[]).unwrap();
+            for _ in 0..asks {
+                world.listen(ears).unwrap();
+                all = heard(&world, AGENT, 4000);
+            }
+        }
+        all
+    };
+    let alone = run(&[(AGENT, 4000)], 1);
+    assert!(alone.iter().any(|x| *x != 0.0), "something is playing");
+    assert_eq!(run(&[(AGENT, 4000)], 3), alone);
+    assert_eq!(run(&[(AgentId(1), 4000), (AGENT, 4000)], 1), alone);
+}
+
+/// Who asks for a longer window keeps what was heard, and who opens the ears late hears what sounds then, not before.
+#[test]
+fn windows_grow_backwards_and_time_goes_on_without_ears() {
+    let mut world = gathering(1);
+    world.listen(&[(AGENT, 800)]).unwrap();
+    world.step(&[]).unwrap();
+    let short = heard(&world, AGENT, 800);
+    world.listen(&[(AGENT, 3200)]).unwrap();
+    assert_eq!(heard(&world, AGENT, 800), short);
+    // Close to a source, where its direct sound is most of what is heard.
+    let beside_a_source = || {
+        let mut world = gathering(1);
+        let (house, state) = (world.house().clone(), world.state().clone());
+        let source = house
+            .emitters
+            .iter()
+            .find(|source| state.is_on(&house, source.object));
+        let source = source.expect("something is playing");
+        let place = state.part_pose[source.part].transform_point(source.position);
+        let floor = state.agents[AGENT].position.y;
+        world
+            .place_agent(AGENT, Vec3::new(place.x + 0.3, floor, place.z), 0.0)
+            .unwrap();
+        world
+    };
+    let (mut early, mut late) = (beside_a_source(), beside_a_source());
+    early.listen(&[(AGENT, 800)]).unwrap();
+    for _ in 0..5 {
+        early.step(&[]).unwrap();
+        late.step(&[]).unwrap();
+    }
+    late.listen(&[(AGENT, 800)]).unwrap();
+    // The same moment of the same programme.
+    let level = |samples: &[f32]| samples.iter().map(|x| x * x).sum::<f32>().sqrt();
+    let (a, b) = (heard(&early, AGENT, 800), heard(&late, AGENT, 800));
+    let product: f32 = a.iter().zip(&b).map(|(x, y)| x * y).sum();
+    assert!(
+        product > 0.5 * level(&a) * level(&b),
+        "{product} of {}",
+        level(&a) * level(&b)
+    );
+}

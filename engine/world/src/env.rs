@@ -249,7 +249,7 @@ impl Env {
         Ok(self.task.expert(&mut self.world, episode))
     }
 
-    /// The world's sound of this step; call once a step, before [`Self::observe`].
+    /// Opens the ears that the sensors ask for, where they are not open yet.
     pub(crate) fn listen(&mut self) -> Result<(), WorldError> {
         self.world.listen(&self.requests.ears)
     }

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 /// Blows weaker than this are not heard, N·s.
 const FAINTEST_N_S: f32 = 0.02;
-/// The most blows that sound at once; the hardest win.
+/// The most blows that begin to sound in one step; the hardest win.
 const MOST_BLOWS: usize = 16;
 /// Source ids of blows begin here; those of emitters are their numbers.
 const FIRST_BLOW_ID: u64 = 1 << 32;
@@ -32,7 +32,7 @@ pub(crate) struct Sound {
     rate_hz: u32,
     block: usize,
     preset: String,
-    /// Sample of the first block's start.
+    /// Blocks that are over. The first is the one before the world's start, so that there is something to hear at once.
     blocks: u64,
     blows: Vec<Blow>,
     next_blow: u64,
@@ -58,6 +58,60 @@ struct Ears {
     length: usize,
 }
 
+/// What sounds in a block.
+struct Sounding {
+    id: u64,
+    /// m.
+    position: Vec3,
+    /// Pressure at 1 m, Pa. Shape (sample,).
+    signal: Vec<f32>,
+}
+
+impl Ears {
+    /// Hears the next block.
+    fn hear(
+        &mut self,
+        house: &House,
+        rays: &RayScene,
+        state: &State,
+        sources: &[Sounding],
+    ) -> Result<(), WorldError> {
+        let Some(agent) = state.agents.get(self.agent) else {
+            return Ok(());
+        };
+        let receiver = Receiver::binaural(agent.world_from_head());
+        let active = loudest_first(house, sources, agent.eye_position());
+        let size = self.stream.config().block_samples;
+        let mut heard = vec![0.0; 2 * size];
+        self.stream
+            .block(rays, state, &active, &receiver, &mut heard)?;
+        for (window, block) in self
+            .window
+            .chunks_exact_mut(self.length)
+            .zip(heard.chunks_exact(size))
+        {
+            window.copy_within(size.., 0);
+            window[self.length - size..].copy_from_slice(block);
+        }
+        Ok(())
+    }
+
+    /// Makes the window at least `length` long; what was heard stays at its end.
+    fn lengthen(&mut self, length: usize) {
+        if length <= self.length {
+            return;
+        }
+        let mut longer = vec![0.0; 2 * length];
+        for (new, old) in longer
+            .chunks_exact_mut(length)
+            .zip(self.window.chunks_exact(self.length))
+        {
+            new[length - self.length..].copy_from_slice(old);
+        }
+        (self.window, self.length) = (longer, length);
+    }
+}
+
 #[derive(Serialize, Deserialize)]
 struct Memory {
     blocks: u64,
@@ -72,22 +126,19 @@ impl Sound {
             rate_hz: config.sound_rate_hz,
             block: config.samples_per_step(),
             preset: config.sound_preset.clone(),
-            blocks: 0,
+            blocks: 1,
             blows: Vec::new(),
-            next_blow: FIRST_BLOW_ID,
+            next_blow: 0,
             ears: Vec::new(),
         }
     }
 
-    /// Silence at time zero; ears are kept.
+    /// Silence, and no one who listens.
     pub(crate) fn reset(&mut self) {
-        self.blocks = 0;
+        self.blocks = 1;
         self.blows.clear();
-        self.next_blow = FIRST_BLOW_ID;
-        for ears in &mut self.ears {
-            ears.stream.reset();
-            ears.window.fill(0.0);
-        }
+        self.next_blow = 0;
+        self.ears.clear();
     }
 
     /// Lets the impacts of the last step sound in the block that ends now; the acoustics have no sound of scraping yet.
@@ -96,6 +147,7 @@ impl Sound {
         house: &House,
         events: &[ContactEvent],
         step_start_s: f64,
+        key: Key,
     ) {
         let mut hard: Vec<&ContactEvent> = events
             .iter()
@@ -110,13 +162,13 @@ impl Sound {
             let late_s = (event.time_s - step_start_s).max(0.0);
             let late = ((late_s * f64::from(self.rate_hz)) as u64).min(self.block as u64 - 1);
             self.blows.push(Blow {
-                id: self.next_blow,
+                id: FIRST_BLOW_ID + self.next_blow,
                 sound: ImpactSound {
                     position: event.position,
                     impulse_n_s: event.impulse_n_s,
                     substances: [event.substance_a.to_owned(), event.substance_b.to_owned()],
                     size_m: [size(event.a), size(event.b)],
-                    key: Key::root(self.next_blow),
+                    key: key.child("blow").child(self.next_blow),
                 },
                 start: self.blocks * self.block as u64 + late,
             });
@@ -124,8 +176,31 @@ impl Sound {
         }
     }
 
-    /// Computes the block of the last step for the ears of `agents`, each with a window of so many samples.
-    pub(crate) fn block(
+    /// Ends a block: every ear hears what sounded in it.
+    pub(crate) fn advance(
+        &mut self,
+        engines: &Engines,
+        rays: &RayScene,
+        state: &State,
+    ) -> Result<(), WorldError> {
+        if !self.ears.is_empty() {
+            let sources = self.sources(engines.house(), state, self.blocks)?;
+            for ears in &mut self.ears {
+                ears.hear(engines.house(), rays, state, &sources)?;
+            }
+        }
+        self.blocks += 1;
+        // What rang in the block that has just ended is kept for ears that begin to listen after it.
+        let ended = (self.blocks - 1) * self.block as u64;
+        let rate = f64::from(self.rate_hz);
+        self.blows
+            .retain(|blow| blow.start as f64 + blow.sound.duration_s() * rate > ended as f64);
+        Ok(())
+    }
+
+    /// From now on these agents listen, each with a window of at least so many samples. Ears that are new hear the block that
+    /// has just ended; ears that listen already keep what they heard.
+    pub(crate) fn listen(
         &mut self,
         engines: &Engines,
         rays: &RayScene,
@@ -133,66 +208,23 @@ impl Sound {
         agents: &[(AgentId, usize)],
         key: Key,
     ) -> Result<(), WorldError> {
-        if agents.is_empty() {
-            self.finish_block();
-            return Ok(());
-        }
-        self.prepare_ears(engines, agents, key)?;
-        let sources = self.sources(engines.house(), state)?;
-        let mut heard = vec![0.0; 2 * self.block];
-        for ears in self
-            .ears
-            .iter_mut()
-            .filter(|ears| agents.iter().any(|(agent, _)| *agent == ears.agent))
-        {
-            let Some(agent) = state.agents.get(ears.agent) else {
-                continue;
-            };
-            let receiver = Receiver::binaural(agent.world_from_head());
-            let active = loudest_first(engines.house(), &sources, agent.eye_position());
-            ears.stream
-                .block(rays, state, &active, &receiver, &mut heard)?;
-            for (channel, block) in heard.chunks_exact(self.block).enumerate() {
-                let window = &mut ears.window[channel * ears.length..(channel + 1) * ears.length];
-                let kept = ears.length - self.block;
-                window.copy_within(self.block.., 0);
-                window[kept..].copy_from_slice(block);
-            }
-        }
-        self.finish_block();
-        Ok(())
-    }
-
-    fn finish_block(&mut self) {
-        self.blocks += 1;
-        let now = self.blocks * self.block as u64;
-        let rate = f64::from(self.rate_hz);
-        self.blows
-            .retain(|blow| blow.start as f64 + blow.sound.duration_s() * rate > now as f64);
-    }
-
-    fn prepare_ears(
-        &mut self,
-        engines: &Engines,
-        agents: &[(AgentId, usize)],
-        key: Key,
-    ) -> Result<(), WorldError> {
         for (agent, samples) in agents {
             let length = samples.next_multiple_of(self.block).max(self.block);
             if let Some(ears) = self.ears.iter_mut().find(|ears| ears.agent == *agent) {
-                if ears.length < length {
-                    ears.window = vec![0.0; 2 * length];
-                    ears.length = length;
-                }
+                ears.lengthen(length);
                 continue;
             }
-            let stream = self.stream(engines, *agent, key)?;
-            self.ears.push(Ears {
+            let mut ears = Ears {
                 agent: *agent,
-                stream,
+                stream: self.stream(engines, *agent, key)?,
                 window: vec![0.0; 2 * length],
                 length,
-            });
+            };
+            let sources = self.sources(engines.house(), state, self.blocks - 1)?;
+            ears.hear(engines.house(), rays, state, &sources)?;
+            // In the order of agents, whoever began first.
+            let place = self.ears.partition_point(|other| other.agent < *agent);
+            self.ears.insert(place, ears);
         }
         Ok(())
     }
@@ -219,13 +251,14 @@ impl Sound {
         )?)
     }
 
-    /// What sounds in this block: emitters that are on, and blows that ring. Pressure at 1 m, Pa.
+    /// What sounds in a block: emitters that are on, and blows that ring.
     fn sources(
         &self,
         house: &House,
         state: &State,
-    ) -> Result<Vec<(u64, Vec3, Vec<f32>)>, WorldError> {
-        let start = self.blocks * self.block as u64;
+        block: u64,
+    ) -> Result<Vec<Sounding>, WorldError> {
+        let start = block * self.block as u64;
         let mut sources = Vec::new();
         for (k, emitter) in house.emitters.iter().enumerate() {
             if !state.is_on(house, emitter.object) {
@@ -237,11 +270,11 @@ impl Sound {
             for sample in &mut signal {
                 *sample *= pressure;
             }
-            sources.push((
-                k as u64,
-                state.part_pose[emitter.part].transform_point(emitter.position),
+            sources.push(Sounding {
+                id: k as u64,
+                position: state.part_pose[emitter.part].transform_point(emitter.position),
                 signal,
-            ));
+            });
         }
         for blow in &self.blows {
             let mut signal = vec![0.0; self.block];
@@ -251,7 +284,11 @@ impl Sound {
             );
             blow.sound
                 .synthesize(self.rate_hz, elapsed, &mut signal[skip.min(self.block)..]);
-            sources.push((blow.id, blow.sound.position, signal));
+            sources.push(Sounding {
+                id: blow.id,
+                position: blow.sound.position,
+                signal,
+            });
         }
         Ok(sources)
     }
@@ -295,6 +332,9 @@ impl Sound {
         let memory: Memory =
             postcard::from_bytes(bytes).map_err(|error| WorldError::Snapshot(error.to_string()))?;
         let mut sound = Self::new(config);
+        if memory.blocks == 0 {
+            return Err(WorldError::Snapshot("no block of sound is over".to_owned()));
+        }
         (sound.blocks, sound.blows, sound.next_blow) =
             (memory.blocks, memory.blows, memory.next_blow);
         for (agent, window, stream) in memory.ears {
@@ -319,18 +359,15 @@ impl Sound {
 }
 
 /// The sources that can be heard at `ear`, the loudest first: a stream follows only so many.
-fn loudest_first<'a>(
-    house: &House,
-    sources: &'a [(u64, Vec3, Vec<f32>)],
-    ear: Vec3,
-) -> Vec<ActiveSource<'a>> {
+fn loudest_first<'a>(house: &House, sources: &'a [Sounding], ear: Vec3) -> Vec<ActiveSource<'a>> {
     let room = house.room_at(ear);
     let mut heard: Vec<(f32, ActiveSource<'a>)> = sources
         .iter()
-        .map(|(id, position, signal)| {
+        .map(|source| {
+            let signal = &source.signal;
             let power = signal.iter().map(|x| x * x).sum::<f32>() / signal.len().max(1) as f32;
-            let spread = (*position - ear).length().max(0.1);
-            let walls = if house.room_at(*position) == room {
+            let spread = (source.position - ear).length().max(0.1);
+            let walls = if house.room_at(source.position) == room {
                 0.0
             } else {
                 OTHER_ROOM_DB
@@ -339,8 +376,8 @@ fn loudest_first<'a>(
             (
                 level_db,
                 ActiveSource {
-                    id: *id,
-                    position: *position,
+                    id: source.id,
+                    position: source.position,
                     signal,
                 },
             )

@@ -103,9 +103,10 @@ impl World {
         self.state.step += 1;
         self.state.time_s = self.state.step as f64 * self.config.step_s();
         self.rays.update(&self.state);
+        let key = self.key.child("sound");
         self.sound
-            .take_events(self.engines.house(), &self.events, began_s);
-        Ok(())
+            .take_events(self.engines.house(), &self.events, began_s, key);
+        self.sound.advance(&self.engines, &self.rays, &self.state)
     }
 
     /// Lets an agent do something with its hand.
@@ -137,12 +138,14 @@ impl World {
         Ok(())
     }
 
-    /// Computes this step's sound for the agents in `ears`, each with a window of so many samples.
+    /// From now on these agents listen, until the next reset, each with a window of at least so many samples: every step
+    /// computes what they hear. Who begins to listen hears the last step's sound at once; who listens already hears nothing
+    /// twice.
     ///
     /// # Errors
     /// [`WorldError::Acoustics`] for a source or receiver that cannot be simulated.
     pub fn listen(&mut self, ears: &[(AgentId, usize)]) -> Result<(), WorldError> {
-        self.sound.block(
+        self.sound.listen(
             &self.engines,
             &self.rays,
             &self.state,
