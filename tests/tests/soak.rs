@@ -6,10 +6,10 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell::{Engines, World, WorldConfig, viewpoints};
-use dwell_physics::{Action, AgentControl};
+use dwell_physics::{Action, AgentControl, Grasp, Target};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::random::{Key, Stream};
-use dwell_scene::{Aabb, AgentBody, AgentId, Id, ObjectId, StructureKind, SurfaceOwner};
+use dwell_scene::{Aabb, AgentBody, AgentId, EntityId, Id, ObjectId, StructureKind, SurfaceOwner};
 use glam::Vec3;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -61,16 +61,59 @@ fn control(stream: &mut Stream) -> AgentControl {
     }
 }
 
-/// Any action on anything, now and then on what does not exist.
+/// Something to act on: mostly an object, now and then one that does not exist, or a ray that leads anywhere or nowhere.
+fn target(stream: &mut Stream, objects: usize) -> Target {
+    match stream.below(8) {
+        0 => Target::Gaze,
+        1 => Target::Ray {
+            origin: stream.direction() * stream.range(0.0, 20.0),
+            direction: stream.direction(),
+        },
+        2 => Target::Ray {
+            origin: Vec3::NAN,
+            direction: Vec3::ZERO,
+        },
+        3 => Target::Entity(EntityId(stream.below(2 * objects) as i32 - 5)),
+        _ => Target::Object(ObjectId(stream.below(objects + 2) as u32)),
+    }
+}
+
+/// Any action, with and without sense.
 fn action(stream: &mut Stream, objects: usize) -> Action {
-    let object = ObjectId(stream.below(objects + 2) as u32);
-    match stream.below(7) {
-        0 | 1 => Action::Pick { object },
-        2 => Action::Drop,
-        3 => Action::Place { on: object },
-        4 => Action::Open { object },
-        5 => Action::Close { object },
-        _ => Action::Toggle { object },
+    let target = target(stream, objects);
+    let number = *stream
+        .choose(&[0.0, 0.5, 3.0, -1.0, 1e30, f32::NAN])
+        .unwrap_or(&0.0);
+    match stream.below(16) {
+        0..=4 => Action::Pick {
+            target,
+            grasp: Grasp::default(),
+        },
+        5 => Action::Drop,
+        6 => Action::Place { on: None },
+        7 => Action::Place { on: Some(target) },
+        8 => Action::PlaceAt {
+            point: stream.direction() * number,
+        },
+        9 => Action::PutIn { container: target },
+        10 => Action::Throw {
+            direction: stream.direction(),
+            speed_m_s: number,
+        },
+        11 => Action::Push {
+            target,
+            force_n: Some(number),
+        },
+        12 => Action::Pull {
+            target,
+            force_n: None,
+        },
+        13 => Action::Open {
+            target,
+            fraction: number,
+        },
+        14 => Action::Close { target },
+        _ => Action::Toggle { target },
     }
 }
 
