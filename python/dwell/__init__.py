@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from dwell.calibration import calibrate
     from dwell.envs import register_envs
     from dwell.house import House
-    from dwell.world import Camera, Outcome, World
+    from dwell.world import Camera, Outcome, Pointed, World
 
 # Imported at first use, so that the command line starts fast.
 _LAZY = {
@@ -40,6 +40,7 @@ _LAZY = {
     "Camera": "dwell.world",
     "House": "dwell.house",
     "Outcome": "dwell.world",
+    "Pointed": "dwell.world",
     "World": "dwell.world",
     "calibrate": "dwell.calibration",
     "register_envs": "dwell.envs",
@@ -56,6 +57,7 @@ __all__ = [
     "HouseNotFoundError",
     "MeasuredDataError",
     "Outcome",
+    "Pointed",
     "SceneError",
     "UsageError",
     "World",

@@ -83,7 +83,9 @@ class World:
     def step(self, controls: NDArray[np.float32]) -> None:
         """One control step; ``controls``: shape (agent, 4): forward m/s, right m/s, yaw rad/s (positive to the left), pitch rad/s (positive up)."""
     def act(self, agent: int, action_json: str) -> str:
-        """``{"kind": "pick", "object": "mug_1"}`` and kin; answers ``{success, code, sentence, object}``."""
+        """``{"kind": "pick", "object": "mug_1"}`` and kin; answers ``{success, code, sentence, object, pointed}``."""
+    def notices_json(self) -> str:
+        """``[{agent, outcome}, ...]``: what became, in the last step, of actions that take time."""
     def place_agent(
         self, agent: int, position: tuple[float, float, float], yaw_deg: float
     ) -> None: ...

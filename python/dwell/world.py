@@ -40,6 +40,25 @@ class Camera:
 
 
 @dataclasses.dataclass(frozen=True)
+class Pointed:
+    """What an agent points at.
+
+    Attributes:
+        id: The id that instance images show.
+        kind: ``object``, ``structure`` or ``agent``.
+        name: The name in the house; an agent's number.
+        point: Where, m.
+        distance_m: From the eye, m.
+    """
+
+    id: int
+    kind: str
+    name: str
+    point: tuple[float, float, float]
+    distance_m: float
+
+
+@dataclasses.dataclass(frozen=True)
 class Outcome:
     """What came of an action.
 
@@ -48,12 +67,21 @@ class Outcome:
         code: Why, in one word.
         sentence: The same for a person, with what to do about it.
         object: The name of the object it was about.
+        pointed: What was pointed at, after ``point``.
     """
 
     success: bool
     code: str
     sentence: str
     object: str | None
+    pointed: Pointed | None = None
+
+    @classmethod
+    def _of(cls, told: Mapping[str, Any]) -> Outcome:
+        pointed = told.get("pointed")
+        if pointed is not None:
+            pointed = Pointed(**{**pointed, "point": tuple(pointed["point"])})
+        return cls(**{**told, "pointed": pointed})
 
 
 class World:
@@ -124,19 +152,55 @@ class World:
             controls = np.zeros((len(self.agents()), 4), np.float32)
         self._native.step(np.ascontiguousarray(controls, np.float32))
 
-    def act(self, kind: str, object: str | int | None = None, *, agent: int = 0) -> Outcome:
+    def act(
+        self,
+        action: str | Mapping[str, Any],
+        object: str | int | None = None,
+        *,
+        agent: int = 0,
+        **details: Any,  # noqa: ANN401 - numbers, names and vectors, checked by the engine
+    ) -> Outcome:
         """Lets an agent do something with its hand, without a step of time.
 
+        What takes time (doors, pushes) tells its end through :meth:`notices`.
+
         Args:
-            kind: ``pick``, ``drop``, ``place``, ``open``, ``close`` or ``toggle``.
-            object: The thing's name or id; not for ``drop``.
+            action: ``pick``, ``drop``, ``place``, ``place_at``, ``put_in``, ``throw``, ``push``, ``pull``, ``open``,
+                ``close``, ``toggle`` or ``point``; or a mapping with ``kind`` and details.
+            object: The thing's name, or its id as instance images show it. Without it, and without ``pixel`` and
+                ``direction``, what the agent looks at is meant.
             agent: Who does it.
+            **details: ``part`` (one drawer of several, by name); ``pixel`` (column, row) and ``camera`` (a
+                :class:`Camera` at the agent's eye) or ``origin`` and ``direction`` of a ray, instead of an object;
+                ``grasp`` of ``pick`` (``"kinematic"`` or ``{"spring": {"frequency_hz": 4, "damping_ratio": 1}}``);
+                ``point`` of ``place_at``, m; ``direction`` and ``speed_m_s`` of ``throw``; ``force_n`` of ``push`` and
+                ``pull``; ``fraction`` of ``open``.
+
+        Raises:
+            ConfigError: For a kind, name or detail that does not exist, or a number that is not finite.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment")
+            >>> world.act("drop").sentence
+            'You hold nothing. Pick something first.'
+            >>> world.act("point", direction=(0.0, -1.0, 0.0)).pointed.kind
+            'structure'
+            >>> world.act({"kind": "pick", "object": -1}).code
+            'unknown_object'
         """
-        action: dict[str, Any] = {"kind": kind}
+        request: dict[str, Any] = (
+            {"kind": action} if isinstance(action, str) else dict(action)
+        ) | details
         if object is not None:
-            action["object"] = object
+            request["object"] = object
         agent = whole("agent", agent)
-        return Outcome(**json.loads(self._native.act(agent, to_json(action))))
+        return Outcome._of(json.loads(self._native.act(agent, _action_json(request))))
+
+    def notices(self) -> list[tuple[int | None, Outcome]]:
+        """What became, in the last step, of actions that take time: who began it, and its end."""
+        notices = json.loads(self._native.notices_json())
+        return [(notice["agent"], Outcome._of(notice["outcome"])) for notice in notices]
 
     def do(self, action: int | str, *, agent: int = 0) -> Outcome:
         """Makes one control step of a discrete action, by number or name (see :func:`actions`)."""
@@ -145,7 +209,7 @@ class World:
             raise ConfigError(f"no action {action!r}; there are {', '.join(names)}")
         number = names.index(action) if isinstance(action, str) else action
         number, agent = whole("action", number, high=len(names) - 1), whole("agent", agent)
-        return Outcome(**json.loads(self._native.act_discrete(agent, number)))
+        return Outcome._of(json.loads(self._native.act_discrete(agent, number)))
 
     def place_agent(
         self, position: Sequence[float], yaw_deg: float = 0.0, *, agent: int = 0
@@ -241,6 +305,19 @@ class World:
     def state_hash(self) -> int:
         """A number that changes with any bit of state, physics, sound queues or random streams."""
         return self._native.hash()
+
+
+def _action_json(request: Mapping[str, Any]) -> str:
+    """An action as the native half reads it; a camera becomes what its pixels depend on."""
+    plain = dict(request)
+    camera = plain.get("camera")
+    if isinstance(camera, Camera):
+        plain["camera"] = {
+            "width": camera.width,
+            "height": camera.height,
+            "fov_deg": camera.fov_deg,
+        }
+    return to_json(plain)
 
 
 def actions() -> list[str]:

@@ -4,19 +4,18 @@ use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::{PyHouse, describe_level};
 use crate::picture;
-use dwell::{DiscreteAction, Guide, Stride, World, WorldConfig};
-use dwell_physics::{Action, ActionOutcome, AgentControl};
+use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
+use dwell_physics::{ActionOutcome, AgentControl};
 use dwell_render::{Channels, Frame, Map};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
-use dwell_scene::{Address, AgentId, Id, LevelId, ObjectId};
+use dwell_scene::{Address, AgentId, Entity, Id, LevelId, ObjectId};
 use glam::Vec3;
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use serde::Deserialize;
 use serde_json::json;
-use std::sync::Mutex;
+use std::sync::{Mutex, TryLockError};
 
 /// A running world with its own state over a shared house.
 #[pyclass(name = "World", module = "dwell._native", frozen)]
@@ -27,15 +26,6 @@ pub(crate) struct PyWorld {
 struct Running {
     world: World,
     guide: Option<([u32; 3], Guide)>,
-}
-
-/// An action of the hand, with the object by name or id.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ActionSettings {
-    kind: String,
-    #[serde(default)]
-    object: Option<serde_json::Value>,
 }
 
 impl Running {
@@ -71,30 +61,33 @@ impl Running {
         }
     }
 
-    fn action(&self, text: &str) -> Result<Action, Fault> {
-        let settings: ActionSettings = serde_json::from_str(text)?;
-        let object = || self.object(settings.object.as_ref().unwrap_or(&serde_json::Value::Null));
-        Ok(match settings.kind.as_str() {
-            "drop" => Action::Drop,
-            "pick" => Action::pick(object()?),
-            "open" => Action::open(object()?),
-            "close" => Action::close(object()?),
-            "toggle" => Action::toggle(object()?),
-            "place" => Action::place(object()?),
-            other => {
-                return Err(Fault::Config(format!(
-                    "kind is {other:?}; allowed are pick, drop, place, open, close, toggle"
-                )));
-            }
-        })
-    }
-
-    fn outcome_json(&self, outcome: &ActionOutcome) -> Result<String, Fault> {
-        let object = outcome
-            .object
-            .map(|object| self.world.house().objects[object].name.clone());
+    fn outcome_json(&self, outcome: &ActionOutcome) -> Result<serde_json::Value, Fault> {
+        let house = self.world.house();
+        let name = |object: ObjectId| house.objects[object].name.clone();
+        let pointed = outcome.pointed.map(|pointed| {
+            let (kind, name) = match house.entity(pointed.entity) {
+                Some(Entity::Object(id)) => ("object", name(id)),
+                Some(Entity::Structure(id)) => ("structure", house.structure[id].name.clone()),
+                Some(Entity::Agent(id)) => ("agent", id.0.to_string()),
+                _ => ("void", String::new()),
+            };
+            json!({
+                "id": pointed.entity.0,
+                "kind": kind,
+                "name": name,
+                "point": pointed.point.to_array(),
+                "distance_m": pointed.distance_m,
+            })
+        });
+        let object = outcome.object.map(name);
         let code = serde_json::to_value(outcome.code)?;
-        Ok(json!({"success": outcome.success, "code": code, "sentence": outcome.sentence, "object": object}).to_string())
+        Ok(json!({
+            "success": outcome.success,
+            "code": code,
+            "sentence": outcome.sentence,
+            "object": object,
+            "pointed": pointed,
+        }))
     }
 }
 
@@ -104,13 +97,12 @@ impl PyWorld {
         py: Python<'_>,
         work: impl FnOnce(&mut Running) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
-        py.engine(|| {
-            let refuse = |_| {
-                Fault::Usage("a bug of the engine stopped this world; make a new one".to_owned())
-            };
-            work(&mut *self.world.lock().map_err(refuse)?)
-        })
+        py.engine(|| work(&mut *self.world.lock().map_err(|_| stopped())?))
     }
+}
+
+fn stopped() -> Fault {
+    Fault::Usage("a bug of the engine stopped this world; make a new one".to_owned())
 }
 
 #[pymethods]
@@ -160,9 +152,10 @@ impl PyWorld {
 
     fn act(&self, py: Python<'_>, agent: usize, action_json: &str) -> PyResult<String> {
         self.with(py, |running| {
-            let (agent, action) = (running.agent(agent)?, running.action(action_json)?);
-            let outcome = running.world.act(agent, &action);
-            running.outcome_json(&outcome)
+            let agent = running.agent(agent)?;
+            let request: ActionRequest = serde_json::from_str(action_json)?;
+            let outcome = running.world.act_on(agent, &request)?;
+            Ok(running.outcome_json(&outcome)?.to_string())
         })
     }
 
@@ -177,7 +170,19 @@ impl PyWorld {
             let outcome = running
                 .world
                 .act_discrete(agent, action, &Stride::default())?;
-            running.outcome_json(&outcome)
+            Ok(running.outcome_json(&outcome)?.to_string())
+        })
+    }
+
+    fn notices_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            let mut notices = Vec::new();
+            for notice in running.world.notices() {
+                let outcome = running.outcome_json(&notice.outcome)?;
+                let agent = notice.agent.map(|agent| agent.0);
+                notices.push(json!({"agent": agent, "outcome": outcome}));
+            }
+            Ok(serde_json::Value::from(notices).to_string())
         })
     }
 
@@ -439,7 +444,14 @@ impl PyWorld {
     }
 
     fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
-        self.with(py, |running| Ok(running.world.restore(snapshot)?))
+        py.engine(|| match self.world.try_lock() {
+            Ok(mut running) => Ok(running.world.restore(snapshot)?),
+            Err(TryLockError::WouldBlock) => Err(Fault::Usage(
+                "restore: this world is busy in another thread; wait for its step to end"
+                    .to_owned(),
+            )),
+            Err(TryLockError::Poisoned(_)) => Err(stopped()),
+        })
     }
 
     fn hash(&self, py: Python<'_>) -> PyResult<u64> {

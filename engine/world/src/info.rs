@@ -182,11 +182,16 @@ pub struct ObjectNow {
     pub on: Option<bool>,
     /// How far it is open, 0 to 1; `None` without a joint.
     pub openness: Option<f32>,
+    /// The names of the objects that it rests on; `"building"` for floors and walls. Empty for what never moves.
+    pub rests_on: Vec<String>,
+    /// The names of the objects that it lies in; only for what a hand can take.
+    pub lies_in: Vec<String>,
 }
 
 /// All objects as they are now.
 pub fn objects_now(world: &World) -> Vec<ObjectNow> {
     let (house, state) = (world.house(), world.state());
+    let called = |id: dwell_scene::ObjectId| house.objects[id].name.clone();
     house
         .objects
         .iter_ids()
@@ -205,6 +210,16 @@ pub fn objects_now(world: &World) -> Vec<ObjectNow> {
                 held_by: state.held_by[id].map(|agent| agent.0),
                 on: object.switch.map(|_| state.switched_on[id]),
                 openness: state.openness(house, id),
+                rests_on: state
+                    .rests_on(house, id)
+                    .into_iter()
+                    .map(|by| by.map_or_else(|| "building".to_owned(), called))
+                    .collect(),
+                lies_in: if object.pickable {
+                    state.lies_in(house, id).into_iter().map(called).collect()
+                } else {
+                    Vec::new()
+                },
             }
         })
         .collect()

@@ -195,6 +195,10 @@ impl World {
         &self.rays
     }
 
+    pub(crate) fn physics(&self) -> &PhysicsWorld {
+        &self.physics
+    }
+
     /// The contacts that began in the last step.
     pub fn events(&self) -> &[ContactEvent] {
         &self.events

@@ -1,0 +1,96 @@
+"""What hands do, through the package."""
+
+from __future__ import annotations
+
+import doctest
+import math
+
+import pytest
+
+import dwell
+import dwell.world
+
+
+def test_the_examples_of_the_docstrings_run() -> None:
+    failed, tried = doctest.testmod(dwell.world)
+    assert tried >= 4
+    assert failed == 0
+
+
+@pytest.fixture
+def world(apartment: dwell.House) -> dwell.World:
+    world = dwell.World(apartment, agents=2)
+    room = apartment.rooms()[0]
+    world.place_agent(room["stand"], room["yaw_deg"])
+    return world
+
+
+def before(world: dwell.World, thing: dict[str, object]) -> None:
+    """Puts agent 0 where it reaches a thing, looking at it."""
+    x, _, z = thing["center"]  # type: ignore[misc]
+    for turn in range(24):
+        angle = math.tau * turn / 24
+        at = (x + 0.75 * math.sin(angle), 0.0, z + 0.75 * math.cos(angle))
+        world.place_agent(at, math.degrees(angle))
+        if world.act("pick", thing["name"]).success:  # type: ignore[arg-type]
+            return
+    pytest.fail(f"nobody reaches {thing['name']}")
+
+
+def test_a_thing_goes_from_hand_to_floor(world: dwell.World) -> None:
+    things = [t for t in world.objects() if t["pickable"] and 0.3 < t["center"][1] < 1.0]
+    before(world, things[0])
+    name = things[0]["name"]
+    held = next(t for t in world.objects() if t["name"] == name)
+    assert held["held_by"] == 0
+    assert held["rests_on"] == []
+    told = world.act("throw", direction=(0.0, 1.0, 0.0), speed_m_s=0.5)
+    assert told.success
+    for _ in range(60):
+        world.step()
+    lying = next(t for t in world.objects() if t["name"] == name)
+    assert lying["held_by"] is None
+    assert lying["rests_on"]
+
+
+def test_pixels_mean_what_the_picture_shows(world: dwell.World) -> None:
+    camera = dwell.Camera(64, 48, fov_deg=80.0, preset="flat")
+    ids = world.render(agent=0, camera=camera, channels=["instance"])["instance"][:, :, 0]
+    for row in range(2, 48, 9):
+        for column in range(2, 64, 9):
+            told = world.act("point", pixel=(column, row), camera=camera)
+            assert told.pointed is not None
+            assert told.pointed.id == ids[row, column]
+            assert told.pointed.distance_m > 0.0
+
+
+def test_wrong_actions_are_refused_with_a_reason(world: dwell.World) -> None:
+    agent_id = 1 + max(thing["id"] for thing in world.objects())
+    assert world.act("pick", agent_id).code == "oneself"
+    assert world.act("pick", agent_id + 1).code == "not_a_thing"
+    assert world.act("pick", 10**6).code == "unknown_object"
+    with pytest.raises(dwell.ConfigError, match="finite"):
+        world.act("throw", direction=(math.nan, 0.0, 0.0))
+    with pytest.raises(dwell.ConfigError, match="no object"):
+        world.act("pick", "unicorn")
+    with pytest.raises(dwell.ConfigError, match="there are"):
+        world.act("fly")
+    with pytest.raises(dwell.ConfigError, match="unknown field"):
+        world.act("pick", colour="red")
+    with pytest.raises(dwell.UsageError, match="no agent 7"):
+        world.act("drop", agent=7)
+
+
+def test_a_door_tells_when_it_has_opened(world: dwell.World) -> None:
+    doors = [t for t in world.objects() if t["category"] == "door" and t["openness"] == 0.0]
+    x, _, z = doors[0]["center"]
+    for turn in range(24):
+        angle = math.tau * turn / 24
+        world.place_agent((x + 0.9 * math.sin(angle), 0.0, z + 0.9 * math.cos(angle)), math.degrees(angle))
+        if world.act("open", doors[0]["name"], fraction=0.5).success:
+            break
+    told = []
+    for _ in range(80):
+        world.step()
+        told += world.notices()
+    assert [(who, outcome.object) for who, outcome in told] == [(0, doors[0]["name"])]
