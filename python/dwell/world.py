@@ -165,19 +165,22 @@ class World:
         What takes time (doors, pushes) tells its end through :meth:`notices`.
 
         Args:
-            action: ``pick``, ``drop``, ``place``, ``place_at``, ``put_in``, ``throw``, ``push``, ``pull``, ``open``,
-                ``close``, ``toggle`` or ``point``; or a mapping with ``kind`` and details.
-            object: The thing's name, or its id as instance images show it. Without it, and without ``pixel`` and
-                ``direction``, what the agent looks at is meant.
+            action: ``pick``, ``drop``, ``place``, ``place_at``, ``put_in``, ``throw``, ``push``,
+                ``pull``, ``open``, ``close``, ``toggle`` or ``point``; or a mapping with ``kind``
+                and details.
+            object: The thing's name, or its id as instance images show it. Without it, and
+                without ``pixel`` and ``direction``, what the agent looks at is meant.
             agent: Who does it.
-            **details: ``part`` (one drawer of several, by name); ``pixel`` (column, row) and ``camera`` (a
-                :class:`Camera` at the agent's eye) or ``origin`` and ``direction`` of a ray, instead of an object;
-                ``grasp`` of ``pick`` (``"kinematic"`` or ``{"spring": {"frequency_hz": 4, "damping_ratio": 1}}``);
-                ``point`` of ``place_at``, m; ``direction`` and ``speed_m_s`` of ``throw``; ``force_n`` of ``push`` and
-                ``pull``; ``fraction`` of ``open``.
+            **details: ``part`` (one drawer of several, by name); ``pixel`` (column, row) and
+                ``camera`` (a :class:`Camera` at the agent's eye) or ``origin`` and ``direction``
+                of a ray, instead of an object; ``grasp`` of ``pick`` (``"kinematic"`` or
+                ``{"spring": {"frequency_hz": 4, "damping_ratio": 1}}``); ``point`` of
+                ``place_at``, m; ``direction`` and ``speed_m_s`` of ``throw``; ``force_n`` of
+                ``push`` and ``pull``; ``fraction`` of ``open``.
 
         Raises:
-            ConfigError: For a kind, name or detail that does not exist, or a number that is not finite.
+            ConfigError: For a kind, name or detail that does not exist, or a number that is not
+                finite.
 
         Examples:
             >>> import dwell

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import doctest
 import math
+from typing import Any
 
 import pytest
 
@@ -25,14 +26,14 @@ def world(apartment: dwell.House) -> dwell.World:
     return world
 
 
-def before(world: dwell.World, thing: dict[str, object]) -> None:
+def before(world: dwell.World, thing: dict[str, Any]) -> None:
     """Puts agent 0 where it reaches a thing, looking at it."""
-    x, _, z = thing["center"]  # type: ignore[misc]
+    x, _, z = thing["center"]
     for turn in range(24):
         angle = math.tau * turn / 24
         at = (x + 0.75 * math.sin(angle), 0.0, z + 0.75 * math.cos(angle))
         world.place_agent(at, math.degrees(angle))
-        if world.act("pick", thing["name"]).success:  # type: ignore[arg-type]
+        if world.act("pick", thing["name"]).success:
             return
     pytest.fail(f"nobody reaches {thing['name']}")
 
@@ -86,7 +87,8 @@ def test_a_door_tells_when_it_has_opened(world: dwell.World) -> None:
     x, _, z = doors[0]["center"]
     for turn in range(24):
         angle = math.tau * turn / 24
-        world.place_agent((x + 0.9 * math.sin(angle), 0.0, z + 0.9 * math.cos(angle)), math.degrees(angle))
+        at = (x + 0.9 * math.sin(angle), 0.0, z + 0.9 * math.cos(angle))
+        world.place_agent(at, math.degrees(angle))
         if world.act("open", doors[0]["name"], fraction=0.5).success:
             break
     told = []

@@ -1,0 +1,75 @@
+//! On and in: what physics says from contacts agrees with what words say from geometry.
+
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and may talk"
+)]
+
+use dwell::{World, WorldConfig};
+use dwell_scene::{Mobility, ObjectId};
+use dwell_semantics::Term;
+
+/// Everything loose in the apartment, after it has stood for a second.
+#[test]
+fn physics_and_words_agree_on_what_rests_on_what() {
+    let mut world = World::new(dwell_tests::apartment(), &WorldConfig::default()).unwrap();
+    for _ in 0..20 {
+        world.step(&[]).unwrap();
+    }
+    let engines = world.engines().clone();
+    let (house, state) = (engines.house(), world.state());
+    let scene = engines.semantics().scene(state);
+    let on = dwell_semantics::predicates::find("on").unwrap();
+    let inside = dwell_semantics::predicates::find("in").unwrap();
+    let loose: Vec<ObjectId> = house
+        .objects
+        .iter_ids()
+        .filter(|(_, object)| object.mobility == Mobility::Movable)
+        .map(|(id, _)| id)
+        .collect();
+    let name = |id: ObjectId| &house.objects[id].name;
+    let (mut same, mut other) = (0, Vec::new());
+    for thing in &loose {
+        let mut felt = state.rests_on(house, *thing);
+        felt.sort_unstable();
+        let mut said: Vec<Option<ObjectId>> = house
+            .objects
+            .ids()
+            .filter(|by| on.holds(&scene, Term::Object(*thing), Term::Object(*by), None))
+            .map(Some)
+            .collect();
+        let floor = house
+            .structure
+            .ids()
+            .any(|piece| on.holds(&scene, Term::Object(*thing), Term::Structure(piece), None));
+        said.extend(floor.then_some(None));
+        said.sort_unstable();
+        if felt == said {
+            same += 1;
+        } else {
+            let names = |ids: &[Option<ObjectId>]| -> Vec<String> {
+                let one =
+                    |id: &Option<ObjectId>| id.map_or("building".to_owned(), |id| name(id).clone());
+                ids.iter().map(one).collect()
+            };
+            other.push(format!(
+                "{}: felt on {:?}, said on {:?}",
+                name(*thing),
+                names(&felt),
+                names(&said)
+            ));
+        }
+        // In is one definition, asked in two ways.
+        let felt_in = state.lies_in(house, *thing);
+        let said_in: Vec<ObjectId> = house
+            .objects
+            .ids()
+            .filter(|by| inside.holds(&scene, Term::Object(*thing), Term::Object(*by), None))
+            .collect();
+        assert_eq!(felt_in, said_in, "{}", name(*thing));
+    }
+    println!("{same} of {} alike; others: {other:#?}", loose.len());
+    // Words count a third of the sole; a contact may be less, and a thing may lean on a neighbour.
+    assert!(same * 10 >= loose.len() * 9, "{other:#?}");
+}
