@@ -1,12 +1,13 @@
 //! The report as one page: no network, no script.
 
 use super::data::{Candidate, Fitted, Report, Verdict};
+use super::page;
 use super::svg;
 use crate::select::ChannelResidual;
 use crate::words::{number, percent};
 use std::fmt::Write as _;
 
-const STYLE: &str = "\
+pub(super) const STYLE: &str = "\
 :root{color-scheme:light dark;--ink:#1c2024;--soft:#5f6b76;--line:#d8dee4;--page:#fdfdfc;--card:#f4f6f8;--before:#c2591a;--after:#1f6fb2;--good:#1a7f4b;--noise:#1f6fb222}\
 @media(prefers-color-scheme:dark){:root{--ink:#e6e9ec;--soft:#9aa5b0;--line:#363d45;--page:#15181b;--card:#1e2327;--before:#f0955a;--after:#6cb2ee;--good:#5fcf95;--noise:#6cb2ee22}}\
 body{font:16px/1.55 system-ui,sans-serif;color:var(--ink);background:var(--page);max-width:60rem;margin:2.5rem auto;padding:0 1.2rem}\
@@ -21,7 +22,7 @@ line.yes,line.no{stroke-width:2}line.yes{stroke:var(--good)}circle.yes{fill:var(
 .key i{display:inline-block;width:.7rem;height:.7rem;border-radius:50%;margin:0 .35rem 0 .9rem}";
 
 /// Text that is safe in a page.
-pub(super) fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
@@ -57,17 +58,17 @@ impl Report {
     /// The report as one page.
     pub fn to_html(&self) -> String {
         let mut out = String::with_capacity(1 << 16);
-        let title = escape(&self.title);
         let (class, says) = head(&self.verdict);
-        let _ = write!(
-            out,
-            "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
-             content=\"width=device-width,initial-scale=1\"><title>Calibration: {title}</title><style>{STYLE}</style></head><body>\
-             <h1>{title}</h1><p class=\"soft\">Measured against simulated: {} episodes fitted, {} held out from all fitting. \
-             Licence of the data: {}.</p><div class=\"verdict {class}\"><b>{says}</b>{}</div>",
+        let lead = format!(
+            "Measured against simulated: {} episodes fitted, {} held out from all fitting. Licence of the data: {}.",
             self.fitted_episodes.len(),
             self.held_out_episodes.len(),
-            escape(&self.licence),
+            escape(&self.licence)
+        );
+        out.push_str(&page::open(&self.title, &lead));
+        let _ = write!(
+            out,
+            "<div class=\"verdict {class}\"><b>{says}</b>{}</div>",
             escape(&self.sentence)
         );
         self.pictures(&mut out);

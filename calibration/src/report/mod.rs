@@ -3,6 +3,7 @@
 mod build;
 mod data;
 mod html;
+pub(crate) mod page;
 mod plot;
 mod svg;
 mod write;

@@ -170,6 +170,48 @@ pub(super) fn gains(candidates: &[Candidate]) -> String {
     out
 }
 
+/// A line through points.
+pub(super) struct Curve<'a> {
+    /// As CSS names it.
+    pub(super) colour: &'a str,
+    /// (x, y).
+    pub(super) points: Vec<[f64; 2]>,
+}
+
+/// Curves from 0 to the end of each axis, each with its unit.
+pub(super) fn curves(name: &str, x: (&str, f64), y: (&str, f64), curves: &[Curve<'_>]) -> String {
+    let (x_name, x_end) = x;
+    let (y_name, y_end) = y;
+    let x = Scale {
+        low: 0.0,
+        high: x_end,
+        from: LEFT,
+        to: WIDTH - RIGHT,
+    };
+    let y = Scale {
+        low: 0.0,
+        high: y_end,
+        from: HEIGHT - BOTTOM,
+        to: TOP,
+    };
+    let mut out = open(HEIGHT, name);
+    out.push_str(&frame(&x, &y, x_name, y_name));
+    for curve in curves {
+        let _ = write!(
+            out,
+            "<path fill=\"none\" stroke-width=\"2\" style=\"stroke:{}\" d=\"",
+            curve.colour
+        );
+        for (k, [a, b]) in curve.points.iter().enumerate() {
+            let pen = if k == 0 { 'M' } else { 'L' };
+            let _ = write!(out, "{pen}{:.1} {:.1}", x.at(*a), y.at(*b));
+        }
+        out.push_str("\"/>");
+    }
+    out.push_str("</svg>");
+    out
+}
+
 fn open(height: f64, label: &str) -> String {
     format!(
         "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"{}\">",

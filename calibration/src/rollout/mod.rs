@@ -7,6 +7,7 @@ mod motion;
 mod regime;
 mod rig;
 mod score;
+pub mod study;
 mod summary;
 mod track;
 mod windows;

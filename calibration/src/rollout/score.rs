@@ -16,6 +16,10 @@ pub struct Score {
     pub rotation_deg: f64,
     /// [`Deviation::e_q`].
     pub e_q: f64,
+    /// Squared distance, m².
+    pub position_square_m2: f64,
+    /// Squared angle, rad².
+    pub rotation_square_rad2: f64,
 }
 
 impl Score {
@@ -26,6 +30,8 @@ impl Score {
             position_widths: mean(&|d| d.position_m) / (2.0 * half_width_m),
             rotation_deg: mean(&|d| d.rotation_rad).to_degrees(),
             e_q: mean(&|d| d.e_q(half_width_m)),
+            position_square_m2: mean(&|d| d.position_m * d.position_m),
+            rotation_square_rad2: mean(&|d| d.rotation_rad * d.rotation_rad),
         }
     }
 }

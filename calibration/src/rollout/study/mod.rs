@@ -1,0 +1,280 @@
+//! The study of a bundle of tosses: contact parameters by cross-validation, so that every episode is scored by parameters
+//! that it did not choose.
+
+mod folds;
+mod html;
+mod model;
+mod peer;
+mod search;
+mod write;
+
+pub use model::{ContactModel, ContactParameter, all as models};
+pub use peer::{Comparison, Paired, Peer};
+
+use super::{Rig, Score, Summary, Tracks, WindowScore, scores, windows};
+use crate::error::CalibrationError;
+use crate::progress::{Progress, Tell};
+use crate::report::Found;
+use crate::twin::stage::{BOARD_SUBSTANCE, THING_SUBSTANCE};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use serde::Serialize;
+
+/// Settings of [`run`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudyOptions {
+    /// Seed of folds, searches and draws; default 0.
+    pub seed: u64,
+    /// Threads; `None`: what `DWELL_THREADS`, the affinity mask or the quota say.
+    pub threads: Option<usize>,
+    /// Folds of the cross-validation, at least 2; default 5.
+    pub folds: usize,
+    /// Points of a generation of the search, at least 4; default 8.
+    pub population: usize,
+    /// Generations on a part of the training episodes, then on all of them; default 14 and 6.
+    pub generations: [usize; 2],
+    /// How many episodes that part has; default 100.
+    pub first_episodes: usize,
+    /// Windows start at every so many samples; default 5.
+    pub window_stride: usize,
+    /// Draws of the bootstrap; default 2,000.
+    pub bootstrap_draws: usize,
+}
+
+impl Default for StudyOptions {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            threads: None,
+            folds: 5,
+            population: 8,
+            generations: [14, 6],
+            first_episodes: 100,
+            window_stride: 5,
+            bootstrap_draws: 2_000,
+        }
+    }
+}
+
+/// One episode's score by parameters that it did not choose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EpisodeScore {
+    /// Its name.
+    pub episode: String,
+    /// The fold that it was held out with.
+    pub fold: usize,
+    /// The score.
+    pub score: Score,
+}
+
+/// What a contact model makes of the bundle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModelReport {
+    /// The model.
+    pub model: ContactModel,
+    /// The parameters that each fold chose on the other folds. Shape (fold, parameter).
+    pub chosen: Vec<Vec<f64>>,
+    /// All episodes, each out of fold.
+    pub summary: Summary,
+    /// Windows, each out of fold.
+    pub windows: Vec<WindowScore>,
+    /// Every episode.
+    pub episodes: Vec<EpisodeScore>,
+    /// Against the peers, episode by episode.
+    pub against: Vec<Comparison>,
+}
+
+/// The report of a study.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudyReport {
+    /// The version of this form.
+    pub version: u32,
+    /// The bundle's title.
+    pub title: String,
+    /// The licence of the data.
+    pub licence: String,
+    /// How it was made.
+    pub options: StudyOptions,
+    /// In a sentence.
+    pub sentence: String,
+    /// The models, in the order of [`models`].
+    pub models: Vec<ModelReport>,
+    /// The best model with the median of what its folds chose, for the simulator.
+    pub found: Found,
+}
+
+/// Studies the tracks. `progress` is told a fraction (0 to 1) and what is being done, and answers whether to go on.
+///
+/// # Errors
+/// [`CalibrationError::Field`] for options out of range, [`CalibrationError::TooFew`] for fewer episodes than twice the
+/// folds, [`CalibrationError::Simulation`] for what physics does not take, [`CalibrationError::Interrupted`].
+///
+/// # Determinism
+/// Equal tracks and options give the same bits for any number of threads.
+pub fn run(
+    tracks: &Tracks,
+    models: &[ContactModel],
+    peers: &[Peer],
+    options: &StudyOptions,
+    progress: &mut dyn FnMut(f32, &str) -> bool,
+) -> Result<StudyReport, CalibrationError> {
+    check(tracks, options)?;
+    let progress = Progress::new(progress);
+    let fold_of = folds::folds(tracks, options.folds, options.seed);
+    let mut reports = Vec::with_capacity(models.len());
+    for (k, model) in models.iter().enumerate() {
+        let share = [k, k + 1].map(|k| k as f32 / models.len() as f32);
+        let report = study(tracks, model, peers, &fold_of, options, share, &progress)?;
+        reports.push(report);
+    }
+    progress.stage(1.0, "done")?;
+    let best = reports
+        .iter()
+        .min_by(|a, b| a.summary.e_q.median.total_cmp(&b.summary.e_q.median));
+    Ok(StudyReport {
+        version: 1,
+        title: tracks.title.clone(),
+        licence: tracks.licence.clone(),
+        options: options.clone(),
+        sentence: best.map_or_else(String::new, |best| sentence(best, &reports)),
+        found: best.map_or_else(Found::default, |best| found(tracks, best)),
+        models: reports,
+    })
+}
+
+fn check(tracks: &Tracks, options: &StudyOptions) -> Result<(), CalibrationError> {
+    let least = |field: &str, value: usize, least: usize| {
+        if value >= least {
+            return Ok(());
+        }
+        let allowed = format!("at least {least}");
+        Err(CalibrationError::field(
+            "study options",
+            field,
+            value,
+            allowed,
+        ))
+    };
+    least("folds", options.folds, 2)?;
+    least("population", options.population, 4)?;
+    least("window_stride", options.window_stride, 1)?;
+    let (found, needed) = (tracks.episodes.len(), 2 * options.folds);
+    if found < needed {
+        return Err(CalibrationError::TooFew {
+            at: tracks.title.clone(),
+            what: "episodes",
+            found,
+            needed,
+        });
+    }
+    Ok(())
+}
+
+fn study(
+    tracks: &Tracks,
+    model: &ContactModel,
+    peers: &[Peer],
+    fold_of: &[usize],
+    options: &StudyOptions,
+    share: [f32; 2],
+    progress: &dyn Tell,
+) -> Result<ModelReport, CalibrationError> {
+    let threads = Threads::resolve(options.threads);
+    let key = Key::root(options.seed).child("study").child(model.name);
+    let plain = Rig::new(tracks, model.contact_friction)?;
+    let (mut chosen, mut rigs) = (Vec::new(), Vec::new());
+    for fold in 0..options.folds {
+        let done = share[0] + (share[1] - share[0]) * fold as f32 / options.folds as f32;
+        progress.stage(done, &format!("{}: fold {}", model.name, fold + 1))?;
+        let train: Vec<usize> = (0..fold_of.len()).filter(|k| fold_of[*k] != fold).collect();
+        let values = if model.parameters.is_empty() {
+            Vec::new()
+        } else {
+            let key = key.child(fold as u64);
+            search::search(model, &plain, tracks, &train, options, key, progress)?
+        };
+        rigs.push(plain.set(&model.settings(&values, tracks.nominal))?);
+        chosen.push(values);
+    }
+    let all: Vec<usize> = (0..fold_of.len()).collect();
+    let mut by_episode = vec![Score::default(); fold_of.len()];
+    for (fold, rig) in rigs.iter().enumerate() {
+        let held: Vec<usize> = all
+            .iter()
+            .copied()
+            .filter(|k| fold_of[*k] == fold)
+            .collect();
+        let scores = scores(rig, tracks, &held, threads)?;
+        for (k, score) in held.iter().zip(scores) {
+            by_episode[*k] = score;
+        }
+    }
+    let own: Vec<&Rig> = fold_of.iter().map(|fold| &rigs[*fold]).collect();
+    let against: Result<Vec<Comparison>, _> = peers
+        .iter()
+        .map(|peer| {
+            let key = key.child("peer").child(peer.name.as_str());
+            peer::compare(tracks, &by_episode, peer, options.bootstrap_draws, key)
+        })
+        .collect();
+    Ok(ModelReport {
+        model: model.clone(),
+        chosen,
+        summary: Summary::of(&by_episode),
+        windows: windows(&own, tracks, &all, options.window_stride, threads)?,
+        episodes: all
+            .iter()
+            .map(|k| EpisodeScore {
+                episode: tracks.episodes[*k].name.clone(),
+                fold: fold_of[*k],
+                score: by_episode[*k],
+            })
+            .collect(),
+        against: against?,
+    })
+}
+
+impl ModelReport {
+    /// The median of what the folds chose, by parameter.
+    pub fn typical(&self) -> Vec<f64> {
+        (0..self.model.parameters.len())
+            .map(|k| {
+                let mut column: Vec<f64> = self.chosen.iter().map(|values| values[k]).collect();
+                crate::fit::median(&mut column)
+            })
+            .collect()
+    }
+}
+
+fn sentence(best: &ModelReport, all: &[ModelReport]) -> String {
+    let told = |report: &ModelReport| {
+        format!(
+            "{:.3} widths and {:.1} degrees",
+            report.summary.position_widths.median, report.summary.rotation_deg.median
+        )
+    };
+    let mut text = format!(
+        "Over {} episodes, each scored by parameters that it did not choose, the model \"{}\" is off by {} in the median",
+        best.summary.count,
+        best.model.name,
+        told(best)
+    );
+    if let Some(nominal) = all.iter().find(|report| report.model.parameters.is_empty()) {
+        text = format!("{text}; the nominal values are off by {}", told(nominal));
+    }
+    text + "."
+}
+
+fn found(tracks: &Tracks, best: &ModelReport) -> Found {
+    let settings = best.model.settings(&best.typical(), tracks.nominal);
+    let pair = format!("pair/{THING_SUBSTANCE}~{BOARD_SUBSTANCE}");
+    Found {
+        laws: settings.laws,
+        parameters: [
+            (format!("{pair}/friction"), settings.friction),
+            (format!("{pair}/restitution"), settings.restitution),
+        ]
+        .into_iter()
+        .collect(),
+    }
+}

@@ -1,0 +1,45 @@
+//! The report of a study as files.
+
+use super::StudyReport;
+use crate::error::CalibrationError;
+use crate::report::whole;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+impl StudyReport {
+    /// The report as one JSON object; its key `html` holds the page.
+    pub fn to_json(&self) -> String {
+        let mut value = self.value();
+        if let Value::Object(object) = &mut value {
+            object.insert("kind".to_owned(), Value::from("pose_trajectory"));
+            object.insert("html".to_owned(), Value::String(self.to_html()));
+        }
+        value.to_string()
+    }
+
+    fn value(&self) -> Value {
+        // A report is plain data; numbers that are not finite become null.
+        serde_json::to_value(self).unwrap_or(Value::Null)
+    }
+
+    /// Writes `report.json`, `report.html` and `found.json` into `folder`, which is made where it is missing. Each file
+    /// appears whole or not at all.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Write`] names the file.
+    pub fn write(&self, folder: &Path) -> Result<(), CalibrationError> {
+        fs::create_dir_all(folder).map_err(|source| CalibrationError::Write {
+            path: folder.to_owned(),
+            source,
+        })?;
+        let found = serde_json::to_value(&self.found).unwrap_or(Value::Null);
+        whole(
+            folder,
+            "report.json",
+            format!("{:#}\n", self.value()).as_bytes(),
+        )?;
+        whole(folder, "report.html", self.to_html().as_bytes())?;
+        whole(folder, "found.json", format!("{found:#}\n").as_bytes())
+    }
+}
