@@ -1,10 +1,13 @@
-"""Real cube tosses in Bullet, with the parameters that its authors' evaluation fitted: one row of scores a toss.
+"""Real cube tosses in Bullet, with the parameters that its authors' evaluation fitted.
+
+Writes one row of scores a toss, and prints means and medians:
 
     pip install pybullet==3.2.7 pyarrow numpy
-    python benches/peers/cube_toss_bullet.py ../shared/data/measured/physics/cube_toss --out bullet.csv
+    python benches/peers/cube_toss_bullet.py FOLDER_OF_CUBE_TOSS --out bullet.csv
 
-Bullet 3.2.7, the parameters k = 1783.8 N/m, b = 27.22 N s/m, friction of the plane 0.358 times that of the cube 0.5
-(Acosta, Yang, Posa, RA-L 2022, fitted by them on all 550 tosses), ten steps of 1/1480 s between samples.
+Bullet 3.2.7 with k = 1783.8 N/m, b = 27.22 N s/m and the friction of the plane, 0.358, times that
+of the cube, 0.5 (Acosta, Yang, Posa, RA-L 2022, fitted by them on all 550 tosses); ten steps of
+1/1480 s between samples.
 """
 
 from __future__ import annotations
@@ -103,7 +106,7 @@ def main() -> None:
                 "p": np.stack([column[f"p{c}"][here] for c in "xyz"], 1).astype(float),
                 "q": np.stack([column[f"q{c}"][here] for c in "xyzw"], 1).astype(float),
             }
-            rows.append((f"toss_{int(start['toss']):03d}", *score(cube, toss, start)))
+            rows.append((start["toss"], *score(cube, toss, start)))
     part = args.out.with_name(f".{args.out.name}.part")
     with part.open("w", newline="") as file:
         writer = csv.writer(file)

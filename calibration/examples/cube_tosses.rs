@@ -1,5 +1,8 @@
-//! Real tosses of a box onto a board, studied: `cargo run -p dwell-calibration --example cube_tosses -- cube_toss.measured
-//! OUT [PEER.csv ...]`. docs/cube-tosses.md says how the bundle and the peer's scores are made.
+//! Real tosses of a box onto a board, studied:
+//!
+//! `cargo run -p dwell-calibration --example cube_tosses -- NAME.measured OUT [--options JSON] [--models A,B] [PEER.csv ...]`
+//!
+//! docs/cube-tosses.md says how the bundle and the peer's scores are made.
 
 use dwell_calibration::rollout::Tracks;
 use dwell_calibration::rollout::study::{Peer, StudyOptions, models, run};
@@ -7,14 +10,28 @@ use std::error::Error;
 use std::path::Path;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut option = |name: &str| {
+        let at = arguments.iter().position(|a| a == name)?;
+        (at + 1 < arguments.len()).then(|| arguments.drain(at..at + 2).nth(1))?
+    };
+    let options: StudyOptions = match option("--options") {
+        Some(text) => serde_json::from_str(&text)?,
+        None => StudyOptions::default(),
+    };
+    let mut chosen = models();
+    if let Some(names) = option("--models") {
+        chosen.retain(|model| names.split(',').any(|name| name == model.name));
+    }
     let [measured, out, peers @ ..] = &arguments[..] else {
-        return Err("usage: cube_tosses NAME.measured OUT [PEER.csv ...]".into());
+        return Err(
+            "usage: cube_tosses NAME.measured OUT [--options JSON] [--models A,B] [PEER.csv ...]"
+                .into(),
+        );
     };
     let tracks = Tracks::read(Path::new(measured))?;
     let peers: Result<Vec<Peer>, _> = peers.iter().map(|p| Peer::read(Path::new(p))).collect();
-    let options = StudyOptions::default();
-    let report = run(&tracks, &models(), &peers?, &options, &mut |done, what| {
+    let report = run(&tracks, &chosen, &peers?, &options, &mut |done, what| {
         eprintln!("{:3.0} % {what}", 100.0 * done);
         true
     })?;

@@ -53,23 +53,87 @@ pub fn calibrate(
     options.check()?;
     let progress = Progress::new(progress);
     progress.stage(0.0, "reading the measured data")?;
+    explain(&bundle::read(path)?, options, &progress)
+}
+
+/// What comes of a bundle, by its kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// What the simulation lacks.
+    Causes(Box<Report>),
+    /// How well roll-outs predict, with contact parameters by cross-validation.
+    RollOuts(Box<rollout::study::StudyReport>),
+}
+
+impl Outcome {
+    /// The report as one JSON object; its key `html` holds the page.
+    pub fn to_json(&self) -> String {
+        match self {
+            Self::Causes(report) => report.to_json(),
+            Self::RollOuts(report) => report.to_json(),
+        }
+    }
+}
+
+/// As [`calibrate`] for kinds whose causes are named, as [`rollout::study::run`] for pose trajectories, which are
+/// compared with the scores of `peers` too.
+///
+/// # Errors
+/// As those.
+pub fn examine(
+    path: &Path,
+    options: &Options,
+    peers: &[rollout::study::Peer],
+    progress: &mut dyn FnMut(f32, &str) -> bool,
+) -> Result<Outcome, CalibrationError> {
+    options.check()?;
     let bundle = bundle::read(path)?;
+    if bundle.kind() == Kind::PoseTrajectory {
+        let tracks = rollout::Tracks::of(&bundle)?;
+        let settings = rollout::study::StudyOptions {
+            seed: options.seed,
+            threads: options.threads,
+            bootstrap_draws: options.bootstrap_draws,
+            ..rollout::study::StudyOptions::default()
+        };
+        let models = rollout::study::models();
+        let report = rollout::study::run(&tracks, &models, peers, &settings, progress)?;
+        return Ok(Outcome::RollOuts(Box::new(report)));
+    }
+    let report = explain(&bundle, options, &Progress::new(progress))?;
+    Ok(Outcome::Causes(Box::new(report)))
+}
+
+/// Reads and checks a measured bundle; answers its kind and how many episodes it has.
+///
+/// # Errors
+/// [`CalibrationError`] names file, line and field.
+pub fn check(path: &Path) -> Result<(Kind, usize), CalibrationError> {
+    let bundle = bundle::read(path)?;
+    Ok((bundle.kind(), bundle.episodes.len()))
+}
+
+fn explain(
+    bundle: &bundle::Bundle,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<Report, CalibrationError> {
     progress.stage(0.05, "building the simulation")?;
     let mut twin: Box<dyn Twin> = match bundle.kind() {
-        Kind::Trajectory => Box::new(FlightTwin::new(&bundle, options)?),
-        Kind::Servo => Box::new(ServoTwin::new(&bundle, options)?),
-        Kind::ImpulseResponse => Box::new(RoomTwin::new(&bundle, options)?),
+        Kind::Trajectory => Box::new(FlightTwin::new(bundle, options)?),
+        Kind::Servo => Box::new(ServoTwin::new(bundle, options)?),
+        Kind::ImpulseResponse => Box::new(RoomTwin::new(bundle, options)?),
         Kind::PoseTrajectory => {
             return Err(CalibrationError::field(
-                bundle.name,
+                bundle.name.clone(),
                 "kind",
                 "pose_trajectory",
-                "a kind whose causes are named; roll-outs are judged by `rollout::study`",
+                "a kind whose causes are named; roll-outs are studied by `examine`",
             ));
         }
     };
-    let findings = select::explain(twin.as_mut(), options, &progress)?;
-    let report = report::build(&bundle, twin.as_ref(), &findings);
+    let findings = select::explain(twin.as_mut(), options, progress)?;
+    let report = report::build(bundle, twin.as_ref(), &findings);
     progress.stage(1.0, "done")?;
     Ok(report)
 }

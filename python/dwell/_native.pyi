@@ -29,6 +29,7 @@ __all__ = [
     "bench_json",
     "calibrate",
     "calibration_example",
+    "check_measured",
     "charset",
     "doctor_json",
     "laws_json",
@@ -177,10 +178,18 @@ def charset() -> str: ...
 def max_text_length() -> int: ...
 def doctor_json() -> str: ...
 def synthesize(signal: str, rate_hz: int, samples: int) -> NDArray[np.float32]: ...
-def calibrate(measured: str, house: str | None = ..., progress: Any | None = ...) -> str:
+def calibrate(
+    measured: str,
+    house: str | None = ...,
+    progress: Any | None = ...,
+    peers: Sequence[str] = ...,
+) -> str:
     """Reads a measured bundle and answers the report as one JSON object."""
 
 def calibration_example(folder: str, seed: int = ...) -> str:
     """Writes a small measured bundle with a hidden effect for demos; answers what was hidden."""
+
+def check_measured(measured: str) -> int:
+    """Reads and checks a measured bundle; answers how many episodes it has."""
 
 def bench_json(what: str, house: str, options_json: str = ...) -> str: ...

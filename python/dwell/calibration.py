@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from dwell import _native
@@ -15,6 +15,7 @@ def calibrate(
     *,
     house: str | None = None,
     progress: Callable[[float, str], None] | None = None,
+    peers: Sequence[str | os.PathLike[str]] = (),
 ) -> dict[str, Any]:
     """Compares a measured bundle with its simulation and names what is missing.
 
@@ -22,12 +23,18 @@ def calibrate(
         measured: The folder ``NAME.measured``.
         house: The house it was measured in, if the bundle does not say.
         progress: Called with a fraction (0 to 1) and a sentence.
+        peers: Tables of another simulator's scores (``episode, position_widths, rotation_deg,
+            e_q``), compared episode by episode; for pose trajectories.
 
     Returns:
-        The report: residuals, candidates, verdict, gain on held-out episodes; ``html`` is a page.
+        The report: residuals, candidates, verdict, gain on held-out episodes; of pose trajectories
+        (``kind``) the errors of roll-outs by model, horizon and regime, out of fold. ``html`` is a
+        page.
 
     Raises:
         MeasuredDataError: The bundle cannot be used; the message names file, line and field.
     """
-    report: dict[str, Any] = json.loads(_native.calibrate(os.fspath(measured), house, progress))
+    names = [os.fspath(peer) for peer in peers]
+    text = _native.calibrate(os.fspath(measured), house, progress, names)
+    report: dict[str, Any] = json.loads(text)
     return report

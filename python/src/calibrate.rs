@@ -2,17 +2,20 @@
 
 use crate::doorway::Doorway;
 use crate::errors::Fault;
+use dwell_calibration::rollout::study::Peer;
 use pyo3::prelude::*;
 use std::path::Path;
 
 /// Reads a measured bundle and answers the report as one JSON object. `progress`: called with a fraction and a sentence.
+/// `peers`: tables of another simulator's scores, for pose trajectories.
 #[pyfunction]
-#[pyo3(signature = (measured, house=None, progress=None))]
+#[pyo3(signature = (measured, house=None, progress=None, peers=Vec::new()))]
 pub(crate) fn calibrate(
     py: Python<'_>,
     measured: &str,
     house: Option<&str>,
     progress: Option<Py<PyAny>>,
+    peers: Vec<String>,
 ) -> PyResult<String> {
     let mut raised = None;
     let report = py.engine(|| -> Result<String, Fault> {
@@ -20,8 +23,12 @@ pub(crate) fn calibrate(
             house: house.map(str::to_owned),
             ..Default::default()
         };
-        let report =
-            dwell_calibration::calibrate(Path::new(measured), &options, &mut |fraction, what| {
+        let peers: Result<Vec<Peer>, _> = peers.iter().map(|p| Peer::read(Path::new(p))).collect();
+        let report = dwell_calibration::examine(
+            Path::new(measured),
+            &options,
+            &peers?,
+            &mut |fraction, what| {
                 Python::attach(|py| {
                     let called = progress
                         .as_ref()
@@ -32,7 +39,8 @@ pub(crate) fn calibrate(
                         .or(raised.take());
                     raised.is_none()
                 })
-            })?;
+            },
+        )?;
         Ok(report.to_json())
     });
     raised.map_or(report, Err)
@@ -43,4 +51,10 @@ pub(crate) fn calibrate(
 #[pyo3(signature = (folder, seed=0))]
 pub(crate) fn calibration_example(py: Python<'_>, folder: &str, seed: u64) -> PyResult<String> {
     py.engine(|| Ok::<_, Fault>(dwell_calibration::example::write(Path::new(folder), seed)?))
+}
+
+/// Reads and checks a measured bundle; answers how many episodes it has.
+#[pyfunction]
+pub(crate) fn check_measured(py: Python<'_>, measured: &str) -> PyResult<usize> {
+    py.engine(|| Ok::<_, Fault>(dwell_calibration::check(Path::new(measured))?.1))
 }

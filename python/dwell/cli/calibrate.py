@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from dwell.cli.common import Bar, atomic, print_json
 
@@ -16,16 +18,52 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--house", help="the HOUSE it was measured in, if the bundle does not say")
     parser.add_argument(
+        "--peer",
+        action="append",
+        default=[],
+        metavar="FILE.csv",
+        help="scores of another simulator on the same pose trajectories",
+    )
+    parser.add_argument(
         "--out", type=Path, metavar="DIR", help="for report.html, report.json, found.json"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+
+
+def roll_outs(report: dict[str, Any]) -> Iterator[str]:
+    """The tables of a study of roll-outs, line by line."""
+    yield "\nwhole episodes           position, widths   rotation, degrees   e_q         e_q < 0.05"
+    yield "                         mean   median      mean   median       median"
+    rows = [(model["model"]["name"], model["summary"]) for model in report["models"]]
+    rows += [(peer["name"], peer["summary"]) for peer in report["models"][0]["against"]]
+    for name, summary in rows:
+        place, turn = summary["position_widths"], summary["rotation_deg"]
+        yield (
+            f"{name[:22]:<22}   {place['mean']:.3f}  {place['median']:.3f}       "
+            f"{turn['mean']:5.1f}  {turn['median']:5.1f}        "
+            f"{summary['e_q']['median']:.4f}      {100 * summary['predicted_share']:.0f} %"
+        )
+    yield "\nfitted                   by fold"
+    for model in report["models"]:
+        for k, parameter in enumerate(model["model"]["parameters"]):
+            values = "  ".join(f"{fold[k]:.4g}" for fold in model["chosen"])
+            unit = "" if parameter["unit"] == "1" else f", {parameter['unit']}"
+            yield f"{model['model']['name']}: {parameter['name']}{unit}: {values}"
+    for model in report["models"]:
+        yield f"\n{model['model']['name']}, rms by samples ahead and what happens on the way"
+        for window in model["windows"]:
+            yield (
+                f"{window['horizon']:3d} ahead  {window['regime'] or 'all':<8} "
+                f"{window['position_rms_mm']:8.2f} mm {window['rotation_rms_deg']:7.2f} deg  "
+                f"({window['count']} windows)"
+            )
 
 
 def run(args: argparse.Namespace) -> int:
     """Calibrates, writes the report, and prints the verdict."""
     from dwell.calibration import calibrate
 
-    report = calibrate(args.measured, house=args.house, progress=Bar())
+    report = calibrate(args.measured, house=args.house, progress=Bar(), peers=args.peer)
     page = report.pop("html", "")
     if args.out:
         files = {
@@ -40,6 +78,9 @@ def run(args: argparse.Namespace) -> int:
         print_json(report)
     else:
         print(report["sentence"])
+        if report.get("kind") == "pose_trajectory":
+            for line in roll_outs(report):
+                print(line)
         if args.out:
             print(f"Open {args.out / 'report.html'}")
     return 0

@@ -18,10 +18,11 @@ use crate::report::Found;
 use crate::twin::stage::{BOARD_SUBSTANCE, THING_SUBSTANCE};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-/// Settings of [`run`].
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// Settings of [`run`]. Every field has a default; unknown fields are refused.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct StudyOptions {
     /// Seed of folds, searches and draws; default 0.
     pub seed: u64,
@@ -29,13 +30,13 @@ pub struct StudyOptions {
     pub threads: Option<usize>,
     /// Folds of the cross-validation, at least 2; default 5.
     pub folds: usize,
-    /// Points of a generation of the search, at least 4; default 8.
+    /// Points of a generation of the search, at least 4; default 6.
     pub population: usize,
-    /// Generations on a part of the training episodes, then on all of them; default 14 and 6.
+    /// Generations on a part of the training episodes, then on all of them; default 9 and 2.
     pub generations: [usize; 2],
-    /// How many episodes that part has; default 100.
+    /// How many episodes that part has; default 60.
     pub first_episodes: usize,
-    /// Windows start at every so many samples; default 5.
+    /// Windows start at every so many samples; default 10.
     pub window_stride: usize,
     /// Draws of the bootstrap; default 2,000.
     pub bootstrap_draws: usize,
@@ -47,10 +48,10 @@ impl Default for StudyOptions {
             seed: 0,
             threads: None,
             folds: 5,
-            population: 8,
-            generations: [14, 6],
-            first_episodes: 100,
-            window_stride: 5,
+            population: 6,
+            generations: [9, 2],
+            first_episodes: 60,
+            window_stride: 10,
             bootstrap_draws: 2_000,
         }
     }
@@ -125,6 +126,8 @@ pub fn run(
     for (k, model) in models.iter().enumerate() {
         let share = [k, k + 1].map(|k| k as f32 / models.len() as f32);
         let report = study(tracks, model, peers, &fold_of, options, share, &progress)?;
+        let told = format!("{}: {}", model.name, errors(&report));
+        progress.stage(share[1], &told)?;
         reports.push(report);
     }
     progress.stage(1.0, "done")?;
@@ -246,21 +249,22 @@ impl ModelReport {
     }
 }
 
+fn errors(report: &ModelReport) -> String {
+    format!(
+        "{:.3} widths and {:.2} degrees",
+        report.summary.position_widths.median, report.summary.rotation_deg.median
+    )
+}
+
 fn sentence(best: &ModelReport, all: &[ModelReport]) -> String {
-    let told = |report: &ModelReport| {
-        format!(
-            "{:.3} widths and {:.1} degrees",
-            report.summary.position_widths.median, report.summary.rotation_deg.median
-        )
-    };
     let mut text = format!(
         "Over {} episodes, each scored by parameters that it did not choose, the model \"{}\" is off by {} in the median",
         best.summary.count,
         best.model.name,
-        told(best)
+        errors(best)
     );
     if let Some(nominal) = all.iter().find(|report| report.model.parameters.is_empty()) {
-        text = format!("{text}; the nominal values are off by {}", told(nominal));
+        text = format!("{text}; the nominal values are off by {}", errors(nominal));
     }
     text + "."
 }

@@ -35,11 +35,11 @@ pub struct ContactModel {
 const FRICTION: ContactParameter = ContactParameter {
     name: "friction",
     unit: "1",
-    range: [0.05, 0.6],
+    range: [0.05, 0.5],
     by_ratio: true,
 };
 
-/// The models of a study: as the engine comes, its own two numbers fitted, and friction by point with compliance.
+/// The models of a study: as the engine comes, friction by point with compliance, and the engine's own two numbers fitted.
 pub fn all() -> Vec<ContactModel> {
     let number = |name, unit, range, by_ratio| ContactParameter {
         name,
@@ -55,20 +55,20 @@ pub fn all() -> Vec<ContactModel> {
             parameters: Vec::new(),
         },
         ContactModel {
-            name: "basic",
-            about: "friction by patch, hard contacts; friction and restitution fitted",
-            contact_friction: ContactFriction::Patch,
-            parameters: vec![FRICTION, number("restitution", "1", [0.0, 0.5], false)],
-        },
-        ContactModel {
             name: "extended",
             about: "friction by point, and the law contact_compliance; friction, natural frequency and damping ratio fitted",
             contact_friction: ContactFriction::Point,
             parameters: vec![
                 FRICTION,
-                number("natural_frequency_hz", "Hz", [8.0, 80.0], true),
+                number("natural_frequency_hz", "Hz", [8.0, 60.0], true),
                 number("damping_ratio", "1", [0.2, 3.0], true),
             ],
+        },
+        ContactModel {
+            name: "basic",
+            about: "friction by patch, hard contacts; friction and restitution fitted",
+            contact_friction: ContactFriction::Patch,
+            parameters: vec![FRICTION, number("restitution", "1", [0.0, 0.5], false)],
         },
     ]
 }

@@ -1,0 +1,50 @@
+"""``dwell measure import``: tables of measurements into a bundle that ``dwell calibrate`` reads."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from dwell.cli.common import Bar, print_json
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
+    what = parser.add_subparsers(dest="what", metavar="import", required=True)
+    command = what.add_parser("import", help="read tables (CSV; Parquet with pyarrow)")
+    command.add_argument("files", nargs="*", type=Path, metavar="FILES", help="the tables")
+    command.add_argument("--map", type=Path, metavar="FILE", help="what the columns mean (JSON)")
+    command.add_argument("--out", type=Path, metavar="NAME.measured", help="the bundle to write")
+    command.add_argument(
+        "--init",
+        nargs="?",
+        const="pose_trajectory",
+        choices=["pose_trajectory", "trajectory"],
+        metavar="KIND",
+        help="print a template of the map (pose_trajectory or trajectory) and leave",
+    )
+    command.add_argument("--json", action="store_true", help="one JSON object on standard output")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Imports, checks the bundle as ``dwell calibrate`` would, and moves it into place."""
+    from dwell.measured import FLIGHT, TEMPLATE, import_files
+
+    if args.init:
+        template = TEMPLATE if args.init == "pose_trajectory" else FLIGHT
+        sys.stdout.write(json.dumps(template, indent=2) + "\n")
+        return 0
+    if not args.files or args.map is None or args.out is None:
+        print(
+            "dwell measure import: FILES, --map and --out are needed (or --init)", file=sys.stderr
+        )
+        return 2
+    counts = import_files(args.files, args.map, args.out, Bar())
+    if args.json:
+        print_json({"out": str(args.out), **counts})
+    else:
+        left_out = f", {counts['left_out']} left out" if counts["left_out"] else ""
+        print(f"{args.out}: {counts['episodes']} episodes, {counts['rows']} rows{left_out}")
+    return 0

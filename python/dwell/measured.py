@@ -1,0 +1,394 @@
+"""Tables of measurements (CSV; Parquet with pyarrow) into the bundle that calibration reads."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import json
+import math
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+Row = dict[str, Any]
+
+#: What ``--init`` prints. Keys that do not apply are left out; ``null`` is "not known".
+TEMPLATE: Row = {
+    "kind": "pose_trajectory",
+    "title": "what was measured, in a line",
+    "licence": "of the data",
+    "notes": "",
+    "up": "z",
+    "g_m_s2": None,
+    "body": {
+        "name": "cube",
+        "mass_kg": 0.37,
+        "half_extents_m": [0.0524, 0.0524, 0.0524],
+        "inertia_kg_m2": None,
+    },
+    "board": {"friction": 0.18, "restitution": 0.125},
+    "poses": {"rate_hz": 148.0, "angular_velocity": "body", "filtering": ""},
+    "table": {
+        "file": "data.parquet",
+        "episode": "toss",
+        "split_group": None,
+        "t_s": "t_s",
+        "metres_per_unit": 1.0,
+        "position": ["px", "py", "pz"],
+        "quaternion_xyzw": ["qx", "qy", "qz", "qw"],
+        "velocity": ["vx", "vy", "vz"],
+        "angular_velocity": ["wx", "wy", "wz"],
+    },
+    "starts": {
+        "file": "index.csv",
+        "episode": "toss",
+        "sample": "eval_start_k",
+        "velocity": ["ic_vx", "ic_vy", "ic_vz"],
+        "angular_velocity": ["ic_wx", "ic_wy", "ic_wz"],
+    },
+}
+#: The same for flights of balls, one height or all three coordinates.
+FLIGHT: Row = {
+    "kind": "trajectory",
+    "title": "what was measured, in a line",
+    "licence": "of the data",
+    "notes": "",
+    "g_m_s2": None,
+    "bodies": {
+        "file": "index.csv",
+        "episode": "episode",
+        "name": "ball",
+        "mass_kg": "mass_kg",
+        "diameter_m": "diameter_m",
+    },
+    "table": {
+        "file": "data.parquet",
+        "episode": "episode",
+        "split_group": None,
+        "t_s": "t_s",
+        "metres_per_unit": 1.0,
+        "channels": {"y": "height_m"},
+    },
+}
+
+
+def import_files(
+    files: list[Path], map_file: Path, out: Path, progress: Callable[[float, str], None]
+) -> dict[str, int]:
+    """Writes the bundle ``out`` whole, or nothing.
+
+    Raises:
+        ValueError: A map or a table that cannot be used; the message names file, column and row.
+        FileExistsError: ``out`` is there already.
+    """
+    if out.exists():
+        raise FileExistsError(f"{out}: is there already; remove it or choose another name")
+    mapping = read_map(map_file)
+    tables = {path.name: path for path in files}
+    out.parent.mkdir(parents=True, exist_ok=True)
+    part = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
+    try:
+        write = pose_bundle if mapping["kind"] == "pose_trajectory" else flight_bundle
+        counts = write(mapping, str(map_file), tables, part, progress)
+        from dwell import DwellError, _native
+
+        progress(0.9, "checking the bundle")
+        try:
+            counts["episodes"] = _native.check_measured(str(part))
+        except DwellError as error:
+            raise ValueError(str(error).replace(str(part), str(out))) from None
+        part.chmod(0o755)
+        os.rename(part, out)
+    except BaseException:
+        shutil.rmtree(part, ignore_errors=True)
+        raise
+    progress(1.0, "done")
+    return counts
+
+
+def read_map(path: Path) -> Row:
+    """The map, with every key known."""
+    try:
+        mapping = json.loads(path.read_text("utf-8"))
+    except json.JSONDecodeError as error:
+        raise ValueError(f"{path} line {error.lineno}: {error.msg}") from None
+    kinds = {"pose_trajectory": TEMPLATE, "trajectory": FLIGHT}
+    kind = mapping.get("kind") if isinstance(mapping, dict) else None
+    if kind not in kinds:
+        raise ValueError(f"{path}: kind is {kind!r}; allowed is one of {sorted(kinds)}")
+    known(mapping, kinds[kind], str(path))
+    result: Row = mapping
+    return result
+
+
+def known(found: Row, template: Row, at: str) -> None:
+    """Refuses keys that the template lacks."""
+    for key, value in found.items():
+        if key not in template:
+            raise ValueError(f"{at}: no key {key!r}; allowed are {list(template)}")
+        if isinstance(template[key], dict) and key != "channels" and value is not None:
+            if not isinstance(value, dict):
+                raise ValueError(f"{at}: {key} is {value!r}; an object is needed")
+            known(value, template[key], f"{at}: {key}")
+
+
+def need(mapping: Mapping[str, Any], key: str, at: str) -> Any:  # noqa: ANN401 - any JSON value
+    """A key that must be there."""
+    if mapping.get(key) is None:
+        raise ValueError(f"{at}: {key!r} is missing")
+    return mapping[key]
+
+
+class Table:
+    """A table's rows, with their places."""
+
+    def __init__(self, part: Mapping[str, Any], tables: Mapping[str, Path], at: str) -> None:
+        """Finds the file that the map names among those that were given."""
+        name = need(part, "file", at)
+        if name not in tables:
+            raise ValueError(f"{at}: file {name!r} was not given; given are {sorted(tables)}")
+        self.path = tables[name]
+        self.columns, self._rows = open_table(self.path)
+
+    def __iter__(self) -> Iterator[tuple[str, Row]]:
+        """Places and rows."""
+        for number, row in self._rows:
+            yield f"{self.path} row {number}", row
+
+    def has(self, names: list[str]) -> None:
+        """Refuses columns that are not there."""
+        for name in names:
+            if name not in self.columns:
+                raise ValueError(f"{self.path}: no column {name!r}; it has {self.columns}")
+
+
+def open_table(path: Path) -> tuple[list[str], Iterator[tuple[int, Row]]]:
+    """Columns and rows, counted from 1, of a CSV or Parquet file."""
+    if path.suffix == ".parquet":
+        try:
+            import pyarrow.parquet as parquet
+        except ModuleNotFoundError:
+            raise ModuleNotFoundError(
+                f"{path}: Parquet needs pyarrow; pip install 'dwell[data]'"
+            ) from None
+        file = parquet.ParquetFile(path)
+        batches = (row for batch in file.iter_batches() for row in batch.to_pylist())
+        return list(file.schema_arrow.names), enumerate(batches, start=1)
+    if path.suffix != ".csv":
+        raise ValueError(f"{path}: {path.suffix or 'no suffix'}; .csv and .parquet are read")
+    with path.open(newline="", encoding="utf-8-sig") as head:
+        columns = next(csv.reader(head), [])
+    return columns, enumerate(csv_rows(path), start=1)
+
+
+def csv_rows(path: Path) -> Iterator[Row]:
+    """The rows of a CSV file."""
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        yield from csv.DictReader(file)
+
+
+def number(at: str, row: Row, column: str) -> float:
+    """A finite number in a column."""
+    value = row.get(column)
+    try:
+        found = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        found = math.nan
+    if not math.isfinite(found):
+        raise ValueError(f"{at}: column {column!r} is {value!r}; a finite number is needed")
+    return found
+
+
+def numbers(at: str, row: Row, columns: list[str]) -> list[float]:
+    """Several columns."""
+    return [number(at, row, column) for column in columns]
+
+
+def turned(vector: list[float], up: str) -> list[float]:
+    """A vector of a world whose vertical is ``up`` in the engine's, whose is y."""
+    x, y, z = vector
+    return [x, z, -y] if up == "z" else [x, y, z]
+
+
+def turned_rotation(q: list[float], up: str) -> list[float]:
+    """World from body (x, y, z, w) where ``up`` is vertical: -90 degrees about x go before it."""
+    if up != "z":
+        return q
+    x, y, z, w = q
+    half = math.sqrt(0.5)
+    return [half * (x - w), half * (y + z), half * (z - y), half * (w + x)]
+
+
+def columns_of(part: Row, key: str, count: int, at: str) -> list[str]:
+    """The names of several columns."""
+    found = need(part, key, at)
+    if not isinstance(found, list) or len(found) != count:
+        raise ValueError(f"{at}: {key} is {found!r}; {count} names of columns are needed")
+    return [str(name) for name in found]
+
+
+def text(value: object) -> str:
+    """An episode's name."""
+    return str(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
+
+
+def short(value: float) -> str:
+    """A number with nine digits, as many as single precision has."""
+    return f"{value:.9g}"
+
+
+@contextlib.contextmanager
+def table_file(folder: Path, name: str, head: str) -> Iterator[Callable[[list[str]], None]]:
+    """A CSV file that is written row by row."""
+    with (folder / name).open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(head.split(","))
+        yield writer.writerow
+
+
+def write_common(mapping: Row, folder: Path, scene: Row, more: Row, groups: dict[str, str]) -> None:
+    """The manifest and the list of episodes."""
+    manifest = {
+        "version": 2,
+        "title": mapping.get("title") or "measured",
+        "licence": mapping.get("licence") or "unknown",
+        "kind": mapping["kind"],
+        "scene": {"environment": {"g_m_s2": mapping.get("g_m_s2")}, **scene},
+        "notes": mapping.get("notes") or "",
+        **more,
+    }
+    (folder / "manifest.json").write_text(json.dumps(manifest, indent=1) + "\n", "utf-8")
+    with table_file(folder, "episodes.csv", "episode,split_group,conditions") as write:
+        for episode, group in groups.items():
+            write([episode, group, ""])
+
+
+def pose_bundle(
+    mapping: Row,
+    at: str,
+    tables: Mapping[str, Path],
+    folder: Path,
+    progress: Callable[[float, str], None],
+) -> dict[str, int]:
+    """Poses of a body, with their starts."""
+    up = mapping.get("up", "y")
+    if up not in ("y", "z"):
+        raise ValueError(f"{at}: up is {up!r}; allowed is 'y' or 'z'")
+    part, here = need(mapping, "table", at), f"{at}: table"
+    body, form = need(mapping, "body", at), need(mapping, "poses", at)
+    table = Table(part, tables, here)
+    place = columns_of(part, "position", 3, here)
+    quaternion = columns_of(part, "quaternion_xyzw", 4, here)
+    rates = [
+        columns_of(part, key, 3, here) if part.get(key) else []
+        for key in ("velocity", "angular_velocity")
+    ]
+    episode, clock = need(part, "episode", here), need(part, "t_s", here)
+    group = part.get("split_group") or episode
+    table.has([episode, group, clock, *place, *quaternion, *rates[0], *rates[1]])
+    metres = float(part.get("metres_per_unit", 1.0))
+    in_body = form.get("angular_velocity") == "body"
+    groups: dict[str, str] = {}
+    head = "episode,t_s,entity,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz"
+    rows = 0
+    with table_file(folder, "poses.csv", head) as write:
+        for where, row in table:
+            name = text(row[episode])
+            groups.setdefault(name, text(row[group]))
+            position = [metres * value for value in numbers(where, row, place)]
+            values = [*turned(position, up), *turned_rotation(numbers(where, row, quaternion), up)]
+            if rates[0] and rates[1]:
+                speed = [metres * value for value in numbers(where, row, rates[0])]
+                spin = numbers(where, row, rates[1])
+                values += [*turned(speed, up), *(spin if in_body else turned(spin, up))]
+            told = [short(value) for value in values]
+            told += [""] * (13 - len(told))
+            write([name, f"{number(where, row, clock):.9f}", str(body.get("name")), *told])
+            rows += 1
+            if rows % 4096 == 0:
+                progress(0.1, f"{rows} rows of {table.path.name}")
+    if mapping.get("starts"):
+        progress(0.7, "starts")
+        write_starts(mapping["starts"], f"{at}: starts", tables, folder, (up, in_body), metres)
+    scene = {"bodies": [body], "board": need(mapping, "board", at)}
+    write_common(mapping, folder, scene, {"poses": form}, groups)
+    return {"rows": rows, "episodes": len(groups), "left_out": 0}
+
+
+def write_starts(
+    part: Row,
+    at: str,
+    tables: Mapping[str, Path],
+    folder: Path,
+    frames: tuple[str, bool],
+    metres: float,
+) -> None:
+    """Where episodes are rolled out from."""
+    up, in_body = frames
+    table = Table(part, tables, at)
+    linear = columns_of(part, "velocity", 3, at)
+    angular = columns_of(part, "angular_velocity", 3, at)
+    episode, sample = need(part, "episode", at), need(part, "sample", at)
+    table.has([episode, sample, *linear, *angular])
+    with table_file(folder, "starts.csv", "episode,sample,vx,vy,vz,wx,wy,wz") as write:
+        for where, row in table:
+            speed = [metres * value for value in numbers(where, row, linear)]
+            spin = numbers(where, row, angular)
+            values = [*turned(speed, up), *(spin if in_body else turned(spin, up))]
+            count = str(int(number(where, row, sample)))
+            write([text(row[episode]), count, *(short(value) for value in values)])
+
+
+def flight_bundle(
+    mapping: Row,
+    at: str,
+    tables: Mapping[str, Path],
+    folder: Path,
+    progress: Callable[[float, str], None],
+) -> dict[str, int]:
+    """Flights of balls; episodes whose ball has no mass or diameter are left out."""
+    part, here = need(mapping, "table", at), f"{at}: table"
+    about, there = need(mapping, "bodies", at), f"{at}: bodies"
+    names = [need(about, key, there) for key in ("episode", "name", "mass_kg", "diameter_m")]
+    listed = Table(about, tables, there)
+    listed.has(names)
+    bodies: dict[str, Row] = {}
+    body_of: dict[str, str] = {}
+    for where, row in listed:
+        if not row[names[2]] or not row[names[3]] or row[names[2]] in ("nan", "NaN"):
+            continue
+        body = text(row[names[1]])
+        mass, diameter = number(where, row, names[2]), number(where, row, names[3])
+        bodies[body] = {"name": body, "mass_kg": mass, "radius_m": 0.5 * diameter}
+        body_of[text(row[names[0]])] = body
+    table = Table(part, tables, here)
+    channels = need(part, "channels", here)
+    episode, clock = need(part, "episode", here), need(part, "t_s", here)
+    group = part.get("split_group") or episode
+    table.has([episode, group, clock, *channels.values()])
+    metres = float(part.get("metres_per_unit", 1.0))
+    groups: dict[str, str] = {}
+    left_out: set[str] = set()
+    rows = 0
+    with table_file(folder, "trajectory.csv", "episode,t_s,entity,channel,value") as write:
+        for where, row in table:
+            name = text(row[episode])
+            if name not in body_of:
+                left_out.add(name)
+                continue
+            groups.setdefault(name, text(row[group]))
+            stamp = f"{number(where, row, clock):.9f}"
+            for channel, column in channels.items():
+                value = metres * number(where, row, column)
+                write([name, stamp, body_of[name], channel, short(value)])
+            rows += 1
+    progress(0.7, f"{rows} rows of {table.path.name}")
+    told = [
+        {"name": channel, "unit": "m", "clock": "tracker", "noise_sd": None} for channel in channels
+    ]
+    scene = {"bodies": list(bodies.values())}
+    write_common(mapping, folder, scene, {"channels": told}, groups)
+    return {"rows": rows, "episodes": len(groups), "left_out": len(left_out)}
