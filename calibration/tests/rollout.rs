@@ -191,16 +191,27 @@ fn hidden_friction_is_found_out_of_fold() {
         ..StudyOptions::default()
     };
     let nominal = model("nominal", Vec::new());
-    let alone = run(&tracks, &[nominal.clone()], &[], &options, &mut |_, _| true).unwrap();
+    let alone = run(
+        &tracks,
+        std::slice::from_ref(&nominal),
+        &[],
+        &options,
+        &mut |_, _| true,
+    )
+    .unwrap();
     let scored = alone.models[0].episodes.iter();
     let peer = Peer {
         name: "nominal".into(),
         scores: scored.map(|e| (e.episode.clone(), e.score)).collect(),
     };
     let models = [nominal, model("fitted", vec![friction])];
-    let report = run(&tracks, &models, &[peer.clone()], &options, &mut |_, _| {
-        true
-    })
+    let report = run(
+        &tracks,
+        &models,
+        std::slice::from_ref(&peer),
+        &options,
+        &mut |_, _| true,
+    )
     .unwrap();
     let fitted = &report.models[1];
     for chosen in &fitted.chosen {

@@ -1,0 +1,146 @@
+"""Importing measurements: small tables, faults with their places, real sets where at hand."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from dwell import _native
+from dwell.measured import import_files
+
+ROOT = Path(__file__).resolve().parents[2]
+MAPS = ROOT / "examples" / "measured"
+RATE_HZ = 100.0
+HEAD = "id,t,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz"
+
+
+def tosses(folder: Path, *, spin_in_body: bool = True) -> tuple[list[Path], Path]:
+    """Six flights of a box that spins about its own x axis, which points up; world z up."""
+    half = math.sqrt(0.5)
+    with (folder / "poses.csv").open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(HEAD.split(","))
+        for toss in range(6):
+            for k in range(40):
+                t = k / RATE_HZ
+                a = 0.5 * 4.0 * t
+                # World from body: a turn of -90 degrees about y puts body x upwards.
+                c, s = math.cos(a), math.sin(a)
+                turn = (half * c, half * s, -half * c, half * s)
+                place = (0.3 * toss + t, 0.5 * t, 1.0 + 2.0 * t - 4.905 * t * t)
+                spin = (4.0, 0.0, 0.0) if spin_in_body else (0.0, 0.0, 4.0)
+                writer.writerow([toss, t, *place, *turn, 1.0, 0.5, 2.0 - 9.81 * t, *spin])
+    mapping: dict[str, Any] = json.loads((MAPS / "cube_toss.json").read_text())
+    del mapping["starts"]
+    mapping["poses"]["rate_hz"] = RATE_HZ
+    mapping["table"] |= {"file": "poses.csv", "episode": "id", "t_s": "t"}
+    (folder / "map.json").write_text(json.dumps(mapping))
+    return [folder / "poses.csv"], folder / "map.json"
+
+
+def quiet(_fraction: float, _what: str) -> None:
+    pass
+
+
+def test_poses_arrive_with_the_vertical_turned(tmp_path: Path) -> None:
+    files, mapping = tosses(tmp_path)
+    out = tmp_path / "a.measured"
+    counts = import_files(files, mapping, out, quiet)
+    assert counts == {"rows": 240, "episodes": 6, "left_out": 0}
+    with (out / "poses.csv").open() as file:
+        row = list(csv.DictReader(file))[45]
+    t = 5 / RATE_HZ
+    assert float(row["x"]) == pytest.approx(0.3 + t)
+    assert float(row["y"]) == pytest.approx(1.0 + 2.0 * t - 4.905 * t * t)
+    assert float(row["z"]) == pytest.approx(-0.5 * t)
+    # The body's x axis, which pointed up, points along the engine's y.
+    x, y, z, w = (float(row[key]) for key in ("qx", "qy", "qz", "qw"))
+    axis = (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y))
+    assert axis == pytest.approx((0.0, 1.0, 0.0), abs=1e-7)
+    assert not list(tmp_path.glob(".a.measured*"))
+
+
+def test_spin_in_the_wrong_frame_is_noticed_and_nothing_is_left(tmp_path: Path) -> None:
+    files, mapping = tosses(tmp_path, spin_in_body=False)
+    with pytest.raises(ValueError, match=r"angular_velocity is wrong"):
+        import_files(files, mapping, tmp_path / "a.measured", quiet)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["map.json", "poses.csv"]
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda m: m["table"].update(t_s="time"), "no column 'time'"),
+        (lambda m: m["table"].update(file="other.csv"), "'other.csv' was not given"),
+        (lambda m: m.update(colour="red"), "no key 'colour'"),
+        (lambda m: m.update(kind="video"), "kind is 'video'"),
+        (lambda m: m["table"].update(position=["px"]), "3 names of columns"),
+        (lambda m: m["poses"].update(rate_hz=50.0), "t_s"),
+        (lambda m: m["table"].update(metres_per_unit=0.01), "against differences"),
+    ],
+)
+def test_faults_of_the_map_are_named(tmp_path: Path, change: Any, told: str) -> None:  # noqa: ANN401 - a lambda
+    files, path = tosses(tmp_path)
+    mapping = json.loads(path.read_text())
+    change(mapping)
+    path.write_text(json.dumps(mapping))
+    if told == "against differences":
+        # Only velocities are off: positions in metres, velocities in cm/s.
+        text = files[0].read_text().splitlines()
+        rows = [line.split(",") for line in text]
+        for row in rows[1:]:
+            row[2:5] = [str(100.0 * float(value)) for value in row[2:5]]
+        files[0].write_text("\n".join(",".join(row) for row in rows) + "\n")
+    with pytest.raises(ValueError, match=told):
+        import_files(files, path, tmp_path / "a.measured", quiet)
+
+
+def test_a_bad_cell_is_named_by_file_column_and_row(tmp_path: Path) -> None:
+    files, mapping = tosses(tmp_path)
+    text = files[0].read_text().splitlines()
+    cells = text[17].split(",")
+    cells[4] = "high"
+    text[17] = ",".join(cells)
+    files[0].write_text("\n".join(text) + "\n")
+    with pytest.raises(ValueError, match=r"poses\.csv row 17: column 'pz' is 'high'"):
+        import_files(files, mapping, tmp_path / "a.measured", quiet)
+
+
+def test_the_command_prints_a_template_that_it_reads(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "dwell.cli", "measure", "import"]
+    for kind in ("pose_trajectory", "trajectory"):
+        done = subprocess.run(
+            [*command, "--init", kind], capture_output=True, text=True, check=True
+        )
+        assert json.loads(done.stdout)["kind"] == kind
+    bare = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert bare.returncode == 2
+    missing = [*command, "x.csv", "--map", str(tmp_path / "no.json"), "--out", str(tmp_path / "o")]
+    assert subprocess.run(missing, capture_output=True, check=False).returncode == 1
+
+
+def shared() -> Path:
+    default = ROOT.parent / "shared" / "data"
+    return Path(os.environ.get("DWELL_SHARED_DATA", default)) / "measured" / "physics"
+
+
+@pytest.mark.parametrize(("name", "episodes"), [("cube_toss", 367), ("ball_drops", None)])
+def test_real_sets_are_imported_whole(tmp_path: Path, name: str, episodes: int | None) -> None:
+    folder = shared() / name
+    if not folder.is_dir():
+        pytest.skip(f"{folder} is absent")
+    pytest.importorskip("pyarrow", reason="Parquet needs pyarrow")
+    out = tmp_path / f"{name}.measured"
+    files = [folder / "data.parquet", folder / "index.csv"]
+    counts = import_files(files, MAPS / f"{name}.json", out, quiet)
+    assert counts["episodes"] == _native.check_measured(str(out))
+    if episodes is not None:
+        assert counts["episodes"] == episodes
