@@ -32,11 +32,11 @@ pub struct StudyOptions {
     pub folds: usize,
     /// Points of a generation of the search, at least 4; default 6.
     pub population: usize,
-    /// Generations on a part of the training episodes, then on all of them; default 9 and 2.
+    /// Generations on a part of the training episodes, then on all of them; default 10 and 1.
     pub generations: [usize; 2],
     /// How many episodes that part has; default 60.
     pub first_episodes: usize,
-    /// Windows start at every so many samples; default 10.
+    /// Windows start at every so many samples; default 20.
     pub window_stride: usize,
     /// Draws of the bootstrap; default 2,000.
     pub bootstrap_draws: usize,
@@ -49,9 +49,9 @@ impl Default for StudyOptions {
             threads: None,
             folds: 5,
             population: 6,
-            generations: [9, 2],
+            generations: [10, 1],
             first_episodes: 60,
-            window_stride: 10,
+            window_stride: 20,
             bootstrap_draws: 2_000,
         }
     }
