@@ -17,7 +17,7 @@ pub enum AcousticsError {
         allowed: &'static str,
     },
     /// A source or receiver is nowhere.
-    #[error("{what} stands at {found:?}; coordinates must be finite")]
+    #[error("{what} stands at {found:?}; allowed are coordinates up to 1,000,000 m")]
     Position {
         /// Source or receiver.
         what: &'static str,

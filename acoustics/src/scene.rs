@@ -41,12 +41,20 @@ impl Surface {
 
     fn new(house: &House, state: Option<&State>, id: MaterialId) -> Self {
         let material = &house.materials[id];
-        let (absorption, scattering) = match state {
-            Some(state) => (state.absorption(house, id), state.scattering(house, id)),
-            None => (material.absorption.clone(), material.scattering.clone()),
+        let (absorption, scattering, loss_db) = match state {
+            Some(state) => (
+                state.absorption(house, id),
+                state.scattering(house, id),
+                state.transmission_loss_db(house, id),
+            ),
+            None => (
+                material.absorption.clone(),
+                material.scattering.clone(),
+                material.transmission_loss_db.clone(),
+            ),
         };
         let scattering = bands::sample(&scattering).map(|s| s.clamp(0.0, 1.0));
-        let loss_db = bands::sample(&material.transmission_loss_db);
+        let loss_db = bands::sample(&loss_db);
         Self {
             kept: bands::sample(&absorption).map(|a| (1.0 - a).clamp(0.0, 1.0)),
             scattering,

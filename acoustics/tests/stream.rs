@@ -352,3 +352,50 @@ fn wrong_buffers_are_refused_and_change_nothing() {
     assert_eq!(message, "out: expected 1600 samples, found 800");
     assert_eq!(stream.hash(), before);
 }
+
+/// Of two sources only the first may be heard. The second rings out from before and gets nothing more to ring with.
+#[test]
+fn a_source_that_is_left_out_rings_out_and_is_not_fed() {
+    let hall = room();
+    let state = State::new(&hall.house);
+    let listener = Receiver::omni(Vec3::new(4.0, 1.5, 3.5));
+    let config = StreamConfig {
+        block_samples: BLOCK,
+        max_sources: 1,
+        ..StreamConfig::default()
+    };
+    let (loud, silent) = (radio(BLOCK), vec![0.0; BLOCK]);
+    let hear = |goes_on: bool| {
+        let mut stream = stream(&hall, config);
+        let (mut heard, mut out) = (Vec::new(), vec![0.0; BLOCK]);
+        for block in 0..4 {
+            let second = ActiveSource {
+                id: 2,
+                position: SOURCE,
+                signal: if block == 0 || goes_on {
+                    &loud
+                } else {
+                    &silent
+                },
+            };
+            let first = ActiveSource {
+                id: 1,
+                position: Vec3::new(2.5, 1.2, 3.0),
+                signal: &loud,
+            };
+            let sources = if block == 0 {
+                vec![second]
+            } else {
+                vec![first, second]
+            };
+            let rays = &hall.rays;
+            let report = stream
+                .block(rays, &state, &sources, &listener, &mut out)
+                .unwrap();
+            assert_eq!(report.left_out, usize::from(block > 0));
+            heard.extend_from_slice(&out);
+        }
+        heard
+    };
+    assert_eq!(hear(true), hear(false));
+}

@@ -119,6 +119,14 @@ fn explain(
     progress: &Progress<'_>,
 ) -> Result<Report, CalibrationError> {
     progress.stage(0.05, "building the simulation")?;
+    if let (Some(house), false) = (&options.house, bundle.kind() == Kind::ImpulseResponse) {
+        return Err(CalibrationError::field(
+            bundle.name,
+            "house",
+            format!("{house:?}"),
+            "none: only impulse responses are measured in a house",
+        ));
+    }
     let mut twin: Box<dyn Twin> = match bundle.kind() {
         Kind::Trajectory => Box::new(FlightTwin::new(bundle, options)?),
         Kind::Servo => Box::new(ServoTwin::new(bundle, options)?),

@@ -3,6 +3,7 @@
 use crate::doorway::Doorway;
 use crate::errors::{Fault, to_python};
 use crate::house::PyHouse;
+use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source};
 use dwell_scene::Pose;
 use dwell_scene::parallel::Threads;
@@ -55,9 +56,10 @@ impl PyAcousticScene {
                 Receiver::omni(mic)
             };
             let source = Source::at(Vec3::from_array(source));
-            let (key, threads) = (Key::root(seed), Threads::resolve(threads));
-            self.scene
-                .impulse_response(&self.rays, &source, &receiver, key, threads)
+            let (key, threads) = (Key::root(seed), Threads::requested(threads)?);
+            let scene = &self.scene;
+            let response = scene.impulse_response(&self.rays, &source, &receiver, key, threads)?;
+            Ok::<_, Fault>(response)
         })?;
         let (channels, samples) = (response.channels, response.len());
         response
@@ -81,11 +83,19 @@ impl PyAcousticScene {
                 &source,
                 mic,
                 Key::root(seed),
-                Threads::resolve(None),
+                Threads::requested(None)?,
             )?;
-            Ok(serde_json::to_string(
-                &dwell_acoustics::metrics::of_echogram(&echogram),
-            )?)
+            let bands = dwell_acoustics::metrics::of_echogram(&echogram);
+            let mut rows = serde_json::to_value(bands)?;
+            for (row, centre_hz) in rows
+                .as_array_mut()
+                .into_iter()
+                .flatten()
+                .zip(NOMINAL_CENTRES_HZ)
+            {
+                row["centre_hz"] = centre_hz.into();
+            }
+            Ok(rows.to_string())
         })
     }
 

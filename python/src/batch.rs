@@ -8,7 +8,8 @@ use dwell::sensors::{Dtype, Out};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo};
 use dwell_scene::parallel::Threads;
 use numpy::{
-    IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadwriteArrayDyn,
+    BorrowError, IntoPyArray, PyArray1, PyArray3, PyArrayDyn, PyArrayMethods, PyReadonlyArray1,
+    PyReadwriteArrayDyn,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -24,6 +25,28 @@ enum Lent<'py> {
     Float32(PyReadwriteArrayDyn<'py, f32>),
     Int32(PyReadwriteArrayDyn<'py, i32>),
     Text(String),
+}
+
+/// An array of the caller to write into.
+fn lend<'py, T: numpy::Element>(
+    sensor: &str,
+    dtype: &str,
+    out: &Bound<'py, PyAny>,
+) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
+    let refuse = |message: String| crate::errors::to_python(Fault::Config(message));
+    let array = out.cast::<PyArrayDyn<T>>().map_err(|_| {
+        refuse(format!(
+            "{sensor}: expected a writeable C-contiguous {dtype} array"
+        ))
+    })?;
+    array.try_readwrite().map_err(|error| match error {
+        BorrowError::AlreadyBorrowed => crate::errors::to_python(Fault::Usage(format!(
+            "{sensor}: its buffer is in use by another call; one thread at a time steps an environment"
+        ))),
+        _ => refuse(format!(
+            "{sensor}: expected a writeable C-contiguous {dtype} array"
+        )),
+    })
 }
 
 fn action(number: i64) -> Result<Option<DiscreteAction>, Fault> {
@@ -79,7 +102,7 @@ impl PyBatch {
                 .into_iter()
                 .map(|engines| Env::new(engines, &config))
                 .collect::<Result<Vec<_>, _>>()?;
-            Ok(Batch::new(envs, Threads::resolve(threads))?)
+            Ok(Batch::new(envs, Threads::requested(threads)?)?)
         })?;
         Ok(Self {
             batch: batch.into(),
@@ -158,20 +181,11 @@ impl PyBatch {
         let mut lent = Vec::new();
         for (k, out) in outs.iter().enumerate() {
             let Some(spec) = specs.get(k) else { break };
-            let array = |what: &str| {
-                let message = format!(
-                    "{}: expected a writeable C-contiguous {what} array",
-                    spec.name
-                );
-                move |_| crate::errors::to_python(Fault::Config(message))
-            };
             lent.push(match (spec.dtype, out) {
                 (Dtype::Text, _) | (_, None) => Lent::Text(String::new()),
-                (Dtype::Uint8, Some(out)) => Lent::Uint8(out.extract().map_err(array("uint8"))?),
-                (Dtype::Float32, Some(out)) => {
-                    Lent::Float32(out.extract().map_err(array("float32"))?)
-                }
-                (Dtype::Int32, Some(out)) => Lent::Int32(out.extract().map_err(array("int32"))?),
+                (Dtype::Uint8, Some(out)) => Lent::Uint8(lend(&spec.name, "uint8", out)?),
+                (Dtype::Float32, Some(out)) => Lent::Float32(lend(&spec.name, "float32", out)?),
+                (Dtype::Int32, Some(out)) => Lent::Int32(lend(&spec.name, "int32", out)?),
             });
         }
         let mut slices = Vec::new();
@@ -228,8 +242,18 @@ impl PyBatch {
     }
 
     fn snapshot<'py>(&self, py: Python<'py>, env: usize) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = self.with(py, |batch| Ok(batch.env(env)?.world().snapshot()))?;
+        let bytes = self.with(py, |batch| Ok(batch.env(env)?.snapshot()?))?;
         Ok(PyBytes::new(py, &bytes))
+    }
+
+    fn restore(&self, py: Python<'_>, env: usize, snapshot: &[u8]) -> PyResult<()> {
+        self.with(py, |batch| Ok(batch.restore(env, snapshot)?))
+    }
+
+    fn clipped(&self, py: Python<'_>) -> PyResult<Vec<u64>> {
+        self.with(py, |batch| {
+            Ok(batch.envs().iter().map(dwell::Env::clipped).collect())
+        })
     }
 
     fn agents_json(&self, py: Python<'_>, env: usize) -> PyResult<String> {

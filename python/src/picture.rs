@@ -89,7 +89,7 @@ pub(crate) fn render(
         world.state(),
         &[view],
         &mut [frame.as_mut()],
-        Threads::resolve(None),
+        Threads::requested(None)?,
     )?;
     Ok(Picture {
         height: settings.height as usize,

@@ -291,7 +291,7 @@ impl PyWorld {
                     semantic: false,
                 },
             );
-            let threads = Threads::resolve(None);
+            let threads = Threads::requested(None)?;
             world.engines().renderer().render(
                 world.rays(),
                 world.state(),

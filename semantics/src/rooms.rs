@@ -6,9 +6,8 @@ use crate::room_kind::{RoomKind, room_kinds};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::math;
-use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{House, IdVec, MaterialId, Room, RoomId, StructureKind, SurfaceOwner};
+use dwell_scene::{House, IdVec, MaterialId, RoomId, StructureKind, SurfaceOwner};
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -49,8 +48,8 @@ impl RoomFacts {
         let surfaces = Surfaces::gather(house, colors);
         let mut rooms: IdVec<RoomId, Self> = house
             .rooms
-            .iter_ids()
-            .map(|(id, room)| Self::of(room, &surfaces, id))
+            .ids()
+            .map(|id| Self::of(house, &surfaces, id))
             .collect();
         let mut seen: BTreeMap<String, usize> = BTreeMap::new();
         let mut total: BTreeMap<String, usize> = BTreeMap::new();
@@ -67,7 +66,8 @@ impl RoomFacts {
         rooms
     }
 
-    fn of(room: &Room, surfaces: &Surfaces, id: RoomId) -> Self {
+    fn of(house: &House, surfaces: &Surfaces, id: RoomId) -> Self {
+        let room = &house.rooms[id];
         let kinds: Vec<Option<&RoomKind>> = room
             .kinds
             .iter()
@@ -91,7 +91,7 @@ impl RoomFacts {
             noun,
             plural,
             names,
-            area_m2: room.area_m2() * surfaces.own_share[id],
+            area_m2: house.own_area_m2(id),
             floor_word: surfaces.floor_word(id),
             wall_color: surfaces.wall_color(id),
         }
@@ -107,8 +107,6 @@ impl RoomFacts {
 struct Surfaces {
     floors: IdVec<RoomId, BTreeMap<String, f32>>,
     walls: IdVec<RoomId, Vec<Patch>>,
-    /// The share of its floor that lies in no smaller room.
-    own_share: IdVec<RoomId, f32>,
 }
 
 impl Surfaces {
@@ -140,21 +138,13 @@ impl Surfaces {
         let points: IdVec<RoomId, Vec<Vec3>> = house
             .rooms
             .ids()
-            .map(|room| points_in(house, room))
+            .map(|room| house.points_in_room(room, POINTS))
             .collect();
         let walls = points
             .iter()
             .map(|points| seen_walls(&rays, colors, points))
             .collect();
-        let own_share = points
-            .iter()
-            .map(|points| points.len() as f32 / POINTS as f32)
-            .collect();
-        Self {
-            floors,
-            walls,
-            own_share,
-        }
+        Self { floors, walls }
     }
 
     fn floor_word(&self, room: RoomId) -> Option<&'static str> {
@@ -174,32 +164,6 @@ impl Surfaces {
             .filter(|(_, share)| *share >= 0.5)
             .map(|(word, _)| *word)
     }
-}
-
-/// Points at half height over the room's floor, evenly spread by area; those that lie in a smaller room are left out.
-fn points_in(house: &House, id: RoomId) -> Vec<Vec3> {
-    let room = &house.rooms[id];
-    let mut stream = Key::root(0).child("floor").child(u64::from(id.0)).stream();
-    let total = room.area_m2();
-    let mut points = Vec::with_capacity(POINTS);
-    for k in 0..POINTS {
-        let mut left = (k as f32 + 0.5) / POINTS as f32 * total;
-        let triangle = room.footprint.iter().find(|[a, b, c]| {
-            left -= (*b - *a).perp_dot(*c - *a).abs() * 0.5;
-            left <= 0.0
-        });
-        let Some([a, b, c]) = triangle.or(room.footprint.last()) else {
-            break;
-        };
-        let (mut u, mut v) = (stream.uniform_f32(), stream.uniform_f32());
-        if u + v > 1.0 {
-            (u, v) = (1.0 - u, 1.0 - v);
-        }
-        let point = *a + (*b - *a) * u + (*c - *a) * v;
-        let point = Vec3::new(point.x, room.floor_y.midpoint(room.ceiling_y), point.y);
-        points.extend(Some(point).filter(|point| house.room_at(*point) == Some(id)));
-    }
-    points
 }
 
 /// The materials of the walls that somebody in the room sees, by share of the directions to the side.

@@ -202,3 +202,95 @@ fn windows_grow_backwards_and_time_goes_on_without_ears() {
         level(&a) * level(&b)
     );
 }
+
+#[test]
+fn one_parameter_in_two_spellings_is_refused_and_is_one_parameter_afterwards() {
+    let engines = dwell_tests::apartment();
+    let house = engines.house().clone();
+    let (object, name) = house
+        .objects
+        .iter_ids()
+        .map(|(id, object)| (id, object.name.clone()))
+        .next()
+        .unwrap();
+    let by_id = format!("object/{}/mass_kg", house.entity_of_object(object).0);
+    let by_name = format!("object/{name}/mass_kg");
+    let mut config = WorldConfig::default();
+    config.parameters.insert(by_id.clone(), 2.0);
+    let one = World::new(engines.clone(), &config).unwrap();
+    config.parameters.insert(by_name.clone(), 3.0);
+    let error = World::new(engines.clone(), &config)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("two spellings"), "{error}");
+    config.parameters.remove(&by_id);
+    let mut other = World::new(engines, &config).unwrap();
+    assert_ne!(other.state().hash(), one.state().hash());
+    other.set_parameter(&by_id.parse().unwrap(), 2.0).unwrap();
+    assert_eq!(other.state().hash(), one.state().hash());
+    let address = by_name.parse().unwrap();
+    let read = other.state().parameter(other.house(), &address).unwrap();
+    assert!((read.value - 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_size_of_a_room_is_the_same_in_numbers_and_in_words() {
+    let engines = dwell_tests::apartment();
+    let info = dwell::info(&engines, &serde_json::json!([]));
+    let views = dwell::viewpoints(&engines).unwrap();
+    for (k, room) in engines.house().rooms.ids().enumerate() {
+        let own = engines.house().own_area_m2(room);
+        assert_eq!(info["rooms"][k]["area_m2"], serde_json::json!(own));
+        assert_eq!(views[k].area_m2, own);
+        assert_eq!(engines.semantics().room(room).area_m2, own);
+    }
+}
+
+#[test]
+fn settings_that_a_sensor_does_not_know_are_refused() {
+    for kind in dwell::sensors::all() {
+        let sensor = dwell::SensorConfig {
+            kind: kind.name.to_owned(),
+            settings: serde_json::json!({"foo": 1}),
+        };
+        let config = dwell::EnvConfig {
+            sensors: Some(vec![sensor]),
+            ..dwell::EnvConfig::default()
+        };
+        let error = dwell::Env::new(dwell_tests::apartment(), &config)
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("foo"), "{}: {error}", kind.name);
+        assert!(!error.contains("allowed is"), "{error}");
+    }
+}
+
+/// The expert knows how far a step goes: with coarse turns and nods it still gets there, and looks at what it found.
+#[test]
+fn the_expert_walks_with_the_strides_of_its_environment() {
+    let stride = Stride {
+        turn_deg: 45.0,
+        look_deg: 30.0,
+        ..Stride::default()
+    };
+    let config = dwell::EnvConfig {
+        stride,
+        sensors: Some(Vec::new()),
+        ..dwell::EnvConfig::default()
+    };
+    let mut env = dwell::Env::new(dwell_tests::apartment(), &config).unwrap();
+    let mut fulfilled = 0;
+    for seed in 0..6 {
+        env.reset(seed).unwrap();
+        for _ in 0..1000 {
+            let action = env.expert_action().unwrap();
+            let info = env.step(action).unwrap();
+            if info.verdict.terminated {
+                fulfilled += u32::from(info.verdict.success);
+                break;
+            }
+        }
+    }
+    // It may get stuck in a tight spot, but not often.
+    assert!(fulfilled >= 4, "{fulfilled} of 6");
+}

@@ -67,6 +67,15 @@ pub struct Stream {
     voices: Vec<Voice>,
 }
 
+/// What a voice does in one block.
+struct Planned {
+    id: u64,
+    /// Whether its source is heard; else it only rings out.
+    named: bool,
+    /// The impulse response from now on; `None`: as before.
+    news: Option<(Situation, crate::ImpulseResponse)>,
+}
+
 #[derive(Serialize, Deserialize)]
 struct Snapshot {
     version: u32,
@@ -160,7 +169,7 @@ impl Stream {
         out.fill(0.0);
         let (mut old, mut new) = (vec![0.0; out.len()], vec![0.0; out.len()]);
         let mut signal = vec![0.0; size];
-        for (id, news) in planned {
+        for Planned { id, named, news } in planned {
             let place = self.voices.binary_search_by_key(&id, |voice| voice.id);
             let place = place.unwrap_or_else(|place| {
                 let voice = Voice::new(id, size, self.partitions);
@@ -169,7 +178,9 @@ impl Stream {
             });
             let voice = &mut self.voices[place];
             signal.fill(0.0);
-            for source in sources.iter().filter(|source| source.id == id) {
+            // What was left out or is no longer named rings out, and gets no more to ring with.
+            let fed = sources.iter().filter(|source| named && source.id == id);
+            for source in fed {
                 for (sum, x) in signal.iter_mut().zip(source.signal) {
                     *sum += x;
                 }
@@ -207,10 +218,6 @@ impl Stream {
     }
 
     /// The sources that are heard in this block, by id, with new impulse responses where they need them.
-    #[expect(
-        clippy::type_complexity,
-        reason = "the plan of one block, used in one place"
-    )]
     fn plan(
         &self,
         rays: &RayScene,
@@ -218,7 +225,7 @@ impl Stream {
         sources: &[ActiveSource<'_>],
         receiver: &Receiver,
         report: &mut BlockReport,
-    ) -> Result<Vec<(u64, Option<(Situation, crate::ImpulseResponse)>)>, AcousticsError> {
+    ) -> Result<Vec<Planned>, AcousticsError> {
         let mut ids: Vec<(u64, Option<Vec3>)> = Vec::new();
         let mut seen = 0;
         for source in sources {
@@ -260,6 +267,7 @@ impl Stream {
             let heard = place
                 .ok()
                 .and_then(|place| self.voices[place].heard.as_ref());
+            let named = position.is_some();
             // What is no longer named rings out where it was last.
             let Some(position) = position.or_else(|| heard.map(|(situation, _)| situation.source))
             else {
@@ -300,7 +308,8 @@ impl Stream {
                     scene.impulse_response(rays, &source, receiver, key, threads)?
                 }),
             };
-            planned.push((id, response.map(|response| (now, response))));
+            let news = response.map(|response| (now, response));
+            planned.push(Planned { id, named, news });
         }
         Ok(planned)
     }

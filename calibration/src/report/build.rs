@@ -305,8 +305,8 @@ fn notes(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Vec<String> {
     let mut notes = Vec::new();
     if !findings.split.by_group {
         notes.push(
-            "All episodes are of one group: episodes were held out, not groups, so what is common to the session is in \
-             both parts."
+            "All episodes are of one group, or the groups are too unequal to hold one out: episodes were held out, so what \
+             is common to a session is in both parts."
                 .to_owned(),
         );
     }

@@ -9,18 +9,28 @@ use std::collections::BTreeSet;
 pub(crate) struct Split {
     pub(crate) train: Vec<usize>,
     pub(crate) held_out: Vec<usize>,
-    /// Whether whole groups are held out; else there is one group only, and its episodes are split.
+    /// Whether whole groups are held out; else there is one group only, or groups too unequal for that, and episodes are.
     pub(crate) by_group: bool,
 }
 
 impl Split {
-    /// Draws groups until `share` of the episodes is held out, leaving at least two on both sides.
+    /// Draws groups until `share` of the episodes is held out, leaving at least two on both sides. Where whole groups do not
+    /// allow that, single episodes are drawn.
     pub(crate) fn new(episodes: &[Measured], share: f64, seed: u64) -> Self {
         let groups: BTreeSet<&str> = episodes
             .iter()
             .map(|episode| episode.group.as_str())
             .collect();
-        let by_group = groups.len() > 1;
+        if groups.len() > 1 {
+            let split = Self::draw(episodes, share, seed, true);
+            if split.held_out.len() >= 2 {
+                return split;
+            }
+        }
+        Self::draw(episodes, share, seed, false)
+    }
+
+    fn draw(episodes: &[Measured], share: f64, seed: u64, by_group: bool) -> Self {
         let label = |k: usize| {
             if by_group {
                 episodes[k].group.as_str()
@@ -68,6 +78,21 @@ mod tests {
                 ..Measured::default()
             })
             .collect()
+    }
+
+    #[test]
+    fn two_episodes_judge_however_unequal_the_groups_are() {
+        for groups in ["abbb", "abbbbb", "aaab", "aabb", "abcd"] {
+            let names: Vec<&str> = groups.split("").filter(|name| !name.is_empty()).collect();
+            for seed in 0..20 {
+                let split = Split::new(&episodes(&names), 1.0 / 3.0, seed);
+                assert!(
+                    split.train.len() >= 2 && split.held_out.len() >= 2,
+                    "{groups}: {split:?}"
+                );
+                assert_eq!(split.train.len() + split.held_out.len(), names.len());
+            }
+        }
     }
 
     #[test]

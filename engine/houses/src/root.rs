@@ -88,6 +88,14 @@ impl DataRoot {
         }
         read_capped(&full, path, max_bytes)
     }
+
+    /// Reads the file that the user named, which may be a link to anywhere; what it refers to is bounded by [`Self::read`].
+    ///
+    /// # Errors
+    /// [`HousesError::TooLarge`] above `max_bytes`, [`HousesError::Io`] when the system refuses.
+    pub fn read_named(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
+        read_capped(&self.folder.join(path), path, max_bytes)
+    }
 }
 
 /// Reads a file of at most `max_bytes`; `name` stands in the error.
@@ -95,15 +103,21 @@ impl DataRoot {
 /// # Errors
 /// [`HousesError::TooLarge`] and [`HousesError::Io`].
 pub(crate) fn read_capped(path: &Path, name: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
-    let file = File::open(path).map_err(HousesError::io(path))?;
-    let meta = file.metadata().map_err(HousesError::io(path))?;
-    if !meta.is_file() {
+    let regular = |meta: &std::fs::Metadata| {
+        if meta.is_file() {
+            return Ok(());
+        }
         let source = std::io::Error::new(std::io::ErrorKind::InvalidInput, "is not a regular file");
-        return Err(HousesError::Io {
+        Err(HousesError::Io {
             path: path.into(),
             source,
-        });
-    }
+        })
+    };
+    // To open a named pipe is to wait for somebody who writes into it.
+    regular(&std::fs::metadata(path).map_err(HousesError::io(path))?)?;
+    let file = File::open(path).map_err(HousesError::io(path))?;
+    let meta = file.metadata().map_err(HousesError::io(path))?;
+    regular(&meta)?;
     let too_large = |found| HousesError::TooLarge {
         at: At::file(name),
         what: "file size in bytes",
@@ -172,6 +186,33 @@ mod tests {
             root.read("link", 10),
             Err(HousesError::PathLeavesRoot { .. })
         ));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_named_pipe_is_refused_without_waiting() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("p.obj");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.unwrap().success());
+        let error = DataRoot::new(folder.path()).unwrap().read("p.obj", 10);
+        assert!(
+            error
+                .unwrap_err()
+                .to_string()
+                .contains("not a regular file")
+        );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_file_that_is_named_may_be_a_link_out_of_the_root() {
+        let (outside, inside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        std::fs::write(outside.path().join("blob"), "x").unwrap();
+        std::os::unix::fs::symlink(outside.path().join("blob"), inside.path().join("m.glb"))
+            .unwrap();
+        let root = DataRoot::new(inside.path()).unwrap();
+        assert_eq!(root.read_named("m.glb", 10).unwrap(), b"x");
     }
 
     #[test]

@@ -52,6 +52,16 @@ pub enum SceneError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// A number of threads that makes no sense.
+    #[error("{at} is {found}; allowed are 1 to {allowed}")]
+    Threads {
+        /// The argument or the variable.
+        at: &'static str,
+        /// What was found.
+        found: String,
+        /// The most that are allowed.
+        allowed: usize,
+    },
     /// A name that must be unique and is not.
     #[error("{at}: the name {name:?} is taken")]
     DuplicateName {

@@ -3,6 +3,7 @@
 //! A pool belongs to one process id, because threads do not survive `fork()`. Results never depend on the number of
 //! threads: work is cut into pieces of constant size, and pieces are joined in order.
 
+use crate::error::SceneError;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -14,9 +15,36 @@ impl Threads {
     /// One thread: the caller's.
     pub const ONE: Self = Self(1);
 
-    /// Exactly `count` threads, at least one.
+    /// The most that are ever started.
+    pub const MOST: usize = 1024;
+
+    /// Exactly `count` threads, at least one and at most [`Threads::MOST`].
     pub fn exactly(count: usize) -> Self {
-        Self(count.max(1))
+        Self(count.clamp(1, Self::MOST))
+    }
+
+    /// As [`Threads::resolve`], for numbers that people give: what makes no sense is refused.
+    ///
+    /// # Errors
+    /// [`SceneError::Threads`] for none or too many, asked for or in the variable, and for a variable that is no number.
+    pub fn requested(requested: Option<usize>) -> Result<Self, SceneError> {
+        let refuse = |at: &'static str, found: String| SceneError::Threads {
+            at,
+            found,
+            allowed: Self::MOST,
+        };
+        let range = 1..=Self::MOST;
+        if let Some(count) = requested {
+            let allowed = range.contains(&count).then_some(Self(count));
+            return allowed.ok_or_else(|| refuse("threads", count.to_string()));
+        }
+        if let Ok(text) = std::env::var("DWELL_THREADS") {
+            let count = text.trim().parse().ok().filter(|n| range.contains(n));
+            return count
+                .map(Self)
+                .ok_or_else(|| refuse("DWELL_THREADS", format!("{text:?}")));
+        }
+        Ok(Self::resolve(None))
     }
 
     /// `requested` if given, else the variable `DWELL_THREADS`, else what the affinity mask and the cgroup allow.
@@ -119,6 +147,16 @@ impl Default for Threads {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn more_threads_than_a_machine_can_have_are_refused_and_never_started() {
+        for count in [0, 1025, 100_000, usize::MAX] {
+            let error = Threads::requested(Some(count)).unwrap_err().to_string();
+            assert_eq!(error, format!("threads is {count}; allowed are 1 to 1024"));
+            assert!((1..=Threads::MOST).contains(&Threads::exactly(count).count()));
+        }
+        assert_eq!(Threads::requested(Some(1024)).unwrap().count(), 1024);
+    }
 
     #[test]
     fn results_come_in_order_for_any_number_of_threads() {

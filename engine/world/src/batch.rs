@@ -60,6 +60,15 @@ impl Batch {
             .ok_or_else(|| WorldError::Usage(format!("no environment {index}; there are {count}")))
     }
 
+    /// Goes to a snapshot of one environment.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for an environment that does not exist, and those of [`Env::restore`].
+    pub fn restore(&mut self, index: usize, bytes: &[u8]) -> Result<(), WorldError> {
+        self.env(index)?;
+        self.envs[index].restore(bytes)
+    }
+
     /// What the scripted expert would do now in each environment.
     ///
     /// # Errors
@@ -129,13 +138,16 @@ impl Batch {
     /// Steps the environments for which `actions` has one.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an environment whose episode has ended.
+    /// [`WorldError::Usage`] for an environment whose episode has ended; then none is stepped.
     pub fn step(
         &mut self,
         actions: &[Option<DiscreteAction>],
     ) -> Result<Vec<Option<StepInfo>>, WorldError> {
         self.check_count("actions", actions.len())?;
         let active: Vec<bool> = actions.iter().map(Option::is_some).collect();
+        for (env, _) in self.envs.iter().zip(&active).filter(|(_, active)| **active) {
+            env.ready()?;
+        }
         self.for_active(&active, |k, env| {
             let info = env.step(actions[k].unwrap_or(DiscreteAction::Stop))?;
             env.listen()?;

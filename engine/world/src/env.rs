@@ -103,8 +103,22 @@ pub struct Env {
     requests: Requests,
     pub(crate) results: Results,
     episode: Option<Episode>,
+    seed: u64,
     episode_key: Key,
     done: bool,
+}
+
+/// What [`Env::snapshot`] begins with: its kind and version.
+const MAGIC: &[u8] = b"dwenv1";
+
+/// An episode at one moment. Its text and goal come from the seed again.
+#[derive(Serialize, Deserialize)]
+struct Moment {
+    task: String,
+    seed: u64,
+    done: bool,
+    progress: Progress,
+    world: Vec<u8>,
 }
 
 impl Env {
@@ -114,8 +128,8 @@ impl Env {
     /// [`WorldError`] names the setting or the fault of the house.
     pub fn new(engines: Arc<Engines>, config: &EnvConfig) -> Result<Self, WorldError> {
         let kind = tasks::find(&config.task)?;
-        let task = (kind.build)(&config.task_settings)?;
         config.stride.check()?;
+        let task = (kind.build)(&config.task_settings, config.stride)?;
         let site = Site {
             config: &config.world,
         };
@@ -157,6 +171,7 @@ impl Env {
             requests,
             results: Results::default(),
             episode: None,
+            seed: 0,
             episode_key: Key::root(0),
             done: false,
         })
@@ -193,11 +208,81 @@ impl Env {
     /// [`WorldError::Unplayable`] when the house does not hold what the task needs.
     pub fn reset(&mut self, seed: u64) -> Result<&Episode, WorldError> {
         let key = Key::root(seed).child("episode");
+        // What fails from here on leaves no episode behind that could go on.
+        self.episode = None;
+        self.done = false;
         self.world.reset(key)?;
         let episode = self.task.reset(&mut self.world, key.child("task"))?;
-        self.episode_key = key;
-        self.done = false;
+        (self.seed, self.episode_key) = (seed, key);
         Ok(self.episode.insert(episode))
+    }
+
+    /// World and episode as bytes.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] before the first reset.
+    ///
+    /// # Panics
+    /// Never: plain data can always be written to memory.
+    pub fn snapshot(&self) -> Result<Vec<u8>, WorldError> {
+        let Some(episode) = &self.episode else {
+            let message = "snapshot: no episode has begun; call reset first";
+            return Err(WorldError::Usage(message.to_owned()));
+        };
+        let moment = Moment {
+            task: self.kind.name.to_owned(),
+            seed: self.seed,
+            done: self.done,
+            progress: episode.progress,
+            world: self.world.snapshot(),
+        };
+        let body =
+            postcard::to_stdvec(&moment).expect("plain data can always be written to memory");
+        Ok([MAGIC, &body].concat())
+    }
+
+    /// Goes to where [`Self::snapshot`] was taken in an environment of the same make; the next steps give the same bits as
+    /// they did then. Only the scripted expert forgets a manoeuvre that it was about.
+    ///
+    /// # Errors
+    /// [`WorldError::Snapshot`] with the reason; no episode runs then.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        let refuse = |why: String| WorldError::Snapshot(why);
+        let body = bytes
+            .strip_prefix(MAGIC)
+            .ok_or_else(|| refuse("it does not begin with \"dwenv1\"".to_owned()))?;
+        let moment: Moment =
+            postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
+        if moment.task != self.kind.name {
+            return Err(refuse(format!("it is of the task {}", moment.task)));
+        }
+        self.reset(moment.seed)?;
+        let restored = self.world.restore(&moment.world);
+        let Some(episode) = self.episode.as_mut().filter(|_| restored.is_ok()) else {
+            self.episode = None;
+            return restored;
+        };
+        episode.progress = moment.progress;
+        self.done = moment.done;
+        Ok(())
+    }
+
+    /// Whether a step can be made.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] before the first reset and after the end of an episode.
+    pub fn ready(&self) -> Result<(), WorldError> {
+        let what = match &self.episode {
+            Some(_) if self.done => "the episode has ended",
+            Some(_) => return Ok(()),
+            None => "no episode has begun",
+        };
+        Err(WorldError::Usage(format!("step: {what}; call reset first")))
+    }
+
+    /// Samples of sound that were cut off in the latest observation, because they were louder than it can hold.
+    pub fn clipped(&self) -> u64 {
+        self.sensors.iter().map(|sensor| sensor.clipped()).sum()
     }
 
     /// Makes one control step with `action`, without looking: a [`Batch`](crate::Batch) observes afterwards.
@@ -205,13 +290,9 @@ impl Env {
     /// # Errors
     /// [`WorldError::Usage`] before the first reset and after the end of an episode.
     pub fn step(&mut self, action: DiscreteAction) -> Result<StepInfo, WorldError> {
-        let Some(episode) = self.episode.as_mut().filter(|_| !self.done) else {
-            let what = if self.done {
-                "the episode has ended"
-            } else {
-                "no episode has begun"
-            };
-            return Err(WorldError::Usage(format!("step: {what}; call reset first")));
+        self.ready()?;
+        let Some(episode) = self.episode.as_mut() else {
+            return Err(WorldError::Usage("step: no episode has begun".to_owned()));
         };
         let agent = AgentId(0);
         let outcome = self.world.act_discrete(agent, action, &self.stride)?;
@@ -300,5 +381,106 @@ impl Env {
             out,
         );
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Batch;
+    use dwell_scene::parallel::Threads;
+
+    fn env() -> Env {
+        let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
+        let sensors = Some(vec![SensorConfig {
+            kind: "compass".to_owned(),
+            settings: serde_json::Value::Null,
+        }]);
+        let config = EnvConfig {
+            sensors,
+            ..EnvConfig::default()
+        };
+        Env::new(Engines::new(Arc::new(house)), &config).unwrap()
+    }
+
+    /// A task that starts nothing.
+    #[derive(Debug)]
+    struct Refusing;
+
+    impl Task for Refusing {
+        fn reset(&mut self, world: &mut World, _: Key) -> Result<Episode, WorldError> {
+            Err(WorldError::Unplayable {
+                task: "Refusing",
+                house: world.house().name.clone(),
+                why: "it always does".to_owned(),
+            })
+        }
+
+        fn judge(&mut self, _: &World, _: &mut Episode, _: DiscreteAction) -> Verdict {
+            Verdict::default()
+        }
+
+        fn expert(&mut self, _: &mut World, _: &Episode) -> DiscreteAction {
+            DiscreteAction::Stop
+        }
+    }
+
+    #[test]
+    fn a_reset_that_fails_leaves_no_episode_that_could_go_on() {
+        let mut env = env();
+        env.reset(1).unwrap();
+        env.task = Box::new(Refusing);
+        assert!(matches!(env.reset(2), Err(WorldError::Unplayable { .. })));
+        assert!(env.episode().is_none());
+        let error = env.step(DiscreteAction::Wait).unwrap_err().to_string();
+        assert_eq!(error, "step: no episode has begun; call reset first");
+    }
+
+    #[test]
+    fn a_restored_episode_goes_on_and_is_judged_as_before() {
+        let mut env = env();
+        assert!(matches!(env.snapshot(), Err(WorldError::Usage(_))));
+        env.reset(3).unwrap();
+        let go = |env: &mut Env, actions: &[DiscreteAction]| -> Vec<(u64, StepInfo)> {
+            let step = |action: &DiscreteAction| {
+                let info = env.step(*action).unwrap();
+                env.listen().unwrap();
+                (env.world().hash(), info)
+            };
+            actions.iter().map(step).collect()
+        };
+        use DiscreteAction::{MoveForward, Stop, TurnLeft};
+        go(&mut env, &[MoveForward, TurnLeft, MoveForward]);
+        let text = env.episode().unwrap().instruction.clone();
+        let saved = env.snapshot().unwrap();
+        let rest = [MoveForward, MoveForward, TurnLeft, Stop];
+        let first = go(&mut env, &rest);
+        assert!(env.ready().is_err());
+        env.restore(&saved).unwrap();
+        assert_eq!(go(&mut env, &rest), first);
+        let mut other = self::env();
+        other.reset(8).unwrap();
+        other.restore(&saved).unwrap();
+        assert_eq!(other.episode().unwrap().instruction, text);
+        assert_eq!(go(&mut other, &rest), first);
+        for cut in [0, 5, 30, saved.len() / 2, saved.len() - 1] {
+            assert!(other.restore(&saved[..cut]).is_err(), "{cut}");
+        }
+    }
+
+    #[test]
+    fn a_batch_steps_all_or_none() {
+        let mut batch = Batch::new(vec![env(), env()], Threads::ONE).unwrap();
+        batch.reset(&[Some(1), Some(2)]).unwrap();
+        batch.step(&[None, Some(DiscreteAction::Stop)]).unwrap();
+        let before = batch.envs()[0].world().hash();
+        let forward = Some(DiscreteAction::MoveForward);
+        assert!(matches!(
+            batch.step(&[forward, forward]),
+            Err(WorldError::Usage(_))
+        ));
+        assert_eq!(batch.envs()[0].world().hash(), before);
+        batch.step(&[forward, None]).unwrap();
+        assert_ne!(batch.envs()[0].world().hash(), before);
     }
 }

@@ -32,6 +32,16 @@ pub enum WorldError {
         /// What is allowed.
         allowed: String,
     },
+    /// Settings that cannot be read.
+    #[error("{of}: {found} cannot be read: {error}")]
+    Settings {
+        /// What they are for.
+        of: &'static str,
+        /// What was found.
+        found: String,
+        /// Why not.
+        error: serde_json::Error,
+    },
     /// A name that nothing registered has.
     #[error("no {kind} {name:?}; there are {known:?}")]
     Unknown {

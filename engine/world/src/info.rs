@@ -27,7 +27,7 @@ pub fn info(engines: &Engines, report: &Value) -> Value {
         .iter_ids()
         .map(|(id, room)| {
             let objects = house.objects.iter().filter(|object| object.room == Some(id)).count();
-            json!({"name": room.name, "kinds": room.kinds, "level": room.level.0, "area_m2": room.area_m2(), "objects": objects})
+            json!({"name": room.name, "kinds": room.kinds, "level": room.level.0, "area_m2": house.own_area_m2(id), "objects": objects})
         })
         .collect();
     json!({
@@ -123,7 +123,7 @@ fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoi
     Viewpoint {
         name: room.name.clone(),
         kinds: room.kinds.clone(),
-        area_m2: room.area_m2(),
+        area_m2: house.own_area_m2(id),
         floor_y: room.floor_y,
         eye: best.1.to_array(),
         yaw_deg: wrap_angle(best.2).to_degrees(),
@@ -186,6 +186,8 @@ pub struct ObjectNow {
     pub rests_on: Vec<String>,
     /// The names of the objects that it lies in; only for what a hand can take.
     pub lies_in: Vec<String>,
+    /// Whether it makes a sound of its own, such as a radio's, while it is switched on or has no switch.
+    pub sounds: bool,
 }
 
 /// All objects as they are now.
@@ -220,6 +222,7 @@ pub fn objects_now(world: &World) -> Vec<ObjectNow> {
                 } else {
                     Vec::new()
                 },
+                sounds: house.emitters.iter().any(|emitter| emitter.object == id),
             }
         })
         .collect()

@@ -1,14 +1,14 @@
 //! How well an episode of navigation went.
 
 use glam::Vec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Navigation measures of one episode.
 ///
 /// # Source
 /// P. Anderson et al., "On Evaluation of Embodied Navigation Agents", arXiv:1807.06757 (2018), with the corner rules of
 /// `AllenAct`'s `spl_metric`: an unreachable goal counts 0, a goal at the start counts 1 if the agent never moved.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// Geodesic distance to the goal at the start, m; `None` when it cannot be reached.
     pub start_distance_m: Option<f64>,

@@ -45,8 +45,18 @@ impl World {
         for body in &config.agents {
             state.agents.push(AgentState::new(*body, spot, 0.0));
         }
-        for (address, value) in &config.parameters {
-            let address: Address = address.parse()?;
+        for (text, value) in &config.parameters {
+            let address: Address = text.parse()?;
+            if state
+                .overrides
+                .contains_key(&state.canonical(&house, &address)?)
+            {
+                return Err(WorldError::Config {
+                    field: "parameters",
+                    found: format!("{text} twice, in two spellings"),
+                    allowed: "each parameter once".to_owned(),
+                });
+            }
             state.set_parameter(&house, &address, *value)?;
         }
         state.laws = crate::laws::install(&config.laws)?;

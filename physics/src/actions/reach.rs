@@ -48,9 +48,15 @@ impl PhysicsWorld {
             let sentence = format!("The {name} is behind you. Turn around.");
             return Some(fail(ActionCode::Behind, sentence, Some(object)));
         }
-        if let Some(blocker) = self.hidden_by(state, actor, object, nearest) {
-            let sentence =
-                format!("You cannot see the {name}: the {blocker} is in between. Step aside.");
+        if let Err(blocker) = self.sight(state, actor, object, nearest) {
+            let sentence = match blocker {
+                Some(what) => {
+                    format!("You cannot see the {name}: the {what} is in between. Step aside.")
+                }
+                None => {
+                    format!("You cannot see the {name} from here. Look at it from another side.")
+                }
+            };
             return Some(fail(ActionCode::NotVisible, sentence, Some(object)));
         }
         None
@@ -91,14 +97,14 @@ impl PhysicsWorld {
         (distance(&nearest), nearest)
     }
 
-    /// What hides an object from an eye; `None` when some point of it is seen.
-    fn hidden_by(
+    /// Whether some point of an object is seen; the error is what hides it, where that is something.
+    fn sight(
         &self,
         state: &State,
         actor: Actor<'_>,
         object: ObjectId,
         nearest: Vec3,
-    ) -> Option<String> {
+    ) -> Result<(), Option<String>> {
         let (agent, rays) = (&actor.body, actor.rays);
         let house = &self.model().house;
         let eye = agent.eye_position();
@@ -114,14 +120,14 @@ impl PhysicsWorld {
             if let Some(hit) = hit {
                 let surface = rays.surface(&hit);
                 if surface.entity == own {
-                    return None;
+                    return Ok(());
                 }
                 if blocker.is_none() && hit.distance_m < (point - eye).length() {
                     blocker = Some(self.surface_name(surface.owner));
                 }
             }
         }
-        Some(blocker.unwrap_or_else(|| "way".to_owned()))
+        Err(blocker)
     }
 
     pub(super) fn surface_name(&self, owner: dwell_scene::SurfaceOwner) -> String {

@@ -167,8 +167,10 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
         info["action_error"] = answer["action_error"][0]
         terminated = bool(answer["terminated"][0])
+        observation = self._observation()
+        info["audio_clipped"] = self._runner.batch.clipped()[0]
         return (
-            self._observation(),
+            observation,
             float(answer["reward"][0]),
             terminated,
             False,
@@ -200,8 +202,19 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return self._runner.batch.state_hash(0)
 
     def snapshot(self) -> bytes:
-        """The world as bytes."""
-        return self._runner.batch.snapshot(0)
+        """Episode and world as bytes."""
+        return self._info()["episode_id"].encode() + b"\0" + self._runner.batch.snapshot(0)
+
+    def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Goes to where the snapshot was taken; the next steps give the same bits as they did then.
+
+        Returns:
+            Observation and info of that moment.
+        """
+        episode_id, _, rest = snapshot.partition(b"\0")
+        self._house, self._seed = self._replayed(episode_id.decode(errors="replace"))
+        self._runner.batch.restore(0, rest)
+        return self._observation(), self._info()
 
     def agents(self) -> list[dict[str, Any]]:
         """The agents' states."""

@@ -198,6 +198,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             infos[f"_{key}"] = stepped
         infos["action_error"] = np.array(answer["action_error"], object)
         infos["_action_error"] = stepped
+        infos["audio_clipped"] = np.array(self._runner.batch.clipped(), np.int64)
+        infos["_audio_clipped"] = np.ones(self.num_envs, np.bool_)
         self._done = terminated | truncated
         if self._done.any() and self.autoreset_mode is AutoresetMode.SAME_STEP:
             infos |= self._restart(infos)

@@ -32,11 +32,20 @@ const HEADS: &[(&str, &[&str])] = &[
     ),
     ("red", &["red", "maroon"]),
     ("orange", &["orange"]),
-    ("yellow", &["yellow", "gold", "mustard"]),
+    ("yellow", &["yellow", "gold", "golden", "mustard", "ochre"]),
     ("green", &["green", "olive", "lime"]),
     (
         "blue",
-        &["blue", "navy", "teal", "turquoise", "cyan", "aqua"],
+        &[
+            "blue",
+            "navy",
+            "teal",
+            "turquoise",
+            "cyan",
+            "aqua",
+            "bluegrey",
+            "greyblue",
+        ],
     ),
     (
         "purple",
@@ -83,15 +92,28 @@ const TINTS: [&str; 15] = [
     "rose", "rosy", "olive", "lavender",
 ];
 
+/// Parts of survey names that make a brown half a yellow.
+const GILT: [&str; 3] = ["yellow", "gold", "mustard"];
+
+/// Chroma from which a colour has a hue, so that nobody calls it gray, and from which a pale yellow is no beige. Chosen by
+/// looking: a slate-blue sofa has 0.039, a turquoise rug 0.049, concrete and steel up to 0.03; a yellow curtain has 0.121,
+/// the survey's tan 0.093, light oak up to 0.09.
+const HUED: f32 = 0.035;
+const GILDED: f32 = 0.105;
+
 /// "Very dark brown" counts for brown. Names of very light colours are left out: people call them after the tint, a room
-/// calls them white or beige; and so are tinted greys, which lie between two words.
+/// calls them white or beige; and so are tinted greys and yellow browns, which lie between two words.
 fn plain_from_survey(survey: &[Entry]) -> Vec<Entry> {
     let mut plain = Vec::new();
     for entry in survey {
         let last = entry.name.rsplit([' ', '/']).next().unwrap_or_default();
         let word = HEADS.iter().find(|(_, heads)| heads.contains(&last));
-        let tinted =
-            |word: &str| word == "gray" && TINTS.iter().any(|tint| entry.name.contains(tint));
+        let says = |tints: &[&str]| tints.iter().any(|tint| entry.name.contains(tint));
+        let tinted = |word: &str| match word {
+            "gray" => says(&TINTS),
+            "brown" => says(&GILT),
+            _ => false,
+        };
         if let Some((name, _)) = word
             && !entry.name.starts_with("very light")
             && !tinted(name)
@@ -167,7 +189,7 @@ impl Vocabulary {
     /// The nearest entry in `OKLab`, the first of equals. CIEDE2000 is a formula for small differences (it is no metric
     /// and jumps at opposite hues); names lie far apart, and `OKLab` is uniform there and cheap. Plain words: nearly
     /// grey colours are black, gray or white by lightness, the others take the word of the nearest survey colour that is not
-    /// of an opposite hue.
+    /// of an opposite hue; clear hues are never gray, and clear yellows never beige.
     pub fn word(self, linear: [f32; 3]) -> &'static str {
         let color = Oklab::from_linear(linear);
         if self == Self::Plain {
@@ -181,10 +203,15 @@ impl Vocabulary {
                 return "gray";
             }
             // A pale colour lies near many others; the word at least keeps to its side of the circle of hues.
+            let chroma = color.chroma();
             return nearest(self.entries(), |entry| {
                 let (p, q) = (entry.lab, color);
-                let opposite = entry.name != "gray" && p.a * q.a + p.b * q.b <= 0.0;
-                if opposite {
+                let excluded = match entry.name {
+                    "gray" => chroma >= HUED,
+                    "beige" if chroma >= GILDED => true,
+                    _ => p.a * q.a + p.b * q.b <= 0.0,
+                };
+                if excluded {
                     f32::INFINITY
                 } else {
                     p.distance(q)
@@ -297,6 +324,16 @@ mod tests {
             ([236, 228, 212], "white"),
             ([176, 206, 224], "blue"),
             ([206, 194, 172], "beige"),
+            // Things of the built-in apartment: sofa, rug, curtain, pillow.
+            ([83, 102, 122], "blue"),
+            ([122, 167, 173], "blue"),
+            ([223, 192, 96], "yellow"),
+            ([186, 138, 44], "yellow"),
+            // What stays as it was: brushed steel, concrete, light oak, tan.
+            ([140, 150, 160], "gray"),
+            ([160, 160, 150], "gray"),
+            ([197, 154, 104], "brown"),
+            ([209, 178, 111], "beige"),
         ];
         for (srgb, word) in cases {
             assert_eq!(Vocabulary::Plain.word(linear(*srgb)), *word, "{srgb:?}");

@@ -48,7 +48,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         .into_owned();
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let root = DataRoot::new(folder)?;
-    let bytes = root.read(&name, MAX_BUFFER_BYTES)?;
+    let bytes = root.read_named(&name, MAX_BUFFER_BYTES)?;
     open_bytes(&bytes, &root, &name, threads)
 }
 

@@ -102,7 +102,8 @@ impl SuncgFiles {
     ) -> Result<Self, HousesError> {
         let house = {
             let _span = debug_span!("house.json").entered();
-            parse(&root.read(house_path, MAX_TEXT_BYTES)?, house_path, report)?
+            let bytes = root.read_named(house_path, MAX_TEXT_BYTES)?;
+            parse(&bytes, house_path, report)?
         };
         let folder = folder_of(house_path).rsplit('/').next().unwrap_or("");
         let from_file = house.id.as_deref().filter(|id| paths::is_plain(id));

@@ -3,11 +3,12 @@
 use super::House;
 use super::data::Room;
 use crate::ids::{AgentId, Entity, EntityId, Id, JointId, ObjectId, PartId, RoomId, StructureId};
+use crate::random::Key;
 use crate::state::State;
 use glam::{Vec2, Vec3};
 
 impl Room {
-    /// The area of the floor, m².
+    /// The area of the footprint, m²; [`House::own_area_m2`] leaves out what belongs to smaller rooms.
     pub fn area_m2(&self) -> f32 {
         self.footprint
             .iter()
@@ -81,6 +82,43 @@ impl House {
             .filter(|(_, room)| holds(room))
             .min_by(|(_, a), (_, b)| a.area_m2().total_cmp(&b.area_m2()))
             .map(|(id, _)| id)
+    }
+
+    /// Points at half height over a room's floor, evenly spread by area: of `count`, those that lie in no smaller room.
+    ///
+    /// # Determinism
+    /// The same points for the same house and count.
+    pub fn points_in_room(&self, id: RoomId, count: usize) -> Vec<Vec3> {
+        let room = &self.rooms[id];
+        let mut stream = Key::root(0).child("floor").child(u64::from(id.0)).stream();
+        let total = room.area_m2();
+        let mut points = Vec::with_capacity(count);
+        for k in 0..count {
+            let mut left = (k as f32 + 0.5) / count as f32 * total;
+            let triangle = room.footprint.iter().find(|[a, b, c]| {
+                left -= (*b - *a).perp_dot(*c - *a).abs() * 0.5;
+                left <= 0.0
+            });
+            let Some([a, b, c]) = triangle.or(room.footprint.last()) else {
+                break;
+            };
+            let (mut u, mut v) = (stream.uniform_f32(), stream.uniform_f32());
+            if u + v > 1.0 {
+                (u, v) = (1.0 - u, 1.0 - v);
+            }
+            let point = *a + (*b - *a) * u + (*c - *a) * v;
+            let point = Vec3::new(point.x, room.floor_y.midpoint(room.ceiling_y), point.y);
+            points.extend(Some(point).filter(|point| self.room_at(*point) == Some(id)));
+        }
+        points
+    }
+
+    /// The area of a room's floor that lies in no smaller room, m²: what people take for the room's size. Where rooms overlap
+    /// it is estimated from 256 points.
+    pub fn own_area_m2(&self, id: RoomId) -> f32 {
+        const POINTS: usize = 256;
+        let share = self.points_in_room(id, POINTS).len() as f32 / POINTS as f32;
+        self.rooms[id].area_m2() * share
     }
 
     /// The joints of an object, in order.

@@ -3,11 +3,12 @@
 //! An override in [`State::overrides`](super::State) goes before the house's value, per world, without rebuilding the
 //! house. Engines read through [`State::object_mass_kg`](super::State::object_mass_kg) and kin.
 
+use super::canonical::pair_address;
 use super::{Locomotion, State};
 use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::{AgentId, Entity, EntityId, Id, JointId, MaterialId, ObjectId, PartId};
-use crate::material::{Bands, PairContact, library};
+use crate::material::{Bands, Material, PairContact, library};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -95,7 +96,11 @@ pub struct Parameter {
 }
 
 /// Objects are addressed by the id that sensors give them, or by name.
-fn find_object(house: &House, address: &Address, word: &str) -> Result<ObjectId, SceneError> {
+pub(super) fn find_object(
+    house: &House,
+    address: &Address,
+    word: &str,
+) -> Result<ObjectId, SceneError> {
     let by_id = word
         .parse()
         .ok()
@@ -184,6 +189,7 @@ impl State {
                 high,
             })
         };
+        let known = self.canonical(house, address)?;
         match address.words()[..] {
             ["object", object, "mass_kg"] => {
                 let object = find_object(house, address, object)?;
@@ -193,11 +199,11 @@ impl State {
             ["material", material, field] => {
                 let material = &house.materials[find_material(house, address, material)?];
                 match field {
-                    "friction" => make(self.scalar(address, material.friction), "1", 0.0, 10.0),
-                    "restitution" => make(self.scalar(address, material.restitution), "1", 0.0, 1.0),
-                    "density_kg_m3" => make(self.scalar(address, material.density_kg_m3), "kg/m3", 0.01, 30_000.0),
+                    "friction" => make(self.scalar(&known, material.friction), "1", 0.0, 10.0),
+                    "restitution" => make(self.scalar(&known, material.restitution), "1", 0.0, 1.0),
+                    "density_kg_m3" => make(self.scalar(&known, material.density_kg_m3), "kg/m3", 0.01, 30_000.0),
                     _ => Err(address.fault(format!(
-                        "no field {field:?}; a material has friction, restitution, density_kg_m3, absorption/HZ, scattering/HZ"
+                        "no field {field:?}; a material has friction, restitution, density_kg_m3, absorption/HZ, scattering/HZ, transmission_loss_db/HZ"
                     ))),
                 }
             }
@@ -209,7 +215,13 @@ impl State {
                 match field {
                     "absorption" => make(self.absorption(house, id).at(frequency), "1", 0.0, 1.0),
                     "scattering" => make(self.scattering(house, id).at(frequency), "1", 0.0, 1.0),
-                    _ => Err(address.fault(format!("no field {field:?} by frequency; there are absorption and scattering"))),
+                    "transmission_loss_db" => {
+                        let loss = self.transmission_loss_db(house, id).at(frequency);
+                        make(loss, "dB", 0.0, f64::from(Material::OPAQUE_TO_SOUND_DB))
+                    }
+                    _ => Err(address.fault(format!(
+                        "no field {field:?} by frequency; there are absorption, scattering and transmission_loss_db"
+                    ))),
                 }
             }
             ["pair", pair, field] => {
@@ -227,8 +239,8 @@ impl State {
             ["joint", joint, field] => {
                 let joint = &house.joints[find_joint(house, address, joint)?];
                 match field {
-                    "friction" => make(self.scalar(address, joint.friction), "N m or N", 0.0, 1e6),
-                    "damping" => make(self.scalar(address, joint.damping), "N m s/rad or N s/m", 0.0, 1e6),
+                    "friction" => make(self.scalar(&known, joint.friction), "N m or N", 0.0, 1e6),
+                    "damping" => make(self.scalar(&known, joint.damping), "N m s/rad or N s/m", 0.0, 1e6),
                     _ => Err(address.fault(format!("no field {field:?}; a joint has friction and damping"))),
                 }
             }
@@ -268,7 +280,8 @@ impl State {
                 "{value} is out of range; allowed are {low} to {high} {unit}"
             )));
         }
-        self.overrides.insert(address.clone(), value);
+        self.overrides
+            .insert(self.canonical(house, address)?, value);
         Ok(())
     }
 
@@ -294,16 +307,12 @@ impl State {
             "object/{}/mass_kg",
             house.entity_of_object(object).0
         ))
-        .or_else(|| self.lookup(format!("object/{}/mass_kg", house.objects[object].name)))
     }
 
-    /// Friction and restitution between two substances, with overrides in either order.
+    /// Friction and restitution between two substances, with overrides.
     pub fn pair_contact(&self, a: &str, b: &str) -> PairContact {
         let base = library().pair(a, b);
-        let field = |name: &str| {
-            self.lookup(format!("pair/{a}~{b}/{name}"))
-                .or_else(|| self.lookup(format!("pair/{b}~{a}/{name}")))
-        };
+        let field = |name: &str| self.lookup(pair_address(a, b, name));
         PairContact {
             friction: field("friction").unwrap_or(base.friction),
             restitution: field("restitution").unwrap_or(base.restitution),
@@ -334,6 +343,13 @@ impl State {
     pub fn scattering(&self, house: &House, material: MaterialId) -> Bands {
         let material = &house.materials[material];
         self.bands(&material.name, "scattering", &material.scattering)
+    }
+
+    /// Loss of sound that passes through a material, dB, with overrides.
+    pub fn transmission_loss_db(&self, house: &House, material: MaterialId) -> Bands {
+        let material = &house.materials[material];
+        let base = &material.transmission_loss_db;
+        self.bands(&material.name, "transmission_loss_db", base)
     }
 
     /// The bands of one material field, each band replaced or a band added where an override stands.

@@ -2,6 +2,7 @@
 
 mod address;
 mod agent;
+mod canonical;
 mod locomotion;
 mod relations;
 mod snapshot;

@@ -79,6 +79,13 @@ impl State {
         }
         let state: Self =
             postcard::from_bytes(body).map_err(|error| SceneError::Snapshot(error.to_string()))?;
+        for address in state.overrides.keys() {
+            if state.canonical(house, address)? != *address {
+                return refuse(format!(
+                    "its parameter {address} has another spelling in this build"
+                ));
+            }
+        }
         let lengths = (
             state.part_pose.len(),
             state.part_velocity.len(),

@@ -18,7 +18,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         .iter()
         .map(|room| Vec3::new(room.stand[0], room.eye[1], room.stand[2]))
         .collect();
-    let threads = Threads::resolve(options.threads);
+    let threads = Threads::requested(options.threads)?;
     let mut rates = serde_json::Map::new();
     for preset in &options.presets {
         let scene = engines.acoustics(preset, 16_000)?;

@@ -16,7 +16,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
     let envs = (0..options.envs)
         .map(|_| Env::new(engines.clone(), &config))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut batch = Batch::new(envs, Threads::resolve(options.threads))?;
+    let mut batch = Batch::new(envs, Threads::requested(options.threads)?)?;
     let seeds: Vec<Option<u64>> = (0..options.envs as u64).map(Some).collect();
     let start = Instant::now();
     batch.reset(&seeds)?;

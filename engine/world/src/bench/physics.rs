@@ -169,7 +169,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         .filter(|pose| pose.position.y < lowest - FALLEN_M)
         .count();
     settled.run(10 * config.physics_rate_hz as usize)?;
-    let threads = Threads::resolve(options.threads);
+    let threads = Threads::requested(options.threads)?;
     let together = together(&start, options, threads)?;
     Ok(json!({
         "physics_steps_per_s": rate(&start)?,

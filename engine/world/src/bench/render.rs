@@ -50,7 +50,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         State::new(engines.house()),
         RayScene::new(engines.house().clone()),
     );
-    let threads = Threads::resolve(options.threads);
+    let threads = Threads::requested(options.threads)?;
     let camera =
         Camera::from_fov(options.resolution, options.resolution, 90.0)?.with_range(0.05, 50.0)?;
     let poses = views(&engines, options)?;

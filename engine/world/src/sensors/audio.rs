@@ -6,8 +6,9 @@ use crate::requests::Requests;
 use crate::world::World;
 use dwell_scene::AgentId;
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicU64, Ordering};
 
-const ABOUT: &str = "Sound pressure at the ears: shape (2, samples), pascals, left ear first, newest sample last; clipped at 200 Pa.";
+const ABOUT: &str = "Sound pressure at the ears: shape (2, samples), pascals, left ear first, newest sample last; clipped at 200 Pa and counted.";
 
 /// The largest pressure that an observation holds, Pa (140 dB SPL).
 const CEILING_PA: f32 = 200.0;
@@ -32,6 +33,18 @@ struct AudioConfig {
 struct Audio {
     agent: AgentId,
     samples: usize,
+    /// Samples of the latest observation that were louder than it can hold.
+    clipped: AtomicU64,
+}
+
+/// Keeps samples within the range; returns how many were beyond it.
+fn clip(samples: &mut [f32]) -> u64 {
+    let mut count = 0;
+    for sample in samples {
+        count += u64::from(sample.abs() > CEILING_PA);
+        *sample = sample.clamp(-CEILING_PA, CEILING_PA);
+    }
+    count
 }
 
 fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
@@ -57,6 +70,7 @@ fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, W
     Ok(Box::new(Audio {
         agent: AgentId(config.agent),
         samples: samples as usize,
+        clipped: AtomicU64::new(0),
     }))
 }
 
@@ -79,11 +93,28 @@ impl Sensor for Audio {
 
     fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
         let Out::Float32(out) = out else { return };
+        let mut clipped = 0;
         for (channel, window) in out.chunks_exact_mut(self.samples).enumerate() {
             seen.world.heard(self.agent, channel, window);
-            for sample in window {
-                *sample = sample.clamp(-CEILING_PA, CEILING_PA);
-            }
+            clipped += clip(window);
         }
+        self.clipped.store(clipped, Ordering::Relaxed);
+    }
+
+    fn clipped(&self) -> u64 {
+        self.clipped.load(Ordering::Relaxed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_loud_is_cut_off_and_counted() {
+        let mut samples = [0.0, 199.0, 200.0, 200.1, -1e9, -200.0];
+        assert_eq!(clip(&mut samples), 2);
+        assert_eq!(samples, [0.0, 199.0, 200.0, 200.0, -200.0, -200.0]);
+        assert_eq!(clip(&mut samples), 0);
     }
 }

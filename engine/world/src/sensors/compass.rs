@@ -1,6 +1,6 @@
 //! Where an agent faces, relative to where it faced at the start.
 
-use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site};
+use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
 use crate::error::WorldError;
 use dwell_scene::space::yaw_from_forward;
 use dwell_scene::{AgentId, Id, math};
@@ -18,11 +18,8 @@ pub(super) const KIND: SensorKind = SensorKind {
 #[derive(Debug)]
 struct Compass;
 
-#[expect(
-    clippy::unnecessary_wraps,
-    reason = "the signature of every sensor's builder"
-)]
-fn build(_: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    let NoSettings {} = settings(value)?;
     Ok(Box::new(Compass))
 }
 

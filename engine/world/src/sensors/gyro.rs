@@ -1,6 +1,6 @@
 //! What an agent's gyro reads.
 
-use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site};
+use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
 use crate::error::WorldError;
 use dwell_scene::{AgentId, Id};
 
@@ -19,11 +19,8 @@ pub(super) const KIND: SensorKind = SensorKind {
 #[derive(Debug)]
 struct Gyro;
 
-#[expect(
-    clippy::unnecessary_wraps,
-    reason = "the signature of every sensor's builder"
-)]
-fn build(_: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    let NoSettings {} = settings(value)?;
     Ok(Box::new(Gyro))
 }
 

@@ -1,6 +1,6 @@
 //! The instruction of the episode as numbers of a versioned vocabulary.
 
-use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site};
+use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
 use crate::error::WorldError;
 
 const ABOUT: &str =
@@ -15,11 +15,8 @@ pub(super) const KIND: SensorKind = SensorKind {
 #[derive(Debug)]
 struct InstructionTokens;
 
-#[expect(
-    clippy::unnecessary_wraps,
-    reason = "the signature of every sensor's builder"
-)]
-fn build(_: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    let NoSettings {} = settings(value)?;
     Ok(Box::new(InstructionTokens))
 }
 

@@ -107,6 +107,11 @@ pub trait Sensor: Debug + Send + Sync {
 
     /// Writes the observation. `out` has the type and length of [`Sensor::spec`].
     fn finish(&self, seen: Seen<'_>, out: Out<'_>);
+
+    /// How many samples of the latest observation were beyond its range and are cut off there.
+    fn clipped(&self) -> u64 {
+        0
+    }
 }
 
 /// What a sensor is built from: the world's fixed numbers.
@@ -174,9 +179,14 @@ pub(crate) fn settings<T: serde::de::DeserializeOwned + Default>(
     if value.is_null() {
         return Ok(T::default());
     }
-    serde_json::from_value(value.clone()).map_err(|error| WorldError::Config {
-        field: "sensor settings",
+    serde_json::from_value(value.clone()).map_err(|error| WorldError::Settings {
+        of: "sensor settings",
         found: value.to_string(),
-        allowed: error.to_string(),
+        error,
     })
 }
+
+/// The settings of a sensor that has none.
+#[derive(Debug, Default, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct NoSettings {}

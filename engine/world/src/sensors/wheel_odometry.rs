@@ -1,6 +1,6 @@
 //! Where a base believes to be, from its wheels alone.
 
-use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site};
+use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
 use crate::error::WorldError;
 use dwell_scene::{AgentId, Id, math};
 
@@ -19,11 +19,8 @@ pub(super) const KIND: SensorKind = SensorKind {
 #[derive(Debug)]
 struct WheelOdometry;
 
-#[expect(
-    clippy::unnecessary_wraps,
-    reason = "the signature of every sensor's builder"
-)]
-fn build(_: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    let NoSettings {} = settings(value)?;
     Ok(Box::new(WheelOdometry))
 }
 

@@ -61,14 +61,14 @@ impl Default for Settings {
     }
 }
 
-fn build(value: &serde_json::Value) -> Result<Box<dyn Task>, WorldError> {
+fn build(value: &serde_json::Value, stride: Stride) -> Result<Box<dyn Task>, WorldError> {
     let settings: Settings = if value.is_null() {
         Settings::default()
     } else {
-        serde_json::from_value(value.clone()).map_err(|error| WorldError::Config {
-            field: "task_settings",
+        serde_json::from_value(value.clone()).map_err(|error| WorldError::Settings {
+            of: "task_settings",
             found: value.to_string(),
-            allowed: error.to_string(),
+            error,
         })?
     };
     if settings.kinds.is_empty() {
@@ -81,6 +81,7 @@ fn build(value: &serde_json::Value) -> Result<Box<dyn Task>, WorldError> {
     }
     Ok(Box::new(InstructionFollowing {
         settings,
+        stride,
         offers: Vec::new(),
         now: None,
     }))
@@ -102,6 +103,8 @@ struct Now {
 #[derive(Debug)]
 struct InstructionFollowing {
     settings: Settings,
+    /// How far the agent's steps go, for the expert.
+    stride: Stride,
     /// What the house offers at its start; found once.
     offers: Vec<Offer>,
     now: Option<Now>,
@@ -188,7 +191,7 @@ impl Task for InstructionFollowing {
         key.child("order").stream().shuffle(&mut order);
         let found = order.into_iter().find_map(|k| {
             let offer = &self.offers[k];
-            let guide = Guide::new(agent, grid.clone(), &offer.goals, Stride::default());
+            let guide = Guide::new(agent, grid.clone(), &offer.goals, self.stride);
             let range = self.settings.min_distance_m..=self.settings.max_distance_m;
             let allowed = |cell: Cell| {
                 grid.island(cell) == Some(0) && guide.at(cell).is_some_and(|d| range.contains(&d))
@@ -256,6 +259,6 @@ impl Task for InstructionFollowing {
         let Some(object) = now.instruction.goal.objects.first() else {
             return DiscreteAction::Stop;
         };
-        face(world, AgentId(0), *object, &Stride::default()).unwrap_or(DiscreteAction::Stop)
+        face(world, AgentId(0), *object, &self.stride).unwrap_or(DiscreteAction::Stop)
     }
 }

@@ -2,7 +2,7 @@
 
 mod instruction_following;
 
-use crate::action::DiscreteAction;
+use crate::action::{DiscreteAction, Stride};
 use crate::env::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::world::World;
@@ -40,8 +40,8 @@ pub struct TaskKind {
     pub max_steps: u64,
     /// The sensors that its environment has when nobody says otherwise.
     pub sensors: &'static [&'static str],
-    /// Builds one from its settings (a JSON object; `{}` gives the defaults).
-    pub build: fn(&serde_json::Value) -> Result<Box<dyn Task>, WorldError>,
+    /// Builds one from its settings (a JSON object; `null` gives the defaults) for an agent that walks so.
+    pub build: fn(&serde_json::Value, Stride) -> Result<Box<dyn Task>, WorldError>,
 }
 
 /// All tasks.
