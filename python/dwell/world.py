@@ -279,8 +279,9 @@ class World:
     def listen(self, samples: int = 800, *, agent: int = 0) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, (2, samples), Pa.
 
-        From the first call until the next reset the agent listens, and each step adds what it hears; before that
-        the window holds the last step's sound and zeros. Reading changes nothing.
+        From the first call until the next reset the agent listens, and each step adds what it
+        hears; before that the window holds the last step's sound and zeros. Reading changes
+        nothing.
         """
         return self._native.listen(whole("agent", agent), whole("samples", samples))
 

@@ -206,3 +206,29 @@ def test_an_interrupted_describe_goes_on_where_it_stopped(
     stop_at(99)
     assert main([*command, "--seed", "1"]) == 0
     assert opened == names
+
+
+def test_what_the_demo_cannot_walk_through_is_refused(tmp_path: Path) -> None:
+    thing = tmp_path / "thing.obj"
+    thing.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "utf-8")
+    done = dwell("demo", thing, "--out", tmp_path / "demo")
+    assert done.returncode == 1
+    assert "no rooms" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_calibrate_refuses_a_house_where_none_was_measured_in(tmp_path: Path) -> None:
+    from dwell import _native
+
+    bundle = tmp_path / "throws.measured"
+    _native.calibration_example(str(bundle), 1)
+    done = dwell("calibrate", bundle, "--house", "nope")
+    assert done.returncode == 1
+    assert "house" in done.stderr
+
+
+def test_measures_of_a_response_name_their_bands() -> None:
+    points = ("--source", "2,1.5,6", "--mic", "4,1.5,6", "--rays", "20")
+    metrics = one_object(dwell("ir", HOUSE, *points, "--json"))["metrics"]
+    assert [row["centre_hz"] for row in metrics][:3] == [62.5, 125, 250]  # type: ignore[attr-defined]
+    assert "1000 Hz: " in dwell("ir", HOUSE, *points).stdout

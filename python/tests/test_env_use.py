@@ -89,3 +89,43 @@ def test_what_an_episode_ended_with_stands_in_final_info() -> None:
     assert final["_spl"].tolist() == infos["_final_info"].tolist() == [True, False]
     assert final["distance_to_goal"][0] == infos["distance_to_goal"][0] > 0.0
     assert final["path_length"][0] < 0.01
+
+
+def test_a_restored_environment_goes_on_as_before() -> None:
+    env = DwellEnv(houses=["builtin:apartment"])
+    env.reset(seed=6)
+    for action in (1, 2, 1):
+        env.step(action)
+    saved, looks = env.snapshot(), env.step(6)[0]
+
+    def go_on(env: DwellEnv) -> list[object]:
+        seen: list[object] = []
+        for action in (1, 3, 1, 0):
+            observation, reward, terminated, _, info = env.step(action)
+            assert info["audio_clipped"] == 0
+            seen += [env.state_hash(), reward, terminated, info["spl"], info["episode_id"]]
+            seen += [observation["rgb"].tobytes(), observation["audio"].tobytes()]
+        return seen
+
+    first = go_on(env)
+    other = DwellEnv()
+    other.reset(seed=1)
+    for again in (env, other):
+        observation, info = again.restore(saved)
+        assert info["episode_id"] == first[4]
+        assert observation["instruction"] == looks["instruction"]
+        again.step(6)
+        assert go_on(again) == first
+    with pytest.raises(dwell.ConfigError):
+        other.restore(saved[:-9])
+    with pytest.raises(dwell.ConfigError, match="HOUSE#NUMBER"):
+        other.restore(b"junk")
+
+
+def test_buffers_in_use_say_so() -> None:
+    camera = {"width": 16, "height": 16}
+    env = DwellEnv(sensors={"instance": camera, "semantic": camera})
+    env.reset(seed=1)
+    buffer = env._runner.buffers[0]
+    with pytest.raises(dwell.UsageError, match="in use by another call"):
+        env._runner.batch.observe(np.ones(1, np.bool_), [buffer, buffer])

@@ -50,7 +50,7 @@ def count(text: str) -> int:
 
 
 def join_negative_points(arguments: Sequence[str]) -> list[str]:
-    """``--mic -2,1,3`` as ``--mic=-2,1,3``: argparse takes what begins with a dash for an option."""
+    """``--mic -2,1,3`` as ``--mic=-2,1,3``: to argparse what begins with a dash is an option."""
     joined: list[str] = []
     for argument in arguments:
         option = joined[-1] if joined else ""

@@ -66,7 +66,9 @@ def run(args: argparse.Namespace) -> int:
     )
     for row in metrics:
         cells = (
-            f"{key} {value:.3g}" for key, value in row.items() if isinstance(value, int | float)
+            f"{key} {value:.3g}"
+            for key, value in row.items()
+            if isinstance(value, int | float) and key != "centre_hz"
         )
-        print("  " + ", ".join(cells))
+        print(f"  {row['centre_hz']:g} Hz: " + ", ".join(cells))
     return 0

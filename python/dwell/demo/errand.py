@@ -1,4 +1,4 @@
-"""An errand with hands and ears: open a door, take something and let it fall, hear the radio."""
+"""An errand with hands and ears: open a door, let something fall, go and hear what sounds."""
 
 from __future__ import annotations
 
@@ -22,13 +22,15 @@ _RATE_HZ = 16_000
 #: Steps that one walk may take, and that all may take together.
 _LONGEST_WALK = 220
 _LONGEST = 520
+#: Below this nothing is heard, dB SPL.
+_SILENCE_DB = 0.0
 
 
 class Walker:
     """An agent that is led through a world, with what it saw, heard and did."""
 
     def __init__(self, house: House) -> None:
-        """Puts the agent into the room in which one can stand most freely."""
+        """Puts the agent into the hallway, or into the first room of a house without one."""
         self.world = World(house)
         self.rooms = house.rooms()
         start = next((room for room in self.rooms if "hallway" in room["kinds"]), self.rooms[0])
@@ -102,9 +104,15 @@ def _open_a_door(walker: Walker) -> None:
     doors = [
         thing
         for thing in walker.world.objects()
-        if thing["category"] == "door" and thing["openness"] is not None and thing["openness"] < 0.5
+        if thing["category"] == "door" and thing["openness"] is not None
     ]
-    for door in sorted(doors, key=lambda door: _distance(here, door["center"]))[:3]:
+
+    def order(door: dict[str, Any]) -> tuple[bool, float]:
+        return door["openness"] >= 0.5, _distance(here, door["center"])
+
+    for door in sorted(doors, key=order)[:3]:
+        # Where every door stands open, one is closed instead.
+        what = "open" if door["openness"] < 0.5 else "close"
         # A step back from the door on the side on which one stands.
         away = np.array(here) - np.array(door["center"])
         away[1] = 0.0
@@ -115,14 +123,15 @@ def _open_a_door(walker: Walker) -> None:
         except DwellError:
             continue
         if reached and walker.face(door["name"]):
-            outcome = walker.act("open")
-            walker.note(f"open {door['name']}", outcome)
+            outcome = walker.act(what)
+            walker.note(f"{what} {door['name']}", outcome)
             if outcome.success:
                 for _ in range(30):
                     walker.act("wait")
                 return
     if not walker.log:
-        walker.log.append(_nothing("open a door", "No closed door could be reached."))
+        why = "No door could be reached." if doors else "No door in this house can be moved."
+        walker.log.append(_nothing("open a door", why))
 
 
 def _nothing(what: str, sentence: str) -> dict[str, Any]:
@@ -134,10 +143,15 @@ def _take_and_drop(walker: Walker) -> None:
     things = [
         thing
         for thing in walker.world.objects()
-        if thing["pickable"] and max(thing["size"]) < 0.45 and 0.3 < thing["center"][1] < 1.3
+        if thing["pickable"] and thing["center"][1] - here[1] < 1.8
     ]
+
+    def order(thing: dict[str, Any]) -> tuple[bool, float]:
+        handy = max(thing["size"]) < 0.45 and 0.3 < thing["center"][1] - here[1] < 1.3
+        return not handy, _distance(here, thing["center"])
+
     tried = 0
-    for thing in sorted(things, key=lambda thing: _distance(here, thing["center"])):
+    for thing in sorted(things, key=order):
         if tried >= 4 or walker.tired():
             break
         try:
@@ -159,28 +173,53 @@ def _take_and_drop(walker: Walker) -> None:
                 walker.act("wait")
             return
     if not any(line["what"].startswith("take") for line in walker.log):
-        walker.log.append(_nothing("take something", "Nothing that a hand can take is in reach."))
+        why = "Nothing that a hand can take is in reach."
+        why = why if things else "Nothing in this house is for a hand to take."
+        walker.log.append(_nothing("take something", why))
 
 
-def _visit_the_radio(walker: Walker) -> None:
-    things = walker.world.objects()
-    radio = next((thing for thing in things if thing["category"] == "radio"), None)
-    room = radio and next((room for room in walker.rooms if room["name"] == radio["room"]), None)
-    if radio is None or room is None:
-        walker.log.append(_nothing("pass the radio", "There is no radio in this house."))
+def _level_db(sound: NDArray[Any]) -> float | None:
+    """The mean level of pressure in Pa, dB SPL; ``None`` for silence."""
+    rms = float(np.sqrt(np.mean(np.square(sound, dtype=np.float64)))) if sound.size else 0.0
+    level = 20.0 * float(np.log10(max(rms, 1e-12) / 20e-6))
+    return round(level, 1) if level > _SILENCE_DB else None
+
+
+def _visit_a_sound(walker: Walker) -> None:
+    """Goes to the radio, or to whatever else sounds, and tells what is heard there."""
+    here = walker.position()
+    sources = [thing for thing in walker.world.objects() if thing["sounds"]]
+
+    def order(thing: dict[str, Any]) -> tuple[bool, float]:
+        return thing["category"] != "radio", _distance(here, thing["center"])
+
+    rooms = {room["name"]: room for room in walker.rooms}
+    source = next((thing for thing in sorted(sources, key=order) if thing["room"] in rooms), None)
+    if source is None:
+        what = "go to what sounds"
+        walker.log.append(_nothing(what, "Nothing in this house makes a sound of its own."))
         return
-    if radio["on"] is False:
-        walker.note("switch the radio on", walker.world.act("toggle", radio["name"]))
-    arrived = walker.walk_to(room["stand"])
+    name, room = source["name"], rooms[source["room"]]
+    if source["on"] is False:
+        walker.note(f"switch {name} on", walker.world.act("toggle", name))
+    try:
+        arrived = walker.walk_to(room["stand"])
+    except DwellError:
+        arrived = False
     for _ in range(30):
         walker.act("wait")
-    kind = next(iter(room["kinds"]), "room")
+    plays = any(
+        thing["name"] == name and thing["on"] is not False for thing in walker.world.objects()
+    )
+    level = _level_db(np.concatenate(walker.sound[-20:], axis=1))
+    heard = "Nothing is heard here." if level is None else f"{level:.0f} dB SPL are heard here."
+    state = "It plays." if plays else "It is switched off."
     walker.log.append(
         {
-            "what": f"walk to the radio in the {kind}",
+            "what": f"walk to {name} in the {next(iter(room['kinds']), 'room')}",
             "success": arrived,
             "code": "done" if arrived else "blocked",
-            "sentence": "It plays." if arrived else "The way was too long.",
+            "sentence": f"{state} {heard}" if arrived else f"The way was too long. {heard}",
             "time_s": round(len(walker.way) * 0.05, 2),
         }
     )
@@ -189,7 +228,7 @@ def _visit_the_radio(walker: Walker) -> None:
 def walk(house: House, folder: Path, progress: Callable[[float], None]) -> dict[str, Any]:
     """Runs the errand; writes its film, its sound and the sound's picture."""
     walker = Walker(house)
-    for k, part in enumerate((_open_a_door, _take_and_drop, _visit_the_radio)):
+    for k, part in enumerate((_open_a_door, _take_and_drop, _visit_a_sound)):
         part(walker)
         progress((k + 1) / 3)
     save_film(
@@ -201,7 +240,6 @@ def walk(house: House, folder: Path, progress: Callable[[float], None]) -> dict[
     peak = max(float(np.abs(sound).max()), 1e-6)
     write_wav(folder / "errand.wav", sound, _RATE_HZ, full_scale_pa=peak)
     save_spectrogram(sound, _RATE_HZ, folder / "spectrogram.png")
-    rms = float(np.sqrt(np.mean(sound.astype(np.float64) ** 2)))
     return {
         "log": walker.log,
         "way": walker.way,
@@ -211,7 +249,7 @@ def walk(house: House, folder: Path, progress: Callable[[float], None]) -> dict[
         "film": "errand.gif",
         "wav": "errand.wav",
         "spectrogram": "spectrogram.png",
-        "level_db": round(20.0 * float(np.log10(max(rms, 1e-12) / 20e-6)), 1),
+        "level_db": _level_db(sound),
         "actions": actions(),
         "world": walker.world,
     }

@@ -31,6 +31,11 @@ def _mark(success: bool) -> str:
     return '<span class="yes">yes</span>' if success else '<span class="no">no</span>'
 
 
+def _done(line: dict[str, Any]) -> str:
+    """Yes or no; nothing where there was nothing to do."""
+    return "" if line["code"] == "none" else _mark(line["success"])
+
+
 def _rooms(story: dict[str, Any]) -> str:
     figures = []
     for room in story["rooms"]:
@@ -58,16 +63,21 @@ def _instruction(told: dict[str, Any]) -> str:
 
 def _errand(errand: dict[str, Any]) -> str:
     rows = "".join(
-        f"<tr><td>{line['time_s']} s</td><td>{escape(line['what'])}</td><td>{_mark(line['success'])}</td>"
+        f"<tr><td>{line['time_s']} s</td><td>{escape(line['what'])}</td><td>{_done(line)}</td>"
         f"<td>{escape(line['sentence'])}</td></tr>"
         for line in errand["log"]
+    )
+    level = errand["level_db"]
+    loudness = (
+        "Nothing sounded on the way: the recording is silent."
+        if level is None
+        else f"{level} dB SPL on average. Wear headphones."
     )
     return (
         f'<div class="two"><figure><img src="{errand["film"]}" alt="what the agent saw"></figure>'
         f'<figure><img src="map.png" alt="the house from above with the ways"></figure></div>'
         f"<table><tr><th>when</th><th>what</th><th>done</th><th>said</th></tr>{rows}</table>"
-        f"<h2>What it heard</h2><p>Both ears of a spherical head, traced through the rooms, "
-        f"{errand['level_db']} dB SPL on average. Wear headphones.</p>"
+        f"<h2>What it heard</h2><p>Both ears of a spherical head, traced through the rooms. {loudness}</p>"
         f'<audio controls src="{errand["wav"]}"></audio>'
         f'<figure><img src="{errand["spectrogram"]}" alt="spectrogram of both ears"></figure>'
     )
@@ -86,11 +96,18 @@ def _calibration(found: dict[str, Any]) -> str:
     )
 
 
+def _words(key: str) -> str:
+    """The name of a figure: ``impulse_responses_per_s_rl`` as people write it."""
+    what, per, which = key.partition("_per_s")
+    what = what.replace("_", " ") + (" per second" if per else "")
+    return f"{what} ({which.strip('_').replace('_', ' ')})" if which else what
+
+
 def _figures(figures: dict[str, Any]) -> str:
     rows = []
     for stage, values in figures.items():
         cells = ", ".join(
-            f"{key.replace('_', ' ')} {value:.4g}" if isinstance(value, float) else f"{key} {value}"
+            f"{_words(key)} {value:.4g}" if isinstance(value, float) else f"{_words(key)} {value}"
             for key, value in values.items()
             if not isinstance(value, list)
         )

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from dwell import ConfigError
 from dwell.demo import calibrated, errand, figures, film, instructed, page, recording, rooms
 from dwell.house import House
 
@@ -51,6 +52,8 @@ def _fill(name: str, folder: Path, progress: Progress) -> dict[str, Any]:
     progress(0.0, f"opening {name}")
     house = House.open(name)
     story: dict[str, Any] = {"house": name, "info": house.info(), "text": house.describe("house")}
+    if not story["info"]["rooms"]:
+        raise ConfigError(f"{name}: has no rooms; the demo needs a house to walk through")
     progress(0.05, "looking into every room")
     story["rooms"] = rooms.pictures(house, folder)
     progress(0.15, "following an instruction")

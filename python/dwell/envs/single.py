@@ -203,7 +203,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
     def snapshot(self) -> bytes:
         """Episode and world as bytes."""
-        return self._info()["episode_id"].encode() + b"\0" + self._runner.batch.snapshot(0)
+        episode_id = str(self._info()["episode_id"])
+        return episode_id.encode() + b"\0" + self._runner.batch.snapshot(0)
 
     def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
         """Goes to where the snapshot was taken; the next steps give the same bits as they did then.
