@@ -35,6 +35,7 @@ mod inertia;
 mod joints;
 pub mod laws;
 mod model;
+mod motors;
 mod parameters;
 mod report;
 mod snapshot;

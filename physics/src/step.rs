@@ -7,6 +7,7 @@ use crate::contact::{Collector, ContactEvent, Dress, Hooks, bound, note_motion};
 use crate::error::PhysicsError;
 use crate::joints::{self, Drive, Progress};
 use crate::laws::{Acts, Stage};
+use crate::motors;
 use crate::world::PhysicsWorld;
 use dwell_scene::{Aabb, AgentState, JointCommand, State};
 use glam::Vec3;
@@ -69,6 +70,7 @@ impl PhysicsWorld {
     }
 
     fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) {
+        self.drive_motors(state);
         for joint in &self.joints {
             joints::relax(&mut self.engine, joint);
         }
@@ -132,9 +134,13 @@ impl PhysicsWorld {
         let house = self.model.house.clone();
         let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
         let effort = self.settings.config.hand_effort;
+        let by_laws = motors::are_driven(&self.laws);
         for index in 0..self.joints.len() {
             let joint = self.joints[index];
             let articulation = &house.joints[joint.id];
+            if by_laws && articulation.servo.is_some() {
+                continue;
+            }
             let mut command = state.joint_command[joint.id];
             if !command.is_finite() {
                 command = JointCommand::Off;

@@ -5,8 +5,9 @@ use crate::body::Body;
 use crate::contact::{ContactTable, Entry, Toucher};
 use crate::engine::Engine;
 use crate::inertia::Inertia;
+use crate::joints::Pull;
 use crate::laws::target::Scope;
-use dwell_scene::{AgentId, House, JointId};
+use dwell_scene::{AgentId, House, JointCommand, JointId};
 use glam::{Quat, Vec3};
 use rapier3d::dynamics::RigidBody;
 use std::fmt::Debug;
@@ -41,6 +42,17 @@ pub(crate) trait Acts: Debug + Send + Sync {
         target
     }
 
+    /// Whether it changes what motors do in each physics step: [`Acts::drive`] or [`Acts::strengthen`].
+    fn drives(&self) -> bool {
+        false
+    }
+
+    /// Changes the command that a joint's motor follows in one physics step. It is asked for every motor in every step.
+    fn drive(&mut self, _motor: &MotorStep, _command: &mut JointCommand) {}
+
+    /// Changes what a joint's motor gives for its command in one physics step.
+    fn strengthen(&self, _joint: JointId, _pull: &mut Pull) {}
+
     /// Changes how the wheels of an agent's base roll in one physics step.
     fn roll(&self, _agent: AgentId, _rolling: &mut Rolling) {}
 
@@ -59,6 +71,29 @@ pub(crate) trait Acts: Debug + Send + Sync {
 
     /// A copy.
     fn boxed(&self) -> Box<dyn Acts>;
+}
+
+/// A joint with a motor before a physics step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotorStep {
+    pub(crate) joint: JointId,
+    /// rad or m.
+    pub(crate) position: f32,
+    /// rad/s or m/s.
+    pub(crate) velocity: f32,
+    /// Length of the step, s.
+    pub(crate) dt_s: f32,
+}
+
+impl MotorStep {
+    /// The number of a command of this kind that asks for what is there already.
+    pub(crate) fn rest(&self, command: JointCommand) -> f32 {
+        match command {
+            JointCommand::Position(_) => self.position,
+            JointCommand::Velocity(_) => self.velocity,
+            JointCommand::Effort(_) | JointCommand::Off => 0.0,
+        }
+    }
 }
 
 /// The world as a law sees it between steps.

@@ -12,7 +12,7 @@ mod bodies;
 mod contacts;
 mod target;
 
-pub(crate) use acts::{Acts, Compliance, ContactValues, Side, Stage, Touch};
+pub(crate) use acts::{Acts, Compliance, ContactValues, MotorStep, Side, Stage, Touch};
 
 use crate::error::PhysicsError;
 use crate::model::PhysicsModel;
@@ -44,6 +44,11 @@ static LAWS: &[Law] = &[
     contacts::anisotropic_friction::LAW,
     contacts::velocity_restitution::LAW,
     actuators::backlash::LAW,
+    actuators::latency::LAW,
+    actuators::first_order_lag::LAW,
+    actuators::rate_limit::LAW,
+    actuators::deadband::LAW,
+    actuators::saturation::LAW,
     bases::unequal_wheels::LAW,
     bases::wheel_slip::LAW,
     bases::gyro_bias_scale::LAW,

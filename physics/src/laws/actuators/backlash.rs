@@ -1,11 +1,11 @@
 //! Backlash: the play of a servo's gear.
 
+use super::Motors;
 use crate::error::PhysicsError;
-use crate::laws::target::no_target;
-use crate::laws::{Acts, Law};
+use crate::laws::{Acts, Law, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
-use dwell_scene::{Id, JointId, LawInfo, LawSpec, State};
+use dwell_scene::{JointId, LawInfo, LawSpec, State};
 use std::collections::BTreeMap;
 
 pub(in crate::laws) const LAW: Law = Law {
@@ -47,31 +47,12 @@ fn install(
     model: &PhysicsModel,
     state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let house = &model.house;
-    let served = || {
-        house
-            .joints
-            .iter_ids()
-            .filter(|(_, joint)| joint.servo.is_some())
-    };
-    let wanted = |id: JointId, name: &str| {
-        let joint = &house.joints[id];
-        let object = &house.objects[joint.object].name;
-        name == joint.name
-            || name == format!("{object}/{}", joint.name)
-            || name == id.index().to_string()
-    };
-    let output: BTreeMap<JointId, f32> = served()
-        .filter(|(id, _)| spec.target.as_ref().is_none_or(|name| wanted(*id, name)))
-        .map(|(id, _)| (id, state.joint_position[id]))
+    let output = Motors::of(spec, info, model)?
+        .0
+        .into_iter()
+        .map(|id| (id, state.joint_position[id]))
         .collect();
-    if let Some(target) = &spec.target
-        && output.is_empty()
-    {
-        let names = served().map(|(_, joint)| joint.name.as_str());
-        return Err(no_target(info.id, "joint with a servo", target, names));
-    }
-    let half_width = spec.value(info, "half_width").unwrap_or(0.0) as f32;
+    let half_width = value(spec, info, "half_width");
     Ok(Box::new(Backlash { half_width, output }))
 }
 

@@ -1,3 +1,112 @@
-//! Laws of servos and joints.
+//! Laws of motors. A target is a joint's name, `OBJECT/JOINT`, or the joint's number; without one they act on every motor.
+//!
+//! Once a physics step each law changes the command that its motor follows, in the order of installation; then what the
+//! motor can give.
 
 pub(super) mod backlash;
+pub(super) mod deadband;
+pub(super) mod first_order_lag;
+pub(super) mod latency;
+pub(super) mod rate_limit;
+pub(super) mod saturation;
+
+use crate::error::PhysicsError;
+use crate::laws::target::no_target;
+use crate::model::PhysicsModel;
+use dwell_scene::{Articulation, Id, JointCommand, JointId, LawInfo, LawSpec};
+use std::collections::BTreeMap;
+
+/// The joints that a spec acts on, of those that `may` be acted on.
+fn joints(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    kind: &'static str,
+    may: impl Fn(&Articulation) -> bool,
+) -> Result<Vec<JointId>, PhysicsError> {
+    let house = &model.house;
+    let named = |id: JointId, joint: &Articulation, name: &str| {
+        let object = &house.objects[joint.object].name;
+        name == joint.name
+            || name == format!("{object}/{}", joint.name)
+            || name == id.index().to_string()
+    };
+    let able = || house.joints.iter_ids().filter(|(_, joint)| may(joint));
+    let found: Vec<JointId> = able()
+        .filter(|(id, joint)| {
+            let target = spec.target.as_ref();
+            target.is_none_or(|name| named(*id, joint, name))
+        })
+        .map(|(id, _)| id)
+        .collect();
+    match &spec.target {
+        Some(target) if found.is_empty() => {
+            let names = able().map(|(_, joint)| joint.name.as_str());
+            Err(no_target(info.id, kind, target, names))
+        }
+        _ => Ok(found),
+    }
+}
+
+/// Joints with a motor, in order.
+#[derive(Clone, Debug)]
+struct Motors(Vec<JointId>);
+
+impl Motors {
+    fn of(spec: &LawSpec, info: &LawInfo, model: &PhysicsModel) -> Result<Self, PhysicsError> {
+        let kind = "joint with a servo";
+        joints(spec, info, model, kind, |joint| joint.servo.is_some()).map(Self)
+    }
+
+    fn hold(&self, joint: JointId) -> bool {
+        self.0.binary_search(&joint).is_ok()
+    }
+
+    /// A memory for each.
+    fn each<T>(&self, make: impl Fn() -> T) -> BTreeMap<JointId, T> {
+        self.0.iter().map(|joint| (*joint, make())).collect()
+    }
+}
+
+/// The number of a command; `None` when the motor is off.
+fn number(command: JointCommand) -> Option<f32> {
+    match command {
+        JointCommand::Off => None,
+        JointCommand::Position(x) | JointCommand::Velocity(x) | JointCommand::Effort(x) => Some(x),
+    }
+}
+
+/// A command of the same kind with another number.
+fn with(command: JointCommand, number: f32) -> JointCommand {
+    match command {
+        JointCommand::Off => JointCommand::Off,
+        JointCommand::Position(_) => JointCommand::Position(number),
+        JointCommand::Velocity(_) => JointCommand::Velocity(number),
+        JointCommand::Effort(_) => JointCommand::Effort(number),
+    }
+}
+
+fn same_kind(a: JointCommand, b: JointCommand) -> bool {
+    std::mem::discriminant(&a) == std::mem::discriminant(&b)
+}
+
+/// A command as two numbers of a memory.
+fn pack(command: JointCommand) -> [f32; 2] {
+    let kind = match command {
+        JointCommand::Off => 0.0,
+        JointCommand::Position(_) => 1.0,
+        JointCommand::Velocity(_) => 2.0,
+        JointCommand::Effort(_) => 3.0,
+    };
+    [kind, number(command).unwrap_or(0.0)]
+}
+
+/// What [`pack`] packed.
+fn unpack(kind: f32, value: f32) -> JointCommand {
+    match kind as u32 {
+        1 => JointCommand::Position(value),
+        2 => JointCommand::Velocity(value),
+        3 => JointCommand::Effort(value),
+        _ => JointCommand::Off,
+    }
+}

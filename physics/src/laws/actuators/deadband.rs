@@ -1,0 +1,88 @@
+//! Deadband: a motor that does not answer to little.
+
+use super::Motors;
+use crate::error::PhysicsError;
+use crate::laws::{Acts, Law, MotorStep, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{JointCommand, LawInfo, LawSpec, State};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "deadband",
+        version: 1,
+        name: "deadband of a motor",
+        equation: "told a position u at y, the motor gives no effort while |u - y| < half_width (rad or m), and its full one \
+                   beyond; told an effort, none below min_effort (N m or N); it has no memory",
+        source: "H. K. Khalil, Nonlinear Systems (2002), section 1.2.7: dead zone",
+        engine: ActsIn::Physics,
+        acts_on: "joint",
+        params: &[
+            ParamInfo {
+                name: "half_width",
+                unit: "rad or m",
+                default: 0.0,
+                low: 0.0,
+                high: 1.0,
+                plausible: [0.001, 0.05],
+            },
+            ParamInfo {
+                name: "min_effort",
+                unit: "N m or N",
+                default: 0.0,
+                low: 0.0,
+                high: 1e4,
+                plausible: [0.01, 2.0],
+            },
+        ],
+        rivals: &["backlash", "joint_friction"],
+        separating_experiment: "tell it small slow ramps from both sides: a deadband stops short on either side by the same \
+                                width whatever came before, backlash depends on the last turn, and static friction can be \
+                                seen when the joint is pushed with the motor off",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Deadband {
+    motors: Motors,
+    half_width: f32,
+    min_effort: f32,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    Ok(Box::new(Deadband {
+        motors: Motors::of(spec, info, model)?,
+        half_width: value(spec, info, "half_width"),
+        min_effort: value(spec, info, "min_effort"),
+    }))
+}
+
+impl Acts for Deadband {
+    fn drives(&self) -> bool {
+        true
+    }
+
+    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+        if !self.motors.hold(motor.joint) {
+            return;
+        }
+        let silent = match *command {
+            JointCommand::Position(target) => (target - motor.position).abs() < self.half_width,
+            JointCommand::Effort(effort) => effort.abs() < self.min_effort,
+            _ => false,
+        };
+        if silent {
+            *command = JointCommand::Effort(0.0);
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,154 @@
+//! First-order lag: a motor takes up what it is told little by little.
+
+use super::{Motors, number, same_kind, with};
+use crate::error::PhysicsError;
+use crate::laws::{Acts, Law, MotorStep, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State, math};
+use std::collections::BTreeMap;
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "first_order_lag",
+        version: 1,
+        name: "first-order lag of a motor",
+        equation: "tau dy/dt + y = u: the motor drives towards y instead of the command u (tau in s); in a physics step it \
+                   has the mean of y over the step, exactly; when the kind of command changes, y begins at the joint's \
+                   position or velocity, or at no effort",
+        source: "K. J. Astrom, R. M. Murray, Feedback Systems (2008), section 5.4: first-order systems",
+        engine: ActsIn::Physics,
+        acts_on: "joint",
+        params: &[ParamInfo {
+            name: "tau_s",
+            unit: "s",
+            default: 0.0,
+            low: 0.0,
+            high: 10.0,
+            plausible: [0.005, 0.3],
+        }],
+        rivals: &["latency", "rate_limit", "joint_friction"],
+        separating_experiment: "tell it sines at two frequencies: a lag takes amplitude and its phase ends at 90 degrees, a \
+                                delay takes none and its phase grows in proportion to frequency; steps of two sizes tell \
+                                it from a rate limit",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Lag {
+    tau_s: f32,
+    output: BTreeMap<JointId, JointCommand>,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    let motors = Motors::of(spec, info, model)?;
+    Ok(Box::new(Lag {
+        tau_s: value(spec, info, "tau_s"),
+        output: motors.each(JointCommand::default),
+    }))
+}
+
+/// The output at the end of a step and its mean over it, with the input `u` held.
+fn relax(y: f32, u: f32, steps: f32) -> (f32, f32) {
+    let left = math::exp(-steps);
+    let end = u + (y - u) * left;
+    (end, u + (y - u) * (1.0 - left) / steps)
+}
+
+impl Acts for Lag {
+    fn drives(&self) -> bool {
+        true
+    }
+
+    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+        let Some(output) = self.output.get_mut(&motor.joint) else {
+            return;
+        };
+        let Some(told) = number(*command) else {
+            *output = *command;
+            return;
+        };
+        if !same_kind(*output, *command) {
+            *output = with(*command, motor.rest(*command));
+        }
+        let y = number(*output).unwrap_or(told);
+        let (end, mean) = relax(y, told, motor.dt_s / self.tau_s);
+        *output = with(*command, end);
+        *command = with(*command, mean);
+    }
+
+    fn memory(&self) -> Vec<f32> {
+        self.output
+            .values()
+            .flat_map(|output| super::pack(*output))
+            .collect()
+    }
+
+    fn recall(&mut self, memory: &[f32]) {
+        for (output, packed) in self.output.values_mut().zip(memory.chunks_exact(2)) {
+            *output = super::unpack(packed[0], packed[1]);
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_answered_by_the_exponential_for_any_step_length() {
+        for steps_per_tau in [0.5_f32, 3.0, 40.0] {
+            let (mut y, mut sum) = (0.0, 0.0);
+            let dt = 1.0 / steps_per_tau;
+            for k in 1..=200 {
+                let (end, mean) = relax(y, 1.0, dt);
+                y = end;
+                sum += mean * dt;
+                let t = k as f32 * dt;
+                assert!((y - (1.0 - (-t).exp())).abs() < 1e-5, "{t}");
+                // The integral of the response: t - tau (1 - e^(-t / tau)).
+                assert!(
+                    (sum - (t - (1.0 - (-t).exp()))).abs() < 1e-4 * (1.0 + t),
+                    "{t}"
+                );
+            }
+        }
+    }
+
+    /// Amplitude `1 / sqrt(1 + (w tau)^2)` and phase `-atan(w tau)` at two frequencies: a lag loses amplitude, and its phase
+    /// falls short of the proportion that a delay has.
+    #[test]
+    fn sines_lose_amplitude_and_their_phase_saturates() {
+        let dt = 1e-3_f32;
+        for frequency in [2.0_f32, 40.0] {
+            let (mut y, mut in_phase, mut quadrature) = (0.0, 0.0, 0.0);
+            let (transient, steps) = (10_000, 31_416);
+            for k in 0..transient + steps {
+                let (end, _) = relax(y, math::sin(frequency * (k as f32 + 0.5) * dt), dt);
+                y = end;
+                if k >= transient {
+                    let angle = frequency * (k as f32 + 1.0) * dt;
+                    in_phase += y * math::sin(angle) * 2.0 / steps as f32;
+                    quadrature += y * math::cos(angle) * 2.0 / steps as f32;
+                }
+            }
+            let amplitude = in_phase.hypot(quadrature);
+            let phase = quadrature.atan2(in_phase);
+            assert!(
+                (amplitude * (1.0 + frequency * frequency).sqrt() - 1.0).abs() < 5e-3,
+                "{amplitude}"
+            );
+            assert!((phase + frequency.atan()).abs() < 5e-3, "{phase}");
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Latency: what a motor is told reaches it late.
+
+use super::{Motors, number, same_kind, with};
+use crate::error::PhysicsError;
+use crate::laws::{Acts, Law, MotorStep, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
+use std::collections::{BTreeMap, VecDeque};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "latency",
+        version: 1,
+        name: "latency of a motor",
+        equation: "u(t) <- u(t - delay_s), a pure delay (s) of what the motor is told; in a physics step the motor has the \
+                   mean of the delayed command over the step, so that a delay of any fraction of a step acts",
+        source: "K. J. Astrom, R. M. Murray, Feedback Systems (2008), section 8.2: the time delay e^(-s tau)",
+        engine: ActsIn::Physics,
+        acts_on: "joint",
+        params: &[ParamInfo {
+            name: "delay_s",
+            unit: "s",
+            default: 0.0,
+            low: 0.0,
+            high: 2.0,
+            plausible: [0.002, 0.15],
+        }],
+        rivals: &["first_order_lag", "timestamp_offset", "backlash"],
+        separating_experiment: "tell it steps, or sines at two frequencies: a delay shifts a step and leaves its shape, and \
+                                its phase grows with frequency without end; a lag rounds the step and its phase ends at \
+                                90 degrees; an offset between clocks also shifts what no motor causes",
+    },
+    install,
+};
+
+/// What a joint was told in past physics steps, the newest first.
+#[derive(Clone, Debug, Default)]
+struct Past(VecDeque<JointCommand>);
+
+#[derive(Clone, Debug)]
+struct Latency {
+    delay_s: f32,
+    past: BTreeMap<JointId, Past>,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    let motors = Motors::of(spec, info, model)?;
+    Ok(Box::new(Latency {
+        delay_s: value(spec, info, "delay_s"),
+        past: motors.each(Past::default),
+    }))
+}
+
+impl Past {
+    /// Remembers this step's command and gives the one that arrives: before the first that is known nothing was told.
+    fn shift(&mut self, command: JointCommand, delay_steps: f32) -> JointCommand {
+        let whole = delay_steps as usize;
+        let part = delay_steps - whole as f32;
+        self.0.push_front(command);
+        self.0.truncate(whole + 2);
+        let told = |steps: usize| self.0.get(steps).copied().unwrap_or_default();
+        let (late, early) = (told(whole), told(whole + 1));
+        match (number(early), number(late)) {
+            // Both are of one kind: the mean of a step in which the command changes.
+            (Some(before), Some(after)) if same_kind(late, early) => {
+                with(late, before * part + after * (1.0 - part))
+            }
+            _ if part > 0.5 => early,
+            _ => late,
+        }
+    }
+}
+
+impl Acts for Latency {
+    fn drives(&self) -> bool {
+        true
+    }
+
+    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+        if let Some(past) = self.past.get_mut(&motor.joint) {
+            *command = past.shift(*command, self.delay_s / motor.dt_s);
+        }
+    }
+
+    fn memory(&self) -> Vec<f32> {
+        let mut memory = Vec::new();
+        for past in self.past.values() {
+            memory.push(past.0.len() as f32);
+            memory.extend(past.0.iter().flat_map(|command| super::pack(*command)));
+        }
+        memory
+    }
+
+    fn recall(&mut self, memory: &[f32]) {
+        let mut rest = memory.iter().copied();
+        for past in self.past.values_mut() {
+            let count = rest.next().unwrap_or(0.0) as usize;
+            past.0.clear();
+            for _ in 0..count.min(memory.len()) {
+                if let (Some(kind), Some(value)) = (rest.next(), rest.next()) {
+                    past.0.push_back(super::unpack(kind, value));
+                }
+            }
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ramp comes out as the same ramp, late by the delay, for whole steps and fractions of one.
+    #[test]
+    fn a_ramp_is_shifted_and_not_deformed() {
+        for delay in [0.0_f32, 1.0, 2.25, 7.5, 11.9] {
+            let mut past = Past::default();
+            for step in 0..60 {
+                let now = past.shift(JointCommand::Effort(step as f32), delay);
+                if step as f32 >= delay + 1.0 {
+                    let expected = step as f32 - delay;
+                    assert!(
+                        (number(now).unwrap() - expected).abs() < 1e-5,
+                        "{delay} {step} {now:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_arrives_before_the_delay_is_over_and_kinds_are_not_mixed() {
+        let mut past = Past::default();
+        for step in 0..10 {
+            let now = past.shift(JointCommand::Position(0.3), 4.0);
+            assert_eq!(now == JointCommand::Off, step < 4, "{step}");
+        }
+        for step in 0..10 {
+            let now = past.shift(JointCommand::Velocity(-1.0), 4.0);
+            let late = JointCommand::Position(0.3);
+            assert_eq!(now == late, step < 4, "{step} {now:?}");
+        }
+    }
+}

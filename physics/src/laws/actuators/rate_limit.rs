@@ -1,0 +1,124 @@
+//! Rate limit: what a motor follows changes no faster than it can.
+
+use super::{Motors, number, same_kind, with};
+use crate::error::PhysicsError;
+use crate::laws::{Acts, Law, MotorStep, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
+use std::collections::BTreeMap;
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "rate_limit",
+        version: 1,
+        name: "rate limit of a motor",
+        equation: "dy/dt = clamp(u - y, -max_rate, max_rate): the motor drives towards y, which follows the command u no \
+                   faster than max_rate (the command's unit each second: rad/s or m/s for positions); in a physics step \
+                   it has the mean of y over the step; y begins where the joint stands, or at no effort",
+        source: "H. K. Khalil, Nonlinear Systems (2002), section 1.2.7: rate limits of actuators",
+        engine: ActsIn::Physics,
+        acts_on: "joint",
+        params: &[ParamInfo {
+            name: "max_rate",
+            unit: "rad/s or m/s",
+            default: 1e6,
+            low: 1e-3,
+            high: 1e6,
+            plausible: [0.5, 20.0],
+        }],
+        rivals: &["saturation", "first_order_lag", "joint_friction"],
+        separating_experiment: "tell it steps of two sizes: with a rate limit the slope is the same for both and the time \
+                                grows with the size, with a lag the time is the same",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct RateLimit {
+    max_rate: f32,
+    output: BTreeMap<JointId, JointCommand>,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    let motors = Motors::of(spec, info, model)?;
+    Ok(Box::new(RateLimit {
+        max_rate: value(spec, info, "max_rate"),
+        output: motors.each(JointCommand::default),
+    }))
+}
+
+/// The output at the end of a step in which it can change by `most`, and its mean over the step.
+fn approach(y: f32, u: f32, most: f32) -> (f32, f32) {
+    let change = u - y;
+    if change.abs() >= most {
+        let end = y + most.copysign(change);
+        (end, 0.5 * (y + end))
+    } else {
+        (u, u - 0.5 * change * (change.abs() / most))
+    }
+}
+
+impl Acts for RateLimit {
+    fn drives(&self) -> bool {
+        true
+    }
+
+    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+        let Some(output) = self.output.get_mut(&motor.joint) else {
+            return;
+        };
+        let Some(told) = number(*command) else {
+            *output = *command;
+            return;
+        };
+        if !same_kind(*output, *command) {
+            *output = with(*command, motor.rest(*command));
+        }
+        let y = number(*output).unwrap_or(told);
+        let (end, mean) = approach(y, told, self.max_rate * motor.dt_s);
+        *output = with(*command, end);
+        *command = with(*command, mean);
+    }
+
+    fn memory(&self) -> Vec<f32> {
+        self.output
+            .values()
+            .flat_map(|output| super::pack(*output))
+            .collect()
+    }
+
+    fn recall(&mut self, memory: &[f32]) {
+        for (output, packed) in self.output.values_mut().zip(memory.chunks_exact(2)) {
+            *output = super::unpack(packed[0], packed[1]);
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_becomes_a_ramp_that_ends_at_the_command() {
+        let (mut y, mut sum) = (0.2, 0.0);
+        for k in 1..=40 {
+            let (end, mean) = approach(y, -1.03, 0.05);
+            (y, sum) = (end, sum + mean * 0.1);
+            let t = k as f32;
+            assert!((y - (0.2 - 0.05 * t).max(-1.03)).abs() < 1e-5, "{k}");
+        }
+        // The ramp lasts 24.6 steps, and the rest is at the command: a trapezoid's area, exactly.
+        let expected = 0.1 * (24.6 * 0.5 * (0.2 - 1.03) - 15.4 * 1.03);
+        assert!((sum - expected).abs() < 1e-4, "{sum} {expected}");
+    }
+}

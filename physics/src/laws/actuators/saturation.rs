@@ -1,0 +1,68 @@
+//! Saturation: a motor that is weaker than it says.
+
+use super::Motors;
+use crate::error::PhysicsError;
+use crate::joints::Pull;
+use crate::laws::{Acts, Law, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{JointId, LawInfo, LawSpec, State};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "saturation",
+        version: 1,
+        name: "saturation of a motor",
+        equation: "effort <- clamp(effort, -max_effort, max_effort) at the joint (N m or N), below what the motor's own data \
+                   allow",
+        source: "H. K. Khalil, Nonlinear Systems (2002), section 1.2.7: saturation of actuators",
+        engine: ActsIn::Physics,
+        acts_on: "joint",
+        params: &[ParamInfo {
+            name: "max_effort",
+            unit: "N m or N",
+            default: 1e6,
+            low: 0.0,
+            high: 1e6,
+            plausible: [0.05, 200.0],
+        }],
+        rivals: &["rate_limit", "motor_constants", "joint_friction"],
+        separating_experiment: "sweep the amplitude of a sine or lift growing loads: below its bound a saturated motor is \
+                                exact, friction errs from the smallest effort on, a wrong constant in proportion",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Saturation {
+    motors: Motors,
+    max_effort: f32,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    Ok(Box::new(Saturation {
+        motors: Motors::of(spec, info, model)?,
+        max_effort: value(spec, info, "max_effort"),
+    }))
+}
+
+impl Acts for Saturation {
+    fn drives(&self) -> bool {
+        true
+    }
+
+    fn strengthen(&self, joint: JointId, pull: &mut Pull) {
+        if self.motors.hold(joint) {
+            pull.max_effort = pull.max_effort.min(self.max_effort);
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}

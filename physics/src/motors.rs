@@ -1,0 +1,65 @@
+//! Motors under laws: what they follow and give changes in every physics step.
+
+use crate::joints;
+use crate::laws::{Installed, MotorStep};
+use crate::world::PhysicsWorld;
+use dwell_scene::{JointCommand, JointId, State};
+
+/// Whether a law changes what motors do between control steps.
+pub(crate) fn are_driven(laws: &[Installed]) -> bool {
+    laws.iter().any(|installed| installed.law.drives())
+}
+
+/// What a joint's motor is told in this control step.
+fn told(state: &State, joint: JointId) -> JointCommand {
+    let command = state.joint_command[joint];
+    if command.is_finite() {
+        command
+    } else {
+        JointCommand::Off
+    }
+}
+
+impl PhysicsWorld {
+    /// Sets what motors do in the next physics step from what they are told in this control step.
+    pub(crate) fn drive_motors(&mut self, state: &State) {
+        if !are_driven(&self.laws) {
+            return;
+        }
+        let house = self.model.house.clone();
+        for index in 0..self.joints.len() {
+            let joint = self.joints[index];
+            let articulation = &house.joints[joint.id];
+            if articulation.servo.is_none() {
+                continue;
+            }
+            let near = state.joint_position[joint.id];
+            let (position, velocity) = joints::read(&self.engine, &joint, near);
+            let motor = MotorStep {
+                joint: joint.id,
+                position,
+                velocity,
+                dt_s: self.settings.dt_s,
+            };
+            let mut command = told(state, joint.id);
+            for installed in &mut self.laws {
+                if let JointCommand::Position(target) = &mut command {
+                    *target = installed.law.servo_target(joint.id, *target);
+                }
+                installed.law.drive(&motor, &mut command);
+            }
+            let now = (position, velocity);
+            let (mut pull, _) =
+                joints::advance(joint.kind, articulation, command, None, now, (0.0, 0.0));
+            if let Some(pull) = &mut pull {
+                for installed in &self.laws {
+                    installed.law.strengthen(joint.id, pull);
+                }
+            }
+            if pull.is_some() && self.pulls[index] != pull {
+                joints::wake(&mut self.engine, &joint);
+            }
+            self.pulls[index] = pull;
+        }
+    }
+}
