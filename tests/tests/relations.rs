@@ -71,5 +71,5 @@ fn physics_and_words_agree_on_what_rests_on_what() {
     }
     println!("{same} of {} alike; others: {other:#?}", loose.len());
     // Words count a third of the sole; a contact may be less, and a thing may lean on a neighbour.
-    assert!(same * 10 >= loose.len() * 9, "{other:#?}");
+    assert!(same * 50 >= loose.len() * 49, "{other:#?}");
 }
