@@ -14,7 +14,9 @@ pub struct LawSpec {
     pub id: String,
     /// The version of the law's equation.
     pub version: u32,
-    /// What it acts on: an object's name, a joint's name or a surface's material; `None`: everything it can act on.
+    /// What it acts on; `None`: everything it can act on. For a law on objects an object's name; on joints a joint's name,
+    /// `OBJECT/JOINT` or a number; on contacts `NAME` (all contacts of it) or `NAME~NAME` (those between the two), where a
+    /// name is an object's, a piece of structure's or a substance's; laws on the world take none.
     #[serde(default)]
     pub target: Option<String>,
     /// Values by parameter name, in the units of [`ParamInfo::unit`].
@@ -129,7 +131,7 @@ pub struct LawInfo {
     pub source: &'static str,
     /// The engine it acts in.
     pub engine: Engine,
-    /// What it acts on: `"object"`, `"joint"`, `"material"`, `"world"`, `"sensor"`.
+    /// What it acts on: `"object"`, `"contact"`, `"joint"`, `"material"`, `"world"`, `"sensor"`; see [`LawSpec::target`].
     pub acts_on: &'static str,
     /// Its parameters.
     pub params: &'static [ParamInfo],

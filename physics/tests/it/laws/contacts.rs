@@ -1,7 +1,7 @@
 //! Laws that act where things touch.
 
 use super::spec;
-use crate::common::{Build, Piece, Run, gravity, pair};
+use crate::common::{Build, Piece, Run, forward, gravity, pair};
 use dwell_physics::PhysicsConfig;
 use dwell_scene::{LawSpec, ObjectId, State};
 use glam::{Quat, Vec3};
@@ -326,4 +326,98 @@ fn torsional_friction_slows_a_spinning_ball_evenly() {
     run.steps(10);
     let kept = run.state.part_velocity[root].angular.y;
     assert!((kept - 10.0).abs() < 1e-3, "{kept} rad/s");
+}
+
+/// Soft contacts give back at most what they took: a cube that lands on its corners, edges and faces never rises above where
+/// it fell from, and comes to rest and to sleep.
+#[test]
+fn a_tumbling_soft_cube_gains_no_energy_and_comes_to_rest() {
+    for (k, (frequency_hz, zeta)) in [(25.0, 0.05), (60.0, 0.2), (150.0, 0.5)]
+        .into_iter()
+        .enumerate()
+    {
+        let mut build = Build::room([8.0, 4.0, 8.0]);
+        let turn = Quat::from_euler(glam::EulerRot::XYZ, 0.4 + k as f32, 0.9, 0.2);
+        let at = Vec3::new(4.1, 0.6, 3.8);
+        let cube = build.movable("cube", Piece::cuboid(Vec3::splat(0.05), at).turned(turn));
+        let mut run = run_with(
+            build,
+            compliance(frequency_hz, zeta),
+            PhysicsConfig::default(),
+        );
+        let root = run.root(cube);
+        run.state.part_velocity[root].angular = Vec3::new(3.0, -2.0, 4.0);
+        run.throw(cube, Vec3::new(0.8, 0.0, -0.4));
+        let mass = 500.0 * 1e-3;
+        let energy = |run: &Run| {
+            let (v, w) = (run.velocity(cube), run.state.part_velocity[root].angular);
+            let spin = mass * 0.01 / 6.0 * w.length_squared();
+            0.5 * (mass * v.length_squared() + spin) + mass * gravity() * run.position(cube).y
+        };
+        let start = energy(&run);
+        let mut most = 0.0_f32;
+        for _ in 0..300 {
+            run.steps(1);
+            most = most.max(energy(&run));
+        }
+        assert!(
+            most < 1.02 * start,
+            "{frequency_hz} Hz, {zeta}: {most} J of {start} J"
+        );
+        let depth = 0.05 - run.position(cube).y;
+        let expected = gravity() / (TAU * frequency_hz).powi(2);
+        assert!(
+            (depth - expected).abs() < 0.1 * expected + 2e-5,
+            "{depth} m, expected {expected} m"
+        );
+        assert_eq!(run.world.awake_count(), 0);
+    }
+}
+
+/// Three boxes on each other stand for 20 s, each on springs that carry what is above it.
+#[test]
+fn a_soft_stack_stands() {
+    let mut build = Build::room([4.0, 3.0, 4.0]);
+    let boxes: Vec<ObjectId> = (0..3)
+        .map(|k| {
+            let at = Vec3::new(2.1, 0.1 + 0.2 * k as f32, 1.9);
+            build.movable(&format!("box_{k}"), Piece::cuboid(Vec3::splat(0.1), at))
+        })
+        .collect();
+    let mut run = run_with(build, compliance(40.0, 0.4), PhysicsConfig::default());
+    run.steps(400);
+    for (k, id) in boxes.iter().enumerate() {
+        let at = run.position(*id);
+        let aside = (at - Vec3::new(2.1, at.y, 1.9)).length();
+        let sunk = 0.1 + 0.2 * k as f32 - at.y;
+        assert!(
+            aside < 2e-3 && sunk < 3e-3,
+            "box {k}: {aside} m aside, {sunk} m down"
+        );
+    }
+}
+
+/// What is led, as an agent's body is, goes the same way in the same time when contacts take several runs a step.
+#[test]
+fn a_soft_world_leads_agents_at_their_own_speed() {
+    let pushed = |laws: Vec<LawSpec>| {
+        let mut build = Build::room([8.0, 3.0, 4.0]);
+        let at = Vec3::new(3.0, 0.3, 2.0);
+        let crate_ = build.movable("crate", Piece::cuboid(Vec3::splat(0.3), at).density(20.0));
+        let mut run = run_with(build, laws, PhysicsConfig::default());
+        run.agent(Vec3::new(2.0, 0.0, 2.0), -0.5 * PI);
+        let mut fastest = 0.0_f32;
+        for _ in 0..40 {
+            run.walk(1, &[forward(1.0)]);
+            fastest = fastest.max(run.velocity(crate_).length());
+        }
+        let agent = run.state.agents.iter().next().unwrap().position.x;
+        (agent, run.position(crate_).x, fastest)
+    };
+    let (hard, soft) = (pushed(Vec::new()), pushed(compliance(40.0, 0.5)));
+    assert!(
+        (hard.0 - soft.0).abs() < 0.05 && (hard.1 - soft.1).abs() < 0.1,
+        "{hard:?} {soft:?}"
+    );
+    assert!(soft.2 < 1.5, "{soft:?}");
 }

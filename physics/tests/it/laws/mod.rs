@@ -202,8 +202,19 @@ fn every_law_says_all_there_is_to_say() {
 fn a_law_without_its_target_is_refused_with_the_names_there_are() {
     let house = tower().house();
     let mut state = State::new(&house);
-    for (id, param, names) in [("drag", "c_d", "ball"), ("backlash", "half_width", "elbow")] {
-        state.laws = vec![spec(id, Some("nothing"), &[(param, 0.1)])];
+    for (id, target, param, names) in [
+        ("drag", "nothing", "c_d", "ball"),
+        ("backlash", "nothing", "half_width", "elbow"),
+        ("rolling_resistance", "nothing", "c_rr", "marble"),
+        ("rolling_resistance", "parquet~nothing", "c_rr", "marble"),
+        (
+            "contact_compliance",
+            "nothing",
+            "natural_frequency_hz",
+            "all contacts",
+        ),
+    ] {
+        state.laws = vec![spec(id, Some(target), &[(param, 0.1)])];
         let message =
             dwell_physics::PhysicsWorld::new(house.clone(), PhysicsConfig::default(), &mut state)
                 .unwrap_err()

@@ -1,0 +1,112 @@
+//! `docs/laws.md` lists the laws that there are.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use dwell_scene::LawInfo;
+use dwell_scene::law::Engine;
+use std::fmt::Write as _;
+use std::path::Path;
+
+const HEAD: &str = "# Laws
+
+Physical effects that the basic model lacks. A law at its default is not installed and changes no bit. `World` takes laws as
+`{id, version, target, params}`; parameters that are left out have their defaults, values out of bounds are refused. This page is
+written by the test `laws_page` (`UPDATE_GOLDEN=1 cargo test -p dwell-tests --test laws_page`) from what the engines say.
+
+What a target names: a law on an *object* takes an object's name, one on a *joint* a joint's name, `OBJECT/JOINT` or a number, one
+on *contacts* `NAME` (all contacts of it) or `NAME~NAME` (those between the two, in either order; the surface is the first), where a
+name is that of an object, of a piece of the structure or of a substance of the materials library. No target means everything. Laws
+on the *world* take none.
+
+What sleeps: laws that come, go or change wake everything once. After that laws of air and of contact act on what moves and leave
+asleep what sleeps; only wind wakes what it pushes by more than a thousandth of its weight, and keeps it awake as long as it does.
+";
+
+fn heading(engine: Engine) -> &'static str {
+    match engine {
+        Engine::Physics => "Physics",
+        Engine::Acoustics => "Sound",
+        Engine::Render => "Cameras and depth sensors",
+        Engine::Measurement => "Clocks and trackers",
+    }
+}
+
+fn entry(law: &LawInfo, page: &mut String) {
+    let LawInfo {
+        id,
+        version,
+        name,
+        equation,
+        source,
+        acts_on,
+        rivals,
+        separating_experiment,
+        ..
+    } = law;
+    let rivals = rivals.join("`, `");
+    let row = |page: &mut String, text: String| writeln!(page, "{text}").unwrap();
+    row(
+        page,
+        format!("\n### `{id}`\n\n{name}; version {version}, acts on: {acts_on}.\n"),
+    );
+    row(
+        page,
+        format!("{}\n", equation.replace('*', "\\*").replace('|', "\\|")),
+    );
+    row(
+        page,
+        "| parameter | unit | default | bounds | plausible |\n| --- | --- | --- | --- | --- |"
+            .into(),
+    );
+    for param in law.params {
+        let [low, high] = param.plausible;
+        row(
+            page,
+            format!(
+                "| `{}` | {} | {} | {} to {} | {low} to {high} |",
+                param.name, param.unit, param.default, param.low, param.high
+            ),
+        );
+    }
+    row(
+        page,
+        format!(
+            "\nLooks like: `{rivals}`. Apart from them: {separating_experiment}.\n\nSource: {source}."
+        ),
+    );
+}
+
+#[test]
+fn the_page_lists_every_law() {
+    let mut page = HEAD.to_owned();
+    for engine in [
+        Engine::Physics,
+        Engine::Acoustics,
+        Engine::Render,
+        Engine::Measurement,
+    ] {
+        let laws: Vec<&LawInfo> = dwell::laws::all()
+            .filter(|law| law.engine == engine)
+            .collect();
+        if !laws.is_empty() {
+            write!(page, "\n## {}\n", heading(engine)).unwrap();
+        }
+        for law in laws {
+            entry(law, &mut page);
+        }
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/laws.md");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(&path, &page).unwrap();
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_default();
+    let differs = found
+        .lines()
+        .zip(page.lines())
+        .find(|(old, new)| old != new);
+    assert!(
+        found == page,
+        "docs/laws.md is not what the laws say (first difference: {differs:?}); \
+         write it anew with UPDATE_GOLDEN=1 cargo test -p dwell-tests --test laws_page"
+    );
+}
