@@ -121,7 +121,7 @@ fn explain(
     progress.stage(0.05, "building the simulation")?;
     if let (Some(house), false) = (&options.house, bundle.kind() == Kind::ImpulseResponse) {
         return Err(CalibrationError::field(
-            bundle.name,
+            &bundle.name,
             "house",
             format!("{house:?}"),
             "none: only impulse responses are measured in a house",
