@@ -51,6 +51,6 @@ pub struct StartReport {
     pub frozen: Vec<FrozenObject>,
     /// Leaves that pass through what they overlap.
     pub passing: Vec<PassingJoint>,
-    /// Moving objects that came without collision pieces and have the hull of what is seen.
+    /// Moving objects that came without collision pieces and have convex pieces of what is seen.
     pub stand_ins: Vec<ObjectId>,
 }

@@ -5,7 +5,7 @@ use crate::agents::{Agent, Grip, Loose};
 use crate::body::{self, Body, BodyPlace, Hold};
 use crate::config::{PhysicsConfig, Settings};
 use crate::contact::{
-    ContactTable, Dress, Entry, Excluded, Hooks, MergedEvents, Motion, Ongoing, touching,
+    ContactTable, Dress, Entry, Excluded, Hooks, MergedEvents, Motion, Ongoing, Toucher, touching,
 };
 use crate::convert::{from_rapier, to_rapier};
 use crate::engine::Engine;
@@ -16,6 +16,7 @@ use crate::laws::{self, Installed};
 use crate::model::PhysicsModel;
 use crate::report::StartReport;
 use crate::start::Start;
+use dwell_scene::material::PairContact;
 use dwell_scene::{Address, AgentId, AgentState, House, State};
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Pose as RapierPose;
@@ -284,6 +285,18 @@ impl PhysicsWorld {
     /// The events of the last control step beyond its limit: how many, and how strong together.
     pub fn merged_events(&self) -> MergedEvents {
         self.merged_events
+    }
+
+    /// Friction and restitution between two things as overrides have them, by their first surfaces (a wall or mesh of
+    /// several materials has others too); `None` for what touches nothing. Laws may change what acts; each contact event
+    /// carries the values of its own surfaces.
+    pub fn pair(&self, a: Toucher, b: Toucher) -> Option<PairContact> {
+        let class = |toucher: Toucher| {
+            let entry = self.entries.iter();
+            let mut found = entry.filter(|entry| entry.toucher == Some(toucher));
+            found.next().map(|entry| entry.surface.class(0))
+        };
+        Some(self.table.pair(class(a)?, class(b)?))
     }
 
     /// Simulated time since the world was made, s.

@@ -209,9 +209,14 @@ impl World {
         &self.physics
     }
 
-    /// The contacts that began in the last step.
+    /// Impacts, scrapes and rolling of the last step.
     pub fn events(&self) -> &[ContactEvent] {
         &self.events
+    }
+
+    /// The contact events of the last step beyond its limit: how many, and how strong together.
+    pub fn merged_events(&self) -> dwell_physics::MergedEvents {
+        self.physics.merged_events()
     }
 
     /// What had to be moved or frozen so that the world could start.

@@ -52,6 +52,10 @@ pub struct ContactEvent {
     pub substance_a: &'static str,
     /// What `b` is made of there.
     pub substance_b: &'static str,
+    /// The friction coefficient of the two there, as overrides have it; laws may change what acts.
+    pub friction: f32,
+    /// The restitution of the two there, likewise.
+    pub restitution: f32,
     /// The sum of all normal impulses of the impact, or of this control step, N·s.
     pub impulse_n_s: f32,
     /// The sum of all friction impulses of the same time, N·s.

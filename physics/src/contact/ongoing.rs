@@ -300,6 +300,7 @@ fn blank(
     classes: (u16, u16),
     table: &ContactTable,
 ) -> ContactEvent {
+    let values = table.pair(classes.0, classes.1);
     ContactEvent {
         kind,
         phase,
@@ -310,6 +311,8 @@ fn blank(
         b,
         substance_a: table.substance(classes.0),
         substance_b: table.substance(classes.1),
+        friction: values.friction,
+        restitution: values.restitution,
         impulse_n_s: 0.0,
         tangential_impulse_n_s: 0.0,
         relative_normal_speed_m_s: 0.0,

@@ -1,6 +1,7 @@
 //! Which parts move together, what they weigh, and what touches.
 
 use super::PhysicsModel;
+use super::decompose;
 use super::shapes::{self, Shaped};
 use crate::convert::to_rapier;
 use dwell_scene::{
@@ -64,8 +65,13 @@ type ExactShape = (SharedShape, Arc<[u32]>);
 /// Shapes of exact meshes, shared between instances of a model.
 #[derive(Default)]
 struct Meshes {
-    made: BTreeMap<(MeshId, [u32; 12]), Option<ExactShape>>,
+    made: BTreeMap<MeshKey, Option<ExactShape>>,
+    /// Convex pieces of meshes that came without any.
+    convex: BTreeMap<MeshKey, Vec<(SharedShape, RapierPose)>>,
 }
+
+/// A mesh and its place on the part, bit for bit.
+type MeshKey = (MeshId, [u32; 12]);
 
 impl Meshes {
     fn exact(
@@ -74,15 +80,34 @@ impl Meshes {
         mesh: MeshId,
         part_from_mesh: &Affine3A,
     ) -> Option<ExactShape> {
-        let key = part_from_mesh.to_cols_array().map(f32::to_bits);
         self.made
-            .entry((mesh, key))
+            .entry(mesh_key(mesh, part_from_mesh))
             .or_insert_with(|| {
                 shapes::exact(&house.meshes[mesh], part_from_mesh)
                     .map(|shaped| (shaped.shape, shaped.triangles.into()))
             })
             .clone()
     }
+
+    /// Convex pieces of what a part looks like, in part space.
+    fn convex(&mut self, house: &House, part: PartId) -> Vec<(SharedShape, RapierPose)> {
+        let part = &house.parts[part];
+        let made = || {
+            let pieces = decompose::pieces(&house.meshes[part.mesh], &part.part_from_mesh);
+            let pieces = pieces.into_iter();
+            pieces
+                .map(|piece| (piece.shape, piece.part_from_shape))
+                .collect()
+        };
+        self.convex
+            .entry(mesh_key(part.mesh, &part.part_from_mesh))
+            .or_insert_with(made)
+            .clone()
+    }
+}
+
+fn mesh_key(mesh: MeshId, part_from_mesh: &Affine3A) -> MeshKey {
+    (mesh, part_from_mesh.to_cols_array().map(f32::to_bits))
 }
 
 /// One material, or one for each triangle where substances differ.
@@ -231,7 +256,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
         }
         for body in &mut bodies[first_body..] {
             if body.pieces.is_empty() {
-                body.pieces = stand_in_pieces(&house, body);
+                body.pieces = stand_in_pieces(&house, &mut meshes, body);
                 stand_ins.push(object_id);
             }
             let mass = |piece: &Piece| piece.shape.mass_properties(piece.density_kg_m3).mass();
@@ -275,17 +300,25 @@ fn structure_pieces(house: &House, meshes: &mut Meshes) -> Vec<Piece> {
     pieces
 }
 
-/// Hulls of what a body's parts look like, for a body that came without collision pieces.
-fn stand_in_pieces(house: &House, body: &BodyPlan) -> Vec<Piece> {
+/// Convex pieces of what a body's parts look like, for a body that came without collision pieces.
+fn stand_in_pieces(house: &House, meshes: &mut Meshes, body: &BodyPlan) -> Vec<Piece> {
     let mut pieces = Vec::new();
     for (id, body_from_part) in &body.parts {
         let part = &house.parts[*id];
-        if let Some(shaped) = shapes::stand_in(&house.meshes[part.mesh], &part.part_from_mesh) {
-            let piece = solid(house, *id, shaped, part.density_kg_m3);
-            let mut own = [moved(piece, &to_rapier(body_from_part))];
-            weigh(&mut own, part.mass_kg, part.density_kg_m3);
-            pieces.extend(own);
-        }
+        let place = to_rapier(body_from_part);
+        let convex = meshes.convex(house, *id).into_iter();
+        let mut own: Vec<Piece> = convex
+            .map(|(shape, part_from_shape)| {
+                let shaped = Shaped {
+                    shape,
+                    part_from_shape,
+                    triangles: Vec::new(),
+                };
+                moved(solid(house, *id, shaped, part.density_kg_m3), &place)
+            })
+            .collect();
+        weigh(&mut own, part.mass_kg, part.density_kg_m3);
+        pieces.append(&mut own);
     }
     if pieces.is_empty() {
         // Nothing to see and nothing to touch: a crumb, so that it has a weight.

@@ -152,16 +152,6 @@ pub(crate) fn exact(mesh: &Mesh, part_from_mesh: &Affine3A) -> Option<Shaped> {
     })
 }
 
-/// The hull of what a part looks like, in part space.
-pub(crate) fn stand_in(mesh: &Mesh, part_from_mesh: &Affine3A) -> Option<Shaped> {
-    let points: Vec<Vec3> = mesh
-        .positions
-        .iter()
-        .map(|p| part_from_mesh.transform_point3(*p))
-        .collect();
-    hull(&points)
-}
-
 /// A shape's box under a pose, m.
 pub(crate) fn bounds(shape: &SharedShape, world_from_shape: &RapierPose) -> Aabb {
     let aabb = shape.compute_aabb(world_from_shape);

@@ -1,0 +1,163 @@
+//! Convex pieces of a mesh that came without any.
+
+use super::shapes::{self, Shaped};
+use dwell_scene::Mesh;
+use glam::{Affine3A, Vec3};
+use rapier3d::parry::transformation::vhacd::{VHACD, VHACDParameters};
+
+/// A mesh that fills so much of its hull is its hull.
+const CONVEX_SHARE: f64 = 0.9;
+/// The most pieces of one mesh.
+const MOST_PIECES: u32 = 12;
+/// Voxels along the longest edge.
+const RESOLUTION: u32 = 32;
+/// Depth of a hollow that is left, as a share of the hull's volume.
+const CONCAVITY: f32 = 0.01;
+/// Beyond so many triangles the hull must do: it bounds the time.
+const MOST_TRIANGLES: usize = 50_000;
+
+/// Convex pieces of what a part looks like, in part space: the hull of what is nearly convex, else an approximate convex
+/// decomposition. Nothing without a finite point.
+///
+/// # Source
+/// K. Mamou and F. Ghorbel, A simple and efficient approach for 3D mesh approximate convex decomposition, ICIP 2009, in its
+/// voxel form, by parry.
+pub(super) fn pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<Shaped> {
+    let points: Vec<Vec3> = mesh
+        .positions
+        .iter()
+        .map(|p| part_from_mesh.transform_point3(*p))
+        .collect();
+    let Some(whole) = shapes::hull(&points) else {
+        return Vec::new();
+    };
+    let hull_m3 = f64::from(whole.shape.mass_properties(1.0).mass());
+    let scale = f64::from(part_from_mesh.matrix3.determinant()).abs();
+    let filled_m3 = mesh.enclosed_volume_m3().abs() * scale;
+    let simple = filled_m3 >= CONVEX_SHARE * hull_m3
+        || mesh.triangles.len() > MOST_TRIANGLES
+        || whole.shape.as_cuboid().is_some()
+        || !points.iter().all(|point| point.is_finite());
+    if simple {
+        return vec![whole];
+    }
+    let parameters = VHACDParameters {
+        concavity: CONCAVITY,
+        resolution: RESOLUTION,
+        max_convex_hulls: MOST_PIECES,
+        ..VHACDParameters::default()
+    };
+    let decomposed = VHACD::decompose(&parameters, &points, &mesh.triangles, true);
+    let corners = decomposed.compute_primitive_intersections(&points, &mesh.triangles);
+    let pieces: Vec<Shaped> = corners
+        .iter()
+        .filter_map(|corners| shapes::hull(corners))
+        .collect();
+    if pieces.is_empty() {
+        vec![whole]
+    } else {
+        pieces
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Mesh {
+        let mut mesh = Mesh::default();
+        let slab = |a: [f32; 3], b: [f32; 3]| Mesh::cuboid(Vec3::from(a), Vec3::from(b));
+        mesh.append(&slab([-0.6, 0.7, -0.4], [0.6, 0.75, 0.4]), 0);
+        for x in [-0.55, 0.5] {
+            for z in [-0.35, 0.3] {
+                mesh.append(&slab([x, 0.0, z], [x + 0.05, 0.7, z + 0.05]), 0);
+            }
+        }
+        mesh
+    }
+
+    fn volume_m3(pieces: &[Shaped]) -> f32 {
+        let volume = |piece: &Shaped| piece.shape.mass_properties(1.0).mass();
+        pieces.iter().map(volume).sum()
+    }
+
+    #[test]
+    fn a_box_stays_one_piece() {
+        let mesh = Mesh::cuboid(Vec3::ZERO, Vec3::new(0.4, 0.2, 0.3));
+        let pieces = pieces(&mesh, &Affine3A::IDENTITY);
+        assert_eq!(pieces.len(), 1);
+        assert!((volume_m3(&pieces) - 0.024).abs() < 1e-5);
+    }
+
+    /// Under a table there is room: its hull fills that, its pieces do not; nor do they weigh as much as it would.
+    #[test]
+    fn under_a_table_there_is_room() {
+        let mesh = table();
+        let pieces = pieces(&mesh, &Affine3A::IDENTITY);
+        assert!((2..=MOST_PIECES as usize).contains(&pieces.len()));
+        let inside = |p: Vec3| {
+            let point = |piece: &Shaped| piece.shape.contains_point(&piece.part_from_shape, p);
+            pieces.iter().any(point)
+        };
+        assert!(inside(Vec3::new(0.0, 0.72, 0.0)));
+        for (x, z) in [
+            (-0.525, -0.325),
+            (0.525, -0.325),
+            (-0.525, 0.325),
+            (0.525, 0.325),
+        ] {
+            assert!(inside(Vec3::new(x, 0.3, z)), "leg at {x} {z}");
+        }
+        for y in [0.1, 0.3, 0.5, 0.6] {
+            assert!(!inside(Vec3::new(0.0, y, 0.0)), "room at {y}");
+            assert!(!inside(Vec3::new(0.3, y, 0.1)), "room at {y}");
+        }
+        // 0.048 + 4 * 0.00175 m³; the hull has 0.7 m³.
+        let volume = volume_m3(&pieces);
+        assert!((0.05..0.09).contains(&volume), "{volume}");
+    }
+
+    #[test]
+    fn pieces_repeat_bit_for_bit() {
+        let bits = || -> Vec<u32> {
+            let pieces = pieces(&table(), &Affine3A::IDENTITY);
+            let points = pieces
+                .iter()
+                .filter_map(|piece| piece.shape.as_convex_polyhedron());
+            points
+                .flat_map(|hull| {
+                    hull.points()
+                        .iter()
+                        .flat_map(|p| p.to_array().map(f32::to_bits))
+                })
+                .collect()
+        };
+        assert_eq!(bits(), bits());
+    }
+
+    #[test]
+    fn broken_meshes_give_a_piece_or_none() {
+        let flat = |positions: Vec<Vec3>, triangles: Vec<[u32; 3]>| Mesh {
+            positions,
+            triangles,
+            ..Mesh::default()
+        };
+        let nan = flat(vec![Vec3::NAN; 3], vec![[0, 1, 2]]);
+        assert!(pieces(&nan, &Affine3A::IDENTITY).is_empty());
+        let line = flat(vec![Vec3::ZERO, Vec3::X, Vec3::X * 2.0], vec![[0, 1, 2]]);
+        assert_eq!(pieces(&line, &Affine3A::IDENTITY).len(), 1);
+        let mut open = table();
+        open.triangles.truncate(7);
+        open.triangles.push([0, 0, 0]);
+        assert!(!pieces(&open, &Affine3A::IDENTITY).is_empty());
+        let mut stream = dwell_scene::random::Key::root(2).stream();
+        for _ in 0..20 {
+            let count = 12;
+            let positions = (0..count).map(|_| stream.direction()).collect();
+            let triangles = (0..30)
+                .map(|_| [0; 3].map(|_| stream.below(count) as u32))
+                .collect();
+            assert!(!pieces(&flat(positions, triangles), &Affine3A::IDENTITY).is_empty());
+        }
+    }
+}
