@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from dwell.calibration import calibrate
     from dwell.envs import register_envs
     from dwell.house import House
+    from dwell.navigation import Navigation, Walker
     from dwell.world import Camera, Outcome, Pointed, World
 
 # Imported at first use, so that the command line starts fast.
@@ -39,8 +40,10 @@ _LAZY = {
     "AcousticScene": "dwell.acoustics",
     "Camera": "dwell.world",
     "House": "dwell.house",
+    "Navigation": "dwell.navigation",
     "Outcome": "dwell.world",
     "Pointed": "dwell.world",
+    "Walker": "dwell.navigation",
     "World": "dwell.world",
     "calibrate": "dwell.calibration",
     "register_envs": "dwell.envs",
@@ -56,10 +59,12 @@ __all__ = [
     "HouseError",
     "HouseNotFoundError",
     "MeasuredDataError",
+    "Navigation",
     "Outcome",
     "Pointed",
     "SceneError",
     "UsageError",
+    "Walker",
     "World",
     "__version__",
     "calibrate",

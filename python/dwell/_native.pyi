@@ -21,6 +21,7 @@ __all__ = [
     "HouseError",
     "HouseNotFoundError",
     "MeasuredDataError",
+    "Navigation",
     "SceneError",
     "UsageError",
     "World",
@@ -77,6 +78,25 @@ class House:
         """Writes the house as ``dwell`` or ``suncg`` and returns what was lost, a sentence each."""
 
 @final
+class Navigation:
+    """Where one can walk in a house as it stands at one moment."""
+
+    def __new__(cls, house: House, config_json: str = ...) -> Self: ...
+    def points(self, start: tuple[float, float, float] | None = ...) -> NDArray[np.float32]:
+        """Places to stand, (n, 3), m; with ``start``: those to which a way leads from there."""
+    def islands(self, points: Sequence[tuple[float, float, float]]) -> list[int | None]: ...
+    def sample(
+        self, seed: int, count: int = ..., start: tuple[float, float, float] | None = ...
+    ) -> NDArray[np.float32]: ...
+    def route(
+        self, start: tuple[float, float, float], goal: tuple[float, float, float]
+    ) -> tuple[NDArray[np.float32], float, list[str]] | None:
+        """Corners (n, 3), length in m, the shut doors on the way."""
+    def occupancy(self, level: int) -> tuple[NDArray[np.uint8], float, float, float]:
+        """Free cells (depth, width), x and z of the corner, edge of a cell in m."""
+    def doors_json(self) -> str: ...
+
+@final
 class World:
     """A running world with its own state over a shared house."""
 
@@ -101,6 +121,10 @@ class World:
         """The lowest storey from above (height, width, 3), with the x and z of the upper left corner and pixels a metre."""
     def listen(self, agent: int, samples: int) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, shape (2, samples), Pa. Call once after each step, for each agent that listens."""
+    def navigation(self, config_json: str = ...) -> Navigation: ...
+    def follow(self, navigation: Navigation) -> int:
+        """Brings a grid up to date with what has moved; returns how many columns were looked at."""
+    def merged_events_json(self) -> str: ...
     def path(
         self, agent: int, goal: tuple[float, float, float]
     ) -> list[tuple[float, float, float]] | None: ...

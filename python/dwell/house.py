@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 from collections.abc import Callable
@@ -9,6 +10,7 @@ from typing import Any, Literal
 
 from dwell import UsageError, _native
 from dwell.arguments import finite, whole
+from dwell.navigation import Navigation, Walker
 
 Level = Literal["object", "room", "house", "graph", "instructions"]
 
@@ -102,6 +104,11 @@ class House:
     def semantic_classes(self) -> list[str]:
         """The names of the numbers in semantic images; 0 is void."""
         return self._native.semantic_classes()
+
+    def navigation(self, walker: Walker | None = None) -> Navigation:
+        """Where one can walk in the house as it starts."""
+        config = json.dumps(dataclasses.asdict(walker or Walker()))
+        return Navigation(_native.Navigation(self._native, config))
 
     def write(self, path: str | os.PathLike[str], form: Literal["dwell", "suncg"]) -> list[str]:
         """Writes the house into a new folder; returns what the form cannot hold, in sentences."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from dwell import ConfigError, _native
 from dwell.arguments import finite, point, to_json, whole
 from dwell.house import House
+from dwell.navigation import Navigation, Walker
 from dwell.settings import Laws, world_settings
 
 Channel = Literal["rgb", "depth", "instance", "semantic"]
@@ -275,6 +276,16 @@ class World:
             whole("longest_edge", longest_edge, low=1, high=2**32 - 1)
         )
         return image, (x, z), scale
+
+    def navigation(self, walker: Walker | None = None) -> Navigation:
+        """Where one can walk in the house as it stands now."""
+        config = json.dumps(dataclasses.asdict(walker or Walker()))
+        return Navigation(self._native.navigation(config))
+
+    def merged_events(self) -> dict[str, Any]:
+        """The events of the last step beyond its limit: count and impulse_n_s."""
+        merged: dict[str, Any] = json.loads(self._native.merged_events_json())
+        return merged
 
     def listen(self, samples: int = 800, *, agent: int = 0) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, (2, samples), Pa.

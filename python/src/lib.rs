@@ -13,6 +13,7 @@ mod doorway;
 mod errors;
 mod facts;
 mod house;
+mod navigation;
 mod picture;
 mod world;
 
@@ -24,6 +25,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     errors::register(module)?;
     module.add_class::<house::PyHouse>()?;
     module.add_class::<world::PyWorld>()?;
+    module.add_class::<navigation::PyNavigation>()?;
     module.add_class::<batch::PyBatch>()?;
     module.add_class::<acoustics::PyAcousticScene>()?;
     module.add_function(wrap_pyfunction!(facts::actions, module)?)?;

@@ -3,6 +3,7 @@
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::{PyHouse, describe_level};
+use crate::navigation::PyNavigation;
 use crate::picture;
 use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
 use dwell_physics::{ActionOutcome, AgentControl};
@@ -337,6 +338,25 @@ impl PyWorld {
             Ok(heard)
         })?;
         heard.into_pyarray(py).reshape([2, samples])
+    }
+
+    #[pyo3(signature = (config_json="{}"))]
+    fn navigation(&self, py: Python<'_>, config_json: &str) -> PyResult<PyNavigation> {
+        self.with(py, |running| {
+            let world = &running.world;
+            PyNavigation::build(world.house(), world.state(), config_json)
+        })
+    }
+
+    fn follow(&self, py: Python<'_>, navigation: &Bound<'_, PyNavigation>) -> PyResult<usize> {
+        let navigation = navigation.get();
+        self.with(py, |running| navigation.follow(running.world.state()))
+    }
+
+    fn merged_events_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            Ok(serde_json::to_string(&running.world.merged_events())?)
+        })
     }
 
     fn path(

@@ -1,0 +1,123 @@
+"""Where one can walk: places, ways, doors."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dwell import _native
+from dwell.arguments import point, whole
+
+if TYPE_CHECKING:
+    from dwell.world import World
+
+
+@dataclasses.dataclass(frozen=True)
+class Walker:
+    """Who walks, and how finely that is looked at.
+
+    Attributes:
+        cell_m: Edge of a cell, m; 0.02 to 1.
+        radius_m: Radius, m; 0 to 2.
+        height_m: Height, m; 0.1 to 3.
+        step_m: The highest step it climbs, m; 0 to 1.
+        max_slope_rad: The steepest slope it walks on, rad; 0 to 1.5.
+        doors: ``as_they_stand`` (a shut door blocks), ``open`` (all fully open), or ``priced``
+            (shut doors can be opened, which adds ``door_price_m`` to the way).
+        door_price_m: What opening a door adds to a way, m.
+    """
+
+    cell_m: float = 0.1
+    radius_m: float = 0.2
+    height_m: float = 1.5
+    step_m: float = 0.2
+    max_slope_rad: float = 0.785
+    doors: Literal["as_they_stand", "open", "priced"] = "as_they_stand"
+    door_price_m: float = 2.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Route:
+    """A way, pulled tight.
+
+    Attributes:
+        points: Its corners (n, 3), m.
+        length_m: Its length over the ground, m.
+        shut_doors: The doors to open on the way, by name (``priced`` only).
+    """
+
+    points: NDArray[np.float32]
+    length_m: float
+    shut_doors: list[str]
+
+
+@dataclasses.dataclass(frozen=True)
+class Occupancy:
+    """A storey from above.
+
+    Attributes:
+        free: Where someone can stand (depth, width), rows along z.
+        corner: The x and z of the first cell's outer corner, m.
+        cell_m: Edge of a cell, m.
+    """
+
+    free: NDArray[np.bool_]
+    corner: tuple[float, float]
+    cell_m: float
+
+
+class Navigation:
+    """Where one can walk in a house as it stands at one moment; all storeys at once."""
+
+    def __init__(self, native: _native.Navigation) -> None:
+        """Wraps a native grid; use ``House.navigation`` or ``World.navigation``."""
+        self._native = native
+
+    def points(self, start: Sequence[float] | None = None) -> NDArray[np.float32]:
+        """Places to stand (n, 3), m; with ``start`` those to which a way leads from there."""
+        return self._native.points(None if start is None else point("start", start))
+
+    def sample(
+        self, seed: int, count: int = 1, start: Sequence[float] | None = None
+    ) -> NDArray[np.float32]:
+        """Random places (count, 3), each equally likely; none if there are none."""
+        where = None if start is None else point("start", start)
+        return self._native.sample(
+            whole("seed", seed), whole("count", count, high=10_000_000), where
+        )
+
+    def island(self, place: Sequence[float]) -> int | None:
+        """The number of the island within 0.5 m of a point; 0 is the main one."""
+        return self._native.islands([point("place", place)])[0]
+
+    def route(self, start: Sequence[float], goal: Sequence[float]) -> Route | None:
+        """The shortest way between two points, each at most 0.5 m from a place to stand."""
+        found = self._native.route(point("start", start), point("goal", goal))
+        return None if found is None else Route(*found)
+
+    def distance(self, start: Sequence[float], goal: Sequence[float]) -> float | None:
+        """Geodesic distance, m: the length of :meth:`route`."""
+        route = self.route(start, goal)
+        return None if route is None else route.length_m
+
+    def occupancy(self, level: int = 0) -> Occupancy:
+        """A storey from above; all storeys share one frame."""
+        free, x, z, cell_m = self._native.occupancy(whole("level", level, high=2**31))
+        return Occupancy(free.astype(np.bool_), (x, z), cell_m)
+
+    def doors(self) -> list[dict[str, Any]]:
+        """For each door in the way: name, openness, is_open, cells, islands beside it."""
+        return cast("list[dict[str, Any]]", json.loads(self._native.doors_json()))
+
+    def update(self, world: World) -> int:
+        """Follows what has moved in a world over the same house.
+
+        Returns:
+            How many columns of the grid were looked at again.
+        """
+        return world.native.follow(self._native)

@@ -1,0 +1,171 @@
+//! Where one can walk, for Python.
+
+use crate::doorway::Doorway;
+use crate::errors::Fault;
+use crate::house::PyHouse;
+use dwell_scene::navigation::{Cell, NavConfig, NavGrid};
+use dwell_scene::random::Key;
+use dwell_scene::{House, LevelId, State};
+use glam::Vec3;
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use serde_json::json;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How close a point must be to a place to stand, m.
+const NEAR_M: f32 = 0.5;
+/// The most samples at a time.
+const MOST_SAMPLES: usize = 10_000_000;
+
+/// Where one can walk in a house as it stands at one moment.
+#[pyclass(name = "Navigation", module = "dwell._native", frozen)]
+pub(crate) struct PyNavigation {
+    house: Arc<House>,
+    grid: Mutex<NavGrid>,
+}
+
+impl PyNavigation {
+    pub(crate) fn build(
+        house: &Arc<House>,
+        state: &State,
+        config_json: &str,
+    ) -> Result<Self, Fault> {
+        let config: NavConfig = serde_json::from_str(config_json)?;
+        Ok(Self {
+            house: house.clone(),
+            grid: Mutex::new(NavGrid::build(house, state, &config)?),
+        })
+    }
+
+    /// Follows what has moved; returns how many columns were looked at again.
+    pub(crate) fn follow(&self, state: &State) -> Result<usize, Fault> {
+        Ok(self.with(|grid| grid.update(&self.house, state))?.looked_at)
+    }
+
+    fn with<T>(&self, work: impl FnOnce(&mut NavGrid) -> T) -> T {
+        work(&mut self.grid.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+fn positions<'py>(py: Python<'py>, points: Vec<Vec3>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    let count = points.len();
+    let flat: Vec<f32> = points.into_iter().flat_map(|p| p.to_array()).collect();
+    flat.into_pyarray(py).reshape([count, 3])
+}
+
+#[pymethods]
+impl PyNavigation {
+    #[new]
+    #[pyo3(signature = (house, config_json="{}"))]
+    fn new(py: Python<'_>, house: &Bound<'_, PyHouse>, config_json: &str) -> PyResult<Self> {
+        let house = house.get().engines.house().clone();
+        py.engine(|| Self::build(&house, &State::new(&house), config_json))
+    }
+
+    #[pyo3(signature = (start=None))]
+    fn points<'py>(
+        &self,
+        py: Python<'py>,
+        start: Option<[f32; 3]>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let points = py.engine(|| {
+            Ok::<_, Fault>(self.with(|grid| -> Vec<Vec3> {
+                let place = |cell: Cell| grid.position(cell);
+                match start {
+                    None => grid.walkable().map(place).collect(),
+                    Some(start) => {
+                        let start = grid.nearest(Vec3::from_array(start), NEAR_M);
+                        let cells = start.into_iter().flat_map(|start| grid.reachable(start));
+                        cells.map(place).collect()
+                    }
+                }
+            }))
+        })?;
+        positions(py, points)
+    }
+
+    fn islands(&self, py: Python<'_>, points: Vec<[f32; 3]>) -> PyResult<Vec<Option<u32>>> {
+        py.engine(|| {
+            Ok::<_, Fault>(self.with(|grid| {
+                let island =
+                    |point: &[f32; 3]| grid.island(grid.nearest(Vec3::from_array(*point), NEAR_M)?);
+                points.iter().map(island).collect()
+            }))
+        })
+    }
+
+    #[pyo3(signature = (seed, count=1, start=None))]
+    fn sample<'py>(
+        &self,
+        py: Python<'py>,
+        seed: u64,
+        count: usize,
+        start: Option<[f32; 3]>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let points = py.engine(|| {
+            if count > MOST_SAMPLES {
+                let message = format!("count is {count}; allowed are 0 to {MOST_SAMPLES}");
+                return Err(Fault::Config(message));
+            }
+            Ok(self.with(|grid| -> Vec<Vec3> {
+                let start = start.map(|start| grid.nearest(Vec3::from_array(start), NEAR_M));
+                let cells: Vec<Cell> = match start {
+                    None => grid.walkable().collect(),
+                    Some(None) => Vec::new(),
+                    Some(Some(start)) => grid.reachable(start).collect(),
+                };
+                let mut stream = Key::root(seed).child("navigation").stream();
+                let chosen = (0..count).filter_map(|_| stream.choose(&cells).copied());
+                chosen.map(|cell| grid.position(cell)).collect()
+            }))
+        })?;
+        positions(py, points)
+    }
+
+    fn route<'py>(
+        &self,
+        py: Python<'py>,
+        start: [f32; 3],
+        goal: [f32; 3],
+    ) -> PyResult<Option<(Bound<'py, PyArray2<f32>>, f64, Vec<String>)>> {
+        let ends = (Vec3::from_array(start), Vec3::from_array(goal));
+        let route = py.engine(|| Ok::<_, Fault>(self.with(|grid| grid.route(ends.0, ends.1))))?;
+        let Some(route) = route else { return Ok(None) };
+        let named = |joint: &dwell_scene::JointId| {
+            let object = self.house.joints[*joint].object;
+            self.house.objects[object].name.clone()
+        };
+        let doors = route.shut_doors.iter().map(named).collect();
+        Ok(Some((positions(py, route.points)?, route.length_m, doors)))
+    }
+
+    fn occupancy<'py>(
+        &self,
+        py: Python<'py>,
+        level: u32,
+    ) -> PyResult<(Bound<'py, PyArray2<u8>>, f32, f32, f32)> {
+        let map = py.engine(|| {
+            let map = self.with(|grid| grid.occupancy(LevelId(level)));
+            map.ok_or_else(|| {
+                let count = self.house.levels.len();
+                Fault::Config(format!("no storey {level}; there are {count}"))
+            })
+        })?;
+        let [x, z] = map.corner;
+        let free = map.free.into_pyarray(py).reshape([map.depth, map.width])?;
+        Ok((free, x, z, map.cell_m))
+    }
+
+    fn doors_json(&self, py: Python<'_>) -> PyResult<String> {
+        py.engine(|| {
+            let doors = self.with(|grid| grid.doors());
+            let doors = doors.into_iter().map(|door| {
+                let object = self.house.joints[door.joint].object;
+                let cells = door.cells.len();
+                json!({"name": self.house.objects[object].name, "openness": door.openness,
+                    "is_open": door.is_open, "cells": cells, "islands": door.islands})
+            });
+            Ok::<_, Fault>(serde_json::to_string(&doors.collect::<Vec<_>>())?)
+        })
+    }
+}

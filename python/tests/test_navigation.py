@@ -1,0 +1,62 @@
+"""Where one can walk, through the package."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import dwell
+
+
+def test_in_an_empty_room_the_way_is_the_straight_line(shoebox: dwell.House) -> None:
+    navigation = shoebox.navigation()
+    points = navigation.points()
+    assert points.dtype == np.float32
+    assert points.shape[1] == 3
+    start, goal = points[0], points[-1]
+    route = navigation.route(start, goal)
+    assert route is not None
+    assert route.length_m == pytest.approx(float(np.linalg.norm(goal - start)), abs=1e-4)
+    assert navigation.distance(start, goal) == route.length_m
+    assert route.points.shape == (2, 3)
+    assert navigation.island(start) == 0
+    assert navigation.island((1e6, 0.0, 0.0)) is None
+    assert navigation.route(start, (1e6, 0.0, 0.0)) is None
+
+
+def test_the_picture_counts_the_places(shoebox: dwell.House) -> None:
+    navigation = shoebox.navigation(dwell.Walker(cell_m=0.2))
+    storey = navigation.occupancy(0)
+    assert storey.free.sum() == len(navigation.points())
+    assert storey.cell_m == pytest.approx(0.2)
+    with pytest.raises(dwell.DwellError, match="storey 9"):
+        navigation.occupancy(9)
+
+
+def test_samples_repeat_and_lie_where_a_way_leads(apartment: dwell.House) -> None:
+    navigation = apartment.navigation(dwell.Walker(doors="open"))
+    start = navigation.sample(3)[0]
+    places = navigation.sample(4, 20, start=start)
+    assert np.array_equal(places, navigation.sample(4, 20, start=start))
+    assert all(navigation.distance(start, place) is not None for place in places)
+    reachable = {tuple(point) for point in navigation.points(start)}
+    assert all(tuple(place) in reachable for place in places)
+
+
+def test_a_shut_door_has_a_price_and_a_name(apartment: dwell.House) -> None:
+    priced = apartment.navigation(dwell.Walker(doors="priced"))
+    shut = [door["name"] for door in priced.doors() if not door["is_open"]]
+    assert shut
+    places = priced.sample(1, 40)
+    routes = [priced.route(places[0], place) for place in places]
+    named = {name for route in routes if route is not None for name in route.shut_doors}
+    assert named
+    assert named <= set(shut)
+
+
+def test_a_grid_follows_its_world(apartment: dwell.House) -> None:
+    world = dwell.World(apartment, agents=1)
+    navigation = world.navigation()
+    assert navigation.update(world) == 0
+    with pytest.raises(dwell.DwellError, match="cell_m"):
+        world.navigation(dwell.Walker(cell_m=9.0))
