@@ -169,9 +169,23 @@ pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<f32> {
         .iter()
         .map(|body| match state.object_mass_kg(house, body.object) {
             Some(mass) if body.mass_kg > 0.0 => mass / total(body.object),
-            _ => 1.0,
+            _ => part_factor(house, body, state),
         })
         .collect()
+}
+
+/// What a body's densities are multiplied with when parts of it have another mass.
+fn part_factor(house: &House, body: &BodyPlan, state: &State) -> f32 {
+    let more = body.parts.iter().filter_map(|(id, _)| {
+        let now = state.part_mass_kg(*id)?;
+        Some(now - house.parts[*id].mass_kg?)
+    });
+    let more: f32 = more.sum();
+    if more == 0.0 || body.mass_kg <= 0.0 {
+        1.0
+    } else {
+        ((body.mass_kg + more) / body.mass_kg).max(1e-6)
+    }
 }
 
 /// Writes a body's poses and velocities into the state.

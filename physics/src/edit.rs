@@ -5,9 +5,9 @@ use crate::body::{self, Hold};
 use crate::contact::Dress;
 use crate::convert::to_rapier;
 use crate::error::PhysicsError;
-use crate::joints;
+use crate::joints::{self, Stand};
 use crate::world::PhysicsWorld;
-use dwell_scene::{AgentId, AgentState, BaseState, Id, State};
+use dwell_scene::{AgentId, AgentState, BaseState, Id, JointId, State};
 use glam::Vec3;
 
 impl PhysicsWorld {
@@ -140,6 +140,17 @@ impl PhysicsWorld {
     pub fn adopt(&mut self, state: &mut State) -> Result<(), PhysicsError> {
         self.check_state(state)?;
         let model = self.model.clone();
+        let mut joints = state.joint_position.iter().zip(&state.joint_velocity);
+        if let Some(k) = joints.position(|(q, v)| !q.is_finite() || !v.is_finite()) {
+            let id = JointId::from_index(k);
+            let (q, v) = (state.joint_position[id], state.joint_velocity[id]);
+            return Err(PhysicsError::Range {
+                at: format!("joint {k}"),
+                field: "position or velocity",
+                found: format!("{q}, {v}"),
+                allowed: "finite numbers",
+            });
+        }
         for plan in &model.bodies {
             let pose = state.part_pose[plan.root()];
             let velocity = state.part_velocity[plan.root()];
@@ -152,26 +163,7 @@ impl PhysicsWorld {
                 });
             }
         }
-        for joint in &self.joints {
-            let articulation = &model.house.joints[joint.id];
-            let wanted = articulation.clamp(state.joint_position[joint.id]);
-            let (now, _) = joints::read(&self.engine, joint, wanted);
-            let child = joint.child as usize;
-            if self.holds[child] == Hold::Latched
-                && !joints::stands_shut(joint, articulation, wanted)
-            {
-                let body = self.bodies[child];
-                joints::release(&mut self.engine, &body, &mut self.holds[child]);
-            }
-            if (now - wanted).abs() > 1e-5 {
-                let place = joints::child_at(&self.engine, joint, articulation, wanted);
-                if let Some(rigid) = self.engine.bodies.get_mut(self.bodies[child].handle) {
-                    rigid.set_position(place, true);
-                    rigid.set_linvel(Vec3::ZERO, true);
-                    rigid.set_angvel(Vec3::ZERO, true);
-                }
-            }
-        }
+        // What is not moved by a joint comes first: joints hang on it.
         for (index, plan) in model.bodies.iter().enumerate() {
             if plan.joint.is_some() {
                 continue;
@@ -195,10 +187,52 @@ impl PhysicsWorld {
                 rigid.set_angvel(velocity.angular, true);
             }
         }
+        let mut stands = Vec::with_capacity(self.joints.len());
+        for joint in &self.joints {
+            let articulation = &model.house.joints[joint.id];
+            let position = articulation.clamp(state.joint_position[joint.id]);
+            let child = joint.child as usize;
+            let shut = joints::stands_shut(joint, articulation, position);
+            if self.holds[child] == Hold::Latched && !shut {
+                let body = self.bodies[child];
+                joints::release(&mut self.engine, &body, &mut self.holds[child]);
+            }
+            stands.push(Stand {
+                position,
+                velocity: state.joint_velocity[joint.id],
+                anew: false,
+                shut: self.holds[child] == Hold::Latched,
+            });
+        }
+        for tree in &self.trees {
+            joints::place(&mut self.engine, &self.joints, tree, &stands);
+        }
         self.flush();
         self.write_bodies(state);
+        // The state keeps the numbers it was given: what physics reads off its bodies differs by rounding.
+        for (joint, stand) in self.joints.iter().zip(&stands) {
+            let read = (
+                state.joint_position[joint.id],
+                state.joint_velocity[joint.id],
+            );
+            if !stand.shut && joints::says_the_same(stand, read) {
+                state.joint_position[joint.id] = stand.position;
+                state.joint_velocity[joint.id] = stand.velocity;
+            }
+        }
         self.write_contacts(state);
         Ok(())
+    }
+
+    /// Where a joint stands and how fast it moves as its bodies have it, rad or m and per second; `None` for a joint that
+    /// moves nothing.
+    pub fn measure_joint(&self, state: &State, joint: JointId) -> Option<(f32, f32)> {
+        let found = self.joints.iter().find(|other| other.id == joint)?;
+        Some(joints::read(
+            &self.engine,
+            found,
+            *state.joint_position.get(joint)?,
+        ))
     }
 }
 

@@ -18,9 +18,9 @@ pub(crate) struct Inertia {
 }
 
 impl Inertia {
-    /// What a body's pieces have, with their densities multiplied by `factor`.
+    /// What a body's pieces have and its parts state, with densities multiplied by `factor`.
     pub(crate) fn of(plan: &BodyPlan, factor: f32) -> Self {
-        let mut all = MassProperties::default();
+        let mut all = plan.given_mass(factor).unwrap_or_default();
         for piece in &plan.pieces {
             let own = piece.shape.mass_properties(piece.density_kg_m3 * factor);
             all += own.transform_by(&piece.place);
@@ -46,7 +46,7 @@ impl Inertia {
     }
 }
 
-/// The inertia of each body whose inertia some law changes; the colliders of such a body have no density. Shape (body,).
+/// The inertia of each body whose parts state it or some law changes it; the colliders of such a body have no density. Shape (body,).
 pub(crate) fn altered(
     model: &PhysicsModel,
     factors: &[f32],
@@ -55,7 +55,7 @@ pub(crate) fn altered(
     let bodies = model.bodies.iter().zip(factors).enumerate();
     bodies
         .map(|(index, (plan, factor))| {
-            if laws.is_empty() {
+            if laws.is_empty() && plan.given.is_none() {
                 return None;
             }
             let own = Inertia::of(plan, *factor);
@@ -63,7 +63,7 @@ pub(crate) fn altered(
             for installed in laws {
                 installed.law.weigh(index as u32, &mut changed);
             }
-            (changed != own).then_some(changed)
+            (changed != own || plan.given.is_some()).then_some(changed)
         })
         .collect()
 }

@@ -1,9 +1,9 @@
 //! Parameters that change while a world runs.
 
-use crate::body;
+use crate::body::{self, Hold};
 use crate::contact::{ContactTable, Dress};
 use crate::error::PhysicsError;
-use crate::joints;
+use crate::joints::{self, Stand};
 use crate::laws;
 use crate::world::{PhysicsWorld, Weights};
 use dwell_scene::State;
@@ -12,12 +12,13 @@ use rapier3d::dynamics::MassProperties;
 
 impl PhysicsWorld {
     /// Takes over the state's overrides and laws: masses, friction and restitution of pairs and materials, gravity,
-    /// joints' friction and damping. Everything that sleeps is woken if something changed.
+    /// all that [`State::joint_values`] gives of joints. Everything that sleeps is woken if something changed. Where a link's
+    /// length changed, what hangs on it moves there, in `state` too.
     ///
     /// # Errors
     /// [`PhysicsError::Scene`] or [`PhysicsError::LawTarget`] for a law that cannot be installed; nothing has changed
     /// then.
-    pub fn apply_parameters(&mut self, state: &State) -> Result<(), PhysicsError> {
+    pub fn apply_parameters(&mut self, state: &mut State) -> Result<(), PhysicsError> {
         self.check_state(state)?;
         let laws = laws::install(&self.model, state, &self.laws)?;
         let model = self.model.clone();
@@ -31,6 +32,7 @@ impl PhysicsWorld {
             table: &table,
             laws: &laws,
         };
+        let mut longer = false;
         let statics = model.statics.iter().map(|piece| (piece, None));
         let moving = model
             .bodies
@@ -63,8 +65,12 @@ impl PhysicsWorld {
             changed |= self.redress(entry, values, None);
         }
         for joint in &mut self.joints {
-            let articulation = &model.house.joints[joint.id];
-            changed |= joints::set_resistance(joint, articulation, state);
+            let before = joint.values.parent_from_joint;
+            changed |= joints::set_values(&mut self.engine, &model, joint, state);
+            longer |= joint.values.parent_from_joint != before;
+        }
+        if longer {
+            self.follow_lengths(state);
         }
         changed |= laws.len() != self.laws.len()
             || laws
@@ -86,6 +92,25 @@ impl PhysicsWorld {
             }
         }
         Ok(())
+    }
+
+    /// Moves what hangs on joints whose frames have changed; joints keep their positions and velocities.
+    fn follow_lengths(&mut self, state: &mut State) {
+        let stands: Vec<Stand> = self
+            .joints
+            .iter()
+            .map(|joint| Stand {
+                position: state.joint_position[joint.id],
+                velocity: state.joint_velocity[joint.id],
+                anew: true,
+                shut: self.holds[joint.child as usize] == Hold::Latched,
+            })
+            .collect();
+        for tree in &self.trees {
+            joints::place(&mut self.engine, &self.joints, tree, &stands);
+        }
+        self.flush();
+        self.write_bodies(state);
     }
 
     /// Gives a collider its contact values and density. Returns whether they were others before.

@@ -241,8 +241,7 @@ impl PhysicsWorld {
         self.shoves = memory.shoves;
         self.pulls = memory.pulls;
         for joint in &mut self.joints {
-            let articulation = &model.house.joints[joint.id];
-            joints::set_resistance(joint, articulation, state);
+            joints::set_values(&mut self.engine, &model, joint, state);
         }
         self.ongoing = memory.ongoing;
         self.notices.clear();

@@ -5,7 +5,7 @@ use crate::agents::{self, AgentControl, Way};
 use crate::body::Hold;
 use crate::contact::{Collector, ContactEvent, Dress, Hooks, bound, note_motion};
 use crate::error::PhysicsError;
-use crate::joints::{self, Drive, Progress};
+use crate::joints::{self, Drive, Drivers, Progress};
 use crate::laws::{Acts, Stage};
 use crate::motors;
 use crate::world::PhysicsWorld;
@@ -74,17 +74,14 @@ impl PhysicsWorld {
         for joint in &self.joints {
             joints::relax(&mut self.engine, joint);
         }
-        for (index, joint) in self.joints.iter().enumerate() {
-            let (carried, pull) = (&self.carried[index], self.pulls[index].as_ref());
-            let near = state.joint_position[joint.id];
-            joints::exert(
-                &mut self.engine,
-                joint,
-                carried,
-                pull,
-                near,
-                self.settings.dt_s,
-            );
+        let drivers = Drivers {
+            joints: &self.joints,
+            pulls: &self.pulls,
+            near: &|joint| state.joint_position[joint],
+            dt_s: self.settings.dt_s,
+        };
+        for tree in &self.trees {
+            joints::exert(&mut self.engine, tree, &drivers);
         }
         let half = 0.5 * self.settings.dt_s;
         self.apply_laws(|law, stage| {
@@ -171,8 +168,15 @@ impl PhysicsWorld {
             }
             let hand = self.drives.get_mut(&joint.id);
             let limits = (step_s, effort);
-            let (pull, progress) =
-                joints::advance(joint.kind, articulation, command, hand, now, limits);
+            let (pull, progress) = joints::advance(
+                joint.kind,
+                articulation,
+                joint.values.servo.as_ref(),
+                command,
+                hand,
+                now,
+                limits,
+            );
             if pull.is_some() && self.pulls[index] != pull {
                 joints::wake(&mut self.engine, &joint);
             }

@@ -11,7 +11,7 @@ use crate::convert::{from_rapier, to_rapier};
 use crate::engine::Engine;
 use crate::error::PhysicsError;
 use crate::inertia::{self, Inertia};
-use crate::joints::{self, Drives, Joint, Pull};
+use crate::joints::{self, Drives, Joint, Pull, Tree};
 use crate::laws::{self, Installed};
 use crate::model::PhysicsModel;
 use crate::report::StartReport;
@@ -43,8 +43,8 @@ pub struct PhysicsWorld {
     /// The overrides that are in force.
     pub(crate) applied: BTreeMap<Address, f64>,
     pub(crate) joints: Vec<Joint>,
-    /// For each joint, the bodies that hang on it.
-    pub(crate) carried: Vec<Vec<RigidBodyHandle>>,
+    /// Joints that act on each other.
+    pub(crate) trees: Vec<Tree>,
     /// What pulls at each joint during this control step.
     pub(crate) pulls: Vec<Option<Pull>>,
     pub(crate) agents: Vec<Agent>,
@@ -188,7 +188,7 @@ impl PhysicsWorld {
             weights,
             applied: state.overrides.clone(),
             joints: Vec::new(),
-            carried: Vec::new(),
+            trees: Vec::new(),
             pulls: Vec::new(),
             agents: Vec::new(),
             loose: Vec::new(),
@@ -226,13 +226,9 @@ impl PhysicsWorld {
             ..StartReport::default()
         };
         let model = self.model.clone();
-        self.joints = joints::insert(&mut self.engine, &model, &self.bodies, anchor);
-        self.carried = joints::carried(&self.joints);
+        self.joints = joints::insert(&mut self.engine, &model, &self.bodies, anchor, state);
+        self.trees = joints::trees(&self.joints, &model.house, anchor);
         self.pulls = vec![None; self.joints.len()];
-        for joint in &mut self.joints {
-            let articulation = &model.house.joints[joint.id];
-            joints::set_resistance(joint, articulation, state);
-        }
         self.flush();
         let start = Start {
             engine: &self.engine,
@@ -393,7 +389,7 @@ fn align_joints(model: &PhysicsModel, state: &mut State) {
         let parent = joint.parent.map_or(dwell_scene::Pose::IDENTITY, |parent| {
             state.part_pose[parent]
         });
-        let pose = joint.world_from_child(&parent, state.joint_position[id]);
+        let pose = state.world_from_child(&model.house, id, &parent, state.joint_position[id]);
         let now = state.part_pose[joint.child];
         let near = (pose.position - now.position).length() < 1e-4
             && pose.rotation.dot(now.rotation).abs() > 1.0 - 1e-6;

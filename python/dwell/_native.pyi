@@ -65,6 +65,15 @@ class House:
         absorption: float | None = ...,
         scattering: float | None = ...,
     ) -> House: ...
+    def with_robot(
+        self,
+        path: str,
+        name: str,
+        position: tuple[float, float, float],
+        yaw_deg: float = ...,
+        fixed_base: bool | None = ...,
+    ) -> House:
+        """A house with the robot of a ``.urdf`` or MuJoCo ``.xml`` in it; meshes are shared."""
     @property
     def name(self) -> str: ...
     def info_json(self) -> str:
@@ -135,6 +144,12 @@ class World:
     def face(self, agent: int, object: str) -> int | None:
         """The discrete turn or nod that brings an object into view; None when it is."""
     def gaze_target(self, agent: int) -> str | None: ...
+    def joints_json(self) -> str:
+        """Every joint: ``{id, name, object, kind, limits, motor, position, velocity, command}``."""
+    def command_joint(self, joint: int, kind: str, value: float) -> None:
+        """``kind``: off, position (rad or m), velocity, effort (N m or N)."""
+    def set_joints(self, joints: Sequence[tuple[int, float, float]]) -> None:
+        """Puts joints (id) to a position and a velocity at once."""
     def parameter_json(self, address: str) -> str: ...
     def set_parameter(self, address: str, value: float) -> None: ...
     def describe(self, level: str) -> list[str]: ...

@@ -38,7 +38,7 @@ class House:
 
         Args:
             house: ``builtin:NAME``, or the path of a SUNCG ``house.json``, a ``.dwell`` folder, a
-                ``.glb``, ``.gltf`` or ``.obj`` file.
+                ``.glb``, ``.gltf`` or ``.obj`` file, a robot's ``.urdf`` or MuJoCo ``.xml``.
 
         Returns:
             The house; what its reader had to say stands in ``info()["report"]``.
@@ -70,6 +70,31 @@ class House:
         x, y, z = (finite(f"size_m[{k}]", edge) for k, edge in enumerate(size_m))
         again = ((x, y, z), substance, absorption, scattering)
         return cls(_native.House.shoebox(*again), (_shoebox, again))
+
+    def with_robot(
+        self,
+        path: str | os.PathLike[str],
+        name: str,
+        position: tuple[float, float, float],
+        *,
+        yaw_deg: float = 0.0,
+        fixed_base: bool | None = None,
+    ) -> House:
+        """A new house with a robot in it; meshes are shared with this one.
+
+        Args:
+            path: A ``.urdf`` or a ``.xml`` of MuJoCo.
+            name: The robot's name as an object; not taken yet.
+            position: Where its base stands, m.
+            yaw_deg: Where it faces, degrees, positive to the left; 0 is -Z.
+            fixed_base: Whether its base is held for good; ``None``: as the file says.
+
+        Raises:
+            HouseError: The file cannot be read; the message names file, node and field.
+        """
+        return House(
+            self._native.with_robot(os.fspath(path), name, position, yaw_deg, fixed_base)
+        )
 
     @property
     def native(self) -> _native.House:

@@ -17,6 +17,7 @@ from dwell.navigation import Navigation, Walker
 from dwell.settings import Laws, world_settings
 
 Channel = Literal["rgb", "depth", "instance", "semantic"]
+JointCommand = Literal["off", "position", "velocity", "effort"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -299,6 +300,29 @@ class World:
     def describe(self, level: str = "house") -> list[str]:
         """As :meth:`House.describe`, of the house as it is now."""
         return self._native.describe(level)
+
+    def joints(self) -> list[dict[str, Any]]:
+        """Every joint: id, name, object, kind, limits, motor, position, velocity, command."""
+        joints: list[dict[str, Any]] = json.loads(self._native.joints_json())
+        return joints
+
+    def command_joint(self, joint: int, kind: JointCommand, value: float = 0.0) -> None:
+        """Tells a joint's motor something, until it is told otherwise.
+
+        Args:
+            joint: Its id, as in :meth:`joints`.
+            kind: ``position`` (rad or m), ``velocity`` (per second), ``effort`` (N m or N) or ``off``.
+            value: The number.
+
+        Raises:
+            UsageError: There is no such joint, or it cannot obey.
+        """
+        self._native.command_joint(joint, kind, value)
+
+    def set_joints(self, joints: Mapping[int, tuple[float, float]]) -> None:
+        """Puts joints to a position and a velocity at once; ids as in :meth:`joints`."""
+        rows = [(joint, position, velocity) for joint, (position, velocity) in joints.items()]
+        self._native.set_joints(rows)
 
     def parameter(self, address: str) -> dict[str, Any]:
         """What stands at an address: value, unit, low, high."""

@@ -5,10 +5,11 @@ use crate::errors::Fault;
 use dwell::Engines;
 use dwell_scene::material::library;
 use dwell_scene::random::Key;
-use dwell_scene::{Bands, House, Material, ShoeboxMaterials, State};
+use dwell_scene::{Bands, House, Material, Pose, ShoeboxMaterials, State};
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{InstructionKind, candidates, choose};
 use dwell_semantics::{Semantics, describe};
+use glam::Vec3;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -91,6 +92,25 @@ impl PyHouse {
                 House::shoebox(size_m, &materials)?,
                 json!([]),
             ))
+        })
+    }
+
+    #[pyo3(signature = (path, name, position, yaw_deg=0.0, fixed_base=None))]
+    fn with_robot(
+        &self,
+        py: Python<'_>,
+        path: &str,
+        name: &str,
+        position: [f32; 3],
+        yaw_deg: f32,
+        fixed_base: Option<bool>,
+    ) -> PyResult<Self> {
+        py.engine(|| -> Result<_, Fault> {
+            let (robot, report) = dwell_houses::open_robot(Path::new(path))?;
+            let base = Pose::from_position_yaw(Vec3::from_array(position), yaw_deg.to_radians());
+            let fixed = fixed_base.unwrap_or_else(|| robot.has_fixed_base());
+            let house = dwell_houses::with_robot(self.house(), &robot, name, base, fixed)?;
+            Ok(Self::from_house(house, serde_json::to_value(&report)?))
         })
     }
 

@@ -10,7 +10,7 @@ use dwell_physics::{ActionOutcome, AgentControl};
 use dwell_render::{Channels, Frame, Map};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
-use dwell_scene::{Address, AgentId, Entity, Id, LevelId, ObjectId};
+use dwell_scene::{Address, AgentId, Entity, Id, JointCommand, JointId, LevelId, ObjectId};
 use glam::Vec3;
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -426,6 +426,57 @@ impl PyWorld {
         self.with(py, |running| {
             let target = running.world.gaze_target(running.agent(agent)?);
             Ok(target.map(|object| running.world.house().objects[object].name.clone()))
+        })
+    }
+
+    fn joints_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            let (house, state) = (running.world.house(), running.world.state());
+            let rows: Vec<_> = house
+                .joints
+                .iter_ids()
+                .map(|(id, joint)| {
+                    json!({
+                        "id": id.0,
+                        "name": joint.name,
+                        "object": house.objects[joint.object].name,
+                        "kind": joint.kind,
+                        "limits": joint.limits,
+                        "motor": state.joint_values(house, id).servo,
+                        "position": state.joint_position[id],
+                        "velocity": state.joint_velocity[id],
+                        "command": state.joint_command[id],
+                    })
+                })
+                .collect();
+            Ok(serde_json::to_string(&rows)?)
+        })
+    }
+
+    fn command_joint(&self, py: Python<'_>, joint: u32, kind: &str, value: f32) -> PyResult<()> {
+        self.with(py, |running| {
+            let command = match kind {
+                "off" => JointCommand::Off,
+                "position" => JointCommand::Position(value),
+                "velocity" => JointCommand::Velocity(value),
+                "effort" => JointCommand::Effort(value),
+                other => {
+                    return Err(Fault::Config(format!(
+                        "kind is {other:?}; allowed are off, position, velocity, effort"
+                    )));
+                }
+            };
+            Ok(running.world.command_joint(JointId(joint), command)?)
+        })
+    }
+
+    fn set_joints(&self, py: Python<'_>, joints: Vec<(u32, f32, f32)>) -> PyResult<()> {
+        self.with(py, |running| {
+            let joints: Vec<_> = joints
+                .into_iter()
+                .map(|(joint, position, velocity)| (JointId(joint), position, velocity))
+                .collect();
+            Ok(running.world.set_joints(&joints)?)
         })
     }
 

@@ -143,7 +143,7 @@ impl Stage {
         }
         stage
             .world
-            .apply_parameters(&stage.state)
+            .apply_parameters(&mut stage.state)
             .map_err(|e| fault(&e))?;
         Ok(stage)
     }

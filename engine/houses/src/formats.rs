@@ -56,6 +56,18 @@ pub fn formats() -> &'static [Format] {
             recognizes: |house| crate::obj::recognizes(Path::new(house)),
             open: |house, threads| crate::obj::open(Path::new(house), threads),
         },
+        Format {
+            name: "urdf",
+            spelling: "a path to a .urdf",
+            recognizes: |house| crate::urdf::recognizes(Path::new(house)),
+            open: |house, _| crate::urdf::open(Path::new(house)),
+        },
+        Format {
+            name: "mjcf",
+            spelling: "a path to a .xml of MuJoCo",
+            recognizes: |house| crate::mjcf::recognizes(Path::new(house)),
+            open: |house, _| crate::mjcf::open(Path::new(house)),
+        },
     ]
 }
 

@@ -44,6 +44,6 @@ pub use mesh::Mesh;
 pub use space::Pose;
 pub use state::{
     Address, AgentBody, AgentState, BaseState, Contact, DifferentialDrive, Gait, HolonomicBase,
-    Locomotion, Parameter, Rest, State, Velocity,
+    JointValues, Locomotion, Parameter, Rest, State, Velocity,
 };
 pub use texture::Texture;

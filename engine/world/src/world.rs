@@ -10,7 +10,9 @@ use dwell_physics::{
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Address, AgentId, AgentState, Entity, House, Id, ObjectId, State};
+use dwell_scene::{
+    Address, AgentId, AgentState, Entity, House, Id, JointCommand, JointId, ObjectId, State,
+};
 use glam::Vec3;
 use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
@@ -231,7 +233,69 @@ impl World {
     pub fn set_parameter(&mut self, address: &Address, value: f64) -> Result<(), WorldError> {
         let house = self.house().clone();
         self.state.set_parameter(&house, address, value)?;
-        self.physics.apply_parameters(&self.state)?;
+        self.physics.apply_parameters(&mut self.state)?;
+        self.rays.update(&self.state);
+        Ok(())
+    }
+
+    /// Tells a joint's motor something, from the next step until it is told otherwise. A joint without a motor is moved by
+    /// hand and takes positions only.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for a joint that does not exist, a number that is not finite, or a command the joint cannot
+    /// obey.
+    pub fn command_joint(
+        &mut self,
+        joint: JointId,
+        command: JointCommand,
+    ) -> Result<(), WorldError> {
+        let house = self.house().clone();
+        let count = house.joints.len();
+        let Some(articulation) = house.joints.get(joint) else {
+            let what = format!("no joint {}; there are {count}, counted from 0", joint.0);
+            return Err(WorldError::Usage(what));
+        };
+        let name = &articulation.name;
+        let refuse = |why: &str| Err(WorldError::Usage(format!("joint {name:?}: {why}")));
+        if !command.is_finite() {
+            return refuse("the command is no finite number");
+        }
+        let gain = articulation.servo.map(|servo| servo.velocity_gain);
+        match command {
+            _ if articulation.mimic.is_some() && command != JointCommand::Off => {
+                return refuse("it follows another joint; command that one");
+            }
+            JointCommand::Velocity(_) if gain.is_none_or(|gain| gain == 0.0) => {
+                return refuse("it has no motor that keeps a velocity");
+            }
+            JointCommand::Effort(_) if articulation.servo.is_none() => {
+                return refuse("it has no motor; a hand takes positions only");
+            }
+            _ => {}
+        }
+        self.state.joint_command[joint] = command;
+        Ok(())
+    }
+
+    /// Puts joints to positions and velocities, rad or m and per second, at once; what hangs on them moves along.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for a joint that does not exist; [`WorldError::Physics`] for numbers that are not finite;
+    /// nothing has changed then.
+    pub fn set_joints(&mut self, joints: &[(JointId, f32, f32)]) -> Result<(), WorldError> {
+        let count = self.state.joint_position.len();
+        if let Some((joint, ..)) = joints.iter().find(|(joint, ..)| joint.index() >= count) {
+            let what = format!("no joint {}; there are {count}, counted from 0", joint.0);
+            return Err(WorldError::Usage(what));
+        }
+        let mut state = self.state.clone();
+        for (joint, position, velocity) in joints {
+            state.joint_position[*joint] = *position;
+            state.joint_velocity[*joint] = *velocity;
+        }
+        self.physics.adopt(&mut state)?;
+        self.state = state;
+        self.rays.update(&self.state);
         Ok(())
     }
 

@@ -1,8 +1,8 @@
 //! What moves joints: their own servos, or a hand that opens and closes them.
 
-use super::effort::{Gain, Pull};
+use super::element::{Gain, Pull};
 use super::latch::tolerance;
-use dwell_scene::{AgentId, Articulation, JointCommand, JointId, JointKind};
+use dwell_scene::{AgentId, Articulation, JointCommand, JointId, JointKind, Servo};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -105,17 +105,19 @@ impl Drive {
     }
 }
 
-/// What pulls at a joint during the next control step, and how its hand stands. `command`: what its motor is told;
+/// What pulls at a joint during the next control step, and how its hand stands. `servo`: the motor
+/// in force; `command`: what it is told;
 /// `hand`: the hand that moves a joint without a servo.
 pub(crate) fn advance(
     kind: JointKind,
     articulation: &Articulation,
+    servo: Option<&Servo>,
     command: JointCommand,
     hand: Option<&mut Drive>,
     (position, velocity): (f32, f32),
     (step_s, hand_effort): (f32, f32),
 ) -> (Option<Pull>, Option<Progress>) {
-    if let Some(servo) = &articulation.servo {
+    if let Some(servo) = servo {
         let (target, gain) = match command {
             JointCommand::Off => return (None, None),
             JointCommand::Position(target) => {
@@ -132,6 +134,8 @@ pub(crate) fn advance(
         let pull = Pull {
             target,
             max_effort,
+            max_velocity: servo.joint_velocity(),
+            feed_forward: servo.feed_forward && gain != Gain::Effort,
             gain,
         };
         return (Some(pull), None);
@@ -143,6 +147,8 @@ pub(crate) fn advance(
     let pull = (progress == Progress::Moving).then_some(Pull {
         target: hand.ramp,
         max_effort: hand_effort,
+        max_velocity: f32::INFINITY,
+        feed_forward: false,
         gain: Gain::Hand {
             frequency_rad_s: HAND_FREQUENCY_RAD_S,
             lead: speed_and_lead(kind).1,

@@ -1,22 +1,31 @@
-//! Doors, drawers, lids and servos: rapier's impulse joints hold the axis and the limits, efforts are ours.
+//! Doors, drawers, lids and robots: rapier's impulse joints hold the axis and the limits, efforts are ours.
 
+mod convex;
 mod drive;
-mod effort;
+mod element;
+mod exert;
 mod latch;
+mod motion;
+mod place;
+mod tree;
 
 pub(crate) use drive::{Drive, Drives, Progress, advance};
-pub(crate) use effort::{Pull, exert, relax};
+pub(crate) use element::Pull;
+pub(crate) use exert::{Drivers, exert, relax};
 pub(crate) use latch::{release, shut, stands_shut, tolerance};
+pub(crate) use place::{Stand, place, says_the_same};
+pub(crate) use tree::{Tree, trees};
 
 use crate::body::Body;
 use crate::convert::to_rapier;
 use crate::engine::Engine;
 use crate::model::PhysicsModel;
-use dwell_scene::{Articulation, JointId, JointKind, PartId, Pose, State, math};
+use dwell_scene::{Articulation, JointId, JointKind, JointValues, PartId, Pose, State, math};
 use glam::{Quat, Vec3};
-use rapier3d::dynamics::{GenericJointBuilder, JointAxesMask, JointAxis, RigidBodyHandle};
+use rapier3d::dynamics::{
+    GenericJointBuilder, ImpulseJointHandle, JointAxesMask, JointAxis, RigidBodyHandle,
+};
 use rapier3d::math::Pose as RapierPose;
-use std::f32::consts::TAU;
 
 /// A joint of a world.
 #[derive(Clone, Copy, Debug)]
@@ -26,16 +35,19 @@ pub(crate) struct Joint {
     pub(crate) kind: JointKind,
     pub(crate) axis: Vec3,
     pub(crate) child: u32,
+    handle: ImpulseJointHandle,
     child_handle: RigidBodyHandle,
     parent_handle: RigidBodyHandle,
+    /// The parent part's place on its body.
+    body_from_parent: Pose,
     parent_from_joint: RapierPose,
     child_from_joint: RapierPose,
-    /// Whether it hangs on what never moves and has no servo: then it can be shut for good.
+    /// Whether it hangs on what never moves and opens by hand: then it can be shut for good.
     pub(crate) latchable: bool,
-    /// Coulomb friction in force, N·m or N.
-    pub(crate) friction: f32,
-    /// Viscous damping in force, N·m·s/rad or N·s/m.
-    pub(crate) damping: f32,
+    /// What is in force.
+    pub(crate) values: JointValues,
+    /// Limits that rapier does not keep, rad.
+    own_stop: Option<[f32; 2]>,
 }
 
 /// Inserts the joints of a house. `anchor` is a fixed body at the origin that carries no collider.
@@ -44,6 +56,7 @@ pub(crate) fn insert(
     model: &PhysicsModel,
     bodies: &[Body],
     anchor: RigidBodyHandle,
+    state: &State,
 ) -> Vec<Joint> {
     let mut joints = Vec::with_capacity(model.house.joints.len());
     for (id, joint) in model.house.joints.iter_ids() {
@@ -52,11 +65,10 @@ pub(crate) fn insert(
         };
         let (parent_handle, body_from_parent, standing) = parent(model, bodies, joint, anchor);
         let child_from_part = offset(model, child, joint.child);
-        let parent_from_joint = to_rapier(&(body_from_parent * joint.parent_from_joint));
+        let values = state.joint_values(&model.house, id);
+        let parent_from_joint = to_rapier(&(body_from_parent * values.parent_from_joint));
         let child_from_joint = to_rapier(&(child_from_part * joint.child_from_joint));
-        // rapier turns about and slides along the frames' X axes.
-        let arc = Quat::from_rotation_arc(Vec3::X, joint.axis.normalize_or(Vec3::X));
-        let to_x = RapierPose::from_rotation(arc);
+        let to_x = to_x(joint.axis);
         let (locked, axis) = match joint.kind {
             JointKind::Hinge => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
             JointKind::Slide => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
@@ -65,50 +77,35 @@ pub(crate) fn insert(
             .local_frame1(parent_from_joint * to_x)
             .local_frame2(child_from_joint * to_x)
             .contacts_enabled(false);
-        let bounds =
-            |limits: &[f32; 2]| joint.kind == JointKind::Slide || limits[1] - limits[0] < TAU;
-        if let Some(limits) = joint.limits.filter(bounds) {
+        let held = |limits: &[f32; 2]| element::rapier_holds(joint.kind, *limits);
+        if let Some(limits) = joint.limits.filter(held) {
             builder = builder.limits(axis, limits);
         }
         let child_handle = bodies[child as usize].handle;
-        engine
-            .joints
-            .insert(parent_handle, child_handle, builder.build(), false);
+        let set = &mut engine.joints;
+        let handle = set.insert(parent_handle, child_handle, builder.build(), false);
         joints.push(Joint {
             id,
             kind: joint.kind,
             axis: joint.axis,
             child,
+            handle,
             child_handle,
             parent_handle,
+            body_from_parent,
             parent_from_joint,
             child_from_joint,
-            latchable: standing && joint.servo.is_none(),
-            friction: joint.friction,
-            damping: joint.damping,
+            latchable: standing && joint.opens(),
+            values,
+            own_stop: exert::own_stop(joint.kind, joint.limits),
         });
     }
     joints
 }
 
-/// For each joint, the bodies that hang on it, its own child first. Shape (joint,).
-pub(crate) fn carried(joints: &[Joint]) -> Vec<Vec<RigidBodyHandle>> {
-    joints
-        .iter()
-        .map(|joint| {
-            let mut bodies = vec![joint.child_handle];
-            let mut next = 0;
-            while let Some(body) = bodies.get(next).copied() {
-                for other in joints {
-                    if other.parent_handle == body && !bodies.contains(&other.child_handle) {
-                        bodies.push(other.child_handle);
-                    }
-                }
-                next += 1;
-            }
-            bodies
-        })
-        .collect()
+/// rapier turns about and slides along the frames' X axes.
+fn to_x(axis: Vec3) -> RapierPose {
+    RapierPose::from_rotation(Quat::from_rotation_arc(Vec3::X, axis.normalize_or(Vec3::X)))
 }
 
 /// The body that a joint hangs on, the part's place on it, and whether it never moves.
@@ -139,27 +136,27 @@ fn offset(model: &PhysicsModel, body: u32, part: PartId) -> Pose {
         .map_or(Pose::IDENTITY, |(_, place)| *place)
 }
 
-/// Sets friction and damping from the state's parameters. Returns whether they were others before.
-pub(crate) fn set_resistance(
+/// Sets what is in force at a joint from the state's parameters. Returns whether it was different before.
+pub(crate) fn set_values(
+    engine: &mut Engine,
+    model: &PhysicsModel,
     joint: &mut Joint,
-    articulation: &Articulation,
     state: &State,
 ) -> bool {
-    let value = |field: &str, base: f32| {
-        if state.overrides.is_empty() {
-            return base;
+    let values = state.joint_values(&model.house, joint.id);
+    if values == joint.values {
+        return false;
+    }
+    joint.values = values;
+    let parent_from_joint = to_rapier(&(joint.body_from_parent * values.parent_from_joint));
+    if parent_from_joint != joint.parent_from_joint {
+        joint.parent_from_joint = parent_from_joint;
+        if let Some(held) = engine.joints.get_mut(joint.handle, false) {
+            held.data
+                .set_local_frame1(parent_from_joint * to_x(joint.axis));
         }
-        let address = format!("joint/{}/{field}", joint.id.0).parse().ok();
-        let found = address.and_then(|address| state.overrides.get(&address));
-        found.map_or(base, |value| *value as f32)
-    };
-    let now = (
-        value("friction", articulation.friction),
-        value("damping", articulation.damping),
-    );
-    let changed = now != (joint.friction, joint.damping);
-    (joint.friction, joint.damping) = now;
-    changed
+    }
+    true
 }
 
 /// The joint's axis and a point on it, in world space.

@@ -5,10 +5,11 @@ use super::decompose;
 use super::shapes::{self, Shaped};
 use crate::convert::to_rapier;
 use dwell_scene::{
-    Aabb, Collider, House, Id, IdVec, JointId, MaterialId, MeshId, Mobility, ObjectId, PartId,
-    Pose, StructureId,
+    Aabb, Collider, House, Id, IdVec, JointId, MaterialId, MeshId, Mobility, ObjectId, Part,
+    PartId, Pose, StructureId,
 };
 use glam::Affine3A;
+use rapier3d::dynamics::MassProperties;
 use rapier3d::geometry::SharedShape;
 use rapier3d::math::Pose as RapierPose;
 use std::collections::BTreeMap;
@@ -57,6 +58,8 @@ pub(crate) struct BodyPlan {
     pub(crate) joint: Option<JointId>,
     /// Mass without overrides, kg.
     pub(crate) mass_kg: f32,
+    /// Mass, centre of mass and inertia of parts that state them; their pieces then have no density.
+    pub(crate) given: Option<MassProperties>,
 }
 
 /// A mesh's shape, and the mesh's triangle for each of its triangles.
@@ -184,8 +187,35 @@ fn moving_pieces(house: &House, meshes: &mut Meshes, id: PartId) -> Vec<Piece> {
     let part = &house.parts[id];
     let mut pieces = part_pieces(house, meshes, id, part.density_kg_m3);
     pieces.retain(|piece| piece.shape.as_trimesh().is_none());
-    weigh(&mut pieces, part.mass_kg, part.density_kg_m3);
+    weigh_part(&mut pieces, part);
     pieces
+}
+
+/// Gives the pieces of a part densities that make up its mass; none where the part states its inertia itself.
+fn weigh_part(pieces: &mut [Piece], part: &Part) {
+    if part.inertial.is_some() {
+        for piece in pieces {
+            piece.density_kg_m3 = 0.0;
+        }
+    } else {
+        weigh(pieces, part.mass_kg, part.density_kg_m3);
+    }
+}
+
+/// What the parts of a body state of their mass, in the body's frame.
+fn given(house: &House, parts: &[(PartId, Pose)]) -> Option<MassProperties> {
+    let stated = parts.iter().filter_map(|(id, body_from_part)| {
+        let part = &house.parts[*id];
+        let (inertial, mass_kg) = (part.inertial?, part.mass_kg?);
+        let frame = *body_from_part * inertial.part_from_principal;
+        Some(MassProperties::with_principal_inertia_frame(
+            frame.position,
+            mass_kg,
+            inertial.moments,
+            frame.rotation,
+        ))
+    });
+    stated.reduce(|all, one| all + one)
 }
 
 fn weigh(pieces: &mut [Piece], mass_kg: Option<f32>, density_kg_m3: f32) {
@@ -252,6 +282,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
                 pieces,
                 joint,
                 mass_kg: 0.0,
+                given: None,
             });
         }
         for body in &mut bodies[first_body..] {
@@ -260,7 +291,9 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
                 stand_ins.push(object_id);
             }
             let mass = |piece: &Piece| piece.shape.mass_properties(piece.density_kg_m3).mass();
-            body.mass_kg = body.pieces.iter().map(mass).sum();
+            body.given = given(&house, &body.parts);
+            body.mass_kg = body.pieces.iter().map(mass).sum::<f32>()
+                + body.given.map_or(0.0, |given| given.mass());
         }
     }
     stand_ins.dedup();
@@ -317,7 +350,7 @@ fn stand_in_pieces(house: &House, meshes: &mut Meshes, body: &BodyPlan) -> Vec<P
                 moved(solid(house, *id, shaped, part.density_kg_m3), &place)
             })
             .collect();
-        weigh(&mut own, part.mass_kg, part.density_kg_m3);
+        weigh_part(&mut own, part);
         pieces.append(&mut own);
     }
     if pieces.is_empty() {
@@ -327,7 +360,12 @@ fn stand_in_pieces(house: &House, meshes: &mut Meshes, body: &BodyPlan) -> Vec<P
             part_from_shape: RapierPose::IDENTITY,
             triangles: Vec::new(),
         };
-        let density = house.parts[body.root()].density_kg_m3;
+        let root = &house.parts[body.root()];
+        let density = if root.inertial.is_some() {
+            0.0
+        } else {
+            root.density_kg_m3
+        };
         pieces.push(solid(house, body.root(), crumb, density));
     }
     pieces
@@ -383,6 +421,18 @@ impl BodyPlan {
                 &piece.shape,
                 &(*world_from_body * piece.place),
             ))
+        })
+    }
+
+    /// What its parts state of their mass, times a factor.
+    pub(crate) fn given_mass(&self, factor: f32) -> Option<MassProperties> {
+        self.given.map(|given| {
+            MassProperties::with_principal_inertia_frame(
+                given.local_com,
+                given.mass() * factor,
+                given.principal_inertia() * factor,
+                given.principal_inertia_local_frame,
+            )
         })
     }
 

@@ -251,7 +251,7 @@ fn a_measured_wheel_base_changes_the_way_and_not_the_odometry() {
     run.state
         .set_parameter(&run.house, &address, 0.303)
         .unwrap();
-    run.world.apply_parameters(&run.state).unwrap();
+    run.world.apply_parameters(&mut run.state).unwrap();
     run.walk(40, &[wheels(-3.0, 3.0)]);
     let agent = &run.state.agents[id];
     let believed = agent.base.odometry[2];

@@ -8,6 +8,7 @@
 mod actions;
 mod agents;
 mod aim;
+mod arms;
 mod bases;
 mod carry;
 mod common;

@@ -21,7 +21,7 @@ fn set(run: &mut Run, address: &str, value: f64) {
     run.state
         .set_parameter(&run.house, &address, value)
         .unwrap();
-    run.world.apply_parameters(&run.state).unwrap();
+    run.world.apply_parameters(&mut run.state).unwrap();
 }
 
 fn slide(run: &mut Run, sled: ObjectId) -> f32 {
@@ -97,7 +97,7 @@ fn an_overridden_mass_is_what_it_weighs() {
 fn applying_nothing_changes_nothing() {
     let (mut run, _) = sled();
     let before = run.hash();
-    run.world.apply_parameters(&run.state).unwrap();
+    run.world.apply_parameters(&mut run.state).unwrap();
     assert!(before == run.hash());
     // And a world that starts with the overrides is the one that gets them at run time, as far as values go.
     let mut state = State::new(&run.house);

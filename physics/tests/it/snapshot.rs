@@ -37,7 +37,7 @@ fn busy() -> (Run, ObjectId, AgentId) {
         target: Some("ball_2".into()),
         params: [("c_d".to_owned(), 0.5)].into(),
     });
-    run.world.apply_parameters(&run.state).unwrap();
+    run.world.apply_parameters(&mut run.state).unwrap();
     let agent = run.agent(Vec3::new(2.6, 0.0, 4.4), 0.0);
     run.agent(Vec3::new(1.0, 0.0, 4.0), 1.0);
     run.steps(5);

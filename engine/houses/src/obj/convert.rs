@@ -6,11 +6,12 @@ use std::sync::Arc;
 
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
-use dwell_scene::{House, MaterialId, TextureId};
+use dwell_scene::{House, MaterialId, Mesh, TextureId};
 use glam::Affine3A;
 
 use super::file::Run;
 use super::load::{MeshFiles, read_mesh};
+use super::read_obj;
 use super::shape::{PartShape, Slots, shape_of};
 use crate::build::{Look, LookTable, Scene, Thing, read_images, substance_of, texture_name};
 use crate::error::HousesError;
@@ -95,6 +96,17 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
     }
     .into_house(&at, &mut report)?;
     Ok((house, report))
+}
+
+/// All faces of an OBJ file as one mesh, without materials.
+pub(crate) fn bare_mesh(bytes: &[u8], path: &str, report: &mut Report) -> Mesh {
+    let obj = read_obj(bytes, path, report);
+    let shape = PartShape {
+        runs: obj.runs.iter().map(|run| (0, run)).collect(),
+        obj: &obj,
+        box_mapping: false,
+    };
+    shape_of(&shape, &At::file(path), report)
 }
 
 /// The folder that bounds the file's paths, and the file in it: the data root when the file is a SUNCG model, whose

@@ -12,6 +12,7 @@ mod read_obj;
 mod shape;
 mod write;
 
+pub(crate) use convert::bare_mesh;
 pub use convert::open;
 pub(crate) use convert::recognizes;
 pub use load::MeshFiles;

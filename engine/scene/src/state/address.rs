@@ -4,10 +4,12 @@
 //! house. Engines read through [`State::object_mass_kg`](super::State::object_mass_kg) and kin.
 
 use super::canonical::pair_address;
+use super::joint::FIELDS;
+use super::names::{find_joint, find_material, find_object, find_part};
 use super::{Locomotion, State};
 use crate::error::SceneError;
 use crate::house::House;
-use crate::ids::{AgentId, Entity, EntityId, Id, JointId, MaterialId, ObjectId, PartId};
+use crate::ids::{AgentId, Id, JointId, MaterialId, ObjectId, PartId};
 use crate::material::{Bands, Material, PairContact, library};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use serde::{Deserialize, Serialize};
@@ -30,7 +32,17 @@ impl Address {
         &self.0
     }
 
-    fn fault(&self, what: impl Into<String>) -> SceneError {
+    /// The address of a joint's field.
+    pub(super) fn of_joint(joint: JointId, field: &str) -> Self {
+        Self(format!("joint/{}/{field}", joint.0))
+    }
+
+    /// The address of a part's field.
+    pub(super) fn of_part(part: PartId, field: &str) -> Self {
+        Self(format!("part/{}/{field}", part.0))
+    }
+
+    pub(super) fn fault(&self, what: impl Into<String>) -> SceneError {
         SceneError::Address {
             address: self.0.clone(),
             what: what.into(),
@@ -95,61 +107,6 @@ pub struct Parameter {
     pub high: f64,
 }
 
-/// Objects are addressed by the id that sensors give them, or by name.
-pub(super) fn find_object(
-    house: &House,
-    address: &Address,
-    word: &str,
-) -> Result<ObjectId, SceneError> {
-    let by_id = word
-        .parse()
-        .ok()
-        .and_then(|id| match house.entity(EntityId(id)) {
-            Some(Entity::Object(object)) => Some(object),
-            _ => None,
-        });
-    by_id.or_else(|| house.object_named(word)).ok_or_else(|| {
-        let first = house.structure.len() + 1;
-        let last = house.structure.len() + house.objects.len();
-        address.fault(format!(
-            "no object {word:?}; objects have the ids {first} to {last}, or names"
-        ))
-    })
-}
-
-fn find_material(house: &House, address: &Address, word: &str) -> Result<MaterialId, SceneError> {
-    let found = house
-        .materials
-        .iter_ids()
-        .find(|(_, material)| material.name == word);
-    found.map(|(id, _)| id).ok_or_else(|| {
-        let known: Vec<_> = house
-            .materials
-            .iter()
-            .take(12)
-            .map(|material| &material.name)
-            .collect();
-        address.fault(format!(
-            "no material {word:?}; there are {} such as {known:?}",
-            house.materials.len()
-        ))
-    })
-}
-
-fn find_joint(house: &House, address: &Address, word: &str) -> Result<JointId, SceneError> {
-    let index = word
-        .parse::<u32>()
-        .ok()
-        .map(JointId)
-        .filter(|id| house.joints.get(*id).is_some());
-    index.ok_or_else(|| {
-        address.fault(format!(
-            "no joint {word:?}; there are {}, counted from 0",
-            house.joints.len()
-        ))
-    })
-}
-
 impl State {
     fn find_agent(&self, address: &Address, word: &str) -> Result<AgentId, SceneError> {
         let index = word
@@ -190,7 +147,7 @@ impl State {
             })
         };
         let known = self.canonical(house, address)?;
-        match address.words()[..] {
+        match known.words()[..] {
             ["object", object, "mass_kg"] => {
                 let object = find_object(house, address, object)?;
                 let root = &house.parts[house.objects[object].first_part];
@@ -238,11 +195,21 @@ impl State {
             }
             ["joint", joint, field] => {
                 let joint = &house.joints[find_joint(house, address, joint)?];
-                match field {
-                    "friction" => make(self.scalar(&known, joint.friction), "N m or N", 0.0, 1e6),
-                    "damping" => make(self.scalar(&known, joint.damping), "N m s/rad or N s/m", 0.0, 1e6),
-                    _ => Err(address.fault(format!("no field {field:?}; a joint has friction and damping"))),
-                }
+                let here: Vec<_> = FIELDS.iter().filter(|field| (field.get)(joint).is_some()).collect();
+                let found = here.iter().find(|here| here.name == field);
+                let found = found.ok_or_else(|| {
+                    let names: Vec<_> = here.iter().map(|field| field.name).collect();
+                    address.fault(format!("no field {field:?}; this joint has {names:?}"))
+                })?;
+                let base = (found.get)(joint).unwrap_or(0.0);
+                make(self.scalar(&known, base), found.unit, found.range[0], found.range[1])
+            }
+            ["part", part, "mass_kg"] => {
+                let part = &house.parts[find_part(house, address, part)?];
+                let base = part.mass_kg.ok_or_else(|| {
+                    address.fault("the part has no mass of its own: it follows from its material's density")
+                })?;
+                make(self.scalar(&known, base), "kg", 1e-6, 1e6)
             }
             ["agent", agent, "base", field] => {
                 let id = self.find_agent(address, agent)?;
@@ -256,7 +223,7 @@ impl State {
             }
             ["world", "gravity_m_s2"] => make(self.gravity_m_s2(), "m/s2", 0.0, 100.0),
             _ => Err(address.fault(
-                "known are object/ID/mass_kg, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/base/FIELD, world/gravity_m_s2",
+                "known are object/ID/mass_kg, part/N/mass_kg, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/base/FIELD, world/gravity_m_s2",
             )),
         }
     }
@@ -307,6 +274,11 @@ impl State {
             "object/{}/mass_kg",
             house.entity_of_object(object).0
         ))
+    }
+
+    /// The overridden mass of a part, kg.
+    pub fn part_mass_kg(&self, part: PartId) -> Option<f32> {
+        self.lookup(format!("part/{}/mass_kg", part.0))
     }
 
     /// Friction and restitution between two substances, with overrides.

@@ -4,12 +4,13 @@
 //! alone, so that nothing is overridden twice.
 
 use super::State;
-use super::address::{Address, find_object};
+use super::address::Address;
+use super::names::{find_joint_of, find_object, find_part_of};
 use crate::error::SceneError;
 use crate::house::House;
 
 impl State {
-    /// The one spelling of `address`: objects by id, pairs in alphabetical order, numbers as they are printed. An address
+    /// The one spelling of `address`: objects by id, joints and parts by number, pairs in alphabetical order, numbers as they are printed. An address
     /// that names nothing stays as it is.
     ///
     /// # Errors
@@ -20,6 +21,14 @@ impl State {
                 let id = find_object(house, address, object)?;
                 format!("object/{}/{field}", house.entity_of_object(id).0)
             }
+            ["joint", object, name, field] => {
+                let joint = find_joint_of(house, address, object, name)?;
+                return Ok(Address::of_joint(joint, field));
+            }
+            ["part", object, name, field] => {
+                let part = find_part_of(house, address, object, name)?;
+                return Ok(Address::of_part(part, field));
+            }
             ["pair", pair, field] => match pair.split_once('~') {
                 Some((a, b)) => pair_address(a, b, field),
                 None => return Ok(address.clone()),
@@ -28,10 +37,12 @@ impl State {
                 Ok(hz) => format!("material/{name}/{field}/{hz}"),
                 Err(_) => return Ok(address.clone()),
             },
-            [kind @ ("joint" | "agent"), number, ref rest @ ..] => match number.parse::<u32>() {
-                Ok(number) => format!("{kind}/{number}/{}", rest.join("/")),
-                Err(_) => return Ok(address.clone()),
-            },
+            [kind @ ("joint" | "part" | "agent"), number, ref rest @ ..] => {
+                match number.parse::<u32>() {
+                    Ok(number) => format!("{kind}/{number}/{}", rest.join("/")),
+                    Err(_) => return Ok(address.clone()),
+                }
+            }
             _ => return Ok(address.clone()),
         };
         text.parse()

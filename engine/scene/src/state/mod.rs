@@ -3,12 +3,15 @@
 mod address;
 mod agent;
 mod canonical;
+mod joint;
 mod locomotion;
+mod names;
 mod relations;
 mod snapshot;
 
 pub use address::{Address, Parameter};
 pub use agent::{AgentBody, AgentState, BaseState};
+pub use joint::JointValues;
 pub use locomotion::{DifferentialDrive, Gait, HolonomicBase, Locomotion};
 pub use relations::{Contact, Rest};
 

@@ -162,7 +162,7 @@ fn laws_of_bases_name_agents_that_exist() {
             run.state.laws = vec![spec(id, Some(target), &[(name, 0.9)])];
             let message = run
                 .world
-                .apply_parameters(&run.state)
+                .apply_parameters(&mut run.state)
                 .unwrap_err()
                 .to_string();
             assert!(

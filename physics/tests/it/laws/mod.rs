@@ -148,9 +148,9 @@ fn laws_that_go_leave_nothing_behind() {
     let mut without = lively(Vec::new());
     let mut run = lively(Vec::new());
     run.state.laws = laws::all().iter().map(|info| spec_of(info, true)).collect();
-    run.world.apply_parameters(&run.state).unwrap();
+    run.world.apply_parameters(&mut run.state).unwrap();
     run.state.laws.clear();
-    run.world.apply_parameters(&run.state).unwrap();
+    run.world.apply_parameters(&mut run.state).unwrap();
     without.steps(20);
     run.steps(20);
     for (id, pose) in without.state.part_pose.iter_ids() {

@@ -1,0 +1,219 @@
+//! Geoms: what is seen, what touches, and what it weighs.
+
+use glam::{DMat3, DVec3, Quat, Vec3};
+use mjcf_rs::Model;
+use mjcf_rs::body::{Body, Geom, GeomType};
+
+use super::read::pose;
+use crate::damage::Damage;
+use crate::error::HousesError;
+use crate::report::{At, Report};
+use crate::robot::{Files, Shape, Solid, Weight};
+use crate::root::folder_of;
+use dwell_scene::Pose;
+
+/// The density of a geom that states none, kg/m³ (MuJoCo's).
+const USUAL_DENSITY_KG_M3: f64 = 1000.0;
+/// Groups from which geoms are drawn for debugging only, by MuJoCo's custom.
+const HIDDEN_GROUP: i32 = 3;
+
+/// A geom that is a body's.
+pub(super) struct Piece {
+    pub(super) shape: Shape,
+    pub(super) touches: bool,
+    pub(super) seen: bool,
+    /// As stated, kg.
+    mass: Option<f64>,
+    /// kg/m³.
+    density: f64,
+}
+
+/// The geoms of a body that are bodies.
+pub(super) fn pieces(
+    model: &Model,
+    body: &Body,
+    files: &mut Files,
+    at: &At,
+    report: &mut Report,
+) -> Result<Vec<Piece>, HousesError> {
+    let mut pieces = Vec::with_capacity(body.geoms.len());
+    for (k, geom) in body.geoms.iter().enumerate() {
+        let name = geom.name.clone().unwrap_or(k.to_string());
+        let at = at.field(format_args!("geom[{name}]"));
+        if let Some(shape) = shape(model, geom, files, &at, report)? {
+            let touches = touches(geom);
+            pieces.push(Piece {
+                shape,
+                touches,
+                seen: geom.group < HIDDEN_GROUP || !touches,
+                mass: geom.mass,
+                density: geom.density.unwrap_or(USUAL_DENSITY_KG_M3),
+            });
+        }
+    }
+    Ok(pieces)
+}
+
+fn touches(geom: &Geom) -> bool {
+    geom.contype != 0 || geom.conaffinity != 0
+}
+
+fn shape(
+    model: &Model,
+    geom: &Geom,
+    files: &mut Files,
+    at: &At,
+    report: &mut Report,
+) -> Result<Option<Shape>, HousesError> {
+    let [a, b, c] = geom.size.map(|x| x as f32);
+    let mut link_from_shape = pose(&geom.pose);
+    let mut half_length = b;
+    if let Some([x, y, z, u, v, w]) = geom.fromto {
+        let (from, to) = (DVec3::new(x, y, z), DVec3::new(u, v, w));
+        let way = to - from;
+        half_length = 0.5 * way.length() as f32;
+        let along = way.normalize_or(DVec3::Z).as_vec3();
+        let middle = (0.5 * (from + to)).as_vec3();
+        link_from_shape = Pose::new(middle, Quat::from_rotation_arc(Vec3::Z, along));
+    }
+    let solid = match geom.type_ {
+        GeomType::Box => Solid::Cuboid {
+            half: Vec3::new(a, b, c),
+        },
+        GeomType::Sphere => Solid::Ball { radius: a },
+        GeomType::Cylinder => Solid::Cylinder {
+            half_height: half_length,
+            radius: a,
+        },
+        GeomType::Capsule => Solid::Capsule {
+            half_height: half_length,
+            radius: a,
+        },
+        GeomType::Ellipsoid => Solid::Ellipsoid {
+            radii: Vec3::new(a, b, c),
+        },
+        GeomType::Mesh => {
+            let at = at.field("mesh");
+            let name = geom.mesh.as_deref().unwrap_or("");
+            let found = || HousesError::Field {
+                at: at.clone(),
+                expected: "the name of a mesh of <asset> with a file",
+                found: format!("{name:?}"),
+            };
+            let asset = model.assets.mesh(name).ok_or_else(found)?;
+            let file = asset.file.as_deref().ok_or_else(found)?;
+            let inside = match (&model.compiler.mesh_dir, &model.compiler.asset_dir) {
+                (Some(folder), _) | (None, Some(folder)) => format!("{folder}/{file}"),
+                (None, None) => file.to_owned(),
+            };
+            let path = files.resolve(folder_of(&files.file), &inside, &at)?;
+            link_from_shape = link_from_shape * pose(&asset.refpose).inverse();
+            Solid::Mesh {
+                mesh: files.mesh(&path, &at, report)?,
+                scale: DVec3::from_array(asset.scale).as_vec3(),
+            }
+        }
+        GeomType::Plane | GeomType::Hfield | GeomType::Sdf => {
+            let what = format!("a geom of the type {:?} is not read on a robot", geom.type_);
+            report.warn(at.clone(), Damage::Simplified { what });
+            return Ok(None);
+        }
+    };
+    let material = geom.material.clone().unwrap_or_default();
+    let of_material = model
+        .assets
+        .material(&material)
+        .and_then(|material| material.rgba);
+    let rgba = geom.rgba.or(of_material);
+    Ok(Some(Shape {
+        link_from_shape,
+        solid,
+        rgba: rgba.map(|rgba| rgba.map(|x| x as f32)),
+        material,
+    }))
+}
+
+/// The mass of a body out of its geoms; `None` for a body without one.
+pub(super) fn weight(pieces: &[Piece], at: &At) -> Result<Option<Weight>, HousesError> {
+    let mut lumps: Vec<Weight> = Vec::new();
+    for piece in pieces {
+        let (volume, center, spread) = moments(&piece.shape);
+        let mass = piece.mass.unwrap_or(piece.density * volume);
+        if !(mass.is_finite() && mass >= 0.0) {
+            return Err(HousesError::Field {
+                at: at.field("geom.mass"),
+                expected: "a mass of at least 0",
+                found: mass.to_string(),
+            });
+        }
+        if mass > 0.0 && volume > 0.0 {
+            lumps.push(Weight {
+                mass,
+                center,
+                inertia: spread * (mass / volume),
+            });
+        }
+    }
+    Ok(Weight::sum(&lumps))
+}
+
+/// Volume, centre, and inertia about it at density 1, of a shape's surface (by tetrahedra to the origin).
+///
+/// # Source
+/// B. Mirtich, Fast and Accurate Computation of Polyhedral Mass Properties (1996); here the closed form for tetrahedra.
+fn moments(shape: &Shape) -> (f64, DVec3, DMat3) {
+    let mesh = shape.solid.surface();
+    let turn = DMat3::from_quat(shape.link_from_shape.rotation.as_dquat().normalize());
+    let at = shape.link_from_shape.position.as_dvec3();
+    let (mut volume, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
+    for k in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(k).map(Vec3::as_dvec3);
+        let six = a.dot(b.cross(c));
+        volume += six / 6.0;
+        first += (a + b + c) * (six / 24.0);
+        let sum = a + b + c;
+        for (p, weight) in [(a, 1.0), (b, 1.0), (c, 1.0), (sum, 1.0)] {
+            second += DMat3::from_cols(p * p.x, p * p.y, p * p.z) * (weight * six / 120.0);
+        }
+    }
+    if volume <= 0.0 {
+        return (0.0, at, DMat3::ZERO);
+    }
+    let center = first / volume;
+    let about =
+        second - DMat3::from_cols(center * center.x, center * center.y, center * center.z) * volume;
+    let trace = about.x_axis.x + about.y_axis.y + about.z_axis.z;
+    let inertia = DMat3::from_diagonal(DVec3::splat(trace)) - about;
+    (
+        volume,
+        at + turn * center,
+        turn * inertia * turn.transpose(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_has_its_moments() {
+        let shape = Shape {
+            link_from_shape: Pose::from_position(Vec3::new(1.0, 2.0, 3.0)),
+            solid: Solid::Cuboid {
+                half: Vec3::new(0.1, 0.2, 0.3),
+            },
+            rgba: None,
+            material: String::new(),
+        };
+        let (volume, center, inertia) = moments(&shape);
+        assert!((volume - 0.048).abs() < 1e-6);
+        assert!((center - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-6);
+        let expected = 0.048 / 3.0 * DVec3::new(0.04 + 0.09, 0.01 + 0.09, 0.01 + 0.04);
+        for k in 0..3 {
+            assert!(
+                (inertia.col(k)[k] - expected[k]).abs() < 1e-7,
+                "{inertia:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! MJCF, the robots of MuJoCo.
+//!
+//! `mjcf-rs` parses it: classes of defaults, angles and the many ways to write a rotation come resolved. Files it would
+//! include are checked first, so that none lies out of the data root.
+
+mod actuators;
+mod geoms;
+mod includes;
+mod read;
+
+use std::path::Path;
+
+use dwell_scene::House;
+
+use crate::error::HousesError;
+use crate::report::Report;
+use crate::robot;
+
+pub(crate) use read::read;
+
+/// How much of a file is looked at to tell MuJoCo's XML from another's, bytes.
+const HEAD: u64 = 4096;
+
+/// Whether `path` names an XML file whose root is `<mujoco>`.
+pub(crate) fn recognizes(path: &Path) -> bool {
+    use std::io::Read as _;
+    let xml = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("xml"));
+    let mut head = Vec::new();
+    let mut read = || std::fs::File::open(path)?.take(HEAD).read_to_end(&mut head);
+    xml && read().is_ok() && String::from_utf8_lossy(&head).contains("<mujoco")
+}
+
+/// Opens a robot on a ground of its own.
+///
+/// # Errors
+/// Those of [`open_robot`](crate::open_robot).
+pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
+    let mut report = Report::new();
+    let robot = read(path, &mut report)?;
+    Ok((robot::alone(&robot)?, report))
+}

@@ -1,0 +1,288 @@
+//! A robot as an object of a house, and a house of a robot alone.
+
+use std::sync::Arc;
+
+use dwell_scene::material::library;
+use dwell_scene::{
+    Aabb, Articulation, Category, House, HouseData, JointId, JointKind, Level, LevelId, Material,
+    MaterialId, Mesh, Mimic, Mobility, Object, ObjectId, Part, PartId, Pose, Structure,
+    StructureKind, units,
+};
+use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
+
+use super::masses::{group, weigh};
+use super::model::{Motion, Robot, Shape};
+use super::shape::colliders;
+use crate::build::substance_of;
+use crate::error::HousesError;
+use crate::report::At;
+
+/// How far the ground of a robot alone reaches, m.
+const GROUND_M: f32 = 5.0;
+/// How thick it is, m.
+const GROUND_DEPTH_M: f32 = 0.1;
+
+/// From a robot's axes (+X forward, +Z up) to dwell's (-Z forward, +Y up).
+fn ours_from_robot() -> Quat {
+    Quat::from_mat3(&Mat3::from_cols(Vec3::NEG_Z, Vec3::NEG_X, Vec3::Y))
+}
+
+/// Adds a robot to the tables of a house.
+pub(super) fn add(
+    data: &mut HouseData,
+    robot: &Robot,
+    name: &str,
+    world_from_base: Pose,
+    fixed_base: bool,
+) {
+    let object = ObjectId(data.objects.len() as u32);
+    let first_part = PartId(data.parts.len() as u32);
+    // The links that begin a rigid group: the root, and what each moving joint moves.
+    let moving = || {
+        robot
+            .joints
+            .iter()
+            .filter(|joint| joint.motion != Motion::Fixed)
+    };
+    let heads: Vec<usize> = std::iter::once(0)
+        .chain(moving().map(|joint| joint.child))
+        .collect();
+    let groups: Vec<Vec<(usize, Pose)>> = heads.iter().map(|head| group(robot, *head)).collect();
+    let home = |link: usize| {
+        groups.iter().enumerate().find_map(|(k, group)| {
+            let (_, place) = group.iter().find(|(other, _)| *other == link)?;
+            Some((k, *place))
+        })
+    };
+    let mut looks = Looks::default();
+    let mut world_from: Vec<Pose> =
+        vec![world_from_base * Pose::new(Vec3::ZERO, ours_from_robot())];
+    let mut joints: Vec<Articulation> = Vec::new();
+    for joint in moving() {
+        let (Some((parent, place)), Some((child, _))) = (home(joint.parent), home(joint.child))
+        else {
+            continue;
+        };
+        let kind = if joint.motion == Motion::Slide {
+            JointKind::Slide
+        } else {
+            JointKind::Hinge
+        };
+        let [low, high] = joint.limits.unwrap_or([f32::MIN, f32::MAX]);
+        let leader = joint.mimic.as_ref().and_then(|(name, multiplier, offset)| {
+            let leader = joints.iter().position(|other| &other.name == name)?;
+            Some(Mimic {
+                leader: JointId((data.joints.len() + leader) as u32),
+                multiplier: *multiplier,
+                offset: *offset,
+            })
+        });
+        let start = match &leader {
+            Some(mimic) => {
+                let leader = &joints[mimic.leader.0 as usize - data.joints.len()];
+                mimic.multiplier * leader.initial + mimic.offset
+            }
+            None => 0.0,
+        };
+        let start = start.clamp(low, high);
+        let child_part = PartId(first_part.0 + child as u32);
+        let articulation = Articulation {
+            parent: Some(PartId(first_part.0 + parent as u32)),
+            parent_from_joint: place * joint.parent_from_joint,
+            child_from_joint: joint.child_from_joint,
+            limits: joint.limits,
+            closed: start,
+            open: start,
+            initial: start,
+            friction: joint.friction,
+            damping: joint.damping,
+            armature: joint.armature,
+            servo: joint.servo,
+            mimic: leader,
+            ..Articulation::new(&joint.name, object, child_part, kind, joint.axis)
+        };
+        let above = world_from[parent];
+        world_from.push(articulation.world_from_child(&above, start));
+        joints.push(articulation);
+    }
+    for (k, group) in groups.iter().enumerate() {
+        let fixed = k == 0 && fixed_base;
+        let shapes = |of: fn(&super::Link) -> &Vec<Shape>| {
+            group.iter().flat_map(move |(link, place)| {
+                let shapes = of(&robot.links[*link]).iter();
+                shapes.map(move |shape| (shape, *place * shape.link_from_shape))
+            })
+        };
+        let mut mesh = Mesh::default();
+        let mut materials: Vec<MaterialId> = Vec::new();
+        let visible = shapes(|link| &link.visuals).count() > 0;
+        let seen: Vec<(&Shape, Pose)> = if visible {
+            shapes(|link| &link.visuals).collect()
+        } else {
+            shapes(|link| &link.collisions).collect()
+        };
+        for (shape, place) in seen {
+            let material = looks.material(data, shape, name);
+            let known = materials.iter().position(|other| *other == material);
+            let slot = known.unwrap_or_else(|| {
+                materials.push(material);
+                materials.len() - 1
+            });
+            let mut surface = shape.solid.surface();
+            surface
+                .positions
+                .iter_mut()
+                .for_each(|p| *p = place.transform_point(*p));
+            surface.slots = vec![0; surface.triangles.len()];
+            mesh.append(&surface, slot as u16);
+        }
+        let weight = weigh(robot, group);
+        let pieces =
+            shapes(|link| &link.collisions).flat_map(|(shape, place)| colliders(shape, &place));
+        let mesh = data.meshes.push(Arc::new(mesh));
+        data.parts.push(Part {
+            object,
+            name: robot.links[heads[k]].name.clone(),
+            fixed,
+            world_from_part: world_from[k],
+            mesh,
+            part_from_mesh: Affine3A::IDENTITY,
+            materials,
+            colliders: pieces.collect(),
+            mass_kg: weight.map(|weight| weight.mass as f32),
+            density_kg_m3: 1000.0,
+            inertial: weight.map(|weight| weight.inertial()),
+        });
+    }
+    let base = world_from_base.position;
+    let room = data.rooms.iter_ids().find(|(_, room)| {
+        room.contains_xz(Vec2::new(base.x, base.z))
+            && base.y >= room.floor_y - 0.3
+            && base.y <= room.ceiling_y
+    });
+    data.objects.push(Object {
+        name: name.to_owned(),
+        source_id: robot.name.clone(),
+        model: robot.name.clone(),
+        category: Category {
+            fine: "robot".to_owned(),
+            coarse: "robot".to_owned(),
+            nyu40: String::new(),
+        },
+        level: room.map_or(LevelId(0), |(_, room)| room.level),
+        room: room.map(|(id, _)| id),
+        mobility: if fixed_base {
+            Mobility::Articulated
+        } else {
+            Mobility::Movable
+        },
+        pickable: false,
+        switch: None,
+        first_part,
+        part_count: groups.len() as u32,
+    });
+    for joint in joints {
+        data.joints.push(joint);
+    }
+}
+
+/// Materials that the robot has already brought.
+#[derive(Default)]
+struct Looks {
+    known: Vec<([u32; 4], String, MaterialId)>,
+}
+
+impl Looks {
+    fn material(&mut self, data: &mut HouseData, shape: &Shape, robot: &str) -> MaterialId {
+        let rgba = shape.rgba.unwrap_or([0.6, 0.6, 0.62, 1.0]);
+        let rgba = rgba.map(|value| {
+            if value.is_finite() {
+                value.clamp(0.0, 1.0)
+            } else {
+                0.0
+            }
+        });
+        let bits = rgba.map(f32::to_bits);
+        let same = |(known, name, _): &&([u32; 4], String, MaterialId)| {
+            *known == bits && *name == shape.material
+        };
+        if let Some((_, _, id)) = self.known.iter().find(same) {
+            return *id;
+        }
+        let substance =
+            substance_of(&shape.material).unwrap_or_else(|| library().get_or_default("steel"));
+        let [r, g, b, opacity] = rgba;
+        let word = if shape.material.is_empty() {
+            "surface".to_owned()
+        } else {
+            shape.material.replace(['/', '\\'], "-")
+        };
+        let mut name = format!("{robot}:{word}");
+        while data.materials.iter().any(|material| material.name == name) {
+            name.push('\'');
+        }
+        let id = data.materials.push(Material {
+            base_color: [r, g, b].map(units::linear_from_srgb),
+            opacity,
+            metallic: 0.0,
+            ..Material::of(name, substance)
+        });
+        self.known.push((bits, shape.material.clone(), id));
+        id
+    }
+}
+
+/// A house that holds nothing but a robot on a ground.
+///
+/// # Errors
+/// [`HousesError::Scene`] when the robot breaks a rule of the scene.
+pub(crate) fn alone(robot: &Robot) -> Result<House, HousesError> {
+    let mut data = HouseData {
+        name: robot.name.clone(),
+        source: robot.format.to_owned(),
+        ..HouseData::default()
+    };
+    let corner = Vec3::new(GROUND_M, 0.0, GROUND_M);
+    let bounds = Aabb::new(-corner - Vec3::Y * GROUND_DEPTH_M, corner);
+    data.levels.push(Level {
+        name: "0".to_owned(),
+        bounds,
+    });
+    let concrete = library().get_or_default("concrete");
+    let material = data.materials.push(Material::of("ground", concrete));
+    let mesh = data
+        .meshes
+        .push(Arc::new(Mesh::cuboid(bounds.min, bounds.max)));
+    data.structure.push(Structure {
+        name: "ground".to_owned(),
+        kind: StructureKind::Ground,
+        room: None,
+        level: LevelId(0),
+        mesh,
+        materials: vec![material],
+    });
+    add(
+        &mut data,
+        robot,
+        &robot.name,
+        Pose::IDENTITY,
+        robot.fixed_base,
+    );
+    // It stands on the ground with its lowest point.
+    let lowest = data
+        .parts
+        .iter()
+        .map(|part| {
+            let map = part.world_from_part.to_affine();
+            let mesh = &data.meshes[part.mesh];
+            let heights = mesh.positions.iter().map(|p| map.transform_point3(*p).y);
+            heights.fold(f32::INFINITY, f32::min)
+        })
+        .fold(f32::INFINITY, f32::min);
+    if lowest.is_finite() && lowest < 0.0 {
+        for part in data.parts.as_mut_slice() {
+            part.world_from_part.position.y -= lowest;
+        }
+    }
+    House::new(data).map_err(HousesError::scene(&At::file(&robot.source)))
+}

@@ -1,0 +1,238 @@
+//! Links and joints into a tree; loops, orphans and numbers no body can have are refused.
+
+use dwell_scene::Pose;
+use glam::DMat3;
+
+use super::model::{Joint, Link, Motion, Robot};
+use crate::error::HousesError;
+use crate::limits::MAX_NODES;
+use crate::report::At;
+
+fn refuse<T>(at: At, expected: &'static str, found: impl Into<String>) -> Result<T, HousesError> {
+    Err(HousesError::Field {
+        at,
+        expected,
+        found: found.into(),
+    })
+}
+
+/// Sorts links and joints so that parents come first, and checks every number.
+///
+/// # Errors
+/// [`HousesError::Field`] names the link or joint and the field.
+pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
+    let at = At::file(&robot.source);
+    let count = robot.links.len();
+    if count > MAX_NODES {
+        let (found, allowed) = (count as u64, MAX_NODES as u64);
+        return Err(HousesError::TooLarge {
+            at,
+            what: "link count",
+            found,
+            allowed,
+        });
+    }
+    unique(&at, "link", robot.links.iter().map(|link| &link.name))?;
+    unique(&at, "joint", robot.joints.iter().map(|joint| &joint.name))?;
+    let mut above: Vec<Option<usize>> = vec![None; count];
+    for (k, joint) in robot.joints.iter().enumerate() {
+        let at = at.field(format_args!("joint[{}]", joint.name));
+        if let Some(other) = above[joint.child].replace(k) {
+            let found = format!(
+                "link {:?}, which joint {:?} moves already: the links form a loop",
+                robot.links[joint.child].name, robot.joints[other].name
+            );
+            return refuse(at.field("child"), "a link that no other joint moves", found);
+        }
+    }
+    let roots: Vec<usize> = (0..count).filter(|k| above[*k].is_none()).collect();
+    let [root] = roots[..] else {
+        let names: Vec<_> = roots
+            .iter()
+            .map(|k| &robot.links[*k].name)
+            .take(8)
+            .collect();
+        let found = if names.is_empty() {
+            "none: the links form a loop".to_owned()
+        } else {
+            format!("{} of them, {names:?}", roots.len())
+        };
+        return refuse(at.field("link"), "one link that no joint moves", found);
+    };
+    let mut order = vec![root];
+    let mut joints = Vec::with_capacity(robot.joints.len());
+    let mut next = 0;
+    while let Some(&link) = order.get(next) {
+        for (k, joint) in robot.joints.iter().enumerate() {
+            if joint.parent == link {
+                order.push(joint.child);
+                joints.push(k);
+            }
+        }
+        next += 1;
+    }
+    if order.len() != count {
+        let left = (0..count).find(|k| !order.contains(k)).unwrap_or(0);
+        let at = at.field(format_args!("link[{}]", robot.links[left].name));
+        return refuse(at, "links that hang on the root", "a loop of links");
+    }
+    let place = |link: usize| order.iter().position(|k| *k == link).unwrap_or(0);
+    robot.joints = joints
+        .into_iter()
+        .map(|k| {
+            let joint = robot.joints[k].clone();
+            Joint {
+                parent: place(joint.parent),
+                child: place(joint.child),
+                ..joint
+            }
+        })
+        .collect();
+    robot.links = order.iter().map(|k| robot.links[*k].clone()).collect();
+    for joint in &robot.joints {
+        check_joint(
+            &robot,
+            joint,
+            &at.field(format_args!("joint[{}]", joint.name)),
+        )?;
+    }
+    for link in &robot.links {
+        check_link(link, &at.field(format_args!("link[{}]", link.name)))?;
+    }
+    massive(&robot, &at)?;
+    Ok(robot)
+}
+
+fn unique<'a>(
+    at: &At,
+    what: &str,
+    names: impl Iterator<Item = &'a String>,
+) -> Result<(), HousesError> {
+    let mut seen = std::collections::BTreeSet::new();
+    for name in names {
+        let at = at.field(format_args!("{what}[{name}]")).field("name");
+        if name.is_empty() || name.contains('/') {
+            return refuse(at, "a name without a slash", format!("{name:?}"));
+        }
+        if !seen.insert(name) {
+            return refuse(at, "a name that is used once", format!("{name:?} again"));
+        }
+    }
+    Ok(())
+}
+
+fn check_pose(pose: &Pose, at: &At, field: &str) -> Result<(), HousesError> {
+    if pose.is_valid() {
+        return Ok(());
+    }
+    refuse(at.field(field), "finite numbers", format!("{pose:?}"))
+}
+
+fn check_joint(robot: &Robot, joint: &Joint, at: &At) -> Result<(), HousesError> {
+    check_pose(&joint.parent_from_joint, at, "origin")?;
+    check_pose(&joint.child_from_joint, at, "origin")?;
+    if !joint.axis.is_finite() || (joint.axis.length() - 1.0).abs() > 1e-3 {
+        return refuse(at.field("axis"), "a direction", format!("{}", joint.axis));
+    }
+    if let Some([low, high]) = joint.limits
+        && !(low.is_finite() && high.is_finite() && low <= high)
+    {
+        return refuse(
+            at.field("limit"),
+            "lower <= upper",
+            format!("{low} to {high}"),
+        );
+    }
+    let servo = joint.servo.unwrap_or_default();
+    for (field, value) in [
+        ("friction", joint.friction),
+        ("damping", joint.damping),
+        ("armature", joint.armature),
+        ("limit.effort", servo.max_effort),
+        ("limit.velocity", servo.max_velocity.unwrap_or(0.0)),
+    ] {
+        if !(0.0..=1e9).contains(&value) {
+            return refuse(at.field(field), "0 to 1e9", value.to_string());
+        }
+    }
+    let Some((leader, multiplier, offset)) = &joint.mimic else {
+        return Ok(());
+    };
+    let at = at.field("mimic");
+    let moves = |other: &Joint| other.motion != Motion::Fixed && other.mimic.is_none();
+    if !robot
+        .joints
+        .iter()
+        .any(|other| &other.name == leader && moves(other))
+    {
+        let expected = "a joint that moves and follows none";
+        return refuse(at.field("joint"), expected, format!("{leader:?}"));
+    }
+    if !(multiplier.is_finite() && offset.is_finite()) {
+        return refuse(at, "finite numbers", format!("{multiplier}, {offset}"));
+    }
+    Ok(())
+}
+
+fn check_link(link: &Link, at: &At) -> Result<(), HousesError> {
+    let shapes = [("visual", &link.visuals), ("collision", &link.collisions)];
+    for (what, shapes) in shapes {
+        for (k, shape) in shapes.iter().enumerate() {
+            let at = at.field(format_args!("{what}[{k}]"));
+            check_pose(&shape.link_from_shape, &at, "origin")?;
+            if !shape.solid.is_sound() {
+                let found = format!("{:?}", shape.solid.numbers());
+                return refuse(at.field("geometry"), "sizes of 1e-6 to 1000 m", found);
+            }
+        }
+    }
+    let Some(weight) = &link.weight else {
+        return Ok(());
+    };
+    let at = at.field("inertial");
+    if !(1e-6..=1e6).contains(&weight.mass) {
+        return refuse(at.field("mass"), "1e-6 to 1e6 kg", weight.mass.to_string());
+    }
+    if !weight.center.is_finite() {
+        return refuse(
+            at.field("origin"),
+            "finite numbers",
+            weight.center.to_string(),
+        );
+    }
+    let m = weight.inertia;
+    let whole = m.is_finite() && positive(&m);
+    if !whole {
+        let found = format!("{:?}", m.to_cols_array());
+        return refuse(at.field("inertia"), "a positive definite matrix", found);
+    }
+    Ok(())
+}
+
+/// Sylvester's criterion.
+fn positive(m: &DMat3) -> bool {
+    let (a, b) = (m.x_axis, m.y_axis);
+    a.x > 0.0 && a.x * b.y - a.y * b.x > 0.0 && m.determinant() > 0.0
+}
+
+/// What moves must have a mass.
+fn massive(robot: &Robot, at: &At) -> Result<(), HousesError> {
+    for joint in robot
+        .joints
+        .iter()
+        .filter(|joint| joint.motion != Motion::Fixed)
+    {
+        let group = super::masses::group(robot, joint.child);
+        if group
+            .iter()
+            .all(|(link, _)| robot.links[*link].weight.is_none())
+        {
+            let name = &robot.links[joint.child].name;
+            let at = at
+                .field(format_args!("link[{name}]"))
+                .field("inertial.mass");
+            return refuse(at, "a mass above 0 for what a joint moves", "none");
+        }
+    }
+    Ok(())
+}

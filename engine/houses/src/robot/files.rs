@@ -1,0 +1,179 @@
+//! The files beside a robot's own: which folder bounds them, and its meshes.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use dwell_scene::parallel::Threads;
+use dwell_scene::{House, Mesh};
+
+use super::stl;
+use crate::error::HousesError;
+use crate::limits::{MAX_MESH_BYTES, MAX_TEXT_BYTES};
+use crate::obj;
+use crate::report::{At, Report};
+use crate::root::{DataRoot, folder_of};
+
+/// How many folders above the file a package may begin.
+const MOST_STEPS: usize = 3;
+
+/// The folder that bounds a robot's files.
+pub(crate) struct Files {
+    pub(crate) root: DataRoot,
+    /// The robot's file, relative to the root.
+    pub(crate) file: String,
+    meshes: BTreeMap<String, Arc<Mesh>>,
+}
+
+impl Files {
+    /// The root of the file at `path`: its package's folder, else its own.
+    ///
+    /// # Errors
+    /// [`HousesError::Io`] when it does not exist.
+    pub(crate) fn around(path: &Path) -> Result<Self, HousesError> {
+        let real = path.canonicalize().map_err(HousesError::io(path))?;
+        let folder = real.parent().unwrap_or_else(|| Path::new("/"));
+        let package = folder
+            .ancestors()
+            .take(1 + MOST_STEPS)
+            .find(|folder| folder.join("package.xml").is_file());
+        let root: PathBuf = package.unwrap_or(folder).to_owned();
+        let inside = real.strip_prefix(&root).unwrap_or(&real);
+        let words: Vec<_> = inside
+            .components()
+            .map(|word| word.as_os_str().to_string_lossy().into_owned())
+            .collect();
+        Ok(Self {
+            root: DataRoot::new(root)?,
+            file: words.join("/"),
+            meshes: BTreeMap::new(),
+        })
+    }
+
+    /// The text of the robot's file.
+    ///
+    /// # Errors
+    /// [`HousesError::Io`], [`HousesError::TooLarge`], [`HousesError::Syntax`] for bytes that are no text.
+    pub(crate) fn text(&self) -> Result<String, HousesError> {
+        let bytes = self.root.read(&self.file, MAX_TEXT_BYTES)?;
+        String::from_utf8(bytes).map_err(|error| HousesError::Syntax {
+            at: At::file(&self.file),
+            message: error.to_string(),
+        })
+    }
+
+    /// The path inside the root that `name` means: relative to `folder`, or `package://NAME/...`, where NAME is the root's own
+    /// name or a folder in it; a package that is neither is taken for the root.
+    ///
+    /// # Errors
+    /// [`HousesError::PathLeavesRoot`].
+    pub(crate) fn resolve(&self, folder: &str, name: &str, at: &At) -> Result<String, HousesError> {
+        let leaves = |_| HousesError::PathLeavesRoot {
+            at: at.clone(),
+            path: name.to_owned(),
+            root: self.root.folder().to_owned(),
+        };
+        let Some(rest) = name.strip_prefix("package://") else {
+            let plain = name.strip_prefix("file://").unwrap_or(name);
+            return DataRoot::resolve(folder, plain).map_err(leaves);
+        };
+        let (package, inside) = rest.split_once('/').unwrap_or(("", rest));
+        let folder = self.root.folder().join(package);
+        let start = if DataRoot::resolve("", package).is_ok() && folder.is_dir() {
+            package
+        } else {
+            ""
+        };
+        DataRoot::resolve(start, inside).map_err(leaves)
+    }
+
+    /// The mesh at a path inside the root, without its materials.
+    ///
+    /// # Errors
+    /// [`HousesError::Field`] when it is missing, unreadable or of a form that is not read.
+    pub(crate) fn mesh(
+        &mut self,
+        path: &str,
+        at: &At,
+        report: &mut Report,
+    ) -> Result<Arc<Mesh>, HousesError> {
+        if let Some(mesh) = self.meshes.get(path) {
+            return Ok(mesh.clone());
+        }
+        let fault = |expected, found: String| HousesError::Field {
+            at: at.clone(),
+            expected,
+            found,
+        };
+        let bytes = self
+            .root
+            .read(path, MAX_MESH_BYTES)
+            .map_err(|error| match error {
+                HousesError::PathLeavesRoot { path, root, .. } => HousesError::PathLeavesRoot {
+                    at: at.clone(),
+                    path,
+                    root,
+                },
+                error => fault(
+                    "a mesh file that can be read",
+                    format!("{path:?}: {}", error.reason()),
+                ),
+            })?;
+        let ending = path.rsplit('.').next().unwrap_or("").to_ascii_lowercase();
+        let expected = "a mesh of the form its name says";
+        let broken = |reason: String| fault(expected, format!("{path:?}: {reason}"));
+        let mesh = match ending.as_str() {
+            "stl" => stl::read(&bytes).map_err(broken)?,
+            "obj" => obj::bare_mesh(&bytes, path, report),
+            "glb" | "gltf" => {
+                let root = DataRoot::new(self.root.folder().join(folder_of(path)))?;
+                let name = path.rsplit('/').next().unwrap_or(path);
+                let (house, _) = crate::gltf::open_bytes(&bytes, &root, name, Threads::default())
+                    .map_err(|error| broken(error.to_string()))?;
+                gathered(&house)
+            }
+            _ => {
+                let expected = "a mesh that ends in .stl, .obj, .glb or .gltf";
+                return Err(fault(expected, format!("{path:?}")));
+            }
+        };
+        if mesh.triangles.is_empty() {
+            return Err(fault(
+                "a mesh with triangles",
+                format!("{path:?} without one"),
+            ));
+        }
+        let mesh = Arc::new(bare(mesh));
+        self.meshes.insert(path.to_owned(), mesh.clone());
+        Ok(mesh)
+    }
+}
+
+/// Positions and triangles alone.
+fn bare(mesh: Mesh) -> Mesh {
+    Mesh {
+        positions: mesh.positions,
+        triangles: mesh.triangles,
+        ..Mesh::default()
+    }
+}
+
+/// All that a file shows as one mesh.
+fn gathered(house: &House) -> Mesh {
+    let mut all = Mesh::default();
+    for piece in &house.structure {
+        all.append(&bare(Mesh::clone(&house.meshes[piece.mesh])), 0);
+    }
+    for part in &house.parts {
+        let map = part.world_from_part.to_affine() * part.part_from_mesh;
+        let mut mesh = bare(Mesh::clone(&house.meshes[part.mesh]));
+        mesh.positions
+            .iter_mut()
+            .for_each(|p| *p = map.transform_point3(*p));
+        if map.matrix3.determinant() < 0.0 {
+            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        all.append(&mesh, 0);
+    }
+    all
+}

@@ -1,0 +1,66 @@
+//! Robots: what URDF and MJCF have in common, and how a robot gets into a house.
+//!
+//! Files say +Z up and +X forward. The base's frame in a house is dwell's: +Y up, and the robot faces -Z, as an agent at
+//! yaw 0 does. Frames of links stay as the file has them.
+
+mod assemble;
+mod check;
+mod files;
+mod masses;
+mod model;
+mod shape;
+mod stl;
+
+pub use model::Robot;
+
+pub(crate) use assemble::alone;
+pub(crate) use check::check;
+pub(crate) use files::Files;
+pub(crate) use model::{Joint, Link, Motion, Shape, Solid, Weight};
+
+use std::path::Path;
+
+use dwell_scene::{House, Pose};
+
+use crate::error::HousesError;
+use crate::report::{At, Report};
+
+/// Opens a robot: a `.urdf`, or a `.xml` of MuJoCo. Meshes are read below the folder of the file, or below the folder of
+/// its package when a `package.xml` stands up to three folders above it.
+///
+/// # Errors
+/// [`HousesError`] with the file, the node and the field: [`HousesError::Syntax`] for what is no XML or not this format,
+/// [`HousesError::Field`] for a loop, a mass that is not above 0, a number that is not finite, a mesh that is missing or of a
+/// form that is not read, [`HousesError::PathLeavesRoot`] for a path out of the data root.
+pub fn open_robot(path: &Path) -> Result<(Robot, Report), HousesError> {
+    let mut report = Report::new();
+    let robot = if crate::urdf::recognizes(path) {
+        crate::urdf::read(path, &mut report)?
+    } else if crate::mjcf::recognizes(path) {
+        crate::mjcf::read(path, &mut report)?
+    } else {
+        let found = path.display().to_string();
+        return Err(HousesError::UnknownHouse {
+            house: found,
+            allowed: "a path to a .urdf, or to a .xml of MuJoCo".to_owned(),
+        });
+    };
+    Ok((robot, report))
+}
+
+/// A house with a robot in it. `name` must be free; `fixed_base` holds its base for good, else the base is a body that
+/// stands and falls. Meshes are shared with the house.
+///
+/// # Errors
+/// [`HousesError::Scene`] for a name that is taken, a pose that is not rigid, or a robot out of the scene's ranges.
+pub fn with_robot(
+    house: &House,
+    robot: &Robot,
+    name: &str,
+    world_from_base: Pose,
+    fixed_base: bool,
+) -> Result<House, HousesError> {
+    let mut data = house.data().clone();
+    assemble::add(&mut data, robot, name, world_from_base, fixed_base);
+    House::new(data).map_err(HousesError::scene(&At::file(&robot.source)))
+}

@@ -1,0 +1,121 @@
+//! A robot as its file has it, formats apart.
+
+use std::sync::Arc;
+
+use dwell_scene::{Mesh, Pose, Servo};
+use glam::{DMat3, DVec3, Vec3};
+
+/// A robot: links and the joints between them, checked to be a tree. Made by [`open_robot`](crate::open_robot).
+#[derive(Clone, Debug)]
+pub struct Robot {
+    /// Its name in the file.
+    pub(crate) name: String,
+    /// The file.
+    pub(crate) source: String,
+    /// `"urdf"` or `"mjcf"`.
+    pub(crate) format: &'static str,
+    /// The root first, each after its parent.
+    pub(crate) links: Vec<Link>,
+    /// One for each link but the root, in their order.
+    pub(crate) joints: Vec<Joint>,
+    /// Whether the file holds the base for good.
+    pub(crate) fixed_base: bool,
+}
+
+/// A rigid piece.
+#[derive(Clone, Debug)]
+pub(crate) struct Link {
+    pub(crate) name: String,
+    pub(crate) weight: Option<Weight>,
+    pub(crate) visuals: Vec<Shape>,
+    pub(crate) collisions: Vec<Shape>,
+}
+
+/// Mass, and how it is spread.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Weight {
+    /// kg.
+    pub(crate) mass: f64,
+    /// In the link's frame, m.
+    pub(crate) center: DVec3,
+    /// About the centre, along the link's axes, kg·m².
+    pub(crate) inertia: DMat3,
+}
+
+/// A shape on a link.
+#[derive(Clone, Debug)]
+#[expect(clippy::struct_field_names, reason = "a transform names both its ends")]
+pub(crate) struct Shape {
+    pub(crate) link_from_shape: Pose,
+    pub(crate) solid: Solid,
+    /// sRGB and opacity.
+    pub(crate) rgba: Option<[f32; 4]>,
+    /// What the file calls its material.
+    pub(crate) material: String,
+}
+
+/// What a shape is; cylinders and capsules stand along their Z.
+#[derive(Clone, Debug)]
+pub(crate) enum Solid {
+    Cuboid { half: Vec3 },
+    Ball { radius: f32 },
+    Cylinder { half_height: f32, radius: f32 },
+    Capsule { half_height: f32, radius: f32 },
+    Ellipsoid { radii: Vec3 },
+    Mesh { mesh: Arc<Mesh>, scale: Vec3 },
+}
+
+/// How a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Motion {
+    Fixed,
+    Hinge,
+    Slide,
+}
+
+/// A joint between two links.
+#[derive(Clone, Debug)]
+#[expect(clippy::struct_field_names, reason = "a transform names both its ends")]
+pub(crate) struct Joint {
+    pub(crate) name: String,
+    /// Places in the robot's links.
+    pub(crate) parent: usize,
+    pub(crate) child: usize,
+    pub(crate) motion: Motion,
+    pub(crate) parent_from_joint: Pose,
+    pub(crate) child_from_joint: Pose,
+    pub(crate) axis: Vec3,
+    pub(crate) limits: Option<[f32; 2]>,
+    pub(crate) friction: f32,
+    pub(crate) damping: f32,
+    pub(crate) armature: f32,
+    pub(crate) servo: Option<Servo>,
+    /// The name of the joint it follows, multiplier, offset.
+    pub(crate) mimic: Option<(String, f32, f32)>,
+}
+
+impl Robot {
+    /// Its name in the file.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The names of its links, the root first.
+    pub fn links(&self) -> impl Iterator<Item = &str> {
+        self.links.iter().map(|link| link.name.as_str())
+    }
+
+    /// The names of the joints that move, in the order in which they get into a house.
+    pub fn joints(&self) -> impl Iterator<Item = &str> {
+        let moving = self
+            .joints
+            .iter()
+            .filter(|joint| joint.motion != Motion::Fixed);
+        moving.map(|joint| joint.name.as_str())
+    }
+
+    /// Whether its file holds the base for good: in MJCF a root without a free joint; URDF does not say, so `true`.
+    pub fn has_fixed_base(&self) -> bool {
+        self.fixed_base
+    }
+}

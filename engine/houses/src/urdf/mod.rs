@@ -1,0 +1,32 @@
+//! URDF, the Unified Robot Description Format of ROS.
+//!
+//! Read by hand over an XML tree: the crates that read URDF (`urdf-rs` 0.10) know no places in the file and take `nan` for
+//! a number, and an error here must name the node and the field.
+
+mod read;
+
+use std::path::Path;
+
+use dwell_scene::House;
+
+use crate::error::HousesError;
+use crate::report::Report;
+use crate::robot;
+
+pub(crate) use read::read;
+
+/// Whether `path` names a URDF file.
+pub(crate) fn recognizes(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("urdf"))
+}
+
+/// Opens a robot on a ground of its own, its base fixed.
+///
+/// # Errors
+/// Those of [`open_robot`](crate::open_robot).
+pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
+    let mut report = Report::new();
+    let robot = read(path, &mut report)?;
+    Ok((robot::alone(&robot)?, report))
+}
