@@ -47,7 +47,10 @@ impl PyNavigation {
     }
 }
 
-fn positions<'py>(py: Python<'py>, points: Vec<Vec3>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+/// Corners (n, 3), length in m, the shut doors on the way by name.
+type Way<'py> = (Bound<'py, PyArray2<f32>>, f64, Vec<String>);
+
+fn positions(py: Python<'_>, points: Vec<Vec3>) -> PyResult<Bound<'_, PyArray2<f32>>> {
     let count = points.len();
     let flat: Vec<f32> = points.into_iter().flat_map(|p| p.to_array()).collect();
     flat.into_pyarray(py).reshape([count, 3])
@@ -127,7 +130,7 @@ impl PyNavigation {
         py: Python<'py>,
         start: [f32; 3],
         goal: [f32; 3],
-    ) -> PyResult<Option<(Bound<'py, PyArray2<f32>>, f64, Vec<String>)>> {
+    ) -> PyResult<Option<Way<'py>>> {
         let ends = (Vec3::from_array(start), Vec3::from_array(goal));
         let route = py.engine(|| Ok::<_, Fault>(self.with(|grid| grid.route(ends.0, ends.1))))?;
         let Some(route) = route else { return Ok(None) };
