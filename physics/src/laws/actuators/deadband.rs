@@ -35,7 +35,7 @@ pub(in crate::laws) const LAW: Law = Law {
                 plausible: [0.01, 2.0],
             },
         ],
-        rivals: &["backlash", "joint_friction"],
+        rivals: &["backlash", "friction"],
         separating_experiment: "tell it small slow ramps from both sides: a deadband stops short on either side by the same \
                                 width whatever came before, backlash depends on the last turn, and static friction can be \
                                 seen when the joint is pushed with the motor off",

@@ -27,7 +27,7 @@ pub(in crate::laws) const LAW: Law = Law {
             high: 10.0,
             plausible: [0.005, 0.3],
         }],
-        rivals: &["latency", "rate_limit", "joint_friction"],
+        rivals: &["latency", "rate_limit", "friction"],
         separating_experiment: "tell it sines at two frequencies: a lag takes amplitude and its phase ends at 90 degrees, a \
                                 delay takes none and its phase grows in proportion to frequency; steps of two sizes tell \
                                 it from a rate limit",

@@ -27,7 +27,7 @@ pub(in crate::laws) const LAW: Law = Law {
             high: 1e6,
             plausible: [0.5, 20.0],
         }],
-        rivals: &["saturation", "first_order_lag", "joint_friction"],
+        rivals: &["saturation", "first_order_lag", "friction"],
         separating_experiment: "tell it steps of two sizes: with a rate limit the slope is the same for both and the time \
                                 grows with the size, with a lag the time is the same",
     },

@@ -26,7 +26,7 @@ pub(in crate::laws) const LAW: Law = Law {
             high: 1e6,
             plausible: [0.05, 200.0],
         }],
-        rivals: &["rate_limit", "motor_constants", "joint_friction"],
+        rivals: &["rate_limit", "friction"],
         separating_experiment: "sweep the amplitude of a sine or lift growing loads: below its bound a saturated motor is \
                                 exact, friction errs from the smallest effort on, a wrong constant in proportion",
     },
