@@ -101,7 +101,7 @@ mod tests {
             .to_string();
         assert_eq!(
             message,
-            "the source stands at [NaN, 0.0, 1.0]; coordinates must be finite"
+            "the source stands at [NaN, 0.0, 1.0]; allowed are coordinates up to 1,000,000 m"
         );
     }
 }

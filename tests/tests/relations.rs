@@ -1,11 +1,5 @@
 //! On and in: what physics says from contacts agrees with what words say from geometry.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by panicking, and may talk"
-)]
-
 use dwell::{World, WorldConfig};
 use dwell_scene::{Mobility, ObjectId};
 use dwell_semantics::Term;

@@ -10,11 +10,13 @@ use dwell_scene::{House, ShoeboxMaterials};
 use proptest::prelude::*;
 
 /// The formats that read files, and where each one's sample stands.
-const FILES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 6] = [
     ("native", "a.dwell"),
     ("suncg", "suncg"),
     ("gltf", "a.glb"),
     ("obj", "obj/a.obj"),
+    ("urdf", "urdf/arm.urdf"),
+    ("mjcf", "mjcf/arm.xml"),
 ];
 const OBJ: &str = "mtllib a.mtl\no box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
                    usemtl red\nf 1/1/1 2/2/1 3/3/1 4/1/1\ng lid\nusemtl blue\nf -1 -2 -3\nf 1//1 5//1 2//1\n";
@@ -36,6 +38,13 @@ fn samples() -> &'static [Sample] {
         std::fs::create_dir(at("obj")).unwrap();
         std::fs::write(at("obj/a.obj"), OBJ).unwrap();
         std::fs::write(at("obj/a.mtl"), MTL).unwrap();
+        for (file, text) in [
+            ("urdf/arm.urdf", include_str!("robots/arm.urdf")),
+            ("mjcf/arm.xml", include_str!("robots/arm.xml")),
+        ] {
+            std::fs::create_dir(at(file).parent().unwrap()).unwrap();
+            std::fs::write(at(file), text).unwrap();
+        }
         let samples = FILES.map(|(_, name)| {
             let house = at(name);
             let whole = if house.is_file() && name.contains('/') {
@@ -161,7 +170,7 @@ fn every_format_that_reads_files_has_a_sample() {
 fn house_strings_that_mean_nothing_list_what_is_allowed() {
     let message = |house: &str| open(house).map(|_| ()).unwrap_err().to_string();
     let allowed = "builtin:NAME; a path to a .dwell; a path to a house.json, its folder, or a data root with one house; \
-                   a path to a .glb or .gltf; a path to an .obj";
+                   a path to a .glb or .gltf; a path to an .obj; a path to a .urdf; a path to a .xml of MuJoCo";
     for house in ["castle", "seed:5", "", "house.blend"] {
         assert_eq!(
             message(house),

@@ -438,6 +438,8 @@ mod tests {
 
     #[test]
     fn a_restored_episode_goes_on_and_is_judged_as_before() {
+        use DiscreteAction::{MoveForward, Stop, TurnLeft};
+
         let mut env = env();
         assert!(matches!(env.snapshot(), Err(WorldError::Usage(_))));
         env.reset(3).unwrap();
@@ -449,7 +451,6 @@ mod tests {
             };
             actions.iter().map(step).collect()
         };
-        use DiscreteAction::{MoveForward, Stop, TurnLeft};
         go(&mut env, &[MoveForward, TurnLeft, MoveForward]);
         let text = env.episode().unwrap().instruction.clone();
         let saved = env.snapshot().unwrap();

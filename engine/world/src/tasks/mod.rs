@@ -27,6 +27,9 @@ pub trait Task: Debug + Send + Sync {
     fn expert(&mut self, world: &mut World, episode: &Episode) -> DiscreteAction;
 }
 
+/// Builds a task from its settings (a JSON object; `null` gives the defaults) for an agent that walks so.
+pub type Build = fn(&serde_json::Value, Stride) -> Result<Box<dyn Task>, WorldError>;
+
 /// A kind of task that can be asked for by name.
 #[derive(Clone, Copy, Debug)]
 pub struct TaskKind {
@@ -40,8 +43,8 @@ pub struct TaskKind {
     pub max_steps: u64,
     /// The sensors that its environment has when nobody says otherwise.
     pub sensors: &'static [&'static str],
-    /// Builds one from its settings (a JSON object; `null` gives the defaults) for an agent that walks so.
-    pub build: fn(&serde_json::Value, Stride) -> Result<Box<dyn Task>, WorldError>,
+    /// Builds one.
+    pub build: Build,
 }
 
 /// All tasks.
