@@ -22,6 +22,20 @@ const OBJ: &str = "mtllib a.mtl\no box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 
                    usemtl red\nf 1/1/1 2/2/1 3/3/1 4/1/1\ng lid\nusemtl blue\nf -1 -2 -3\nf 1//1 5//1 2//1\n";
 const MTL: &str = "newmtl red\nKd 0.8 0.1 0.1\nNs 20\nd 0.9\nnewmtl blue\nKd 0.1 0.1 0.8\n";
 
+/// A tetrahedron as an STL file, mm.
+fn tetrahedron() -> String {
+    let corners = [[0, 0, 0], [60, 0, 0], [0, 60, 0], [0, 0, 60]];
+    let facet = |face: [usize; 3]| {
+        let vertex = |k: usize| corners[k].map(|x| x.to_string()).join(" ");
+        let vertices = face.map(|k| format!("vertex {}\n", vertex(k))).concat();
+        format!("facet normal 0 0 0\nouter loop\n{vertices}endloop\nendfacet\n")
+    };
+    let facets = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+        .map(facet)
+        .concat();
+    format!("solid palm\n{facets}endsolid palm\n")
+}
+
 /// A house, and the files it is made of.
 type Sample = (PathBuf, Vec<PathBuf>);
 
@@ -39,10 +53,12 @@ fn samples() -> &'static [Sample] {
         std::fs::write(at("obj/a.obj"), OBJ).unwrap();
         std::fs::write(at("obj/a.mtl"), MTL).unwrap();
         for (file, text) in [
+            ("urdf/palm.stl", tetrahedron().as_str()),
+            ("mjcf/palm.stl", tetrahedron().as_str()),
             ("urdf/arm.urdf", include_str!("robots/arm.urdf")),
             ("mjcf/arm.xml", include_str!("robots/arm.xml")),
         ] {
-            std::fs::create_dir(at(file).parent().unwrap()).unwrap();
+            std::fs::create_dir_all(at(file).parent().unwrap()).unwrap();
             std::fs::write(at(file), text).unwrap();
         }
         let samples = FILES.map(|(_, name)| {

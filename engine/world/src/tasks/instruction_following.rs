@@ -187,6 +187,15 @@ impl Task for InstructionFollowing {
             house: world.house().name.clone(),
             why: why.to_owned(),
         };
+        let leaves: Vec<Vec3> = (grid.doors().iter())
+            .flat_map(|door| door.cells.iter().map(|cell| grid.position(*cell)))
+            .collect();
+        // The grid has all doors open; an agent that starts must not stand in a leaf that is shut.
+        let apart_m = grid.config().radius_m + 1.5 * grid.config().cell_m;
+        let in_a_leaf = |cell: Cell| {
+            let at = grid.position(cell);
+            leaves.iter().any(|leaf| (*leaf - at).length() < apart_m)
+        };
         let mut order: Vec<usize> = (0..self.offers.len()).collect();
         key.child("order").stream().shuffle(&mut order);
         let found = order.into_iter().find_map(|k| {
@@ -194,7 +203,9 @@ impl Task for InstructionFollowing {
             let guide = Guide::new(agent, grid.clone(), &offer.goals, self.stride);
             let range = self.settings.min_distance_m..=self.settings.max_distance_m;
             let allowed = |cell: Cell| {
-                grid.island(cell) == Some(0) && guide.at(cell).is_some_and(|d| range.contains(&d))
+                grid.island(cell) == Some(0)
+                    && guide.at(cell).is_some_and(|d| range.contains(&d))
+                    && !in_a_leaf(cell)
             };
             let start = grid.sample(key.child("start"), allowed)?;
             Some((offer.instruction.clone(), guide, start))
