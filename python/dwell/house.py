@@ -92,9 +92,7 @@ class House:
         Raises:
             HouseError: The file cannot be read; the message names file, node and field.
         """
-        return House(
-            self._native.with_robot(os.fspath(path), name, position, yaw_deg, fixed_base)
-        )
+        return House(self._native.with_robot(os.fspath(path), name, position, yaw_deg, fixed_base))
 
     @property
     def native(self) -> _native.House:

@@ -311,7 +311,8 @@ class World:
 
         Args:
             joint: Its id, as in :meth:`joints`.
-            kind: ``position`` (rad or m), ``velocity`` (per second), ``effort`` (N m or N) or ``off``.
+            kind: ``position`` (rad or m), ``velocity`` (per second), ``effort`` (N m or N) or
+                ``off``.
             value: The number.
 
         Raises:

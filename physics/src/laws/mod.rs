@@ -1,6 +1,6 @@
 //! Physical effects that the basic model lacks. One file each, one line in the list.
 //!
-//! A law at its default is not installed, so that nothing changes bit for bit. What a law can reach is [`Acts`]: forces on
+//! A law at its default is not installed, so that nothing changes bit for bit. What a law can reach is `Acts`: forces on
 //! bodies, the values of contacts, mass and inertia, how stiff contacts are, where servos go. What wakes a body that
 //! sleeps: laws of air and of contact act on what moves, and leave asleep what sleeps, apart from wind, which wakes what
 //! it is strong enough to move.
