@@ -106,6 +106,43 @@ fn there_are_32_directions() {
     );
 }
 
+/// Against the shortest of all ways whose corners are middles of cells: every pair that sees each other, relaxed.
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+fn compare_with_the_shortest(seed: u64) -> Result<(), TestCaseError> {
+    let key = Key::root(seed);
+    let grid = grid_of(&furnished(&scattered(key)), &coarse());
+    let Some(start) = grid.sample(key.child("start"), |_| true) else {
+        return Ok(());
+    };
+    let map = grid.occupancy(LevelId(0)).unwrap();
+    let truth = relaxed(&pieces(&map, |_, _| true), column(&map, &grid, start));
+    let field = grid.distance_field(&[start]);
+    let (mut within, mut all) = (0, 0);
+    for cell in grid.reachable(start) {
+        let shortest = truth[column(&map, &grid, cell)];
+        let rough = field.at(cell).unwrap();
+        prop_assert!(rough >= shortest - 1e-5);
+        // 1.31 % by directions, and a cell's edge where the way bends.
+        prop_assert!(rough <= 1.0131 * shortest + 0.2, "{} {}", rough, shortest);
+        let route = grid
+            .geodesic_m(grid.position(cell), grid.position(start))
+            .unwrap();
+        prop_assert!(route >= shortest - 1e-5 && route <= rough + 1e-5);
+        // Pulling a way tight leaves it on its side of what stands in between, which may be the longer one.
+        prop_assert!(route <= 1.02 * shortest + 1e-5, "{} {}", route, shortest);
+        within += usize::from(route <= 1.01 * shortest + 1e-5);
+        all += 1;
+    }
+    prop_assert!(20 * within >= 19 * all, "{} of {}", within, all);
+    Ok(())
+}
+
+/// A furnished room in which a route once came out 1.0013 % longer than the shortest.
+#[test]
+fn the_case_of_the_longest_route_known_keeps_its_bounds() {
+    compare_with_the_shortest(14_591_493_381_214_115_120).unwrap();
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
@@ -149,29 +186,9 @@ proptest! {
         }
     }
 
-    /// Against the shortest of all ways whose corners are middles of cells: every pair that sees each other, relaxed.
     #[test]
     fn fields_are_within_their_bound_and_routes_mostly_within_a_percent(seed in any::<u64>()) {
-        let key = Key::root(seed);
-        let grid = grid_of(&furnished(&scattered(key)), &coarse());
-        let Some(start) = grid.sample(key.child("start"), |_| true) else { return Ok(()) };
-        let map = grid.occupancy(LevelId(0)).unwrap();
-        let truth = relaxed(&pieces(&map, |_, _| true), column(&map, &grid, start));
-        let field = grid.distance_field(&[start]);
-        let (mut within, mut all) = (0, 0);
-        for cell in grid.reachable(start) {
-            let shortest = truth[column(&map, &grid, cell)];
-            let rough = field.at(cell).unwrap();
-            prop_assert!(rough >= shortest - 1e-5);
-            // 1.31 % by directions, and a cell's edge where the way bends.
-            prop_assert!(rough <= 1.0131 * shortest + 0.2, "{} {}", rough, shortest);
-            let route = grid.geodesic_m(grid.position(cell), grid.position(start)).unwrap();
-            prop_assert!(route >= shortest - 1e-5 && route <= rough + 1e-5);
-            // Pulling a way tight leaves it on its side of what stands in between, which may be the longer one.
-            within += usize::from(route <= 1.01 * shortest + 1e-5);
-            all += 1;
-        }
-        prop_assert!(20 * within >= 19 * all, "{} of {}", within, all);
+        compare_with_the_shortest(seed)?;
     }
 
     #[test]
