@@ -2,10 +2,12 @@
 
 mod atomic;
 mod build;
+mod building;
 pub mod builtin;
 mod damage;
 mod error;
 mod formats;
+mod furniture;
 pub mod gltf;
 mod limits;
 mod loss;
@@ -16,6 +18,8 @@ mod report;
 mod robot;
 mod root;
 pub mod suncg;
+#[cfg(test)]
+mod testing;
 pub mod urdf;
 
 pub use damage::{Damage, Unmapped};

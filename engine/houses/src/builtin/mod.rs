@@ -1,21 +1,8 @@
 //! Houses that are made at run time by parametric code: nothing is stored but code and small tables.
 //!
-//! - `shapes`: closed primitives with convex collision pieces,
-//! - `textures`, `finish`: procedural images, and what surfaces are made of,
-//! - `model`, `models`: parametric things with parts, joints, lights, sounds, and places that hold other things,
-//! - `assembly`, `plan`, `wall`, `site`: tables of the house, rooms, walls, ways to put things in their place,
 //! - `apartment`: a home of six rooms.
 
 mod apartment;
-mod assembly;
-mod finish;
-mod model;
-mod models;
-mod plan;
-mod shapes;
-mod site;
-mod textures;
-mod wall;
 
 #[cfg(test)]
 mod tests;

@@ -1,19 +1,19 @@
 //! The bathroom.
 
-use crate::builtin::finish::{Finish, beech, white_lacquer};
-use crate::builtin::finish::{lacquer, plastic, terry};
-use crate::builtin::models::appliances::washer;
-use crate::builtin::models::bath::{bathtub, shower_head, shower_screen, washbasin};
-use crate::builtin::models::bath_things::{
+use crate::building::site::{Side, Site};
+use crate::furniture::finish::{Finish, beech, white_lacquer};
+use crate::furniture::finish::{lacquer, plastic, terry};
+use crate::furniture::models::appliances::washer;
+use crate::furniture::models::bath::{bathtub, shower_head, shower_screen, washbasin};
+use crate::furniture::models::bath_things::{
     bath_mat, folded_towel, laundry_basket, paper_holder, pedal_bin, scale, soap_dispenser,
     toothbrushes, towel_rail, wall_mirror,
 };
-use crate::builtin::models::crockery::bottle;
-use crate::builtin::models::lamps::{ceiling_dome, mirror_lamp};
-use crate::builtin::models::openings::light_switch;
-use crate::builtin::models::seats::stool;
-use crate::builtin::models::toilet::toilet;
-use crate::builtin::site::{Side, Site};
+use crate::furniture::models::crockery::bottle;
+use crate::furniture::models::lamps::{ceiling_dome, mirror_lamp};
+use crate::furniture::models::openings::light_switch;
+use crate::furniture::models::seats::stool;
+use crate::furniture::models::toilet::toilet;
 
 const NORTH: f32 = 0.0;
 const WEST: f32 = 4.1;

@@ -1,22 +1,22 @@
 //! The parents' bedroom.
 
-use crate::builtin::finish::{
+use crate::building::site::{Side, Site};
+use crate::furniture::finish::{
     Finish, cloth, grey_board, oak, porcelain, terry, upholstery, walnut, white_lacquer,
 };
-use crate::builtin::models::bath_things::{laundry_basket, wall_mirror};
-use crate::builtin::models::bed::Bed;
-use crate::builtin::models::bookshelf::book;
-use crate::builtin::models::decoration::{handbag, open_box, picture};
-use crate::builtin::models::dresser::Dresser;
-use crate::builtin::models::gadgets::alarm_clock;
-use crate::builtin::models::lamps::{drum, linen_shade, table_lamp};
-use crate::builtin::models::nightstand::nightstand;
-use crate::builtin::models::openings::{light_switch, radiator};
-use crate::builtin::models::plants::vase;
-use crate::builtin::models::seats::pouf;
-use crate::builtin::models::textiles::{Curtains, folded_blanket, pillow, round_rug};
-use crate::builtin::models::wardrobe::Wardrobe;
-use crate::builtin::site::{Side, Site};
+use crate::furniture::models::bath_things::{laundry_basket, wall_mirror};
+use crate::furniture::models::bed::Bed;
+use crate::furniture::models::bookshelf::book;
+use crate::furniture::models::decoration::{handbag, open_box, picture};
+use crate::furniture::models::dresser::Dresser;
+use crate::furniture::models::gadgets::alarm_clock;
+use crate::furniture::models::lamps::{drum, linen_shade, table_lamp};
+use crate::furniture::models::nightstand::nightstand;
+use crate::furniture::models::openings::{light_switch, radiator};
+use crate::furniture::models::plants::vase;
+use crate::furniture::models::seats::pouf;
+use crate::furniture::models::textiles::{Curtains, folded_blanket, pillow, round_rug};
+use crate::furniture::models::wardrobe::Wardrobe;
 
 const NORTH: f32 = 0.0;
 const WEST: f32 = 0.0;

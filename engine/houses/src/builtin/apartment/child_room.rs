@@ -1,24 +1,24 @@
 //! The child's room.
 
-use crate::builtin::finish::lampshade;
-use crate::builtin::finish::{
+use crate::building::site::{Side, Site};
+use crate::furniture::finish::lampshade;
+use crate::furniture::finish::{
     Finish, beech, cloth, painted_steel, pine, plastic, terry, upholstery, white_lacquer,
 };
-use crate::builtin::models::bath_things::pedal_bin;
-use crate::builtin::models::bed::Bed;
-use crate::builtin::models::bookshelf::{Bookshelf, SHELVES, book, book_row};
-use crate::builtin::models::decoration::{
+use crate::furniture::models::bath_things::pedal_bin;
+use crate::furniture::models::bed::Bed;
+use crate::furniture::models::bookshelf::{Bookshelf, SHELVES, book, book_row};
+use crate::furniture::models::decoration::{
     globe, open_box, pencil_cup, poster, teddy_bear, toy_ball, toy_block, toy_train,
 };
-use crate::builtin::models::desk::Desk;
-use crate::builtin::models::gadgets::laptop;
-use crate::builtin::models::lamps::{desk_lamp, drum, night_light};
-use crate::builtin::models::nightstand::nightstand;
-use crate::builtin::models::openings::{light_switch, radiator};
-use crate::builtin::models::seats::office_chair;
-use crate::builtin::models::textiles::{Curtains, pillow, round_rug};
-use crate::builtin::models::wardrobe::Wardrobe;
-use crate::builtin::site::{Side, Site};
+use crate::furniture::models::desk::Desk;
+use crate::furniture::models::gadgets::laptop;
+use crate::furniture::models::lamps::{desk_lamp, drum, night_light};
+use crate::furniture::models::nightstand::nightstand;
+use crate::furniture::models::openings::{light_switch, radiator};
+use crate::furniture::models::seats::office_chair;
+use crate::furniture::models::textiles::{Curtains, pillow, round_rug};
+use crate::furniture::models::wardrobe::Wardrobe;
 use dwell_scene::random::Key;
 
 const NORTH: f32 = 5.3;

@@ -1,16 +1,16 @@
 //! The hallway.
 
-use crate::builtin::finish::{Finish, cloth, leather, oak, porcelain, upholstery, white_lacquer};
-use crate::builtin::models::bath_things::wall_mirror;
-use crate::builtin::models::decoration::{picture, shoes};
-use crate::builtin::models::gadgets::telephone;
-use crate::builtin::models::lamps::ceiling_dome;
-use crate::builtin::models::openings::light_switch;
-use crate::builtin::models::plants::vase;
-use crate::builtin::models::seats::shoe_bench;
-use crate::builtin::models::textiles::{coat_rack, rug};
-use crate::builtin::models::wardrobe::Wardrobe;
-use crate::builtin::site::{Side, Site};
+use crate::building::site::{Side, Site};
+use crate::furniture::finish::{Finish, cloth, leather, oak, porcelain, upholstery, white_lacquer};
+use crate::furniture::models::bath_things::wall_mirror;
+use crate::furniture::models::decoration::{picture, shoes};
+use crate::furniture::models::gadgets::telephone;
+use crate::furniture::models::lamps::ceiling_dome;
+use crate::furniture::models::openings::light_switch;
+use crate::furniture::models::plants::vase;
+use crate::furniture::models::seats::shoe_bench;
+use crate::furniture::models::textiles::{coat_rack, rug};
+use crate::furniture::models::wardrobe::Wardrobe;
 
 const NORTH: f32 = 3.8;
 const SOUTH: f32 = 5.2;

@@ -1,30 +1,30 @@
 //! The kitchen.
 
-use crate::builtin::finish::{Finish, granite, pine};
-use crate::builtin::finish::{
+use crate::building::site::{Side, Site};
+use crate::furniture::finish::{Finish, granite, pine};
+use crate::furniture::finish::{
     cloth, glass, lacquer, oak, painted_steel, plastic, porcelain, steel, terracotta,
 };
-use crate::builtin::models::appliances::{coffee_machine, kettle, microwave, toaster};
-use crate::builtin::models::bath_things::{pedal_bin, soap_dispenser};
-use crate::builtin::models::bookshelf::wall_shelf;
-use crate::builtin::models::chair::Chair;
-use crate::builtin::models::cooker::{cooker, range_hood};
-use crate::builtin::models::crockery::{
+use crate::furniture::models::appliances::{coffee_machine, kettle, microwave, toaster};
+use crate::furniture::models::bath_things::{pedal_bin, soap_dispenser};
+use crate::furniture::models::bookshelf::wall_shelf;
+use crate::furniture::models::chair::Chair;
+use crate::furniture::models::cooker::{cooker, range_hood};
+use crate::furniture::models::crockery::{
     bottle, bowl, jar, mug, pan, plate, pot, tumbler, utensils, white_glaze,
 };
-use crate::builtin::models::decoration::picture;
-use crate::builtin::models::food::{bread, cutting_board, fruit, knife_block, red_skin};
-use crate::builtin::models::fridge::refrigerator;
-use crate::builtin::models::gadgets::wall_clock;
-use crate::builtin::models::kitchen_unit::{Bay, KitchenUnit, wall_cabinet};
-use crate::builtin::models::lamps::{ceiling_dome, pendant};
-use crate::builtin::models::openings::{light_switch, radiator};
-use crate::builtin::models::plants::{Plant, fresh_green};
-use crate::builtin::models::radio::radio;
-use crate::builtin::models::table::Table;
-use crate::builtin::models::textiles::rug;
-use crate::builtin::models::tv_stand::Lowboard;
-use crate::builtin::site::{Side, Site};
+use crate::furniture::models::decoration::picture;
+use crate::furniture::models::food::{bread, cutting_board, fruit, knife_block, red_skin};
+use crate::furniture::models::fridge::refrigerator;
+use crate::furniture::models::gadgets::wall_clock;
+use crate::furniture::models::kitchen_unit::{Bay, KitchenUnit, wall_cabinet};
+use crate::furniture::models::lamps::{ceiling_dome, pendant};
+use crate::furniture::models::openings::{light_switch, radiator};
+use crate::furniture::models::plants::{Plant, fresh_green};
+use crate::furniture::models::radio::radio;
+use crate::furniture::models::table::Table;
+use crate::furniture::models::textiles::rug;
+use crate::furniture::models::tv_stand::Lowboard;
 use dwell_scene::random::Key;
 
 const NORTH: f32 = 0.0;

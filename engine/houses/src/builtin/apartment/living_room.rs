@@ -1,26 +1,26 @@
 //! The living room with its dining corner.
 
-use crate::builtin::assembly::Placed;
-use crate::builtin::finish::{
+use crate::building::assembly::Placed;
+use crate::building::site::{Side, Site};
+use crate::furniture::finish::{
     Finish, cloth, lampshade, marble, oak, painted_steel, porcelain, terracotta, upholstery, walnut,
 };
-use crate::builtin::models::bookshelf::{Bookshelf, SHELVES, book, book_row, cover};
-use crate::builtin::models::chair::Chair;
-use crate::builtin::models::crockery::{bowl, plate, tumbler, white_glaze};
-use crate::builtin::models::decoration::{magazines, picture, sculpture};
-use crate::builtin::models::food::{cutlery, fruit, green_skin, orange_skin, red_skin};
-use crate::builtin::models::gadgets::remote_control;
-use crate::builtin::models::lamps::{candle, drum, floor_lamp, linen_shade, pendant, table_lamp};
-use crate::builtin::models::openings::{light_switch, radiator};
-use crate::builtin::models::plants::{Plant, deep_green, sansevieria, vase};
-use crate::builtin::models::radio::loudspeaker;
-use crate::builtin::models::seats::pouf;
-use crate::builtin::models::sofa::Sofa;
-use crate::builtin::models::table::{Table, side_table};
-use crate::builtin::models::television::television;
-use crate::builtin::models::textiles::{Curtains, folded_blanket, pillow, rug};
-use crate::builtin::models::tv_stand::Lowboard;
-use crate::builtin::site::{Side, Site};
+use crate::furniture::models::bookshelf::{Bookshelf, SHELVES, book, book_row, cover};
+use crate::furniture::models::chair::Chair;
+use crate::furniture::models::crockery::{bowl, plate, tumbler, white_glaze};
+use crate::furniture::models::decoration::{magazines, picture, sculpture};
+use crate::furniture::models::food::{cutlery, fruit, green_skin, orange_skin, red_skin};
+use crate::furniture::models::gadgets::remote_control;
+use crate::furniture::models::lamps::{candle, drum, floor_lamp, linen_shade, pendant, table_lamp};
+use crate::furniture::models::openings::{light_switch, radiator};
+use crate::furniture::models::plants::{Plant, deep_green, sansevieria, vase};
+use crate::furniture::models::radio::loudspeaker;
+use crate::furniture::models::seats::pouf;
+use crate::furniture::models::sofa::Sofa;
+use crate::furniture::models::table::{Table, side_table};
+use crate::furniture::models::television::television;
+use crate::furniture::models::textiles::{Curtains, folded_blanket, pillow, rug};
+use crate::furniture::models::tv_stand::Lowboard;
 use dwell_scene::random::Key;
 
 /// Faces of the room's walls, m.

@@ -24,8 +24,8 @@ mod rooms;
 mod style;
 mod walls;
 
-use super::assembly::Assembly;
-use super::site::Site;
+use crate::building::assembly::Assembly;
+use crate::building::site::Site;
 use dwell_scene::HouseData;
 
 /// The furnished apartment.

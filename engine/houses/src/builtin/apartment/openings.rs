@@ -1,12 +1,12 @@
 //! Doors and windows.
 
 use super::rooms::{BATH, BEDROOM, CHILD, HALL, INNER_M, KITCHEN, LIVING, OUTER_M};
-use crate::builtin::assembly::Assembly;
-use crate::builtin::finish::Finish;
-use crate::builtin::models::openings::{Door, Window, clear_pane, frosted_pane};
-use crate::builtin::plan::Rect;
-use crate::builtin::site::{Site, yaw};
-use crate::builtin::wall::{Along, Opening};
+use crate::building::assembly::Assembly;
+use crate::building::plan::Rect;
+use crate::building::site::{Site, yaw};
+use crate::building::wall::{Along, Opening};
+use crate::furniture::finish::Finish;
+use crate::furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
 use dwell_scene::{Pose, RoomId};
 use glam::Vec3;
 

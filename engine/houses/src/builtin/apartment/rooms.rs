@@ -2,9 +2,9 @@
 
 use super::openings::DOOR_WIDTH_M;
 use super::style;
-use crate::builtin::assembly::Assembly;
-use crate::builtin::finish::Finish;
-use crate::builtin::plan::{Rect, RoomPlan};
+use crate::building::assembly::Assembly;
+use crate::building::plan::{Rect, RoomPlan};
+use crate::furniture::finish::Finish;
 use dwell_scene::RoomId;
 
 /// Thickness of walls to the outside, m.

@@ -3,8 +3,8 @@
 use super::openings::holes;
 use super::rooms::{BATH, BEDROOM, CHILD, HALL, KITCHEN, LIVING, OUTER_M};
 use super::style as s;
-use crate::builtin::plan::Rect;
-use crate::builtin::wall::{Along, Bands, Wall};
+use crate::building::plan::Rect;
+use crate::building::wall::{Along, Bands, Wall};
 use dwell_scene::RoomId;
 
 const O: f32 = OUTER_M;

@@ -1,9 +1,9 @@
 //! Nothing interpenetrates, nothing floats, everything opens.
 
-use super::overlap::{Convex, deepest, depth, object_pieces, part_pieces};
 use super::support::apartment;
+use crate::building::plan::CEILING_M;
 use crate::builtin::apartment::walls;
-use crate::builtin::plan::CEILING_M;
+use crate::testing::overlap::{Convex, deepest, depth, object_pieces, part_pieces};
 use dwell_scene::{Aabb, House, Mobility, ObjectId};
 use glam::Vec3;
 
@@ -14,7 +14,7 @@ const TOLERANCE_M: f32 = 0.002;
 fn shell() -> Vec<Convex> {
     let mut boxes: Vec<Aabb> = walls()
         .iter()
-        .flat_map(crate::builtin::wall::Wall::solid_boxes)
+        .flat_map(crate::building::wall::Wall::solid_boxes)
         .collect();
     boxes.push(Aabb::new(
         Vec3::new(-1.0, -0.2, -1.0),

@@ -1,8 +1,9 @@
 //! Tables, names, meshes, bytes.
 
-use super::overlap::{Convex, depth, object_pieces};
-use super::support::{apartment, assert_closed};
+use super::support::apartment;
 use crate::build::category;
+use crate::testing::meshes::assert_closed;
+use crate::testing::overlap::{Convex, depth, object_pieces};
 use dwell_scene::material::library;
 use dwell_scene::{Holding, Mobility, Room, StructureKind};
 use glam::{Vec2, Vec3};

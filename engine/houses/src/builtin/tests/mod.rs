@@ -2,6 +2,5 @@
 
 mod furniture;
 mod house;
-mod overlap;
-pub(crate) mod support;
+mod support;
 mod walking;

@@ -1,8 +1,6 @@
 //! Helpers of the tests.
 
-use dwell_scene::{Aabb, Collider, House, Mesh};
-use glam::Vec3;
-use std::collections::BTreeMap;
+use dwell_scene::House;
 use std::sync::OnceLock;
 
 /// The apartment, built once for all tests.
@@ -10,29 +8,4 @@ pub(crate) fn apartment() -> &'static House {
     static HOUSE: OnceLock<House> = OnceLock::new();
     HOUSE
         .get_or_init(|| crate::builtin::build("apartment").expect("the apartment is a valid house"))
-}
-
-/// Panics unless every edge of the mesh is met by as many faces from one side as from the other, vertices at exactly the
-/// same place counting as one.
-pub(crate) fn assert_closed(name: &str, mesh: &Mesh) {
-    let key = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
-    let mut edges: BTreeMap<([u32; 3], [u32; 3]), i32> = BTreeMap::new();
-    for triangle in 0..mesh.triangles.len() {
-        let corners = mesh.corners(triangle).map(key);
-        for k in 0..3 {
-            let (a, b) = (corners[k], corners[(k + 1) % 3]);
-            *edges.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
-        }
-    }
-    let open = edges.values().filter(|count| **count != 0).count();
-    assert_eq!(open, 0, "{name}: {open} of {} edges are open", edges.len());
-}
-
-/// The box around collision pieces; `None` without any.
-pub(crate) fn collider_bounds(colliders: &[Collider]) -> Option<Aabb> {
-    let bounds = colliders
-        .iter()
-        .filter_map(Collider::bounds)
-        .fold(Aabb::EMPTY, |all, one| all.union(&one));
-    (!bounds.is_empty()).then_some(bounds)
 }

@@ -1,8 +1,8 @@
 //! One can walk through the rooms.
 
-use super::overlap::{Convex, object_pieces};
 use super::support::apartment;
 use crate::builtin::apartment::walls;
+use crate::testing::overlap::{Convex, object_pieces};
 use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
 use dwell_scene::{Aabb, State};
 use glam::Vec2;
@@ -22,7 +22,7 @@ fn obstacles() -> Vec<Aabb> {
     let house = apartment();
     let mut boxes: Vec<Aabb> = walls()
         .iter()
-        .flat_map(crate::builtin::wall::Wall::solid_boxes)
+        .flat_map(crate::building::wall::Wall::solid_boxes)
         .collect();
     for (id, object) in house.objects.iter_ids() {
         if object.category.coarse == "door" {

@@ -1,0 +1,263 @@
+//! Puts models into the tables of a house.
+
+use crate::build::{Names, category};
+use crate::furniture::finish::Finish;
+use crate::furniture::model::Model;
+use crate::furniture::textures::Pattern;
+use dwell_scene::parallel::Threads;
+use dwell_scene::{
+    Aabb, Articulation, Category, HouseData, Id, JointKind, Level, LevelId, Light, MaterialId,
+    Mesh, MeshId, Object, ObjectId, Part, PartId, Pose, Receptacle, RoomId, SoundEmitter,
+    Structure, StructureKind, TextureId,
+};
+use glam::Affine3A;
+use std::sync::Arc;
+
+/// Colour of lamps, linear: about 3,000 K.
+const WARM_WHITE: [f32; 3] = [1.0, 0.86, 0.68];
+/// Lamps fade with the square of the distance.
+const ATTENUATION: [f32; 3] = [0.0, 0.0, 1.0];
+/// Coulomb friction of hinges, N·m, and of slides, N.
+const FRICTION: f32 = 0.3;
+/// Viscous damping of hinges, N·m·s/rad.
+const HINGE_DAMPING: f32 = 0.4;
+/// Viscous damping of slides, N·s/m.
+const SLIDE_DAMPING: f32 = 8.0;
+
+/// A model that the house knows.
+#[derive(Clone, Debug)]
+pub(crate) struct Kind {
+    pub(crate) model: Arc<Model>,
+    meshes: Vec<MeshId>,
+    materials: Vec<Vec<MaterialId>>,
+}
+
+/// An instance and where it stands.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    pub(crate) model: Arc<Model>,
+    pub(crate) world_from_model: Pose,
+}
+
+/// A house under construction.
+#[derive(Debug, Default)]
+pub(crate) struct Assembly {
+    pub(crate) data: HouseData,
+    patterns: Vec<Pattern>,
+    finishes: Vec<(Finish, MaterialId)>,
+    material_names: Names,
+    object_names: Names,
+}
+
+impl Assembly {
+    /// An empty house of one storey.
+    pub(crate) fn new(name: &str) -> Self {
+        let mut assembly = Self::default();
+        name.clone_into(&mut assembly.data.name);
+        "builtin@1".clone_into(&mut assembly.data.source);
+        assembly.data.levels.push(Level {
+            name: "0".to_owned(),
+            bounds: Aabb::EMPTY,
+        });
+        assembly
+    }
+
+    /// The material of a finish; equal finishes are one material.
+    pub(crate) fn material(&mut self, finish: &Finish) -> MaterialId {
+        if let Some((_, id)) = self.finishes.iter().find(|(known, _)| known == finish) {
+            return *id;
+        }
+        let texture = finish.pattern.map(|pattern| {
+            let known = self
+                .patterns
+                .iter()
+                .position(|p| *p == pattern)
+                .unwrap_or_else(|| {
+                    self.patterns.push(pattern);
+                    self.patterns.len() - 1
+                });
+            TextureId::from_index(known)
+        });
+        let name = self.material_names.unique(finish.name);
+        let id = self.data.materials.push(finish.material(name, texture));
+        self.finishes.push((finish.clone(), id));
+        id
+    }
+
+    /// Makes a model known.
+    pub(crate) fn kind(&mut self, model: Model) -> Kind {
+        let meshes = model
+            .parts
+            .iter()
+            .map(|part| self.data.meshes.push(part.mesh.clone()))
+            .collect();
+        let materials = model
+            .parts
+            .iter()
+            .map(|part| {
+                part.finishes
+                    .iter()
+                    .map(|finish| self.material(finish))
+                    .collect()
+            })
+            .collect();
+        Kind {
+            model: Arc::new(model),
+            meshes,
+            materials,
+        }
+    }
+
+    /// A piece of the building, its mesh in world space.
+    pub(crate) fn structure(
+        &mut self,
+        name: &str,
+        kind: StructureKind,
+        room: Option<RoomId>,
+        mesh: Mesh,
+        finishes: &[Finish],
+    ) {
+        let materials = finishes
+            .iter()
+            .map(|finish| self.material(finish))
+            .collect();
+        let mesh = self.data.meshes.push(Arc::new(mesh));
+        self.data.structure.push(Structure {
+            name: name.to_owned(),
+            kind,
+            room,
+            level: LevelId(0),
+            mesh,
+            materials,
+        });
+    }
+
+    /// Puts an instance into a room, its first joint open by `openness` (0 to 1).
+    pub(crate) fn place(
+        &mut self,
+        kind: &Kind,
+        world_from_model: Pose,
+        room: RoomId,
+        openness: f32,
+    ) -> Placed {
+        let model = Arc::new(Model::clone(&kind.model).ajar(openness));
+        let data = &mut self.data;
+        let (object, first_part) = (
+            ObjectId::from_index(data.objects.len()),
+            PartId::from_index(data.parts.len()),
+        );
+        let name = self.object_names.counted(model.category);
+        let nyu40 =
+            category([model.category]).map_or_else(String::new, |row| row.nyu40_name.clone());
+        let joined = |part: usize| model.joints.iter().any(|joint| joint.child == part);
+        for (k, part) in model.parts.iter().enumerate() {
+            data.parts.push(Part {
+                object,
+                name: part.name.to_owned(),
+                fixed: model.mobility != dwell_scene::Mobility::Movable && !joined(k),
+                world_from_part: world_from_model * model.model_from_part(k),
+                mesh: kind.meshes[k],
+                part_from_mesh: Affine3A::IDENTITY,
+                materials: kind.materials[k].clone(),
+                colliders: part.colliders.clone(),
+                mass_kg: Some(part.mass_kg),
+                density_kg_m3: part.density_kg_m3,
+                inertial: None,
+            });
+        }
+        data.objects.push(Object {
+            source_id: name.clone(),
+            name,
+            model: model.name.to_owned(),
+            category: Category {
+                fine: model.name.to_owned(),
+                coarse: model.category.to_owned(),
+                nyu40,
+            },
+            level: LevelId(0),
+            room: Some(room),
+            mobility: model.mobility,
+            pickable: model.pickable,
+            switch: model.switch,
+            first_part,
+            part_count: model.parts.len() as u32,
+        });
+        let part_id = |k: usize| PartId(first_part.0 + k as u32);
+        self.fixtures(&model, object, part_id);
+        Placed {
+            model,
+            world_from_model,
+        }
+    }
+
+    fn fixtures(&mut self, model: &Model, object: ObjectId, part_id: impl Fn(usize) -> PartId) {
+        let data = &mut self.data;
+        for joint in &model.joints {
+            let frame = Pose::from_position(joint.position);
+            let hinge = joint.kind == JointKind::Hinge;
+            data.joints.push(Articulation {
+                parent: Some(part_id(joint.parent)),
+                parent_from_joint: frame,
+                child_from_joint: frame,
+                limits: Some([0.0, joint.open]),
+                open: joint.open,
+                initial: joint.initial,
+                friction: FRICTION,
+                damping: if hinge { HINGE_DAMPING } else { SLIDE_DAMPING },
+                ..Articulation::new(
+                    joint.name,
+                    object,
+                    part_id(joint.child),
+                    joint.kind,
+                    joint.axis,
+                )
+            });
+        }
+        data.lights.extend(model.lights.iter().map(|light| Light {
+            object,
+            part: part_id(light.part),
+            position: light.position,
+            shape: light.shape,
+            color: WARM_WHITE,
+            power_w: light.power_w,
+            attenuation: ATTENUATION,
+        }));
+        data.emitters
+            .extend(model.sounds.iter().map(|sound| SoundEmitter {
+                object,
+                part: part_id(sound.part),
+                position: sound.position,
+                signal: sound.signal.to_owned(),
+                level_db: sound.level_db,
+            }));
+        data.receptacles
+            .extend(model.spaces.iter().map(|space| Receptacle {
+                object,
+                part: part_id(space.part),
+                name: space.name.to_owned(),
+                holding: space.holding,
+                space_in_part: space.space,
+            }));
+    }
+
+    /// The finished tables: textures painted, bounds taken.
+    pub(crate) fn finish(mut self) -> HouseData {
+        let patterns = self.patterns;
+        let painted = Threads::default().map(patterns.len(), |k| Arc::new(patterns[k].paint()));
+        for texture in painted {
+            self.data.textures.push(texture);
+        }
+        let mut bounds = Aabb::EMPTY;
+        for piece in &self.data.structure {
+            bounds = bounds.union(&self.data.meshes[piece.mesh].bounds());
+        }
+        for part in &self.data.parts {
+            let place = part.world_from_part.to_affine();
+            bounds = bounds.union(&self.data.meshes[part.mesh].bounds().transformed(&place));
+        }
+        if let Some(level) = self.data.levels.get_mut(LevelId(0)) {
+            level.bounds = bounds;
+        }
+        self.data
+    }
+}

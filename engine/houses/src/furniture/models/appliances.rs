@@ -1,0 +1,175 @@
+//! Small kitchen appliances and the washing machine.
+
+use crate::furniture::finish::{Finish, black, chrome, enamel, glass, plastic, steel};
+use crate::furniture::model::{Model, Part};
+use crate::furniture::shapes::{block, cylinder, lathe, ring, rod, rounded_block, tube};
+use glam::Vec3;
+use std::f32::consts::FRAC_PI_2;
+
+/// A kettle on its base.
+pub(crate) fn kettle() -> Model {
+    let grip = tube(
+        &[
+            [-0.045, 0.2, 0.0],
+            [-0.11, 0.2, 0.0],
+            [-0.125, 0.15, 0.0],
+            [-0.11, 0.07, 0.0],
+        ],
+        0.011,
+        8,
+    );
+    let spout = rod([0.06, 0.15, 0.0], [0.1, 0.185, 0.0], 0.012);
+    let pot = lathe(
+        &[
+            (0.0, 0.02),
+            (0.078, 0.02),
+            (0.08, 0.05),
+            (0.066, 0.17),
+            (0.05, 0.2),
+            (0.0, 0.205),
+        ],
+        24,
+    );
+    let body = Part::new("body")
+        .with(&black(), cylinder(0.082, 0.02, 24))
+        .with_filled(&steel(), pot, 0.03)
+        .with(&black(), grip)
+        .with_filled(&steel(), spout, 0.2)
+        .with(&black(), cylinder(0.012, 0.015, 12).at(0.0, 0.2035, 0.0));
+    Model::pickable("kettle", "kettle")
+        .switched(false)
+        .part(body)
+        .sounding([0.0, 0.1, 0.0], "kettle", 64.0)
+}
+
+/// A toaster for two slices.
+pub(crate) fn toaster() -> Model {
+    let cream = plastic("cream_plastic", [232, 218, 186]);
+    let slot = |z: f32| block([-0.1, 0.1785, z - 0.013], [0.1, 0.1802, z + 0.013]).untouchable();
+    let body = Part::new("body")
+        .with_filled(
+            &cream,
+            rounded_block([-0.14, 0.008, -0.085], [0.14, 0.18, 0.085], 0.03, 2),
+            0.2,
+        )
+        .with(&black(), block([-0.12, 0.0, -0.07], [0.12, 0.008, 0.07]))
+        .with_all(&black(), [slot(-0.03), slot(0.03)])
+        .with(&black(), block([0.14, 0.11, -0.015], [0.16, 0.125, 0.015]));
+    Model::pickable("toaster", "toaster")
+        .switched(false)
+        .part(body)
+}
+
+/// A filter coffee machine with its jug.
+pub(crate) fn coffee_machine() -> Model {
+    let case = plastic("anthracite_plastic", [54, 56, 60]);
+    let jug = lathe(
+        &[
+            (0.0, 0.035),
+            (0.055, 0.035),
+            (0.065, 0.07),
+            (0.05, 0.14),
+            (0.0, 0.142),
+        ],
+        20,
+    );
+    let body = Part::new("body")
+        .with_filled(
+            &case,
+            rounded_block([-0.1, 0.0, -0.13], [0.1, 0.034, 0.13], 0.01, 1),
+            0.5,
+        )
+        .with_filled(
+            &case,
+            rounded_block([-0.1, 0.034, -0.13], [0.1, 0.22, -0.03], 0.01, 1),
+            0.5,
+        )
+        .with_filled(
+            &case,
+            rounded_block([-0.1, 0.22, -0.13], [0.1, 0.33, 0.1], 0.012, 1),
+            0.5,
+        )
+        .with_filled(&glass(), jug.at(0.0, 0.0, 0.045), 0.25);
+    Model::movable("coffee_machine", "coffee_machine")
+        .switched(false)
+        .part(body)
+        .sounding([0.0, 0.25, 0.0], "hum", 55.0)
+}
+
+/// A microwave oven; its door turns on the left.
+pub(crate) fn microwave() -> Model {
+    let case = enamel("microwave_white", [232, 232, 230]);
+    let dark = Finish::plain("black_glass", "glass", [22, 22, 24]).clear(1.0);
+    let (x, h, z) = (0.24, 0.28, 0.18);
+    let knob = |y: f32| cylinder(0.02, 0.018, 14).about_x(FRAC_PI_2).at(0.2, y, z);
+    let body = Part::new("body")
+        .with_filled(
+            &case,
+            rounded_block([-x, 0.01, -z], [x, h, z], 0.008, 1),
+            0.7,
+        )
+        .with(
+            &black(),
+            block([-x + 0.02, 0.0, -z + 0.02], [x - 0.02, 0.01, z - 0.02]),
+        )
+        .with(
+            &dark,
+            block([-x + 0.02, 0.035, z], [0.14, h - 0.025, z + 0.012]),
+        )
+        .with(
+            &chrome(),
+            rod([0.152, 0.06, z + 0.02], [0.152, h - 0.05, z + 0.02], 0.006).untouchable(),
+        )
+        .with_all(&case, [knob(0.1), knob(0.19)]);
+    Model::movable("microwave", "microwave")
+        .switched(false)
+        .part(body)
+        .sounding([0.0, 0.15, z], "hum", 56.0)
+}
+
+/// A washing machine with a round door.
+pub(crate) fn washer() -> Model {
+    let white = enamel("washer_white", [238, 239, 240]);
+    let (x, h, z) = (0.298, 0.85, 0.29);
+    let dark = Finish::plain("washer_window", "glass", [62, 70, 78]).clear(1.0);
+    let body = Part::new("body")
+        .with(&white, rounded_block([-x, 0.012, -z], [x, h, z], 0.01, 1))
+        .with(
+            &black(),
+            block([-x + 0.03, 0.0, -z + 0.03], [x - 0.03, 0.012, z - 0.03]),
+        )
+        .with(
+            &plastic("panel_grey", [196, 198, 202]),
+            block([-x + 0.01, h - 0.13, z], [x - 0.01, h - 0.02, z + 0.004]),
+        )
+        .with(
+            &chrome(),
+            cylinder(0.032, 0.02, 18)
+                .about_x(FRAC_PI_2)
+                .at(0.05, h - 0.075, z + 0.004),
+        )
+        .with(
+            &dark,
+            block([0.13, h - 0.1, z + 0.004], [0.25, h - 0.05, z + 0.006]).untouchable(),
+        );
+    let door = Part::new("door")
+        .with(
+            &dark,
+            cylinder(0.145, 0.03, 28)
+                .about_x(FRAC_PI_2)
+                .at(0.0, 0.42, z + 0.002),
+        )
+        .with(
+            &chrome(),
+            ring(0.155, 0.016, 28)
+                .about_x(FRAC_PI_2)
+                .at(0.0, 0.42, z + 0.018),
+        );
+    Model::articulated("washing_machine", "washer")
+        .switched(false)
+        .part(body)
+        .sounding([0.0, 0.42, z], "washing_machine", 62.0)
+        .top("top", [-x, h, -z], [x, h + 0.5, z])
+        .part(door)
+        .hinged("door", [-0.17, 0.0, z + 0.034], Vec3::NEG_Y, 1.8)
+}
