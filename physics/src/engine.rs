@@ -5,10 +5,10 @@ use crate::laws::Compliance;
 use crate::softness;
 use glam::Vec3;
 use rapier3d::dynamics::{
-    CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet,
+    CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet, RigidBody,
     RigidBodyHandle, RigidBodySet, RigidBodyType, SoftBodySet,
 };
-use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, NarrowPhase};
+use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, ContactPair, NarrowPhase};
 use rapier3d::math::Pose;
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, QueryFilter, QueryPipeline};
 
@@ -84,8 +84,60 @@ impl Engine {
         self.parameters.dt
     }
 
+    /// Length of a solver substep, s.
+    fn substep_s(&self) -> f32 {
+        self.parameters.dt / self.parameters.num_solver_iterations as f32
+    }
+
+    /// Bodies that move, touch nothing and hang on no joint, from before a step.
+    fn in_free_flight(&self) -> Vec<RigidBodyHandle> {
+        let flies = |handle: &RigidBodyHandle| {
+            self.bodies.get(*handle).is_some_and(|body| {
+                body.is_dynamic()
+                    && body.gravity_scale() != 0.0
+                    && self.joints.attached_joints(*handle).next().is_none()
+                    && !self.touches(body)
+            })
+        };
+        self.islands.active_bodies().filter(flies).collect()
+    }
+
+    fn touches(&self, body: &RigidBody) -> bool {
+        let mut pairs = body
+            .colliders()
+            .iter()
+            .flat_map(|collider| self.narrow_phase.contact_pairs_with(*collider));
+        pairs.any(ContactPair::has_any_active_contact)
+    }
+
+    /// Adds a share of what gravity adds in a substep to the velocities of bodies.
+    fn fall(&mut self, flying: &[RigidBodyHandle], share: f32) {
+        let change = self.gravity * (self.substep_s() * share);
+        for handle in flying {
+            if let Some(body) = self.bodies.get_mut(*handle) {
+                let velocity = body.linvel() + change * body.gravity_scale();
+                body.set_linvel(velocity, false);
+            }
+        }
+    }
+
     /// One physics step.
+    ///
+    /// Gravity acts at the beginning of rapier's substeps, so that a body would fall half a substep ahead of its time. What
+    /// flies freely has half of one substep's gravity taken off before and added after: then it follows its parabola
+    /// exactly (the leapfrog method). What touched something in the step keeps what the contact made of its velocity.
     pub(crate) fn step(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
+        let mut flying = self.in_free_flight();
+        self.fall(&flying, -0.5);
+        self.advance(hooks, events);
+        flying.retain(|handle| {
+            let body = self.bodies.get(*handle);
+            body.is_some_and(|body| !self.touches(body))
+        });
+        self.fall(&flying, 0.5);
+    }
+
+    fn advance(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
         let parameters = self.parameters;
         if self.runs == 1 {
             self.run(&parameters, hooks, events);

@@ -1,5 +1,6 @@
 //! Parameters that change while a world runs.
 
+use crate::agents::Grip;
 use crate::body::{self, Hold};
 use crate::contact::{ContactTable, Dress};
 use crate::error::PhysicsError;
@@ -54,9 +55,12 @@ impl PhysicsWorld {
             }
             let properties = inertia.map_or_else(MassProperties::default, |i| i.properties());
             let handle = self.bodies[index].handle;
+            let held = |grip: &Grip| grip.body as usize == index && grip.is_firm();
+            let held = self.grips.iter().any(held);
             if let Some(rigid) = self.engine.bodies.get_mut(handle) {
                 rigid.set_additional_mass_properties(properties, false);
-                rigid.set_gravity_scale(inertia.map_or(1.0, |i| i.gravity_scale), false);
+                let scale = inertia.map_or(1.0, |i| i.gravity_scale);
+                rigid.set_gravity_scale(if held { 0.0 } else { scale }, false);
             }
         }
         for agent in 0..self.agents.len() {

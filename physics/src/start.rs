@@ -299,7 +299,9 @@ impl Start<'_> {
                 ));
             }
             for other in placed {
-                if !other.bounds.intersects(&bounds) {
+                // A lid may lie on its own pot.
+                let own = self.model.bodies[other.body as usize].object == plan.object;
+                if own || !other.bounds.intersects(&bounds) {
                     continue;
                 }
                 for obstacle in &self.model.bodies[other.body as usize].pieces {

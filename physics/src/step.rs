@@ -225,9 +225,8 @@ impl PhysicsWorld {
             let agent = state.agents[self.grips[place].agent];
             let body = self.bodies[self.grips[place].body as usize];
             let grip = &mut self.grips[place];
-            let substeps = self.settings.config.solver_substeps as f32;
-            let times = (self.settings.dt_s, substeps);
-            let slips = agents::carry(&mut self.engine, &body, grip, &agent, times);
+            let dt_s = self.settings.dt_s;
+            let slips = agents::carry(&mut self.engine, &body, grip, &agent, dt_s);
             if !slips {
                 place += 1;
                 continue;

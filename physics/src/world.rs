@@ -249,6 +249,7 @@ impl PhysicsWorld {
                 rigid.set_body_type(body::body_type(resolved.hold), false);
             }
         }
+        self.hang_joints(state);
         if self.settings.config.latches {
             for joint in &self.joints {
                 let articulation = &model.house.joints[joint.id];
@@ -261,6 +262,29 @@ impl PhysicsWorld {
             }
         }
         report
+    }
+
+    /// Brings what hangs on joints along where what it hangs on was moved.
+    fn hang_joints(&mut self, state: &State) {
+        let stands = self.joints.iter().map(|joint| joints::Stand {
+            position: state.joint_position[joint.id],
+            velocity: 0.0,
+            anew: false,
+            shut: false,
+        });
+        let stands: Vec<joints::Stand> = stands.collect();
+        for tree in &self.trees {
+            let root = tree.root_body();
+            let moved = (0..self.bodies.len()).any(|index| {
+                let start = to_rapier(&state.part_pose[self.model.bodies[index].root()]);
+                self.bodies[index].handle == root
+                    && pose_of(&self.engine, &self.bodies[index])
+                        != Some(crate::convert::from_rapier(&start))
+            });
+            if moved {
+                joints::place(&mut self.engine, &self.joints, tree, &stands);
+            }
+        }
     }
 
     /// The shapes this world shares with others over its house.
@@ -342,6 +366,7 @@ impl PhysicsWorld {
             state.joint_position[joint.id] = if shut { closed } else { position };
             state.joint_velocity[joint.id] = if shut { 0.0 } else { velocity };
         }
+        state.follow_switches(&self.model.house);
     }
 
     pub(crate) fn write_contacts(&self, state: &mut State) {

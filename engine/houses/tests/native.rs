@@ -105,6 +105,8 @@ fn a_house_of_version_1_is_read() {
         (",\"inertial\":null", ""),
         (",\"armature\":0.0", ""),
         (",\"mimic\":null", ""),
+        (",\"switches\":false", ""),
+        (",\"switches\":true", ""),
     ] {
         assert!(text.contains(new), "{new}");
         text = text.replace(new, old);

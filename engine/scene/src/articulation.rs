@@ -156,6 +156,9 @@ pub struct Articulation {
     /// The joint it follows, if it follows one.
     #[serde(default)]
     pub mimic: Option<Mimic>,
+    /// Whether it is its object's switch, such as the lever of a tap: opened it switches the object on, closed off.
+    #[serde(default)]
+    pub switches: bool,
 }
 
 impl Articulation {
@@ -199,6 +202,7 @@ impl Articulation {
             armature: 0.0,
             servo: None,
             mimic: None,
+            switches: false,
         }
     }
 

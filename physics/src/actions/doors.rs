@@ -57,20 +57,31 @@ impl PhysicsWorld {
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
         }
-        for id in ids {
-            let joint = &house.joints[id];
+        self.lead(state, actor, &ids, fraction);
+        let sentence = format!("You {verb} the {name}; it takes a moment.");
+        Ok(done(ActionCode::Started, sentence, Some(object)))
+    }
+
+    /// Lays the actor's hand on joints, to lead them to an openness (0 to 1) over the next steps.
+    pub(super) fn lead(
+        &mut self,
+        state: &mut State,
+        actor: Actor<'_>,
+        joints: &[JointId],
+        fraction: f32,
+    ) {
+        for id in joints {
+            let joint = &self.model.house.joints[*id];
             // Exactly at its stop, so that rounding leaves no gap.
             let goal = if fraction >= 1.0 {
                 joint.open
             } else {
                 joint.position_at(fraction)
             };
-            state.joint_command[id] = JointCommand::Position(goal);
-            let drive = Drive::new(goal, state.joint_position[id], Some(actor.id));
-            self.drives.insert(id, drive);
+            state.joint_command[*id] = JointCommand::Position(goal);
+            let drive = Drive::new(goal, state.joint_position[*id], Some(actor.id));
+            self.drives.insert(*id, drive);
         }
-        let sentence = format!("You {verb} the {name}; it takes a moment.");
-        Ok(done(ActionCode::Started, sentence, Some(object)))
     }
 
     /// The joints of an object that are meant: the one that moves the part that was named or met, or all.

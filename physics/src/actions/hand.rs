@@ -102,8 +102,9 @@ impl PhysicsWorld {
         } else {
             self.clear_between(body, &holder, &place, &target)
         };
+        let gravity_scale = self.gravity_scale(body);
         if let Some(rigid) = self.engine.bodies.get_mut(self.bodies[body].handle) {
-            rigid.set_gravity_scale(if grasp == Grasp::Kinematic { 0.0 } else { 1.0 }, true);
+            rigid.set_gravity_scale(gravity_scale, true);
             rigid.set_linvel(Vec3::ZERO, true);
             rigid.set_angvel(Vec3::ZERO, true);
             // What has been in a hand may be thin and fast.
@@ -158,11 +159,22 @@ impl PhysicsWorld {
     pub(crate) fn ungrip(&mut self, state: &mut State, place: usize) {
         let grip = self.grips.remove(place);
         let velocity = state.agents[grip.agent].velocity;
-        release(&mut self.engine, &self.bodies[grip.body as usize], velocity);
+        let body = grip.body as usize;
+        let scale = self.gravity_scale(body);
+        release(&mut self.engine, &self.bodies[body], scale, velocity);
         state.agents[grip.agent].holding = None;
         state.held_by[grip.object] = None;
         // The pair meets again once they have parted.
         self.parting.push((grip.body, grip.agent));
+    }
+
+    /// The share of its weight that a body has: none in a hand that holds it firmly, else what laws leave of it.
+    pub(crate) fn gravity_scale(&self, body: usize) -> f32 {
+        let carried = |grip: &Grip| grip.body as usize == body && grip.is_firm();
+        if self.grips.iter().any(carried) {
+            return 0.0;
+        }
+        self.weights.altered[body].map_or(1.0, |inertia| inertia.gravity_scale)
     }
 
     /// The bodies of an object.

@@ -6,12 +6,15 @@ use super::request::Target;
 use super::stance::Stance;
 use super::target::Aim;
 use super::{Actor, Told};
+use crate::contact::Toucher;
 use crate::convert::to_rapier;
 use crate::model::BodyPlan;
 use crate::world::PhysicsWorld;
-use dwell_scene::{Aabb, Holding, Pose, Receptacle, State};
+use dwell_scene::{Aabb, Holding, ObjectId, Pose, Receptacle, State};
 use glam::Vec3;
+use rapier3d::geometry::{Collider, ColliderHandle, Ray};
 use rapier3d::math::Pose as RapierPose;
+use rapier3d::pipeline::QueryFilter;
 
 /// Places a side that are tried inside.
 const GRID: u32 = 7;
@@ -21,6 +24,9 @@ const STRETCH_M: f32 = 0.2;
 const STICKS_OUT: f32 = 0.6;
 /// From this openness on, nothing is said about closed doors.
 const OPEN: f32 = 0.7;
+
+/// Steps in which the way out of a container is looked along.
+const WAY_STEPS: u32 = 32;
 
 /// What was found while looking for a spot inside.
 #[derive(Default)]
@@ -139,6 +145,11 @@ impl PhysicsWorld {
         } else {
             STICKS_OUT
         };
+        let root = house.objects[space.object].first_part;
+        let loose_with_lid = !house.parts[root].fixed
+            && house
+                .joints_of(space.object)
+                .any(|id| house.joints[id].opens());
         for stance in self.stances(body) {
             let size = size_in(plan, &stance, &world_from_part);
             let room = inside.size();
@@ -165,9 +176,12 @@ impl PhysicsWorld {
                     }
                     search.in_reach = true;
                     let inner = bounds_on(&stance, foot);
-                    if !house.encloses(state, space.object, &outer, &inner)
-                        || self.barred_by(eye, middle).is_some()
-                    {
+                    let gets_in = if loose_with_lid {
+                        self.gets_in(eye, middle, space.object, &outer, &world_from_part)
+                    } else {
+                        self.barred_by(eye, middle).is_none()
+                    };
+                    if !gets_in || !house.encloses(state, space.object, &outer, &inner) {
                         continue;
                     }
                     search.in_sight = true;
@@ -178,6 +192,48 @@ impl PhysicsWorld {
                 }
             }
         }
+    }
+}
+
+impl PhysicsWorld {
+    /// Whether a hand gets to a point inside a loose thing with a lid or a door, whose walls would otherwise be reached
+    /// around: straight out of it on some side nothing of it is in the way, and from there to the eye nothing else.
+    fn gets_in(
+        &self,
+        eye: Vec3,
+        inside: Vec3,
+        container: ObjectId,
+        outer: &Aabb,
+        world_from_part: &Pose,
+    ) -> bool {
+        let house = &self.model().house;
+        let own = |_: ColliderHandle, collider: &Collider| {
+            let part = self.entry_of(collider).toucher;
+            matches!(part, Some(Toucher::Part(part)) if house.parts[part].object == container)
+        };
+        let queries = self.engine.queries(QueryFilter::default().predicate(&own));
+        let beyond = outer.size().length();
+        let sides = [
+            Vec3::X,
+            Vec3::Y,
+            Vec3::Z,
+            Vec3::NEG_X,
+            Vec3::NEG_Y,
+            Vec3::NEG_Z,
+        ];
+        sides.iter().any(|side| {
+            let out = world_from_part.transform_vector(*side);
+            let leaves =
+                (1..=WAY_STEPS).map(|k| inside + out * (beyond * k as f32 / WAY_STEPS as f32));
+            let outside = leaves
+                .into_iter()
+                .find(|point| !outer.grown(0.01).contains(*point));
+            outside.is_some_and(|outside| {
+                let ray = Ray::new(inside, outside - inside);
+                queries.cast_ray(&ray, 1.0, true).is_none()
+                    && self.barred_by(eye, outside).is_none()
+            })
+        })
     }
 }
 

@@ -4,7 +4,7 @@ use super::outcome::{ActionCode, done, fail};
 use super::request::Target;
 use super::{Actor, Told};
 use crate::world::PhysicsWorld;
-use dwell_scene::State;
+use dwell_scene::{JointId, State};
 
 impl PhysicsWorld {
     pub(super) fn toggle(&mut self, state: &mut State, actor: Actor<'_>, target: &Target) -> Told {
@@ -17,9 +17,25 @@ impl PhysicsWorld {
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
         }
+        let house = self.model().house.clone();
+        let levers: Vec<JointId> = house
+            .joints_of(object)
+            .filter(|id| house.joints[*id].switches)
+            .collect();
+        let word = if state.switched_on[object] {
+            "off"
+        } else {
+            "on"
+        };
+        if !levers.is_empty() {
+            // The switch follows its lever, which a hand turns.
+            let share = if state.switched_on[object] { 0.0 } else { 1.0 };
+            self.lead(state, actor, &levers, share);
+            let sentence = format!("You turn the {name} {word}; it takes a moment.");
+            return Ok(done(ActionCode::Started, sentence, Some(object)));
+        }
         let on = !state.switched_on[object];
         state.switched_on[object] = on;
-        let word = if on { "on" } else { "off" };
         let sentence = format!("You switch the {name} {word}.");
         Ok(done(ActionCode::Done, sentence, Some(object)))
     }

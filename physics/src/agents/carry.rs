@@ -103,7 +103,7 @@ pub(crate) fn carry(
     body: &Body,
     grip: &mut Grip,
     holder: &AgentState,
-    (dt_s, substeps): (f32, f32),
+    dt_s: f32,
 ) -> bool {
     let target = hand_pose(grip, holder);
     engine
@@ -151,9 +151,8 @@ pub(crate) fn carry(
                 dt_s,
             };
             let most = (HAND_FORCE_N / mass + gravity).min(HAND_M_S2) * dt_s;
-            // The weight acts in the substeps of the same step: this is the mean velocity that it adds.
-            let falls = 0.5 * (1.0 + 1.0 / substeps) * dt_s;
-            let falling = Vec3::NEG_Y * (gravity * falls);
+            // The weight acts during the same step: this is the mean velocity that it adds.
+            let falling = Vec3::NEG_Y * (0.5 * gravity * rigid.gravity_scale() * dt_s);
             let pull = spring.change(away, rigid.linvel() + falling - holder.velocity);
             let twist = spring.change(turn, rigid.angvel());
             (
@@ -191,16 +190,21 @@ impl Spring {
 }
 
 impl Grip {
+    /// Whether it carries the whole weight.
+    pub(crate) fn is_firm(&self) -> bool {
+        self.grasp == Grasp::Kinematic
+    }
+
     /// Where a held body's middle is, m.
     pub(crate) fn middle_at(&self, world_from_body: &rapier3d::math::Pose) -> Vec3 {
         *world_from_body * self.middle_in_body
     }
 }
 
-/// Lets go of a body: it has its weight again and the speed of whoever held it.
-pub(crate) fn release(engine: &mut Engine, body: &Body, velocity: Vec3) {
+/// Lets go of a body: it has its weight again (`gravity_scale` of it) and the speed of whoever held it.
+pub(crate) fn release(engine: &mut Engine, body: &Body, gravity_scale: f32, velocity: Vec3) {
     if let Some(rigid) = engine.bodies.get_mut(body.handle) {
-        rigid.set_gravity_scale(1.0, true);
+        rigid.set_gravity_scale(gravity_scale, true);
         rigid.set_linvel(velocity.clamp_length_max(3.0), true);
         rigid.set_angvel(Vec3::ZERO, true);
     }

@@ -17,6 +17,13 @@ pub(crate) struct Tree {
     pub(super) follows: Vec<Option<(usize, f32, f32)>>,
 }
 
+impl Tree {
+    /// The body that the first joint hangs on.
+    pub(crate) fn root_body(&self) -> RigidBodyHandle {
+        self.root
+    }
+}
+
 /// Sorts a world's joints into trees. Joints hang together where one's child is another's parent, where they hang on one
 /// body that may move, and where one follows the other.
 pub(crate) fn trees(joints: &[Joint], house: &House, anchor: RigidBodyHandle) -> Vec<Tree> {

@@ -59,8 +59,8 @@ fn drift(run: &Run, before: &[Vec3]) -> Vec<(String, f32)> {
     all
 }
 
-/// `stray` things may go further than `furthest_m`, and `leaning` ones may tip by more than two degrees.
-fn settles(name: &str, mut run: Run, furthest_m: f32, [stray, leaning]: [usize; 2]) {
+/// `stray` things may go further than `furthest_m`; none tips by more than two degrees.
+fn settles(name: &str, mut run: Run, furthest_m: f32, stray: usize) {
     say(name, &run);
     let before: Vec<Vec3> = run.house.objects.ids().map(|id| run.position(id)).collect();
     // The direction in each thing that points up at the start.
@@ -95,7 +95,7 @@ fn settles(name: &str, mut run: Run, furthest_m: f32, [stray, leaning]: [usize; 
         let tilts = tilts(&run, &upright);
         println!("  most tilted: {:?}", &tilts[..tilts.len().min(4)]);
         let tipped = tilts.iter().filter(|(degrees, _)| *degrees > 2.0).count();
-        assert!(tipped <= leaning, "{:?}", &tilts[..tipped]);
+        assert!(tipped == 0, "{:?}", &tilts[..tipped]);
         run.steps(30);
     }
     let energy_j = run.world.kinetic_energy_j();
@@ -134,14 +134,13 @@ fn tilts(run: &Run, upright: &[Vec3]) -> Vec<(f32, String)> {
 
 #[test]
 fn the_apartment_starts_at_rest() {
-    // A table lamp leans by 3.3 degrees, and stands.
-    settles("apartment", apartment(), 0.05, [0, 1]);
+    settles("apartment", apartment(), 0.05, 0);
 }
 
 #[test]
 fn the_real_house_starts_at_rest() {
     if let Some(run) = sample() {
-        settles("sample house", run, 0.1, [5, 0]);
+        settles("sample house", run, 0.1, 5);
     }
 }
 
@@ -182,7 +181,8 @@ fn walks(mut run: Run) {
     );
 }
 
-/// One joint after the other: told to open, it opens, unless something stands in its way, and shuts to the bit.
+/// One joint after the other: told to open, it opens, unless something stands in its way, and shuts: what stands firm to
+/// the bit, a lid on something loose within its tolerance.
 #[test]
 fn nearly_every_door_and_drawer_of_the_apartment_opens_and_shuts() {
     let mut run = apartment();
@@ -208,8 +208,9 @@ fn nearly_every_door_and_drawer_of_the_apartment_opens_and_shuts() {
             } else if last {
                 opened += 1;
                 let exact = run.state.joint_position[id] == joint.closed;
+                let firm = joint.parent.is_none_or(|part| run.house.parts[part].fixed);
                 assert!(
-                    exact || joint.servo.is_some(),
+                    exact || !firm || joint.servo.is_some(),
                     "{name} at {}",
                     run.state.joint_position[id]
                 );

@@ -16,6 +16,7 @@ mod containers;
 mod crowd;
 mod doors;
 mod events;
+mod fixtures;
 mod force;
 mod gait;
 mod havoc;

@@ -202,6 +202,7 @@ impl Assembly {
                 limits: Some([0.0, joint.open]),
                 open: joint.open,
                 initial: joint.initial,
+                switches: joint.switches,
                 friction: FRICTION,
                 damping: if hinge { HINGE_DAMPING } else { SLIDE_DAMPING },
                 ..Articulation::new(

@@ -138,6 +138,18 @@ impl Site<'_> {
         self.place(kind, world_from_part * Pose::new(at, yaw(yaw_deg)))
     }
 
+    /// Mounts a thing at a point of another one, in that one's space, turned by `yaw_deg` against it.
+    pub(crate) fn mount(
+        &mut self,
+        kind: &Kind,
+        host: &Placed,
+        point: [f32; 3],
+        yaw_deg: f32,
+    ) -> Placed {
+        let at = Vec3::from(point) + Vec3::Y * REST_GAP_M;
+        self.place(kind, host.world_from_model * Pose::new(at, yaw(yaw_deg)))
+    }
+
     /// Leans a flat thing (a pillow) against the back of a seat: it stands on the space `space` of `host`, pitched by
     /// `pitch_deg` from lying, and touches the plane at the space's back, `dx` to the right of its middle.
     pub(crate) fn lean(

@@ -4,7 +4,7 @@ use super::finish::{Finish, glass, paper, plastic, steel};
 use super::model::Model;
 use super::models::{
     appliances, bath, bath_things, bed, bookshelf, chair, cooker, crockery, decoration, desk,
-    dresser, food, fridge, gadgets, lamps, nightstand, plants, radio, seats, sofa, table,
+    dresser, food, fridge, gadgets, lamps, nightstand, plants, radio, seats, sofa, table, taps,
     television, textiles, toilet, tv_stand, wardrobe,
 };
 use super::style::Style;
@@ -57,6 +57,7 @@ pub(crate) fn entries() -> &'static [Entry] {
             appliances::coffee_machine()
         }),
         entry("microwave", "microwave", |_, _| appliances::microwave()),
+        entry("mixer_tap", "tap", |_, _| taps::mixer_tap(0.2, 0.16)),
         entry("washer", "washer", |_, _| appliances::washer()),
         entry("bathtub", "bathtub", |_, key| {
             bath::bathtub(

@@ -58,6 +58,8 @@ pub(crate) struct ModelJoint {
     pub(crate) open: f32,
     /// The position at the start.
     pub(crate) initial: f32,
+    /// Whether it is the model's switch.
+    pub(crate) switches: bool,
 }
 
 /// A light of a part.
@@ -177,8 +179,18 @@ impl Model {
             axis,
             open,
             initial: 0.0,
+            switches: false,
         });
         self
+    }
+
+    /// The same model, off; its newest joint is its switch.
+    #[must_use]
+    pub(crate) fn switching(mut self) -> Self {
+        if let Some(joint) = self.joints.last_mut() {
+            joint.switches = true;
+        }
+        self.switched(false)
     }
 
     /// The same model, its first joint open by `fraction` (0 to 1) at the start.

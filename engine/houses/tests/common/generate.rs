@@ -338,6 +338,7 @@ fn joint(n: &mut Numbers<'_>, object: ObjectId, first: PartId, child: PartId) ->
             feed_forward: n.flag(),
         }),
         mimic: None,
+        switches: false,
     }
 }
 

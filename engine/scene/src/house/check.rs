@@ -361,6 +361,14 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
             joint.armature,
             "0 to 1e6",
         )?;
+        let switches = joint.opens() && data.objects[joint.object].switch.is_some();
+        range(
+            &at,
+            "switches",
+            !joint.switches || switches,
+            joint.switches,
+            "true for what opens by hand on an object with a switch",
+        )?;
         motor(data, &at, id, joint)?;
     }
     Ok(())

@@ -24,6 +24,9 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// Openness of a joint from which on it switches its object on: a tap drips no longer, it runs.
+const SWITCHES_AT: f32 = 0.1;
+
 /// The changing half of a world. Physics writes it, the world owns it, every engine reads it; it holds no mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -108,6 +111,17 @@ impl State {
             .filter(|joint| house.joints[*joint].opens())
             .map(|joint| house.joints[joint].openness(self.joint_position[joint]))
             .reduce(f32::max)
+    }
+
+    /// Switches objects whose joints are their switches: on where such a joint is open, off where all are closed.
+    pub fn follow_switches(&mut self, house: &House) {
+        let switches = || house.joints.iter_ids().filter(|(_, joint)| joint.switches);
+        for (_, joint) in switches() {
+            self.switched_on[joint.object] = false;
+        }
+        for (id, joint) in switches() {
+            self.switched_on[joint.object] |= joint.openness(self.joint_position[id]) > SWITCHES_AT;
+        }
     }
 
     /// Whether an object is switched on and has a switch, or has none and cannot be off.

@@ -13,6 +13,7 @@ use crate::furniture::models::crockery::bottle;
 use crate::furniture::models::lamps::{ceiling_dome, mirror_lamp};
 use crate::furniture::models::openings::light_switch;
 use crate::furniture::models::seats::stool;
+use crate::furniture::models::taps::mixer_tap;
 use crate::furniture::models::toilet::toilet;
 
 const NORTH: f32 = 0.0;
@@ -22,7 +23,9 @@ const SOUTH: f32 = 3.7;
 
 pub(super) fn furnish(site: &mut Site<'_>) {
     let tub = site.kind(bathtub(1.68, 0.75, true));
-    site.against(&tub, Side::North, NORTH, WEST + 0.845, 0.0);
+    let tub = site.against(&tub, Side::North, NORTH, WEST + 0.845, 0.0);
+    let tap = site.kind(mixer_tap(0.16, 0.14));
+    site.mount(&tap, &tub, [-0.795, 0.57, 0.0], 90.0);
     let screen = site.kind(shower_screen(0.72, 1.4));
     site.hang(&screen, Side::West, WEST, 0.705, 0.5715);
     let head = site.kind(shower_head());
@@ -34,6 +37,8 @@ pub(super) fn furnish(site: &mut Site<'_>) {
 
     let basin = site.kind(washbasin(0.85));
     let basin = site.against(&basin, Side::West, WEST, 1.95, 0.0);
+    let tap = site.kind(mixer_tap(0.15, 0.13));
+    site.mount(&tap, &basin, [0.0, 0.86, -0.17], 0.0);
     let soap = site.kind(soap_dispenser(&plastic("white_plastic", [240, 240, 236])));
     site.put(&soap, &basin, "back_right", [0.05, 0.01], 0.0);
     let brushes = site.kind(toothbrushes());

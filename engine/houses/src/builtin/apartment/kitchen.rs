@@ -17,12 +17,13 @@ use crate::furniture::models::decoration::picture;
 use crate::furniture::models::food::{bread, cutting_board, fruit, knife_block, red_skin};
 use crate::furniture::models::fridge::refrigerator;
 use crate::furniture::models::gadgets::wall_clock;
-use crate::furniture::models::kitchen_unit::{Bay, KitchenUnit, wall_cabinet};
+use crate::furniture::models::kitchen_unit::{Bay, KitchenUnit, WORKTOP_M, wall_cabinet};
 use crate::furniture::models::lamps::{ceiling_dome, pendant};
 use crate::furniture::models::openings::{light_switch, radiator};
 use crate::furniture::models::plants::{Plant, fresh_green};
 use crate::furniture::models::radio::radio;
 use crate::furniture::models::table::Table;
+use crate::furniture::models::taps::mixer_tap;
 use crate::furniture::models::textiles::rug;
 use crate::furniture::models::tv_stand::Lowboard;
 use dwell_scene::random::Key;
@@ -65,6 +66,8 @@ fn worktops(site: &mut Site<'_>) {
     };
     let long = site.kind(long.build());
     let long = site.against(&long, Side::North, NORTH, 9.69, 0.0);
+    let tap = site.kind(mixer_tap(0.215, 0.17));
+    site.mount(&tap, &long, [-0.3, WORKTOP_M, -0.24], 0.0);
 
     let toast = site.kind(toaster());
     site.put(&toast, &narrow, "worktop", [-0.02, -0.12], 0.0);

@@ -101,30 +101,60 @@ pub(crate) fn microwave() -> Model {
     let case = enamel("microwave_white", [232, 232, 230]);
     let dark = Finish::plain("black_glass", "glass", [22, 22, 24]).clear(1.0);
     let (x, h, z) = (0.24, 0.28, 0.18);
-    let knob = |y: f32| cylinder(0.02, 0.018, 14).about_x(FRAC_PI_2).at(0.2, y, z);
+    let (low, w, panel) = (0.01, 0.02, 0.145);
+    let face = z - 0.025;
+    // Left, right with the panel, bottom, top, back.
+    let shell = [
+        block([-x, low, -z], [-x + w, h, face]),
+        block([panel, low, -z], [x, h, z]),
+        block([-x + w, low, -z], [panel, low + w, face]),
+        block([-x + w, h - w, -z], [panel, h, face]),
+        block([-x + w, low + w, -z], [panel, h - w, -z + w]),
+    ];
+    let knob = |y: f32| cylinder(0.02, 0.018, 14).about_x(FRAC_PI_2).at(0.195, y, z);
     let body = Part::new("body")
-        .with_filled(
-            &case,
-            rounded_block([-x, 0.01, -z], [x, h, z], 0.008, 1),
-            0.7,
-        )
+        .with_all(&case, shell)
         .with(
             &black(),
-            block([-x + 0.02, 0.0, -z + 0.02], [x - 0.02, 0.01, z - 0.02]),
+            block([-x + 0.02, 0.0, -z + 0.02], [x - 0.02, low, z - 0.02]),
         )
+        .with_all(&case, [knob(0.1), knob(0.19)]);
+    let (near, edge) = (face + 0.001, panel - 0.002);
+    let door = Part::new("door")
+        .with(&case, block([-x, low + 0.002, near], [edge, h, z - 0.006]))
         .with(
             &dark,
-            block([-x + 0.02, 0.035, z], [0.14, h - 0.025, z + 0.012]),
+            block([-x + 0.03, 0.04, z - 0.006], [edge - 0.05, h - 0.03, z]),
         )
         .with(
             &chrome(),
-            rod([0.152, 0.06, z + 0.02], [0.152, h - 0.05, z + 0.02], 0.006).untouchable(),
+            rod(
+                [edge - 0.02, 0.06, z + 0.012],
+                [edge - 0.02, h - 0.05, z + 0.012],
+                0.006,
+            ),
         )
-        .with_all(&case, [knob(0.1), knob(0.19)]);
+        .with_all(
+            &chrome(),
+            [0.075, h - 0.065].map(|y| {
+                rod(
+                    [edge - 0.02, y, z - 0.006],
+                    [edge - 0.02, y, z + 0.012],
+                    0.004,
+                )
+            }),
+        );
     Model::movable("microwave", "microwave")
         .switched(false)
         .part(body)
         .sounding([0.0, 0.15, z], "hum", 56.0)
+        .inside(
+            "inside",
+            [-x + w, low + w, -z + w],
+            [panel, h - w, face - 0.005],
+        )
+        .part(door)
+        .hinged("door", [-x, 0.0, z - 0.006], Vec3::NEG_Y, 1.6)
 }
 
 /// A washing machine with a round door.

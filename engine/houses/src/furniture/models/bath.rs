@@ -6,7 +6,7 @@ use crate::furniture::model::{Model, Part};
 use crate::furniture::shapes::{Solid, block, cylinder, extrude, rod, tube};
 use glam::Vec3;
 
-/// A washbasin on a cabinet with two doors, and a tap.
+/// A washbasin on a cabinet with two doors; its tap stands at the middle of the back.
 pub(crate) fn washbasin(width_m: f32) -> Model {
     let (x, z) = (0.5 * width_m, 0.23);
     let white = sanitary();
@@ -23,22 +23,12 @@ pub(crate) fn washbasin(width_m: f32) -> Model {
         block([-bx, low + t, -z], [bx, rim, back]),
         block([-bx, low + t, front_z], [bx, rim, z]),
     ];
-    let spout = [
-        [0.0, rim, -0.17],
-        [0.0, rim + 0.12, -0.17],
-        [0.0, rim + 0.15, -0.14],
-        [0.0, rim + 0.13, -0.04],
-    ];
     let body = Part::new("body")
         .with_all(&oak(), carcass.boards(&[], &[]))
         .with_filled(
             &white,
             basin.into_iter().fold(Solid::default(), Solid::and),
             0.5,
-        )
-        .with(
-            &chrome(),
-            tube(&spout, 0.013, 10).and(cylinder(0.025, 0.025, 16).at(0.0, rim, -0.17)),
         )
         .with(
             &chrome(),
@@ -85,7 +75,7 @@ pub(crate) fn washbasin(width_m: f32) -> Model {
         .hinged("right_door", [b, 0.0, face + BOARD_M], Vec3::Y, 1.7)
 }
 
-/// A tub along x with its tap at one end, boxed in.
+/// A tub along x, boxed in; its tap stands on the rim of the end where it is deep.
 pub(crate) fn bathtub(length_m: f32, width_m: f32, tap_left: bool) -> Model {
     let (x, z, h) = (0.5 * length_m, 0.5 * width_m, 0.57);
     let white = sanitary();
@@ -107,14 +97,6 @@ pub(crate) fn bathtub(length_m: f32, width_m: f32, tap_left: bool) -> Model {
         wedge
     };
     let tap_side = if tap_left { -1.0 } else { 1.0 };
-    let (tx, rim) = (tap_side * (x - 0.045), h);
-    let over = |way: f32, up: f32| [tx - tap_side * way, rim + up, 0.0];
-    let spout = [
-        over(0.0, 0.0),
-        over(0.0, 0.12),
-        over(0.05, 0.15),
-        over(0.14, 0.11),
-    ];
     let body = Part::new("body")
         .with_filled(
             &white,
@@ -122,10 +104,6 @@ pub(crate) fn bathtub(length_m: f32, width_m: f32, tap_left: bool) -> Model {
             0.12,
         )
         .with_filled(&white, slope(-tap_side), 0.12)
-        .with(
-            &chrome(),
-            tube(&spout, 0.014, 10).and(cylinder(0.026, 0.02, 16).at(tx, rim, 0.0)),
-        )
         .with(
             &chrome(),
             cylinder(0.03, 0.003, 16)

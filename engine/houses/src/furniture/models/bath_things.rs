@@ -2,8 +2,12 @@
 
 use crate::furniture::finish::{Finish, black, chrome, glass, mirror, plastic, rattan, terry};
 use crate::furniture::model::{Model, Part};
-use crate::furniture::shapes::{block, cylinder, frame, lathe, ring, rod, rounded_block};
+use crate::furniture::shapes::{block, cylinder, frame, lathe, ring, rod, rounded_block, vessel};
+use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
+
+/// How far the lids of bins turn, rad: beyond upright, so that they stay up.
+const LID_RAD: f32 = 1.6;
 
 /// A mirror on the wall in a thin frame; y = 0 is its middle.
 pub(crate) fn wall_mirror(width_m: f32, height_m: f32, rim: &Finish) -> Model {
@@ -115,8 +119,7 @@ pub(crate) fn toothbrushes() -> Model {
     };
     let (green, a) = brush("green_plastic", [88, 168, 112], 0.012, 0.13);
     let (blue, b) = brush("blue_plastic", [66, 120, 186], -0.012, -0.13);
-    let cup =
-        crate::furniture::shapes::vessel(&[(0.0, 0.0), (0.034, 0.0), (0.038, 0.1)], 0.003, 18);
+    let cup = vessel(&[(0.0, 0.0), (0.034, 0.0), (0.038, 0.1)], 0.003, 18);
     let body = Part::new("body")
         .with(&glass(), cup)
         .with(&green, a)
@@ -124,36 +127,33 @@ pub(crate) fn toothbrushes() -> Model {
     Model::pickable("toothbrushes", "toiletries").part(body)
 }
 
-/// A basket for laundry with a lid.
+/// A basket for laundry with a lid that turns up.
 pub(crate) fn laundry_basket() -> Model {
     let (r, h) = (0.2, 0.55);
-    let body = Part::new("body")
-        .with_filled(
-            &rattan(),
-            lathe(&[(0.0, 0.0), (0.88 * r, 0.0), (r, h), (0.0, h)], 24),
-            0.06,
-        )
-        .with_filled(
-            &rattan(),
-            lathe(
-                &[
-                    (0.0, h),
-                    (1.04 * r, h),
-                    (1.04 * r, h + 0.02),
-                    (0.0, h + 0.035),
-                ],
-                24,
-            ),
-            0.3,
-        )
-        .with(
-            &rattan(),
-            ring(0.04, 0.006, 14)
-                .about_x(FRAC_PI_2)
-                .at(0.0, h + 0.06, 0.0)
-                .untouchable(),
-        );
-    Model::movable("laundry_basket", "basket").part(body)
+    let woven = vessel(&[(0.0, 0.0), (0.88 * r, 0.0), (r, h)], 0.008, 24);
+    let body = Part::new("body").with_filled(&rattan(), woven, 0.6);
+    let (low, high) = (h + 0.001, h + 0.02);
+    let cover = lathe(
+        &[
+            (0.0, low),
+            (1.04 * r, low),
+            (1.04 * r, high),
+            (0.0, high + 0.012),
+        ],
+        24,
+    );
+    let grip = ring(0.04, 0.006, 14)
+        .about_x(FRAC_PI_2)
+        .at(0.0, h + 0.06, 0.0);
+    let lid = Part::new("lid")
+        .with_filled(&rattan(), cover, 0.3)
+        .with(&rattan(), grip);
+    let half = 0.58 * r;
+    Model::movable("laundry_basket", "basket")
+        .part(body)
+        .inside("inside", [-half, 0.008, -half], [half, h, half])
+        .part(lid)
+        .hinged("lid", [0.0, low, -r], Vec3::NEG_X, LID_RAD)
 }
 
 /// A bathroom scale.
@@ -182,28 +182,32 @@ pub(crate) fn bath_mat(width_m: f32, depth_m: f32) -> Model {
     ))
 }
 
-/// A bin with a pedal and a lid.
+/// A bin with a pedal and a lid that turns up.
 pub(crate) fn pedal_bin(height_m: f32, color: &Finish) -> Model {
+    const WALL_M: f32 = 0.004;
     let r = 0.3 * height_m;
     let (z, h) = (0.85 * r, height_m);
-    let body = Part::new("body")
-        .with_filled(color, cylinder(r, 0.86 * h, 26), 0.06)
-        .with(
-            &black(),
-            lathe(
-                &[
-                    (0.0, 0.86 * h),
-                    (1.02 * r, 0.86 * h),
-                    (1.0 * r, 0.94 * h),
-                    (0.6 * r, h),
-                    (0.0, h),
-                ],
-                26,
-            ),
-        )
-        .with(
-            &black(),
-            block([-0.03, 0.01, z], [0.03, 0.02, z + 0.06]).untouchable(),
-        );
-    Model::movable("trash_can", "trash_can").part(body)
+    let rim = 0.9 * h;
+    let pail = vessel(&[(0.0, 0.0), (r, 0.0), (r, rim)], WALL_M, 26);
+    let body = Part::new("body").with_filled(color, pail, 0.35).with(
+        &black(),
+        block([-0.03, 0.01, z], [0.03, 0.02, z + 0.06]).untouchable(),
+    );
+    let low = rim + 0.001;
+    let cover = lathe(
+        &[
+            (0.0, low),
+            (1.02 * r, low),
+            (1.0 * r, 0.95 * h),
+            (0.6 * r, 0.99 * h),
+            (0.0, h),
+        ],
+        26,
+    );
+    let half = 0.6 * r;
+    Model::movable("trash_can", "trash_can")
+        .part(body)
+        .inside("inside", [-half, WALL_M, -half], [half, rim, half])
+        .part(Part::new("lid").with_filled(&black(), cover, 0.1))
+        .hinged("lid", [0.0, low, -r], Vec3::NEG_X, LID_RAD)
 }

@@ -1,9 +1,9 @@
-//! Fitted kitchens: base units with worktop, sink and tap, and cabinets on the wall.
+//! Fitted kitchens: base units with worktop and sink, and cabinets on the wall.
 
 use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, door, drawer, drawer_space};
-use crate::furniture::finish::{Finish, black, chrome, granite, lacquer, steel};
+use crate::furniture::finish::{Finish, black, granite, lacquer, steel};
 use crate::furniture::model::{Model, Part};
-use crate::furniture::shapes::{Solid, block, cylinder, tube};
+use crate::furniture::shapes::{Solid, block};
 use glam::Vec3;
 
 /// Height of worktops, m.
@@ -77,8 +77,7 @@ impl KitchenUnit {
                 .with(&self.worktop, block([start, under, -z], [a, WORKTOP_M, z]))
                 .with(&self.worktop, block([a, under, -z], [b, WORKTOP_M, -0.19]))
                 .with(&self.worktop, block([a, under, 0.21], [b, WORKTOP_M, z]))
-                .with_all(&steel(), basin(middle))
-                .with(&chrome(), tap(middle, -0.24));
+                .with_all(&steel(), basin(middle));
             start = b;
         }
         body = body.with(&self.worktop, block([start, under, -z], [x, WORKTOP_M, z]));
@@ -173,26 +172,6 @@ fn basin(middle: f32) -> Vec<Solid> {
         block([x0 + t, low + t, z0], [x1 - t, top, z0 + t]),
         block([x0 + t, low + t, z1 - t], [x1 - t, top, z1]),
     ]
-}
-
-/// A mixer tap on the worktop at (x, z), its spout towards +Z.
-fn tap(x: f32, z: f32) -> Solid {
-    let y = WORKTOP_M;
-    let spout = [
-        [x, y, z],
-        [x, y + 0.17, z],
-        [x, y + 0.205, z + 0.03],
-        [x, y + 0.215, z + 0.08],
-        [x, y + 0.2, z + 0.15],
-        [x, y + 0.15, z + 0.17],
-    ];
-    tube(&spout, 0.012, 10)
-        .and(cylinder(0.026, 0.03, 16).at(x, y, z))
-        .and(tube(
-            &[[x + 0.012, y + 0.07, z], [x + 0.075, y + 0.1, z]],
-            0.006,
-            8,
-        ))
 }
 
 /// Cabinets on the wall: `doors` doors of `door_m` width; y = 0 is their lower edge.

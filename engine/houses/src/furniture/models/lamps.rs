@@ -91,7 +91,7 @@ pub(crate) fn table_lamp(height_m: f32, base: &Finish, cloth: &Finish) -> Model 
         .shining([0.0, 0.74 * height_m, 0.0], 6.0)
 }
 
-/// A desk lamp with a bent arm whose head looks down.
+/// A desk lamp with a bent arm whose head looks down, above its foot.
 pub(crate) fn desk_lamp(lacquer: &Finish) -> Model {
     let head = lathe(
         &[
@@ -106,19 +106,19 @@ pub(crate) fn desk_lamp(lacquer: &Finish) -> Model {
         20,
     );
     let body = Part::new("body")
-        .with(lacquer, cylinder(0.085, 0.018, 24))
+        .with(lacquer, cylinder(0.1, 0.02, 24))
         .with(
             &chrome(),
             tube(
-                &[[0.0, 0.018, 0.0], [0.0, 0.22, -0.06], [0.0, 0.4, 0.06]],
+                &[[0.0, 0.02, -0.05], [0.0, 0.22, -0.11], [0.0, 0.4, 0.01]],
                 0.007,
                 8,
             ),
         )
-        .with(lacquer, head.about_x(-0.25).at(0.0, 0.31, 0.1))
+        .with(lacquer, head.about_x(-0.25).at(0.0, 0.31, 0.05))
         .with(
             &milk_glass(),
-            ball(0.025, 12).at(0.0, 0.34, 0.095).untouchable(),
+            ball(0.025, 12).at(0.0, 0.34, 0.045).untouchable(),
         );
     let down = LightShape::Spot {
         direction: Vec3::new(0.0, -0.968, 0.25),
@@ -128,7 +128,7 @@ pub(crate) fn desk_lamp(lacquer: &Finish) -> Model {
     Model::movable("desk_lamp", "table_lamp")
         .switched(true)
         .part(body)
-        .light([0.0, 0.33, 0.1], down, 6.0)
+        .light([0.0, 0.33, 0.05], down, 6.0)
 }
 
 /// A pendant: a shade on a cord `drop_m` below the ceiling.

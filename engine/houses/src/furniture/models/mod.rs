@@ -25,6 +25,7 @@ pub(crate) mod radio;
 pub(crate) mod seats;
 pub(crate) mod sofa;
 pub(crate) mod table;
+pub(crate) mod taps;
 pub(crate) mod television;
 pub(crate) mod textiles;
 pub(crate) mod toilet;

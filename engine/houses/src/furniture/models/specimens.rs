@@ -149,6 +149,7 @@ pub(crate) fn all() -> Vec<Model> {
         table::Table::coffee(walnut()).build(),
         table::Table::default().build(),
         table::side_table(0.22, 0.5, &oak()),
+        taps::mixer_tap(0.22, 0.17),
         television::television(1.2),
         curtains.build(),
         textiles::coat_rack(1.0, &fabric, &fabric),

@@ -58,11 +58,12 @@ pub(crate) fn toilet() -> Model {
             cylinder(0.022, 0.01, 16).at(0.0, 0.79, -z + 0.08),
         )
         .with(&seat, plate(0.4, 0.415));
-    let lid = Part::new("lid").with(&seat, plate(0.417, 0.435));
+    let lid = Part::new("lid").with_filled(&seat, plate(0.417, 0.435), 0.5);
     Model::articulated("toilet", "toilet")
         .switched(false)
         .part(body)
         .sounding([0.0, 0.5, -z + 0.1], "toilet_flush", 70.0)
         .part(lid)
-        .hinged("lid", [0.0, 0.426, back + 0.012], Vec3::NEG_X, 1.5)
+        // Beyond upright, against the cistern, so that it stays up.
+        .hinged("lid", [0.0, 0.426, back + 0.03], Vec3::NEG_X, 1.6)
 }
