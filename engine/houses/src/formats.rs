@@ -39,6 +39,12 @@ pub fn formats() -> &'static [Format] {
             open: |house, threads| crate::native::open(Path::new(house), threads),
         },
         Format {
+            name: "habitat",
+            spelling: "a path to a .scene_instance.json of Habitat",
+            recognizes: |house| crate::habitat::recognizes(Path::new(house)),
+            open: |house, threads| crate::habitat::open(Path::new(house), threads),
+        },
+        Format {
             name: "suncg",
             spelling: "a path to a house.json, its folder, or a data root with one house",
             recognizes: |house| crate::suncg::recognizes(Path::new(house)),

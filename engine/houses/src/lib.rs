@@ -9,6 +9,7 @@ mod error;
 mod formats;
 mod furniture;
 pub mod gltf;
+pub mod habitat;
 mod limits;
 mod loss;
 pub mod mjcf;

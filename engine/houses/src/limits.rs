@@ -19,3 +19,5 @@ pub(crate) const MAX_NODES: usize = 50_000;
 pub(crate) const MAX_CORNERS: usize = 100_000;
 /// Largest voxel grid side of a binvox file (SUNCG has 128).
 pub(crate) const MAX_VOXEL_SIDE: u32 = 1024;
+/// Most names of a folder. The largest of Habitat's data sets keeps some thousand objects in one.
+pub(crate) const MAX_FOLDER_ENTRIES: usize = 100_000;

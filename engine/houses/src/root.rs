@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::error::HousesError;
+use crate::limits::MAX_FOLDER_ENTRIES;
 use crate::report::At;
 
 /// A folder and the only way to read files below it.
@@ -71,6 +72,38 @@ impl DataRoot {
         self.folder.join(path).is_file()
     }
 
+    /// The names of what lies in the folder at `path`, in order; the first 100,000 that the system gives.
+    ///
+    /// # Errors
+    /// [`HousesError::PathLeavesRoot`] when a link leads out of the root, [`HousesError::Io`] when it is no folder.
+    pub(crate) fn names(&self, path: &str) -> Result<Vec<String>, HousesError> {
+        let full = self.folder.join(path);
+        self.check_inside(&full, path)?;
+        let entries = std::fs::read_dir(&full).map_err(HousesError::io(&full))?;
+        let mut names: Vec<String> = entries
+            .take(MAX_FOLDER_ENTRIES)
+            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+            .collect();
+        names.sort_unstable();
+        Ok(names)
+    }
+
+    /// Whether a link leads from `full`, which stands for `path` inside, out of the root.
+    ///
+    /// # Errors
+    /// [`HousesError::PathLeavesRoot`], and [`HousesError::Io`] when it does not exist.
+    pub(crate) fn check_inside(&self, full: &Path, path: &str) -> Result<(), HousesError> {
+        let real = full.canonicalize().map_err(HousesError::io(full))?;
+        if real.starts_with(&self.real) {
+            return Ok(());
+        }
+        Err(HousesError::PathLeavesRoot {
+            at: At::file(path),
+            path: path.to_owned(),
+            root: self.folder.clone(),
+        })
+    }
+
     /// Reads the file at `path`, at most `max_bytes` long.
     ///
     /// # Errors
@@ -78,14 +111,7 @@ impl DataRoot {
     /// [`HousesError::Io`] when the system refuses.
     pub fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
         let full = self.folder.join(path);
-        let real = full.canonicalize().map_err(HousesError::io(&full))?;
-        if !real.starts_with(&self.real) {
-            return Err(HousesError::PathLeavesRoot {
-                at: At::file(path),
-                path: path.to_owned(),
-                root: self.folder.clone(),
-            });
-        }
+        self.check_inside(&full, path)?;
         read_capped(&full, path, max_bytes)
     }
 

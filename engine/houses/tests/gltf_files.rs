@@ -6,6 +6,8 @@
 
 mod common;
 
+use common::base64;
+
 use dwell_houses::{Damage, HousesError, gltf, open};
 use dwell_scene::{House, Mobility, ShoeboxMaterials, State};
 use glam::{Vec2, Vec3};
@@ -20,25 +22,6 @@ fn tetrahedron() -> String {
     }
     bytes.extend([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]);
     base64(&bytes)
-}
-
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::new();
-    for chunk in bytes.chunks(3) {
-        let word = chunk
-            .iter()
-            .fold(0_u32, |word, byte| word << 8 | u32::from(*byte))
-            << (8 * (3 - chunk.len()));
-        for k in 0..4 {
-            text.push(if k <= chunk.len() {
-                char::from(DIGITS[(word >> (18 - 6 * k)) as usize & 63])
-            } else {
-                '='
-            });
-        }
-    }
-    text
 }
 
 fn text(nodes: &str, extra: &str) -> String {
@@ -224,4 +207,20 @@ fn every_real_texture_and_triangle_survives_as_glb() {
     let (again, _) = open(&path.to_string_lossy()).unwrap();
     assert_eq!(again.triangle_count(), real.house.triangle_count());
     assert_eq!(again.textures.len(), real.house.textures.len());
+}
+
+/// As in HSSD: the texture has no image of its own, only one that Basis Universal compressed.
+#[test]
+fn images_of_basis_universal_are_reported_and_the_rest_is_read() {
+    let extra = r#", "extensionsUsed": ["KHR_texture_basisu"], "extensionsRequired": ["KHR_texture_basisu"],
+        "images": [{"mimeType": "image/ktx2", "uri": "data:image/ktx2;base64,q0tUWCAyMLsNChoK"}],
+        "textures": [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]"#;
+    let text = text(r#"[{"mesh": 0, "name": "chair"}]"#, extra).replace(
+        r#""baseColorFactor""#,
+        r#""baseColorTexture": {"index": 0}, "baseColorFactor""#,
+    );
+    let (house, report) = open_text(&text).unwrap();
+    assert_eq!(house.objects.len(), 1);
+    let unreadable = |damage: &Damage| matches!(damage, Damage::UnreadableTexture { .. });
+    assert_eq!(report.count(unreadable), 1, "{report:?}");
 }

@@ -1,6 +1,8 @@
 //! Files that mean harm, or that were cut or changed on the way: errors with a place, never a panic.
 #![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
+mod common;
+
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -10,8 +12,9 @@ use dwell_scene::{House, ShoeboxMaterials};
 use proptest::prelude::*;
 
 /// The formats that read files, and where each one's sample stands.
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 7] = [
     ("native", "a.dwell"),
+    ("habitat", "habitat/room.scene_instance.json"),
     ("suncg", "suncg"),
     ("gltf", "a.glb"),
     ("obj", "obj/a.obj"),
@@ -49,6 +52,7 @@ fn samples() -> &'static [Sample] {
         dwell_houses::native::write(&house, &at("a.dwell")).unwrap();
         dwell_houses::gltf::write(&house, &at("a.glb")).unwrap();
         dwell_houses::suncg::write(&house, &at("suncg")).unwrap();
+        common::habitat_set::write(&at("habitat"));
         std::fs::create_dir(at("obj")).unwrap();
         std::fs::write(at("obj/a.obj"), OBJ).unwrap();
         std::fs::write(at("obj/a.mtl"), MTL).unwrap();
@@ -185,7 +189,7 @@ fn every_format_that_reads_files_has_a_sample() {
 #[test]
 fn house_strings_that_mean_nothing_list_what_is_allowed() {
     let message = |house: &str| open(house).map(|_| ()).unwrap_err().to_string();
-    let allowed = "builtin:NAME; a path to a .dwell; a path to a house.json, its folder, or a data root with one house; \
+    let allowed = "builtin:NAME; a path to a .dwell; a path to a .scene_instance.json of Habitat; a path to a house.json, its folder, or a data root with one house; \
                    a path to a .glb or .gltf; a path to an .obj; a path to a .urdf; a path to a .xml of MuJoCo";
     for house in ["castle", "seed:5", "", "house.blend"] {
         assert_eq!(

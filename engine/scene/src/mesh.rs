@@ -2,7 +2,7 @@
 
 use crate::bounds::Aabb;
 use crate::error::SceneError;
-use glam::{Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// A triangle mesh with per-triangle material slots, in mesh space.
@@ -139,6 +139,26 @@ impl Mesh {
                 .iter()
                 .map(|t| t.map(|vertex| vertex + base as u32)),
         );
+    }
+
+    /// The same surface moved by `map`: normals follow, and a map that mirrors turns the faces round, so that what looked
+    /// outwards still does.
+    #[must_use]
+    pub fn transformed(&self, map: &Affine3A) -> Self {
+        let mut moved = self.clone();
+        for position in &mut moved.positions {
+            *position = map.transform_point3(*position);
+        }
+        let normal_map = map.matrix3.inverse().transpose();
+        for normal in &mut moved.normals {
+            *normal = (normal_map * *normal).normalize_or(Vec3::Y);
+        }
+        if map.matrix3.determinant() < 0.0 {
+            for triangle in &mut moved.triangles {
+                triangle.swap(1, 2);
+            }
+        }
+        moved
     }
 
     /// An axis-aligned box with outward faces, flat normals and texture coordinates in metres; every face shows slot 0.

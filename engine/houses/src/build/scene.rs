@@ -10,7 +10,7 @@ use dwell_scene::{
     Aabb, Category, Collider, House, HouseData, Level, LevelId, Mesh, Mobility, Object, ObjectId,
     Part, PartId, Room, RoomId, Structure, StructureKind, Texture, space,
 };
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, Vec2};
 
 use super::tables::CategoryRow;
 use super::{LookTable, Names, category, convex_pieces};
@@ -91,7 +91,7 @@ impl Scene {
 }
 
 /// What part of a building a name means, if it means one: `Wall_3`, `WallInside#0_0_1`, `floor`.
-fn structure_kind(name: &str) -> Option<StructureKind> {
+pub(crate) fn structure_kind(name: &str) -> Option<StructureKind> {
     let lower = name.to_ascii_lowercase();
     let word = lower
         .split(|c: char| !c.is_ascii_alphabetic())
@@ -107,7 +107,7 @@ fn structure_kind(name: &str) -> Option<StructureKind> {
 }
 
 /// The row that a name means: `coffee_table_2` means `coffee_table`, `Blue Chair` means `chair`.
-fn category_of(name: &str) -> Option<&'static CategoryRow> {
+pub(crate) fn category_of(name: &str) -> Option<&'static CategoryRow> {
     let lower = name.to_ascii_lowercase();
     let words: Vec<&str> = lower
         .split(|c: char| !c.is_ascii_alphabetic())
@@ -141,19 +141,7 @@ impl Builder {
         let Some(kind) = structure_kind(&thing.name) else {
             return;
         };
-        let map = thing.world_from_mesh;
-        let mut mesh = Mesh::clone(&thing.mesh);
-        // Normals follow the inverse transpose; a mirror turns the winding.
-        let normal_map = map.matrix3.inverse().transpose();
-        mesh.positions
-            .iter_mut()
-            .for_each(|p| *p = map.transform_point3(*p));
-        mesh.normals
-            .iter_mut()
-            .for_each(|n| *n = (normal_map * *n).normalize_or(Vec3::Y));
-        if map.matrix3.determinant() < 0.0 {
-            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
+        let mesh = thing.mesh.transformed(&thing.world_from_mesh);
         self.grow(&mesh.bounds());
         let name = self.structure_names.unique(&thing.name);
         let mesh = self.data.meshes.push(Arc::new(mesh));

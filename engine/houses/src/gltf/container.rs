@@ -3,6 +3,7 @@
 //! Our own because the `gltf` crate (1.4) subtracts the header's size from a length that a file states, which panics.
 
 use ::gltf::json::{Root, deserialize};
+use serde_json::Value;
 
 /// The tables and the binary chunk, empty when there is none. Text without the GLB header is glTF.
 ///
@@ -14,9 +15,35 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
     } else {
         (bytes, &[][..])
     };
-    let json =
-        deserialize::from_slice(text).map_err(|error| format!("no valid glTF 2.0: {error}"))?;
+    let invalid = |error: serde_json::Error| format!("no valid glTF 2.0: {error}");
+    // Only files that need it are read as a tree: that is slower, and places in the text are lost.
+    let mut json: Root = if contains(text, BASISU.as_bytes()) {
+        let mut tree: Value = serde_json::from_slice(text).map_err(invalid)?;
+        show_basisu_images(&mut tree);
+        serde_json::from_value(tree).map_err(invalid)?
+    } else {
+        deserialize::from_slice(text).map_err(invalid)?
+    };
+    json.extensions_required.retain(|name| name != BASISU);
     Ok((json, blob))
+}
+
+/// Textures whose image is compressed by Basis Universal, as in Habitat's and other data sets.
+const BASISU: &str = "KHR_texture_basisu";
+
+fn contains(text: &[u8], word: &[u8]) -> bool {
+    text.windows(word.len()).any(|window| window == word)
+}
+
+/// Names the image of `KHR_texture_basisu` as the texture's own, which the extension lets a file leave out: the image is
+/// then found, and what cannot be decoded is reported like any other image.
+fn show_basisu_images(tree: &mut Value) {
+    for texture in tree["textures"].as_array_mut().into_iter().flatten() {
+        let source = texture["extensions"][BASISU]["source"].clone();
+        if texture.get("source").is_none() && source.is_u64() {
+            texture["source"] = source;
+        }
+    }
 }
 
 fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {

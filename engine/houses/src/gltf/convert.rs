@@ -6,7 +6,7 @@ use ::gltf::json::Root;
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use dwell_scene::parallel::Threads;
-use dwell_scene::{House, MaterialId, Mesh};
+use dwell_scene::{MaterialId, Mesh};
 use glam::{Vec2, Vec3};
 
 use super::accessor::{floats, indices};
@@ -27,7 +27,7 @@ pub(super) fn convert(
     name: &str,
     threads: Threads,
     report: &mut Report,
-) -> Result<House, HousesError> {
+) -> Result<Scene, HousesError> {
     let at = At::file(name);
     if json.nodes.len() > MAX_NODES {
         let (found, allowed) = (json.nodes.len() as u64, MAX_NODES as u64);
@@ -87,14 +87,13 @@ pub(super) fn convert(
             materials,
         });
     }
-    let scene = Scene {
+    Ok(Scene {
         name: texture_name(name),
         source: "gltf",
         things,
         looks,
         textures: images.textures,
-    };
-    scene.into_house(&at, report)
+    })
 }
 
 /// The primitives of a mesh as one mesh with a slot each.

@@ -19,6 +19,7 @@ use std::path::Path;
 use dwell_scene::House;
 use dwell_scene::parallel::Threads;
 
+use crate::build::Scene;
 use crate::error::HousesError;
 use crate::limits::MAX_BUFFER_BYTES;
 use crate::report::{At, Report};
@@ -62,8 +63,23 @@ pub fn open_bytes(
     name: &str,
     threads: Threads,
 ) -> Result<(House, Report), HousesError> {
-    let at = At::file(name);
     let mut report = Report::new();
+    let scene = read_scene(bytes, root, name, threads, &mut report)?;
+    Ok((scene.into_house(&At::file(name), &mut report)?, report))
+}
+
+/// The named meshes of a file with their materials and images; files beside it are read from `root`.
+///
+/// # Errors
+/// Those of [`open`] up to what the scene's own rules say.
+pub(crate) fn read_scene(
+    bytes: &[u8],
+    root: &DataRoot,
+    name: &str,
+    threads: Threads,
+    report: &mut Report,
+) -> Result<Scene, HousesError> {
+    let at = At::file(name);
     let syntax = |message: String| HousesError::Syntax {
         at: at.clone(),
         message,
@@ -73,7 +89,6 @@ pub fn open_bytes(
     let document = ::gltf::Document::from_json(json)
         .map_err(|error| syntax(format!("no valid glTF 2.0: {error}")))?;
     let json = document.into_json();
-    let buffers = buffers::Buffers::load(&json, blob, root, &at, &mut report)?;
-    let house = convert::convert(&json, &buffers, root, name, threads, &mut report)?;
-    Ok((house, report))
+    let buffers = buffers::Buffers::load(&json, blob, root, &at, report)?;
+    convert::convert(&json, &buffers, root, name, threads, report)
 }

@@ -155,6 +155,7 @@ fn joint(
         child_from_joint: Pose::IDENTITY,
         axis: Vec3::X,
         limits: None,
+        initial: 0.0,
         friction: 0.0,
         damping: 0.0,
         armature: 0.0,

@@ -23,16 +23,17 @@ const GROUND_M: f32 = 5.0;
 const GROUND_DEPTH_M: f32 = 0.1;
 
 /// From a robot's axes (+X forward, +Z up) to dwell's (-Z forward, +Y up).
-fn ours_from_robot() -> Quat {
-    Quat::from_mat3(&Mat3::from_cols(Vec3::NEG_Z, Vec3::NEG_X, Vec3::Y))
+pub(super) fn ours_from_robot() -> Pose {
+    let axes = Mat3::from_cols(Vec3::NEG_Z, Vec3::NEG_X, Vec3::Y);
+    Pose::new(Vec3::ZERO, Quat::from_mat3(&axes))
 }
 
-/// Adds a robot to the tables of a house.
-pub(super) fn add(
+/// Adds a robot to the tables of a house, the frame of its root link, as the file has it, at `world_from_root`.
+pub(crate) fn add(
     data: &mut HouseData,
     robot: &Robot,
     name: &str,
-    world_from_base: Pose,
+    world_from_root: Pose,
     fixed_base: bool,
 ) {
     let object = ObjectId(data.objects.len() as u32);
@@ -55,8 +56,7 @@ pub(super) fn add(
         })
     };
     let mut looks = Looks::default();
-    let mut world_from: Vec<Pose> =
-        vec![world_from_base * Pose::new(Vec3::ZERO, ours_from_robot())];
+    let mut world_from: Vec<Pose> = vec![world_from_root];
     let mut joints: Vec<Articulation> = Vec::new();
     for joint in moving() {
         let (Some((parent, place)), Some((child, _))) = (home(joint.parent), home(joint.child))
@@ -82,7 +82,7 @@ pub(super) fn add(
                 let leader = &joints[mimic.leader.0 as usize - data.joints.len()];
                 mimic.multiplier * leader.initial + mimic.offset
             }
-            None => 0.0,
+            None => joint.initial,
         };
         let start = start.clamp(low, high);
         let child_part = PartId(first_part.0 + child as u32);
@@ -154,7 +154,7 @@ pub(super) fn add(
             inertial: weight.map(|weight| weight.inertial()),
         });
     }
-    let base = world_from_base.position;
+    let base = world_from_root.position;
     let room = data.rooms.iter_ids().find(|(_, room)| {
         room.contains_xz(Vec2::new(base.x, base.z))
             && base.y >= room.floor_y - 0.3
@@ -265,7 +265,7 @@ pub(crate) fn alone(robot: &Robot) -> Result<House, HousesError> {
         &mut data,
         robot,
         &robot.name,
-        Pose::IDENTITY,
+        ours_from_robot(),
         robot.fixed_base,
     );
     // It stands on the ground with its lowest point.

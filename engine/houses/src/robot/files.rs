@@ -166,13 +166,7 @@ fn gathered(house: &House) -> Mesh {
     }
     for part in &house.parts {
         let map = part.world_from_part.to_affine() * part.part_from_mesh;
-        let mut mesh = bare(Mesh::clone(&house.meshes[part.mesh]));
-        mesh.positions
-            .iter_mut()
-            .for_each(|p| *p = map.transform_point3(*p));
-        if map.matrix3.determinant() < 0.0 {
-            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
+        let mesh = bare(Mesh::clone(&house.meshes[part.mesh])).transformed(&map);
         all.append(&mesh, 0);
     }
     all

@@ -8,12 +8,13 @@ mod check;
 mod files;
 mod masses;
 mod model;
+mod scale;
 mod shape;
 mod stl;
 
 pub use model::Robot;
 
-pub(crate) use assemble::alone;
+pub(crate) use assemble::{add, alone};
 pub(crate) use check::check;
 pub(crate) use files::Files;
 pub(crate) use model::{Joint, Link, Motion, Shape, Solid, Weight};
@@ -61,6 +62,7 @@ pub fn with_robot(
     fixed_base: bool,
 ) -> Result<House, HousesError> {
     let mut data = house.data().clone();
-    assemble::add(&mut data, robot, name, world_from_base, fixed_base);
+    let world_from_root = world_from_base * assemble::ours_from_robot();
+    assemble::add(&mut data, robot, name, world_from_root, fixed_base);
     House::new(data).map_err(HousesError::scene(&At::file(&robot.source)))
 }

@@ -86,6 +86,8 @@ pub(crate) struct Joint {
     pub(crate) child_from_joint: Pose,
     pub(crate) axis: Vec3,
     pub(crate) limits: Option<[f32; 2]>,
+    /// The position at the start, brought into the limits, rad or m.
+    pub(crate) initial: f32,
     pub(crate) friction: f32,
     pub(crate) damping: f32,
     pub(crate) armature: f32,

@@ -375,6 +375,7 @@ impl Reader<'_> {
             child_from_joint: Pose::IDENTITY,
             axis,
             limits,
+            initial: 0.0,
             friction: of_dynamics("friction")?,
             damping: of_dynamics("damping")?,
             armature: 0.0,

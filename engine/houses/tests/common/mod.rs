@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, reason = "a skipped test says so")]
 
 pub(crate) mod generate;
+pub(crate) mod habitat_set;
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -51,4 +52,24 @@ pub(crate) fn real() -> Option<&'static Real> {
         println!("skipped: no sample house in ../shared/data/suncg or $DWELL_SHARED_DATA");
     }
     real.as_ref()
+}
+
+/// Bytes as base64 (RFC 4648).
+pub(crate) fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for chunk in bytes.chunks(3) {
+        let word = chunk
+            .iter()
+            .fold(0_u32, |word, byte| word << 8 | u32::from(*byte))
+            << (8 * (3 - chunk.len()));
+        for k in 0..4 {
+            text.push(if k <= chunk.len() {
+                char::from(DIGITS[(word >> (18 - 6 * k)) as usize & 63])
+            } else {
+                '='
+            });
+        }
+    }
+    text
 }

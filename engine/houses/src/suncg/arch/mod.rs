@@ -5,7 +5,6 @@
 //! slab; a floor's points are its top, a ceiling's its lower face.
 
 mod file;
-mod polygon;
 mod slab;
 mod wall;
 

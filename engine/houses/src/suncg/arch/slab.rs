@@ -4,8 +4,8 @@ use dwell_scene::Mesh;
 use glam::{DVec2, Vec2, Vec3};
 
 use super::file::{Element, ElementKind};
-use super::polygon::triangulate;
 use super::wall::quad;
+use crate::build::triangulate;
 
 /// The closed mesh of a slab, texture coordinates in metres: slot 0 is the side that the room sees, slot 1 the other one,
 /// slot 2 the rim. Empty for an outline without area.

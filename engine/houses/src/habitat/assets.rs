@@ -1,0 +1,239 @@
+//! Mesh files of a data set, each read once, with their materials in the house's tables.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use dwell_scene::parallel::Threads;
+use dwell_scene::{Aabb, HouseData, MaterialId, Mesh, MeshId, TextureId};
+
+use super::dataset::Found;
+use crate::build::{Names, Scene};
+use crate::damage::Damage;
+use crate::gltf;
+use crate::limits::MAX_BUFFER_BYTES;
+use crate::report::{At, Report};
+use crate::root::{DataRoot, folder_of};
+
+/// A named piece of an asset, its place baked into the mesh.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    pub(super) name: String,
+    pub(super) mesh: Arc<Mesh>,
+    pub(super) materials: Vec<MaterialId>,
+}
+
+/// An asset as one mesh.
+#[derive(Debug, Clone)]
+pub(super) struct Whole {
+    pub(super) mesh: MeshId,
+    pub(super) shape: Arc<Mesh>,
+    pub(super) bounds: Aabb,
+    pub(super) materials: Vec<MaterialId>,
+}
+
+/// Assets that were read.
+#[derive(Debug, Default)]
+pub(super) struct Assets {
+    pieces: BTreeMap<String, Option<Arc<Vec<Piece>>>>,
+    wholes: BTreeMap<String, Option<Whole>>,
+    shapes: BTreeMap<String, Option<Arc<Mesh>>>,
+    material_names: Names,
+}
+
+impl Assets {
+    /// The path inside the root of an asset that a template names; `None`, reported, when it leaves the root.
+    pub(super) fn path(template: &Found, asset: &str, report: &mut Report) -> Option<String> {
+        let path = DataRoot::resolve(&template.folder, asset);
+        if path.is_err() {
+            let path = asset.to_owned();
+            report.warn(template.at.clone(), Damage::PathRefused { path });
+        }
+        path.ok()
+    }
+
+    /// The pieces of the asset at `path`; `None`, reported once, when it cannot be read.
+    pub(super) fn pieces(
+        &mut self,
+        root: &DataRoot,
+        path: &str,
+        data: &mut HouseData,
+        threads: Threads,
+        report: &mut Report,
+    ) -> Option<Arc<Vec<Piece>>> {
+        if let Some(known) = self.pieces.get(path) {
+            return known.clone();
+        }
+        let read = self.read(root, path, data, threads, report).map(Arc::new);
+        self.pieces.insert(path.to_owned(), read.clone());
+        read
+    }
+
+    fn read(
+        &mut self,
+        root: &DataRoot,
+        path: &str,
+        data: &mut HouseData,
+        threads: Threads,
+        report: &mut Report,
+    ) -> Option<Vec<Piece>> {
+        let at = At::file(path);
+        let path_owned = || path.to_owned();
+        if !root.has_file(path) {
+            report.warn(at, Damage::MissingMesh { path: path_owned() });
+            return None;
+        }
+        let scene = match read_scene(root, path, threads, report) {
+            Ok(scene) => scene,
+            Err(reason) => {
+                let path = path_owned();
+                report.warn(at, Damage::UnreadableMesh { path, reason });
+                return None;
+            }
+        };
+        let first_texture = data.textures.len() as u32;
+        for texture in scene.textures {
+            data.textures.push(texture);
+        }
+        let mut ids = Vec::new();
+        for mut material in scene.looks.into_materials().iter().cloned() {
+            material.texture = material.texture.map(|id| TextureId(id.0 + first_texture));
+            material.name = self.material_names.unique(&material.name);
+            ids.push(data.materials.push(material));
+        }
+        let mut pieces = Vec::new();
+        for thing in scene.things {
+            let mesh = thing.mesh.transformed(&thing.world_from_mesh);
+            let own = thing
+                .materials
+                .iter()
+                .filter_map(|id| ids.get(id.0 as usize));
+            pieces.push(Piece {
+                name: thing.name,
+                mesh: Arc::new(mesh),
+                materials: own.copied().collect(),
+            });
+        }
+        if pieces.iter().all(|piece| piece.mesh.triangles.is_empty()) {
+            report.warn(at, Damage::EmptyMesh { path: path_owned() });
+            return None;
+        }
+        Some(pieces)
+    }
+
+    /// The asset at `path` as one mesh that the house does not hold: a shape to collide with. `None`, reported once, when it
+    /// cannot be read.
+    pub(super) fn shape(
+        &mut self,
+        root: &DataRoot,
+        path: &str,
+        threads: Threads,
+        report: &mut Report,
+    ) -> Option<Arc<Mesh>> {
+        if let Some(known) = self.shapes.get(path) {
+            return known.clone();
+        }
+        let shape = match read_scene(root, path, threads, report) {
+            Ok(scene) => {
+                let mut shape = Mesh::default();
+                for thing in scene.things {
+                    shape.append(&thing.mesh.transformed(&thing.world_from_mesh), 0);
+                }
+                Some(Arc::new(shape))
+            }
+            Err(reason) => {
+                let path = path.to_owned();
+                report.warn(At::file(&path), Damage::UnreadableMesh { path, reason });
+                None
+            }
+        };
+        self.shapes.insert(path.to_owned(), shape.clone());
+        shape
+    }
+
+    /// The asset at `path` as one mesh of the house.
+    pub(super) fn whole(
+        &mut self,
+        root: &DataRoot,
+        path: &str,
+        data: &mut HouseData,
+        threads: Threads,
+        report: &mut Report,
+    ) -> Option<Whole> {
+        if let Some(known) = self.wholes.get(path) {
+            return known.clone();
+        }
+        let pieces = self.pieces(root, path, data, threads, report);
+        let whole = pieces.map(|pieces| {
+            let (shape, materials) = joined(&pieces);
+            let shape = Arc::new(shape);
+            Whole {
+                mesh: data.meshes.push(shape.clone()),
+                bounds: shape.bounds(),
+                shape,
+                materials,
+            }
+        });
+        self.wholes.insert(path.to_owned(), whole.clone());
+        whole
+    }
+}
+
+fn read_scene(
+    root: &DataRoot,
+    path: &str,
+    threads: Threads,
+    report: &mut Report,
+) -> Result<Scene, String> {
+    let ending = path.rsplit('.').next().unwrap_or("").to_ascii_lowercase();
+    if ending != "glb" && ending != "gltf" {
+        return Err(format!(
+            "a mesh that ends in .{ending}; .glb and .gltf are read"
+        ));
+    }
+    let bytes = root
+        .read(path, MAX_BUFFER_BYTES)
+        .map_err(|error| error.reason())?;
+    let folder = DataRoot::new(root.folder().join(folder_of(path)));
+    let folder = folder.map_err(|error| error.reason())?;
+    let name = path.rsplit('/').next().unwrap_or(path);
+    gltf::read_scene(&bytes, &folder, name, threads, report).map_err(|error| error.reason())
+}
+
+/// Pieces as one mesh with a slot for each of its materials.
+fn joined(pieces: &[Piece]) -> (Mesh, Vec<MaterialId>) {
+    let mut mesh = Mesh::default();
+    let mut materials: Vec<MaterialId> = Vec::new();
+    let flat = pieces.iter().any(|piece| piece.mesh.normals.is_empty());
+    let bare = pieces.iter().all(|piece| piece.mesh.uvs.is_empty());
+    for piece in pieces {
+        let mut part = Mesh::clone(&piece.mesh);
+        if flat {
+            part.normals.clear();
+        }
+        if !bare {
+            part.uvs.resize(part.positions.len(), glam::Vec2::ZERO);
+        }
+        let slots: Vec<u16> = piece
+            .materials
+            .iter()
+            .map(|id| {
+                let known = materials.iter().position(|other| other == id);
+                known.unwrap_or_else(|| {
+                    materials.push(*id);
+                    materials.len() - 1
+                }) as u16
+            })
+            .collect();
+        let last = slots.first().copied().unwrap_or(0);
+        part.slots = (0..part.triangles.len())
+            .map(|k| {
+                slots
+                    .get(usize::from(part.slot(k)))
+                    .copied()
+                    .unwrap_or(last)
+            })
+            .collect();
+        mesh.append(&part, 0);
+    }
+    (mesh, materials)
+}

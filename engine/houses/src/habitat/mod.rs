@@ -1,0 +1,184 @@
+//! Scenes of Habitat: a `scene_instance.json` in its data set, as of `ReplicaCAD` and HSSD.
+//!
+//! `docs/formats/habitat.md` lists the fields that are read, where they come from, and what is left out.
+
+mod articulated;
+mod assets;
+mod dataset;
+mod file;
+mod objects;
+mod place;
+mod stage;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use dwell_scene::parallel::Threads;
+use dwell_scene::{House, HouseData};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use crate::build::Names;
+use crate::damage::Damage;
+use crate::error::HousesError;
+use crate::limits::MAX_NODES;
+use crate::report::{At, Report};
+use crate::robot::Robot;
+use assets::Assets;
+use dataset::{Dataset, Found, Kind, SCENE_ENDING};
+use file::{Instance, SceneFile, Template};
+
+/// Whether `path` names a scene of Habitat.
+pub(crate) fn recognizes(path: &Path) -> bool {
+    path.file_name()
+        .is_some_and(|name| name.to_string_lossy().ends_with(SCENE_ENDING))
+}
+
+/// Opens a scene. Files are read below the folder of the data set: the nearest one, up to four folders above the scene, that
+/// holds a `.scene_dataset_config.json`.
+///
+/// # Errors
+/// [`HousesError::Io`] when the scene cannot be read, [`HousesError::Syntax`] when it or the data set's file is no JSON of
+/// that form, [`HousesError::TooLarge`] for more instances than are read, [`HousesError::Empty`] when no triangle is left,
+/// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
+pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+    let (dataset, scene_path) = Dataset::around(path)?;
+    let at = At::file(&scene_path);
+    let scene: SceneFile = dataset::read_json(&dataset.root, &scene_path)?;
+    let count = scene.object_instances.len() + scene.articulated_object_instances.len();
+    if count > MAX_NODES {
+        return Err(HousesError::TooLarge {
+            at: at.field("object_instances"),
+            what: "instance count",
+            found: count as u64,
+            allowed: MAX_NODES as u64,
+        });
+    }
+    let name = scene_path.rsplit('/').next().unwrap_or(&scene_path);
+    let name = name.strip_suffix(SCENE_ENDING).unwrap_or(name).to_owned();
+    let mut report = Report::new();
+    let (semantic_at, semantics, lexicon) = dataset.semantics(&name, &mut report);
+    let regions = stage::regions(semantics, &semantic_at, &mut report);
+    let mut reader = Reader {
+        dataset,
+        threads,
+        report: &mut report,
+        data: HouseData {
+            name,
+            source: "habitat".to_owned(),
+            ..HouseData::default()
+        },
+        assets: Assets::default(),
+        robots: BTreeMap::new(),
+        names: Names::default(),
+        lexicon,
+        origin: scene.translation_origin,
+    };
+    reader.stage(scene.stage_instance, &regions, &at);
+    stage::rooms(&mut reader.data, &regions, &semantic_at, reader.report);
+    for (k, value) in scene.object_instances.into_iter().enumerate() {
+        let at = at.field(format_args!("object_instances[{k}]"));
+        if let Some(instance) = reader.instance(value, &at) {
+            reader.object(&instance, &at);
+        }
+    }
+    for (k, value) in scene.articulated_object_instances.into_iter().enumerate() {
+        let at = at.field(format_args!("articulated_object_instances[{k}]"));
+        if let Some(instance) = reader.instance(value, &at) {
+            reader.articulated(&instance, &at);
+        }
+    }
+    if scene.default_lighting.is_some_and(|name| !name.is_empty()) {
+        let what = "the scene's light set-up is not read".to_owned();
+        reader
+            .report
+            .warn(at.field("default_lighting"), Damage::Simplified { what });
+    }
+    let data = reader.data;
+    if data.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
+        let damage = report.len();
+        return Err(HousesError::Empty { at, damage });
+    }
+    Ok((House::new(data).map_err(HousesError::scene(&at))?, report))
+}
+
+/// A scene on its way into a house.
+struct Reader<'a> {
+    dataset: Dataset,
+    threads: Threads,
+    report: &'a mut Report,
+    data: HouseData,
+    assets: Assets,
+    robots: BTreeMap<String, Result<Robot, String>>,
+    names: Names,
+    /// Names by semantic id.
+    lexicon: BTreeMap<i64, String>,
+    /// From where places count when an instance does not say.
+    origin: Option<String>,
+}
+
+impl Reader<'_> {
+    fn stage(&mut self, value: Value, regions: &[file::Region], at: &At) {
+        let at = at.field("stage_instance");
+        let Some(instance) = self.instance(value, &at) else {
+            return;
+        };
+        let Some(found) = self.template(Kind::Stage, &instance.template_name, &at) else {
+            return;
+        };
+        let Some(template) = self.parse::<Template>(&found) else {
+            return;
+        };
+        let placed = (
+            place::pose(&instance),
+            place::scale(&instance),
+            place::template_from_asset(&template),
+        );
+        let (Some(pose), Some(scale), Some(frame)) = placed else {
+            let reason = "numbers that are no place, no scale or no directions".to_owned();
+            return self.report.warn(at, Damage::BadTransform { reason });
+        };
+        let Some(path) = Assets::path(&found, &template.render_asset, self.report) else {
+            return;
+        };
+        let (root, threads) = (&self.dataset.root, self.threads);
+        if let Some(pieces) = self
+            .assets
+            .pieces(root, &path, &mut self.data, threads, self.report)
+        {
+            let world_from_stage = pose.to_affine() * glam::Affine3A::from_scale(scale) * frame;
+            stage::structure(&mut self.data, &pieces, &world_from_stage, regions);
+        }
+    }
+
+    /// An instance; `None`, reported, when a field is missing or of the wrong kind.
+    fn instance(&mut self, value: Value, at: &At) -> Option<Instance> {
+        serde_json::from_value(value)
+            .map_err(|error| {
+                let reason = error.to_string();
+                self.report.warn(at.clone(), Damage::BadRow { reason });
+            })
+            .ok()
+    }
+
+    /// The template that an instance names; `None`, reported, when there is none.
+    fn template(&mut self, kind: Kind, name: &str, at: &At) -> Option<Found> {
+        let found = self.dataset.template(kind, name, self.report);
+        if found.is_none() {
+            let path = format!("{name} (a template)");
+            self.report.warn(at.clone(), Damage::MissingMesh { path });
+        }
+        found
+    }
+
+    /// The attributes of a template; `None`, reported, when one is of the wrong kind.
+    fn parse<T: DeserializeOwned>(&mut self, found: &Found) -> Option<T> {
+        serde_json::from_value(Value::Object(found.attributes.clone()))
+            .map_err(|error| {
+                let reason = error.to_string();
+                self.report
+                    .warn(found.at.clone(), Damage::BadRow { reason });
+            })
+            .ok()
+    }
+}
