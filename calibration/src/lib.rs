@@ -61,8 +61,10 @@ pub fn calibrate(
 pub enum Outcome {
     /// What the simulation lacks.
     Causes(Box<Report>),
-    /// How well roll-outs predict, with contact parameters by cross-validation.
+    /// How well roll-outs of tosses predict, with contact parameters by cross-validation.
     RollOuts(Box<rollout::study::StudyReport>),
+    /// How well roll-outs of drives predict, with parameters of the base by cross-validation.
+    Series(Box<rollout::series::SeriesReport>),
 }
 
 impl Outcome {
@@ -71,12 +73,13 @@ impl Outcome {
         match self {
             Self::Causes(report) => report.to_json(),
             Self::RollOuts(report) => report.to_json(),
+            Self::Series(report) => report.to_json(),
         }
     }
 }
 
 /// As [`calibrate`] for kinds whose causes are named, as [`rollout::study::run`] for pose trajectories, which are
-/// compared with the scores of `peers` too.
+/// compared with the scores of `peers` too, and as [`rollout::series::run`] for drives.
 ///
 /// # Errors
 /// As those.
@@ -99,6 +102,17 @@ pub fn examine(
         let models = rollout::study::models();
         let report = rollout::study::run(&tracks, &models, peers, &settings, progress)?;
         return Ok(Outcome::RollOuts(Box::new(report)));
+    }
+    if bundle.kind() == Kind::Drive {
+        let drives = rollout::drive::Drives::of(&bundle)?;
+        let settings = rollout::series::SeriesOptions {
+            seed: options.seed,
+            threads: options.threads,
+            bootstrap_draws: options.bootstrap_draws,
+            ..rollout::series::SeriesOptions::default()
+        };
+        let report = rollout::series::run(&drives, &rollout::drive::models(), &settings, progress)?;
+        return Ok(Outcome::Series(Box::new(report)));
     }
     let report = explain(&bundle, options, &Progress::new(progress))?;
     Ok(Outcome::Causes(Box::new(report)))
@@ -131,11 +145,11 @@ fn explain(
         Kind::Trajectory => Box::new(FlightTwin::new(bundle, options)?),
         Kind::Servo => Box::new(ServoTwin::new(bundle, options)?),
         Kind::ImpulseResponse => Box::new(RoomTwin::new(bundle, options)?),
-        Kind::PoseTrajectory => {
+        Kind::PoseTrajectory | Kind::Drive => {
             return Err(CalibrationError::field(
                 bundle.name.clone(),
                 "kind",
-                "pose_trajectory",
+                format!("{:?}", bundle.kind()),
                 "a kind whose causes are named; roll-outs are studied by `examine`",
             ));
         }

@@ -5,6 +5,7 @@
     reason = "a test stops at the first surprise, in its helpers too"
 )]
 
+use dwell_calibration::bundle::file::Kind;
 use dwell_calibration::{CalibrationError, Options, calibrate};
 use std::fs;
 use std::path::Path;
@@ -35,7 +36,7 @@ fn faults_are_named_with_file_line_and_field() {
             "manifest.json",
             "\"version\": 1",
             "\"version\": 7",
-            &["manifest.json", "version is 7", "1 to 2, the versions"],
+            &["manifest.json", "version is 7", "1 to 3, the versions"],
         ),
         (
             "manifest.json",
@@ -191,4 +192,47 @@ fn damaged_bytes_are_refused_or_read() {
         }
         fs::write(&path, &sound).unwrap();
     }
+}
+
+/// A drive whose table can be damaged: 60 samples of a robot that goes straight on.
+fn drive(change: impl Fn(usize, &mut [f64; 6])) -> Result<(Kind, usize), String> {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, text: String| fs::write(folder.path().join(name), text).unwrap();
+    put(
+        "manifest.json",
+        r#"{"version": 3, "title": "d", "licence": "CC0-1.0", "kind": "drive",
+            "scene": {"base": {"wheel_radius_m": 0.05, "wheel_base_m": 0.2, "rate_hz": 20}}}"#
+            .into(),
+    );
+    let (mut episodes, mut rows) = (
+        "episode,split_group,conditions\n".to_owned(),
+        "episode,t_s,x,y,heading,left_rad,right_rad\n".to_owned(),
+    );
+    for episode in 0..4 {
+        episodes += &format!("d{episode},g{episode},straight\n");
+        for k in 0..60 {
+            let step = if k == 0 { 0.0 } else { 0.2 };
+            let mut row = [0.05 * k as f64, 0.01 * k as f64, 0.0, 0.0, step, step];
+            change(k, &mut row);
+            let cells = row.map(|cell| cell.to_string()).join(",");
+            rows += &format!("d{episode},{cells}\n");
+        }
+    }
+    put("episodes.csv", episodes);
+    put("drive.csv", rows);
+    dwell_calibration::check(folder.path()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn faults_of_drives_are_named() {
+    assert_eq!(drive(|_, _| ()).unwrap(), (Kind::Drive, 4));
+    let told = drive(|k, row| row[0] += if k == 7 { 0.03 } else { 0.0 }).unwrap_err();
+    assert!(told.contains("t_s") && told.contains("sample 7"), "{told}");
+    let told = drive(|_, row| (row[4], row[5]) = (-row[4], -row[5])).unwrap_err();
+    assert!(told.contains("units, signs"), "{told}");
+    let told = drive(|k, row| row[3] = if k == 3 { f64::NAN } else { 0.0 }).unwrap_err();
+    assert!(
+        told.contains("heading") && told.contains("line 5"),
+        "{told}"
+    );
 }

@@ -74,6 +74,31 @@ FLIGHT: Row = {
     },
 }
 
+#: The same for drives of a robot on two wheels; the ticks are counts since the sample before.
+DRIVE: Row = {
+    "kind": "drive",
+    "title": "what was measured, in a line",
+    "licence": "of the data",
+    "notes": "",
+    "base": {"wheel_radius_m": 0.042, "wheel_base_m": 0.2, "rate_hz": 20.0, "ticks_per_turn": 2796.8},
+    "episodes": {
+        "file": "index.csv",
+        "episode": "episode",
+        "split_group": "set",
+        "conditions": "path",
+    },
+    "table": {
+        "file": "data.parquet",
+        "episode": "episode",
+        "t_s": "t_s",
+        "metres_per_unit": 1.0,
+        "position": ["x", "y"],
+        "heading_rad": "theta",
+        "ticks_left": "ticks_left",
+        "ticks_right": "ticks_right",
+    },
+}
+
 
 def import_files(
     files: list[Path], map_file: Path, out: Path, progress: Callable[[float, str], None]
@@ -91,8 +116,7 @@ def import_files(
     out.parent.mkdir(parents=True, exist_ok=True)
     part = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
     try:
-        write = pose_bundle if mapping["kind"] == "pose_trajectory" else flight_bundle
-        counts = write(mapping, str(map_file), tables, part, progress)
+        counts = WRITERS[mapping["kind"]](mapping, str(map_file), tables, part, progress)
         from dwell import DwellError, _native
 
         progress(0.9, "checking the bundle")
@@ -115,11 +139,10 @@ def read_map(path: Path) -> Row:
         mapping = json.loads(path.read_text("utf-8"))
     except json.JSONDecodeError as error:
         raise ValueError(f"{path} line {error.lineno}: {error.msg}") from None
-    kinds = {"pose_trajectory": TEMPLATE, "trajectory": FLIGHT}
     kind = mapping.get("kind") if isinstance(mapping, dict) else None
-    if kind not in kinds:
-        raise ValueError(f"{path}: kind is {kind!r}; allowed is one of {sorted(kinds)}")
-    known(mapping, kinds[kind], str(path))
+    if kind not in TEMPLATES:
+        raise ValueError(f"{path}: kind is {kind!r}; allowed is one of {sorted(TEMPLATES)}")
+    known(mapping, TEMPLATES[kind], str(path))
     result: Row = mapping
     return result
 
@@ -249,10 +272,17 @@ def table_file(folder: Path, name: str, head: str) -> Iterator[Callable[[list[st
         yield writer.writerow
 
 
-def write_common(mapping: Row, folder: Path, scene: Row, more: Row, groups: dict[str, str]) -> None:
+def write_common(
+    mapping: Row,
+    folder: Path,
+    scene: Row,
+    more: Row,
+    groups: dict[str, str],
+    conditions: Mapping[str, str] | None = None,
+) -> None:
     """The manifest and the list of episodes."""
     manifest = {
-        "version": 2,
+        "version": 3 if mapping["kind"] == "drive" else 2,
         "title": mapping.get("title") or "measured",
         "licence": mapping.get("licence") or "unknown",
         "kind": mapping["kind"],
@@ -263,7 +293,7 @@ def write_common(mapping: Row, folder: Path, scene: Row, more: Row, groups: dict
     (folder / "manifest.json").write_text(json.dumps(manifest, indent=1) + "\n", "utf-8")
     with table_file(folder, "episodes.csv", "episode,split_group,conditions") as write:
         for episode, group in groups.items():
-            write([episode, group, ""])
+            write([episode, group, (conditions or {}).get(episode, "")])
 
 
 def pose_bundle(
@@ -392,3 +422,57 @@ def flight_bundle(
     scene = {"bodies": list(bodies.values())}
     write_common(mapping, folder, scene, {"channels": told}, groups)
     return {"rows": rows, "episodes": len(groups), "left_out": len(left_out)}
+
+
+def drive_bundle(
+    mapping: Row,
+    at: str,
+    tables: Mapping[str, Path],
+    folder: Path,
+    progress: Callable[[float, str], None],
+) -> dict[str, int]:
+    """Drives of a robot on two wheels, with the sessions and paths that a second table lists."""
+    part, here = need(mapping, "table", at), f"{at}: table"
+    base, listing = dict(need(mapping, "base", at)), need(mapping, "episodes", at)
+    ticks = need(base, "ticks_per_turn", f"{at}: base")
+    if not isinstance(ticks, int | float) or not ticks > 0:
+        raise ValueError(f"{at}: base: ticks_per_turn is {ticks!r}; a number above 0 is needed")
+    rad_per_tick = 2.0 * math.pi / base.pop("ticks_per_turn")
+    names = [
+        need(listing, key, f"{at}: episodes") for key in ("episode", "split_group", "conditions")
+    ]
+    listed = Table(listing, tables, f"{at}: episodes")
+    listed.has(names)
+    rows_of = {text(row[names[0]]): row for _, row in listed}
+    table = Table(part, tables, here)
+    place = columns_of(part, "position", 2, here)
+    heading, clock = need(part, "heading_rad", here), need(part, "t_s", here)
+    wheels = [need(part, key, here) for key in ("ticks_left", "ticks_right")]
+    episode = need(part, "episode", here)
+    table.has([episode, clock, *place, heading, *wheels])
+    metres = float(part.get("metres_per_unit", 1.0))
+    groups: dict[str, str] = {}
+    rows = 0
+    head = "episode,t_s,x,y,heading,left_rad,right_rad"
+    with table_file(folder, "drive.csv", head) as write:
+        for where, row in table:
+            name = text(row[episode])
+            if name not in rows_of:
+                raise ValueError(f"{where}: episode {name!r} is not in {listed.path}")
+            groups.setdefault(name, text(rows_of[name][names[1]]))
+            seen = [metres * value for value in numbers(where, row, place)]
+            seen.append(number(where, row, heading))
+            turned = [rad_per_tick * value for value in numbers(where, row, wheels)]
+            stamp = f"{number(where, row, clock):.9f}"
+            write([name, stamp, *(short(value) for value in [*seen, *turned])])
+            rows += 1
+            if rows % 4096 == 0:
+                progress(0.1, f"{rows} rows of {table.path.name}")
+    conditions = {name: text(rows_of[name][names[2]]) for name in groups}
+    write_common(mapping, folder, {"base": base}, {}, groups, conditions)
+    return {"rows": rows, "episodes": len(groups), "left_out": 0}
+
+
+#: What each kind of map looks like, and what writes its bundle.
+TEMPLATES: dict[str, Row] = {"pose_trajectory": TEMPLATE, "trajectory": FLIGHT, "drive": DRIVE}
+WRITERS = {"pose_trajectory": pose_bundle, "trajectory": flight_bundle, "drive": drive_bundle}

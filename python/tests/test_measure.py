@@ -116,7 +116,7 @@ def test_a_bad_cell_is_named_by_file_column_and_row(tmp_path: Path) -> None:
 
 def test_the_command_prints_a_template_that_it_reads(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "dwell.cli", "measure", "import"]
-    for kind in ("pose_trajectory", "trajectory"):
+    for kind in ("pose_trajectory", "trajectory", "drive"):
         done = subprocess.run(
             [*command, "--init", kind], capture_output=True, text=True, check=True
         )
@@ -127,12 +127,43 @@ def test_the_command_prints_a_template_that_it_reads(tmp_path: Path) -> None:
     assert subprocess.run(missing, capture_output=True, check=False).returncode == 1
 
 
+def test_ticks_become_turns_of_wheels(tmp_path: Path) -> None:
+    table, index = tmp_path / "data.csv", tmp_path / "index.csv"
+    rows = ["episode,t_s,x,y,theta,ticks_right,ticks_left"]
+    for name in "abcd":
+        for k in range(60):
+            # 100 ticks of 2796.8 a turn on a wheel of 42 mm are 9.436 mm.
+            way = 100 / 2796.8 * 2 * math.pi * 0.042 * k
+            rows.append(f"{name},{0.05 * k},{way},0,0,{100 if k else 0},{100 if k else 0}")
+    table.write_text("\n".join(rows) + "\n")
+    lines = [f"{name},straight,day{name}" for name in "abcd"]
+    index.write_text("\n".join(["episode,path,set", *lines]) + "\n")
+    mapping = json.loads((MAPS / "diffdrive_odometry.json").read_text())
+    mapping["table"]["file"] = "data.csv"
+    path = tmp_path / "map.json"
+    path.write_text(json.dumps(mapping))
+    out = tmp_path / "a.measured"
+    assert import_files([table, index], path, out, quiet)["episodes"] == 4
+    with (out / "drive.csv").open() as file:
+        row = list(csv.DictReader(file))[1]
+    assert float(row["left_rad"]) == pytest.approx(2 * math.pi * 100 / 2796.8)
+    with (out / "episodes.csv").open() as file:
+        first = next(csv.DictReader(file))
+    assert (first["split_group"], first["conditions"]) == ("daya", "straight")
+    mapping["base"]["ticks_per_turn"] = 0
+    path.write_text(json.dumps(mapping))
+    with pytest.raises(ValueError, match="ticks_per_turn is 0"):
+        import_files([table, index], path, tmp_path / "b.measured", quiet)
+
+
 def shared() -> Path:
     default = ROOT.parent / "shared" / "data"
     return Path(os.environ.get("DWELL_SHARED_DATA", default)) / "measured" / "physics"
 
 
-@pytest.mark.parametrize(("name", "episodes"), [("cube_toss", 367), ("ball_drops", None)])
+@pytest.mark.parametrize(
+    ("name", "episodes"), [("cube_toss", 367), ("ball_drops", None), ("diffdrive_odometry", 114)]
+)
 def test_real_sets_are_imported_whole(tmp_path: Path, name: str, episodes: int | None) -> None:
     folder = shared() / name
     if not folder.is_dir():

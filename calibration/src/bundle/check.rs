@@ -1,7 +1,7 @@
 //! Whether a bundle says what it must, in ranges that make sense.
 
 use super::file::{Body, Kind, Manifest, Surface, VERSION};
-use super::{Bundle, limits, poses};
+use super::{Bundle, drive, limits, poses};
 use crate::error::CalibrationError;
 use dwell_scene::material::library;
 use std::collections::BTreeMap;
@@ -165,6 +165,17 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
     if let Some(board) = &scene.board {
         range(at, "scene.board.friction", board.friction, 0.0, 10.0)?;
         range(at, "scene.board.restitution", board.restitution, 0.0, 1.0)?;
+    }
+    if let Some(base) = &scene.base {
+        range(
+            at,
+            "scene.base.wheel_radius_m",
+            base.wheel_radius_m,
+            1e-3,
+            1.0,
+        )?;
+        range(at, "scene.base.wheel_base_m", base.wheel_base_m, 0.01, 5.0)?;
+        range(at, "scene.base.rate_hz", base.rate_hz, 1.0, 1000.0)?;
     }
     if manifest.kind == Kind::PoseTrajectory {
         pose_form(at, manifest)?;
@@ -346,7 +357,7 @@ fn channels(at: &str, manifest: &Manifest) -> Checked {
     let (allowed, unit): (&[&str], &str) = match manifest.kind {
         Kind::Trajectory => (&["x", "y", "z"], "m"),
         Kind::Servo => (&["position"], "rad"),
-        Kind::ImpulseResponse | Kind::PoseTrajectory => return Ok(()),
+        Kind::ImpulseResponse | Kind::PoseTrajectory | Kind::Drive => return Ok(()),
     };
     for (k, channel) in manifest.channels.iter().enumerate() {
         let of = |field: &str| format!("channels[{k}].{field}");
@@ -491,7 +502,9 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
             _ => {}
         }
         let samples = episode.samples.iter().map(|s| s.t_s);
-        let times: Vec<f64> = samples.chain(episode.poses.iter().map(|p| p.t_s)).collect();
+        let poses = episode.poses.iter().map(|p| p.t_s);
+        let drive = episode.drive.iter().map(|row| row.t_s);
+        let times: Vec<f64> = samples.chain(poses).chain(drive).collect();
         let span = |f: fn(f64, f64) -> f64, from: f64| times.iter().copied().fold(from, f);
         let duration = span(f64::max, f64::NEG_INFINITY) - span(f64::min, f64::INFINITY);
         if duration > 600.0 {
@@ -505,6 +518,9 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
     }
     if bundle.kind() == Kind::PoseTrajectory {
         poses::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?;
+    }
+    if bundle.kind() == Kind::Drive {
+        drive::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?;
     }
     Ok(())
 }

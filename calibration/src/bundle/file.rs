@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 /// The version of the bundle's form that this build writes; it reads this one and those before it.
 ///
 /// 1: flights, servos, impulse responses. 2: pose trajectories of bodies that touch a board (`poses.csv`, `starts.csv`).
-pub const VERSION: u32 = 2;
+/// 3: drives of a robot on two wheels (`drive.csv`).
+pub const VERSION: u32 = 3;
 
 /// `manifest.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,6 +46,8 @@ pub enum Kind {
     ImpulseResponse,
     /// Poses of a rigid body that flies, hits a flat board, slides, rolls and comes to rest.
     PoseTrajectory,
+    /// Poses of a robot on two driven wheels, and how far these turned.
+    Drive,
 }
 
 /// What the numbers of `poses.csv` mean.
@@ -89,6 +92,21 @@ pub struct Scene {
     /// The board of pose trajectories: the plane y = 0.
     #[serde(default)]
     pub board: Option<Board>,
+    /// The base of drives.
+    #[serde(default)]
+    pub base: Option<Base>,
+}
+
+/// A base with two driven wheels side by side, as it is believed to be before any fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Base {
+    /// Radius of both wheels, m; 0.001 to 1.
+    pub wheel_radius_m: f64,
+    /// Distance between the points where they touch the floor, m; 0.01 to 5.
+    pub wheel_base_m: f64,
+    /// Samples per second, Hz; 1 to 1,000. The samples of an episode are evenly spaced.
+    pub rate_hz: f64,
 }
 
 /// A flat board, the plane y = 0, with the contact values that are taken for it and the body before any fit.
@@ -287,6 +305,26 @@ pub struct PoseRow {
     pub wx: Option<f64>,
     pub wy: Option<f64>,
     pub wz: Option<f64>,
+}
+
+/// A row of `drive.csv`. The robot drives in the plane of `x` (forward at heading 0) and `y` (to its left there).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "position in m, heading in rad to the left, as the tracker saw them"
+)]
+pub struct DriveRow {
+    /// The episode.
+    pub episode: String,
+    /// Time on the tracker's clock, s.
+    pub t_s: f64,
+    pub x: f64,
+    pub y: f64,
+    pub heading: f64,
+    /// How far the left wheel turned since the sample before, rad; forward is positive.
+    pub left_rad: f64,
+    /// The right wheel likewise.
+    pub right_rad: f64,
 }
 
 /// A row of `starts.csv`: the sample from which an episode is rolled out, and velocities there that were fitted to the

@@ -9,6 +9,7 @@
 //! | `ir.csv` | `episode, file, source_x, source_y, source_z, receiver_x, receiver_y, receiver_z, rate_hz` (kind `impulse_response`) |
 //! | `poses.csv` | `episode, t_s, entity, x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`) |
 //! | `starts.csv` | `episode, sample, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`; may be absent) |
+//! | `drive.csv` | `episode, t_s, x, y, heading, left_rad, right_rad` (kind `drive`) |
 //! | `ir/*.wav` | the responses that `ir.csv` names |
 //!
 //! Everything is SI; axes are the engine's (right-handed, y up).
@@ -16,12 +17,13 @@
 pub mod file;
 
 mod check;
+mod drive;
 mod limits;
 mod poses;
 mod read;
 mod wav;
 
-use file::{CommandRow, Kind, Manifest};
+use file::{CommandRow, DriveRow, Kind, Manifest};
 use glam::{DQuat, DVec3};
 
 /// A bundle that was read and checked.
@@ -40,6 +42,8 @@ pub(crate) struct Episode {
     pub(crate) name: String,
     /// Episodes of one group are held out together.
     pub(crate) group: String,
+    /// What was special.
+    pub(crate) conditions: String,
     /// By entity, then channel, each by time.
     pub(crate) samples: Vec<Sample>,
     /// By actuator, each by time.
@@ -49,6 +53,8 @@ pub(crate) struct Episode {
     pub(crate) poses: Vec<PoseSample>,
     /// The sample to roll out from, and the velocities there; `None`: the first, as measured.
     pub(crate) start: Option<(usize, Rates)>,
+    /// By time.
+    pub(crate) drive: Vec<DriveRow>,
 }
 
 /// A measured pose.

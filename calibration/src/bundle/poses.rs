@@ -262,3 +262,84 @@ pub(crate) fn turn(a: DQuat, b: DQuat) -> DVec3 {
     }
     axis * (2.0 * libm::atan2(sine, between.w) / sine)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bundle::file::{Kind, PoseForm, Scene, VERSION};
+
+    const RATE_HZ: f64 = 100.0;
+
+    /// Two episodes of a body that flies and tumbles about a tilted axis, with velocities along the world's axes.
+    fn episodes() -> Vec<Episode> {
+        let spin = DVec3::new(2.0, 5.0, -1.0);
+        let episode = |k: usize| Episode {
+            name: format!("e{k}"),
+            poses: (0..60)
+                .map(|k| {
+                    let t_s = f64::from(k) / RATE_HZ;
+                    let turned = DQuat::from_scaled_axis(spin * t_s);
+                    let linear = DVec3::new(1.0, 2.0 - 9.81 * t_s, 0.5);
+                    let fall = DVec3::NEG_Y * (4.905 * t_s * t_s);
+                    PoseSample {
+                        t_s,
+                        entity: 0,
+                        position: DVec3::new(1.0, 2.0, 0.5) * t_s + fall,
+                        rotation: turned * DQuat::from_rotation_x(1.2),
+                        rates: Some(Rates {
+                            linear,
+                            angular: spin,
+                        }),
+                    }
+                })
+                .collect(),
+            ..Episode::default()
+        };
+        vec![episode(0), episode(1)]
+    }
+
+    fn judged(frame: AngularFrame, change: impl Fn(&mut PoseSample)) -> Result<(), String> {
+        let mut episodes = episodes();
+        for sample in episodes.iter_mut().flat_map(|episode| &mut episode.poses) {
+            change(sample);
+        }
+        let manifest = Manifest {
+            version: VERSION,
+            title: String::new(),
+            licence: String::new(),
+            kind: Kind::PoseTrajectory,
+            scene: Scene::default(),
+            channels: Vec::new(),
+            poses: Some(PoseForm {
+                rate_hz: RATE_HZ,
+                angular_velocity: frame,
+                filtering: String::new(),
+            }),
+            notes: String::new(),
+        };
+        complete("b", &manifest, &episodes).map_err(|error| error.to_string())
+    }
+
+    fn rates(sample: &mut PoseSample) -> &mut Rates {
+        sample.rates.as_mut().unwrap()
+    }
+
+    #[test]
+    fn velocities_that_are_not_those_of_the_poses_are_told_with_what_is_likely_wrong() {
+        judged(AngularFrame::World, |_| ()).unwrap();
+        // World velocities that the manifest calls the body's: reading has turned them once too often.
+        let turned = |s: &mut PoseSample| rates(s).angular = s.rotation * rates(s).angular;
+        let told = judged(AngularFrame::Body, turned).unwrap_err();
+        assert!(told.contains("angular_velocity is wrong"), "{told}");
+        let told = judged(AngularFrame::World, |s| rates(s).angular *= 57.3).unwrap_err();
+        assert!(
+            told.contains("wx, wy, wz") && told.contains("units"),
+            "{told}"
+        );
+        let told = judged(AngularFrame::World, |s| rates(s).linear *= -1.0).unwrap_err();
+        assert!(told.contains("vx, vy, vz"), "{told}");
+        let told = judged(AngularFrame::World, |s| s.t_s *= 2.0).unwrap_err();
+        assert!(told.contains("t_s"), "{told}");
+        judged(AngularFrame::World, |s| s.rates = None).unwrap();
+    }
+}

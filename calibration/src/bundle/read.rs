@@ -3,7 +3,7 @@
 use super::check::{self, Names};
 use super::file::{CommandRow, EpisodeRow, Kind, Manifest, ResponseRow, TrajectoryRow};
 use super::limits;
-use super::{Bundle, Episode, Response, Sample, poses, wav};
+use super::{Bundle, Episode, Response, Sample, drive, poses, wav};
 use crate::error::CalibrationError;
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet};
@@ -46,6 +46,7 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
                 &mut bundle.episodes,
             )?;
         }
+        Kind::Drive => drive::read(folder, &by_name, &mut bundle.episodes)?,
     }
     check::complete(&bundle)?;
     Ok(bundle)
@@ -174,6 +175,7 @@ fn episodes(folder: &Path) -> Result<Vec<Episode>, CalibrationError> {
         found.push(Episode {
             name: row.episode,
             group: row.split_group,
+            conditions: row.conditions,
             ..Episode::default()
         });
         Ok(())

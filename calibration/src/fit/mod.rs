@@ -3,9 +3,11 @@
 
 mod cma_es;
 mod gauss_newton;
+mod least_squares;
 mod normal;
 mod robust;
 
 pub(crate) use cma_es::CmaEs;
 pub(crate) use gauss_newton::{Fit, Model, Task};
+pub(crate) use least_squares::{Variable, least_squares};
 pub(crate) use robust::median;

@@ -351,7 +351,7 @@ fn notes(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Vec<String> {
         Kind::ImpulseResponse => notes.push(
             "Time offsets are taken out by aligning the onsets, gains by a fitted level in every band.".to_owned(),
         ),
-        Kind::Servo | Kind::PoseTrajectory => {}
+        Kind::Servo | Kind::PoseTrajectory | Kind::Drive => {}
     }
     notes
 }

@@ -1,5 +1,6 @@
 //! The report: what was measured against what was simulated, in numbers, words and pictures.
 
+mod boxes;
 mod build;
 mod data;
 mod html;

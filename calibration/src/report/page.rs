@@ -4,10 +4,11 @@ use super::html::STYLE;
 use super::svg;
 use std::fmt::Write as _;
 
+pub(crate) use super::boxes::{alone, picture};
 pub(crate) use super::html::escape;
 
 /// Colours of curves, in order.
-const COLOURS: [&str; 4] = [
+pub(crate) const COLOURS: [&str; 4] = [
     "var(--soft)",
     "var(--before)",
     "var(--after)",

@@ -4,7 +4,7 @@ use super::data::{Candidate, Plot};
 use crate::words::number;
 use std::fmt::Write as _;
 
-const WIDTH: f64 = 640.0;
+pub(super) const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 220.0;
 const LEFT: f64 = 64.0;
 const RIGHT: f64 = 12.0;
@@ -12,15 +12,15 @@ const TOP: f64 = 12.0;
 const BOTTOM: f64 = 34.0;
 
 /// A scale from data to the page.
-struct Scale {
-    low: f64,
-    high: f64,
-    from: f64,
-    to: f64,
+pub(super) struct Scale {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) from: f64,
+    pub(super) to: f64,
 }
 
 impl Scale {
-    fn at(&self, value: f64) -> f64 {
+    pub(super) fn at(&self, value: f64) -> f64 {
         let span = self.high - self.low;
         let share = if span > 0.0 {
             (value - self.low) / span
@@ -31,7 +31,7 @@ impl Scale {
     }
 
     /// Round values on it: 1, 2 or 5 times a power of ten apart.
-    fn ticks(&self) -> Vec<f64> {
+    pub(super) fn ticks(&self) -> Vec<f64> {
         let span = self.high - self.low;
         if span <= 0.0 || !span.is_finite() {
             return vec![self.low];

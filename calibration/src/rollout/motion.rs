@@ -33,6 +33,21 @@ impl Deviation {
         }
     }
 
+    /// The distance, mm.
+    pub fn position_mm(&self) -> f64 {
+        1e3 * self.position_m
+    }
+
+    /// The angle, degrees.
+    pub fn rotation_deg(&self) -> f64 {
+        self.rotation_rad.to_degrees()
+    }
+
+    /// Whether it is larger than `limit` in distance or angle.
+    pub fn exceeds(&self, limit: &Self) -> bool {
+        self.position_m > limit.position_m || self.rotation_rad > limit.rotation_rad
+    }
+
     /// |Δp|² / h + θ² with Δp in m, θ in rad and h the half width in m: metres and radians² added as the published
     /// evaluation of cube tosses adds them.
     ///

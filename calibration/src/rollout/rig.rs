@@ -42,12 +42,24 @@ impl Rig {
         tracks: &Tracks,
         contact_friction: ContactFriction,
     ) -> Result<Self, CalibrationError> {
+        Self::finer(tracks, contact_friction, 1)
+    }
+
+    /// The same with `times` as many steps between two samples.
+    ///
+    /// # Errors
+    /// As [`Rig::new`].
+    pub fn finer(
+        tracks: &Tracks,
+        contact_friction: ContactFriction,
+        times: u32,
+    ) -> Result<Self, CalibrationError> {
         let body = &tracks.body;
         let thing = Thing::tossed(&body.name, body.mass_kg, body.half_extents_m);
         let rate_hz = tracks.rate_hz as f32;
         let config = PhysicsConfig {
             control_rate_hz: rate_hz,
-            physics_rate_hz: rate_hz * STEPS_PER_SAMPLE as f32,
+            physics_rate_hz: rate_hz * (STEPS_PER_SAMPLE * times) as f32,
             solver_substeps: 1,
             contact_friction,
             sleeping: false,

@@ -1,10 +1,13 @@
 //! Whole episodes: roll out from the start to the last sample, and compare.
 
-use super::motion::Deviation;
+use super::motion::{Deviation, Motion};
 use super::rig::Rig;
+use super::start::Start;
+use super::subject::Subject;
 use super::track::{Track, Tracks};
 use crate::error::CalibrationError;
 use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
 use serde::Serialize;
 
 /// Means over the samples of an episode, from its start to its last sample.
@@ -67,6 +70,47 @@ pub fn scores(
     let one = |k: usize| {
         let deviations = deviations(rig, &tracks.episodes[which[k]])?;
         Ok(Score::of(&deviations, half_width_m))
+    };
+    threads.map(which.len(), one).into_iter().collect()
+}
+
+/// How often the chaos guard starts an episode once more.
+const NUDGES: u64 = 4;
+
+/// Whether each of the episodes `which` ends elsewhere ([`Subject::divergence`]) when its start is drawn from within the
+/// tracker's noise: which way it goes is chance then.
+///
+/// # Errors
+/// As [`deviations`].
+///
+/// # Determinism
+/// The same bits for any number of threads.
+pub fn diverging(
+    rig: &Rig,
+    tracks: &Tracks,
+    which: &[usize],
+    key: Key,
+    threads: Threads,
+) -> Result<Vec<bool>, CalibrationError> {
+    let limit = tracks.divergence();
+    let one = |k: usize| {
+        let track = &tracks.episodes[which[k]];
+        let samples = track.motions.len() - track.start - 1;
+        let last = |start: &Motion| {
+            let rolled = rig.roll(start, samples)?;
+            Ok::<_, CalibrationError>(rolled.last().copied().unwrap_or(*start))
+        };
+        let (step_s, g) = (tracks.step_s(), tracks.gravity_m_s2);
+        let known = Start::of(track, track.start, step_s, g, &tracks.noise);
+        let start = known.at(track.start_motion);
+        let plain = last(&track.start_motion)?;
+        for nudge in 0..NUDGES {
+            let key = key.child(which[k] as u64).child(nudge);
+            if Deviation::between(&last(&start.nudged(key))?, &plain).exceeds(&limit) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     };
     threads.map(which.len(), one).into_iter().collect()
 }

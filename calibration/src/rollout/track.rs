@@ -1,10 +1,14 @@
 //! Measured episodes as rows of motions at even spacing.
 
-use super::motion::Motion;
+use super::motion::{Deviation, Motion};
 use super::regime::{self, Regime};
+use super::rig::Rig;
+use super::start::{Noise, Start};
+use super::subject::Subject;
 use crate::bundle::{self, Bundle, Episode, Rates, turn};
 use crate::error::CalibrationError;
-use dwell_scene::units::STANDARD_GRAVITY_M_S2;
+use crate::twin::gravity_m_s2;
+use dwell_scene::random::Key;
 use glam::DVec3;
 use std::path::Path;
 
@@ -23,6 +27,8 @@ pub struct Tracks {
     pub rate_hz: f64,
     /// Acceleration of free fall, m/s².
     pub gravity_m_s2: f64,
+    /// The tracker's noise from sample to sample.
+    pub noise: Noise,
     /// The episodes, in the order of the file.
     pub episodes: Vec<Track>,
 }
@@ -117,10 +123,9 @@ impl Tracks {
             half_extents_m: half,
             inertia_kg_m2: body.inertia_kg_m2.unwrap_or(solid(body.mass_kg, half)),
         };
-        let gravity = scene.environment.g_m_s2;
-        let gravity_m_s2 = gravity.unwrap_or(f64::from(STANDARD_GRAVITY_M_S2));
+        let gravity_m_s2 = gravity_m_s2(&bundle.manifest);
         let step_s = 1.0 / form.rate_hz;
-        let episodes = bundle
+        let episodes: Vec<Track> = bundle
             .episodes
             .iter()
             .map(|episode| track(episode, &tracked, step_s, gravity_m_s2))
@@ -135,6 +140,7 @@ impl Tracks {
             },
             rate_hz: form.rate_hz,
             gravity_m_s2,
+            noise: Noise::of(&episodes, step_s, gravity_m_s2),
             episodes,
         })
     }
@@ -142,6 +148,53 @@ impl Tracks {
     /// Seconds between samples.
     pub fn step_s(&self) -> f64 {
         1.0 / self.rate_hz
+    }
+}
+
+/// Apart by a tenth of the width or ten degrees, two predictions are of different outcomes.
+const DIVERGED_WIDTHS: f64 = 0.1;
+const DIVERGED_RAD: f64 = 0.174_533;
+
+impl Subject for Tracks {
+    type Rig = Rig;
+
+    fn count(&self) -> usize {
+        self.episodes.len()
+    }
+
+    fn measured(&self, episode: usize) -> &[Motion] {
+        &self.episodes[episode].motions
+    }
+
+    fn regimes(&self, episode: usize) -> &[Regime] {
+        &self.episodes[episode].regimes
+    }
+
+    fn past(&self) -> usize {
+        0
+    }
+
+    fn divergence(&self) -> Deviation {
+        Deviation {
+            position_m: DIVERGED_WIDTHS * 2.0 * self.body.half_width_m(),
+            rotation_rad: DIVERGED_RAD,
+        }
+    }
+
+    fn roll(
+        &self,
+        rig: &Rig,
+        episode: usize,
+        at: usize,
+        samples: usize,
+        nudge: Option<Key>,
+    ) -> Result<Vec<Motion>, CalibrationError> {
+        let track = &self.episodes[episode];
+        let start = Start::of(track, at, self.step_s(), self.gravity_m_s2, &self.noise);
+        rig.roll(
+            &nudge.map_or(start.motion, |key| start.nudged(key)),
+            samples,
+        )
     }
 }
 

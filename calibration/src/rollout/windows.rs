@@ -2,47 +2,47 @@
 
 use super::motion::{Deviation, Motion};
 use super::regime::Regime;
-use super::rig::Rig;
-use super::track::{Track, Tracks};
+use super::subject::Subject;
 use crate::error::CalibrationError;
+use crate::fit::median;
 use dwell_scene::parallel::Threads;
-use glam::DVec3;
+use dwell_scene::random::Key;
 use serde::Serialize;
 
 /// How many samples ahead windows look.
 pub const HORIZONS: [usize; 5] = [1, 5, 10, 20, 40];
-/// Samples of the past that a start in flight is fitted to, at most.
-const PAST_SAMPLES: usize = 6;
+/// How often the chaos guard starts a window once more, from within the uncertainty of its start.
+const NUDGES: u64 = 4;
 
-/// The motion that a window starts from: the measured pose; in flight, velocities from the past samples of the same
-/// flight (a recorded velocity is often a filtered difference, which lags), else those that were recorded.
-///
-/// The velocity is the slope at the end of a least-squares line through the past positions, freed from the parabola of
-/// the fall; the angular velocity is the mean turn. Nothing after the start is looked at.
-pub fn window_start(track: &Track, at: usize, step_s: f64, gravity_m_s2: f64) -> Motion {
-    let measured = track.motions[at];
-    let flight = (0..=at)
-        .rev()
-        .take(PAST_SAMPLES)
-        .take_while(|k| track.regimes[*k] == Regime::Flight)
-        .count();
-    if flight < 3 {
-        return measured;
-    }
-    let past = &track.motions[at + 1 - flight..=at];
-    let fall = DVec3::NEG_Y * gravity_m_s2;
-    // Times run backwards from the start, so that the slope of the line is the velocity there.
-    let time = |k: usize| (k as f64 - (flight - 1) as f64) * step_s;
-    let straight = |k: usize| past[k].position - 0.5 * fall * time(k) * time(k);
-    let mean_t = (0..flight).map(time).sum::<f64>() / flight as f64;
-    let spread: f64 = (0..flight).map(|k| (time(k) - mean_t).powi(2)).sum();
-    let slope: DVec3 = (0..flight).map(|k| straight(k) * (time(k) - mean_t)).sum();
-    let turned = crate::bundle::turn(past[0].rotation, measured.rotation);
-    Motion {
-        linear: slope / spread,
-        angular: turned / ((flight - 1) as f64 * step_s),
-        ..measured
-    }
+/// Where windows start, and what is done with them.
+#[derive(Clone, Copy, Debug)]
+pub struct Windowing {
+    /// They start at every so many samples.
+    pub stride: usize,
+    /// Seed of the chaos guard's nudges; `None`: no guard, nothing diverges.
+    pub guard: Option<Key>,
+    /// Threads.
+    pub threads: Threads,
+}
+
+/// One window's end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End {
+    /// The episode, and the sample that it started from.
+    pub start: (usize, usize),
+    /// Samples ahead.
+    pub horizon: usize,
+    /// The worst that the body does between start and end.
+    pub regime: Regime,
+    /// Measured speed at the start, m/s.
+    pub speed_m_s: f64,
+    /// What was predicted.
+    pub predicted: Motion,
+    /// How far that is from what was measured.
+    pub deviation: Deviation,
+    /// Whether starts within the uncertainty of this one end elsewhere: what comes out is chance, and says little about
+    /// the model.
+    pub diverges: bool,
 }
 
 /// What windows of one horizon and regime deviate by.
@@ -50,9 +50,10 @@ pub fn window_start(track: &Track, at: usize, step_s: f64, gravity_m_s2: f64) ->
 pub struct WindowScore {
     /// Samples ahead.
     pub horizon: usize,
-    /// The worst that the body does between start and end: an impact before contact before flight before rest;
-    /// `null`: all windows.
+    /// The worst that the body does between start and end; `null`: all windows.
     pub regime: Option<Regime>,
+    /// Whether these are the windows that the chaos guard marked, which are in no other row.
+    pub diverging: bool,
     /// How many windows.
     pub count: usize,
     /// Root mean square distance, mm.
@@ -65,92 +66,102 @@ pub struct WindowScore {
     pub rotation_median_deg: f64,
 }
 
-/// One window's end.
-#[derive(Clone, Copy, Debug)]
-struct End {
-    horizon: usize,
-    regime: Regime,
-    deviation: Deviation,
-}
-
-/// The regime that decides about a window.
-fn deciding(regimes: &[Regime]) -> Regime {
-    let order = [Regime::Impact, Regime::Contact, Regime::Flight];
-    let found = order.into_iter().find(|regime| regimes.contains(regime));
-    found.unwrap_or(Regime::Rest)
-}
-
-fn ends(
-    rig: &Rig,
-    track: &Track,
-    tracks: &Tracks,
-    stride: usize,
+fn ends_of<S: Subject>(
+    subject: &S,
+    rig: &S::Rig,
+    episode: usize,
+    windowing: &Windowing,
 ) -> Result<Vec<End>, CalibrationError> {
     let longest = HORIZONS.into_iter().max().unwrap_or(1);
-    let last = track.motions.len() - 1;
+    let (measured, regimes) = (subject.measured(episode), subject.regimes(episode));
+    let last = measured.len().saturating_sub(1);
+    let limit = subject.divergence();
     let mut ends = Vec::new();
-    for at in (0..last).step_by(stride.max(1)) {
-        let start = window_start(track, at, tracks.step_s(), tracks.gravity_m_s2);
-        let rolled = rig.roll(&start, longest.min(last - at))?;
-        for horizon in HORIZONS.into_iter().filter(|h| *h <= rolled.len()) {
+    for at in (subject.past()..last).step_by(windowing.stride.max(1)) {
+        let samples = longest.min(last - at);
+        let plain = subject.roll(rig, episode, at, samples, None)?;
+        let mut nudged = Vec::new();
+        if let Some(key) = windowing.guard {
+            let key = key.child(episode as u64).child(at as u64);
+            for nudge in 0..NUDGES {
+                let key = Some(key.child(nudge));
+                nudged.push(subject.roll(rig, episode, at, samples, key)?);
+            }
+        }
+        for horizon in HORIZONS.into_iter().filter(|h| *h <= plain.len()) {
+            let predicted = plain[horizon - 1];
             ends.push(End {
+                start: (episode, at),
                 horizon,
-                regime: deciding(&track.regimes[at..=at + horizon]),
-                deviation: Deviation::between(&rolled[horizon - 1], &track.motions[at + horizon]),
+                regime: Regime::deciding(&regimes[at..=at + horizon]),
+                speed_m_s: measured[at].linear.length(),
+                predicted,
+                deviation: Deviation::between(&predicted, &measured[at + horizon]),
+                diverges: nudged.iter().any(|rolled| {
+                    Deviation::between(&rolled[horizon - 1], &predicted).exceeds(&limit)
+                }),
             });
         }
     }
     Ok(ends)
 }
 
-/// Windows from every `stride`-th sample of the episodes `which`, each simulated by the rig at the same place of `rigs`,
-/// by horizon and regime.
+/// The ends of the windows of all episodes, each episode simulated by the rig at its place.
 ///
 /// # Errors
 /// [`CalibrationError::Simulation`] for a start that is not finite.
 ///
 /// # Determinism
 /// The same bits for any number of threads.
-pub fn windows(
-    rigs: &[&Rig],
-    tracks: &Tracks,
-    which: &[usize],
-    stride: usize,
-    threads: Threads,
-) -> Result<Vec<WindowScore>, CalibrationError> {
-    let one = |k: usize| ends(rigs[k], &tracks.episodes[which[k]], tracks, stride);
-    let found: Result<Vec<Vec<End>>, _> = threads.map(which.len(), one).into_iter().collect();
-    let found = found?.concat();
+pub fn ends<S: Subject>(
+    subject: &S,
+    rigs: &[&S::Rig],
+    windowing: &Windowing,
+) -> Result<Vec<End>, CalibrationError> {
+    let one = |episode: usize| ends_of(subject, rigs[episode], episode, windowing);
+    let found = windowing.threads.map(subject.count(), one);
+    let found: Result<Vec<Vec<End>>, _> = found.into_iter().collect();
+    Ok(found?.concat())
+}
+
+/// What the windows deviate by, by horizon and regime; those that diverge apart.
+pub fn windows(ends: &[End]) -> Vec<WindowScore> {
     let mut scores = Vec::new();
     for horizon in HORIZONS {
         let regimes = std::iter::once(None).chain(Regime::ALL.map(Some));
-        for regime in regimes {
-            let here = found.iter().filter(|end| {
-                end.horizon == horizon && regime.is_none_or(|regime| end.regime == regime)
+        let steady = regimes.map(|regime| (regime, false));
+        for (regime, diverging) in steady.chain([(None, true)]) {
+            let here = ends.iter().filter(|end| {
+                end.horizon == horizon
+                    && end.diverges == diverging
+                    && regime.is_none_or(|regime| end.regime == regime)
             });
             let deviations: Vec<Deviation> = here.map(|end| end.deviation).collect();
             if !deviations.is_empty() {
-                scores.push(score(horizon, regime, &deviations));
+                scores.push(score(horizon, regime, diverging, &deviations));
             }
         }
     }
-    Ok(scores)
+    scores
 }
 
-fn score(horizon: usize, regime: Option<Regime>, deviations: &[Deviation]) -> WindowScore {
-    let mut mm: Vec<f64> = deviations.iter().map(|d| 1e3 * d.position_m).collect();
-    let mut degrees: Vec<f64> = deviations
-        .iter()
-        .map(|d| d.rotation_rad.to_degrees())
-        .collect();
+fn score(
+    horizon: usize,
+    regime: Option<Regime>,
+    diverging: bool,
+    deviations: &[Deviation],
+) -> WindowScore {
+    let mut mm: Vec<f64> = deviations.iter().map(Deviation::position_mm).collect();
+    let mut degrees: Vec<f64> = deviations.iter().map(Deviation::rotation_deg).collect();
     WindowScore {
         horizon,
         regime,
+        diverging,
         count: deviations.len(),
         position_rms_mm: rms(&mm),
-        position_median_mm: crate::fit::median(&mut mm),
+        position_median_mm: median(&mut mm),
         rotation_rms_deg: rms(&degrees),
-        rotation_median_deg: crate::fit::median(&mut degrees),
+        rotation_median_deg: median(&mut degrees),
     }
 }
 

@@ -9,6 +9,7 @@ mod verdict;
 
 pub use agreement::Agreement;
 pub use gain::Gain;
+pub(crate) use gain::share_gained;
 pub use residual::{ChannelResidual, Remainder};
 
 pub(crate) use compare::{Estimate, Judged, estimates, sd_of};

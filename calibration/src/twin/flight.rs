@@ -1,18 +1,16 @@
 //! Free flight: each episode is a ball that flies through the engine's own physics.
 
+use super::air::{air_density_kg_m3, gravity_m_s2};
 use super::stage::{Stage, Thing, between};
 use super::{Cause, ChannelInfo, Experiment, Measured, Parameter, Slot, Structure, Twin, Values};
 use crate::bundle::{Bundle, Sample};
 use crate::error::CalibrationError;
 use crate::options::Options;
 use dwell_physics::PhysicsConfig;
-use dwell_scene::units::STANDARD_GRAVITY_M_S2;
 use dwell_scene::{LawInfo, LawSpec};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
-/// Specific gas constant of dry air, J/(kg K).
-const GAS_CONSTANT: f64 = 287.05;
 /// Samples from which an episode's start is guessed.
 const START_SAMPLES: usize = 8;
 
@@ -81,10 +79,8 @@ impl FlightTwin {
             };
             stages.push(Stage::new(size_m, &ball, config)?);
         }
-        let air = &manifest.scene.environment;
-        let kelvin = air.temperature_c.unwrap_or(20.0) + 273.15;
-        let air_density_kg_m3 = air.pressure_pa.unwrap_or(101_325.0) / (GAS_CONSTANT * kelvin);
-        let gravity_m_s2 = air.g_m_s2.unwrap_or(f64::from(STANDARD_GRAVITY_M_S2));
+        let air_density_kg_m3 = air_density_kg_m3(manifest);
+        let gravity_m_s2 = gravity_m_s2(manifest);
         let drag = dwell_physics::laws::all()
             .iter()
             .find(|law| law.id == "drag");

@@ -1,5 +1,6 @@
 //! The simulation of what was measured, as fitting sees it.
 
+mod air;
 mod features;
 mod flight;
 mod parameter;
@@ -7,6 +8,7 @@ mod room;
 mod servo;
 pub(crate) mod stage;
 
+pub(crate) use air::{air_density_kg_m3, gravity_m_s2};
 pub(crate) use flight::FlightTwin;
 pub(crate) use parameter::{Cause, Experiment, Parameter};
 pub(crate) use room::RoomTwin;

@@ -21,20 +21,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--init",
         nargs="?",
         const="pose_trajectory",
-        choices=["pose_trajectory", "trajectory"],
+        choices=["pose_trajectory", "trajectory", "drive"],
         metavar="KIND",
-        help="print a template of the map (pose_trajectory or trajectory) and leave",
+        help="print a template of the map (pose_trajectory, trajectory or drive) and leave",
     )
     command.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
 def run(args: argparse.Namespace) -> int:
     """Imports, checks the bundle as ``dwell calibrate`` would, and moves it into place."""
-    from dwell.measured import FLIGHT, TEMPLATE, import_files
+    from dwell.measured import TEMPLATES, import_files
 
     if args.init:
-        template = TEMPLATE if args.init == "pose_trajectory" else FLIGHT
-        sys.stdout.write(json.dumps(template, indent=2) + "\n")
+        sys.stdout.write(json.dumps(TEMPLATES[args.init], indent=2) + "\n")
         return 0
     if not args.files or args.map is None or args.out is None:
         print(

@@ -1,8 +1,8 @@
 //! The report of a study as one page: no network, no script.
 
-use super::{ModelReport, StudyReport};
+use super::StudyReport;
 use crate::report::page;
-use crate::rollout::{HORIZONS, Regime};
+use crate::rollout::parts;
 use crate::words::{number, percent};
 use std::fmt::Write as _;
 
@@ -71,6 +71,16 @@ impl StudyReport {
             );
         }
         out.push_str("</table></div>");
+        for m in &self.models {
+            let _ = write!(
+                out,
+                "<p class=\"soft\">{}: {} episodes whose outcome is not chance, median {} widths and {} degrees.</p>",
+                m.model.name,
+                m.steady.count,
+                number(m.steady.position_widths.median),
+                number(m.steady.rotation_deg.median)
+            );
+        }
         let curves = |f: fn(&super::Score) -> f64| -> Vec<(String, Vec<f64>)> {
             let models = self.models.iter();
             models
@@ -134,11 +144,16 @@ impl StudyReport {
         let _ = write!(
             out,
             "<h2>Windows</h2><p class=\"soft\">From every {stride}th measured sample, some samples ahead: root mean square \
-             (median) of distance in mm and of angle in degrees, by the worst that happens on the way.</p>"
+             (median) of distance in mm and of angle in degrees, by the worst that happens on the way. Diverging windows, whose \
+             outcome changes when they start within the tracker's noise ({:.3} mm, {:.3} degrees), stand apart.</p>",
+            1e3 * self.noise.position_m,
+            self.noise.rotation_rad.to_degrees()
         );
         for report in &self.models {
-            windows(out, report);
+            parts::windows(out, report.model.name, &report.windows);
         }
+        parts::solver(out, &self.solver);
+        parts::residuals(out, &self.residuals);
     }
 
     fn pairs(&self, out: &mut String) {
@@ -170,38 +185,4 @@ impl StudyReport {
         }
         out.push_str("</table></div>");
     }
-}
-
-fn windows(out: &mut String, report: &ModelReport) {
-    let _ = write!(
-        out,
-        "<p><b>{}</b></p><div class=\"scroll\"><table><tr><th>Regime</th>",
-        report.model.name
-    );
-    for horizon in HORIZONS {
-        let _ = write!(out, "<th>{horizon} ahead</th>");
-    }
-    out.push_str("</tr>");
-    for regime in std::iter::once(None).chain(Regime::ALL.map(Some)) {
-        let _ = write!(out, "<tr><td>{}</td>", regime.map_or("all", Regime::word));
-        for horizon in HORIZONS {
-            let found = report
-                .windows
-                .iter()
-                .find(|w| w.horizon == horizon && w.regime == regime);
-            let cell = found.map_or_else(String::new, |w| {
-                format!(
-                    "{} ({}) mm<br>{} ({})&deg;<br><span class=\"soft\">{} windows</span>",
-                    number(w.position_rms_mm),
-                    number(w.position_median_mm),
-                    number(w.rotation_rms_deg),
-                    number(w.rotation_median_deg),
-                    w.count
-                )
-            });
-            let _ = write!(out, "<td class=\"n\">{cell}</td>");
-        }
-        out.push_str("</tr>");
-    }
-    out.push_str("</table></div>");
 }

@@ -3,22 +3,30 @@
 
 mod folds;
 mod html;
+mod kept;
 mod model;
 mod peer;
 mod search;
 mod write;
 
-pub use model::{ContactModel, ContactParameter, all as models};
+pub(super) use folds::folds;
+pub use model::{ContactModel, ContactParameter, all as models, trials};
 pub use peer::{Comparison, Paired, Peer};
 
-use super::{Rig, Score, Summary, Tracks, WindowScore, scores, windows};
+use super::refine::sentence as told;
+use super::residuals::{self, Residuals};
+use super::{
+    End, FINER, Noise, Refinement, Rig, Score, Summary, Tracks, WindowScore, Windowing, diverging,
+    ends, refinements, scores, windows,
+};
 use crate::error::CalibrationError;
 use crate::progress::{Progress, Tell};
-use crate::report::Found;
+use crate::report::{Found, page};
 use crate::twin::stage::{BOARD_SUBSTANCE, THING_SUBSTANCE};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// Settings of [`run`]. Every field has a default; unknown fields are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,6 +48,9 @@ pub struct StudyOptions {
     pub window_stride: usize,
     /// Draws of the bootstrap; default 2,000.
     pub bootstrap_draws: usize,
+    /// A folder in which ended searches are kept, so that the same study need not search again; `None`: nothing is kept.
+    #[serde(skip_serializing)]
+    pub kept: Option<PathBuf>,
 }
 
 impl Default for StudyOptions {
@@ -53,6 +64,7 @@ impl Default for StudyOptions {
             first_episodes: 60,
             window_stride: 20,
             bootstrap_draws: 2_000,
+            kept: None,
         }
     }
 }
@@ -66,6 +78,8 @@ pub struct EpisodeScore {
     pub fold: usize,
     /// The score.
     pub score: Score,
+    /// Whether starts within the tracker's noise end elsewhere.
+    pub diverges: bool,
 }
 
 /// What a contact model makes of the bundle.
@@ -77,8 +91,12 @@ pub struct ModelReport {
     pub chosen: Vec<Vec<f64>>,
     /// All episodes, each out of fold.
     pub summary: Summary,
+    /// Those that do not diverge.
+    pub steady: Summary,
     /// Windows, each out of fold.
     pub windows: Vec<WindowScore>,
+    /// What a quarter of the step changes.
+    pub refinements: Vec<Refinement>,
     /// Every episode.
     pub episodes: Vec<EpisodeScore>,
     /// Against the peers, episode by episode.
@@ -96,10 +114,16 @@ pub struct StudyReport {
     pub licence: String,
     /// How it was made.
     pub options: StudyOptions,
+    /// The tracker's noise from sample to sample.
+    pub noise: Noise,
     /// In a sentence.
     pub sentence: String,
+    /// Which residuals are the solver's, a sentence for each model.
+    pub solver: Vec<String>,
     /// The models, in the order of [`models`].
     pub models: Vec<ModelReport>,
+    /// How residuals of the first models spread.
+    pub residuals: Vec<Residuals>,
     /// The best model with the median of what its folds chose, for the simulator.
     pub found: Found,
 }
@@ -121,24 +145,35 @@ pub fn run(
 ) -> Result<StudyReport, CalibrationError> {
     check(tracks, options)?;
     let progress = Progress::new(progress);
-    let fold_of = folds::folds(tracks, options.folds, options.seed);
+    let groups: Vec<&str> = tracks.episodes.iter().map(|e| e.group.as_str()).collect();
+    let fold_of = folds::folds(&groups, options.folds, options.seed);
     let mut reports = Vec::with_capacity(models.len());
+    let mut windows: Vec<Vec<End>> = Vec::with_capacity(models.len());
     for (k, model) in models.iter().enumerate() {
         let share = [k, k + 1].map(|k| k as f32 / models.len() as f32);
-        let report = study(tracks, model, peers, &fold_of, options, share, &progress)?;
+        let (report, ends) = study(tracks, model, peers, &fold_of, options, share, &progress)?;
         let told = format!("{}: {}", model.name, errors(&report));
         progress.stage(share[1], &told)?;
         reports.push(report);
+        windows.push(ends);
     }
+    let shown = models.iter().zip(&windows).take(page::COLOURS.len());
+    let rows: Vec<residuals::Row> = shown.map(|(model, ends)| (model.name, &ends[..])).collect();
     progress.stage(1.0, "done")?;
     let best = reports
         .iter()
         .min_by(|a, b| a.summary.e_q.median.total_cmp(&b.summary.e_q.median));
     Ok(StudyReport {
-        version: 1,
+        version: 2,
         title: tracks.title.clone(),
         licence: tracks.licence.clone(),
         options: options.clone(),
+        noise: tracks.noise,
+        solver: reports
+            .iter()
+            .map(|r| told(r.model.name, &r.refinements))
+            .collect(),
+        residuals: residuals::all(&rows, true, &[]),
         sentence: best.map_or_else(String::new, |best| sentence(best, &reports)),
         found: best.map_or_else(Found::default, |best| found(tracks, best)),
         models: reports,
@@ -181,11 +216,12 @@ fn study(
     options: &StudyOptions,
     share: [f32; 2],
     progress: &dyn Tell,
-) -> Result<ModelReport, CalibrationError> {
+) -> Result<(ModelReport, Vec<End>), CalibrationError> {
     let threads = Threads::resolve(options.threads);
     let key = Key::root(options.seed).child("study").child(model.name);
     let plain = Rig::new(tracks, model.contact_friction)?;
-    let (mut chosen, mut rigs) = (Vec::new(), Vec::new());
+    let plain_fine = Rig::finer(tracks, model.contact_friction, FINER)?;
+    let (mut chosen, mut rigs, mut fine) = (Vec::new(), Vec::new(), Vec::new());
     for fold in 0..options.folds {
         let done = share[0] + (share[1] - share[0]) * fold as f32 / options.folds as f32;
         progress.stage(done, &format!("{}: fold {}", model.name, fold + 1))?;
@@ -194,47 +230,75 @@ fn study(
             Vec::new()
         } else {
             let key = key.child(fold as u64);
-            search::search(model, &plain, tracks, &train, options, key, progress)?
+            let what = (tracks, model, fold);
+            kept::or_search(options.kept.as_deref(), what, options, || {
+                search::search(model, &plain, tracks, &train, options, key, progress)
+            })?
         };
-        rigs.push(plain.set(&model.settings(&values, tracks.nominal))?);
+        let settings = model.settings(&values, tracks.nominal);
+        rigs.push(plain.set(&settings)?);
+        fine.push(plain_fine.set(&settings)?);
         chosen.push(values);
     }
     let all: Vec<usize> = (0..fold_of.len()).collect();
-    let mut by_episode = vec![Score::default(); fold_of.len()];
+    let mut by_episode = vec![(Score::default(), false); fold_of.len()];
     for (fold, rig) in rigs.iter().enumerate() {
         let held: Vec<usize> = all
             .iter()
             .copied()
             .filter(|k| fold_of[*k] == fold)
             .collect();
+        progress.check()?;
         let scores = scores(rig, tracks, &held, threads)?;
-        for (k, score) in held.iter().zip(scores) {
-            by_episode[*k] = score;
+        let chance = diverging(rig, tracks, &held, key.child("episodes"), threads)?;
+        for ((k, score), diverges) in held.iter().zip(scores).zip(chance) {
+            by_episode[*k] = (score, diverges);
         }
     }
+    progress.check()?;
     let own: Vec<&Rig> = fold_of.iter().map(|fold| &rigs[*fold]).collect();
+    let finer: Vec<&Rig> = fold_of.iter().map(|fold| &fine[*fold]).collect();
+    let windowing = Windowing {
+        stride: options.window_stride,
+        guard: Some(key.child("windows")),
+        threads,
+    };
+    let found = ends(tracks, &own, &windowing)?;
+    progress.check()?;
+    let unguarded = Windowing {
+        guard: None,
+        ..windowing
+    };
+    let refined = refinements(&found, &ends(tracks, &finer, &unguarded)?);
+    let every: Vec<Score> = by_episode.iter().map(|(score, _)| *score).collect();
+    let steady = by_episode.iter().filter(|(_, diverges)| !diverges);
+    let steady: Vec<Score> = steady.map(|(score, _)| *score).collect();
     let against: Result<Vec<Comparison>, _> = peers
         .iter()
         .map(|peer| {
             let key = key.child("peer").child(peer.name.as_str());
-            peer::compare(tracks, &by_episode, peer, options.bootstrap_draws, key)
+            peer::compare(tracks, &every, peer, options.bootstrap_draws, key)
         })
         .collect();
-    Ok(ModelReport {
+    let report = ModelReport {
         model: model.clone(),
         chosen,
-        summary: Summary::of(&by_episode),
-        windows: windows(&own, tracks, &all, options.window_stride, threads)?,
+        summary: Summary::of(&every),
+        steady: Summary::of(&steady),
+        windows: windows(&found),
+        refinements: refined,
         episodes: all
             .iter()
             .map(|k| EpisodeScore {
                 episode: tracks.episodes[*k].name.clone(),
                 fold: fold_of[*k],
-                score: by_episode[*k],
+                score: by_episode[*k].0,
+                diverges: by_episode[*k].1,
             })
             .collect(),
         against: against?,
-    })
+    };
+    Ok((report, found))
 }
 
 impl ModelReport {

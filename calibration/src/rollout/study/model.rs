@@ -35,18 +35,33 @@ pub struct ContactModel {
 const FRICTION: ContactParameter = ContactParameter {
     name: "friction",
     unit: "1",
-    range: [0.05, 0.5],
+    range: [0.1, 0.4],
     by_ratio: true,
 };
 
-/// The models of a study: as the engine comes, friction by point with compliance, and the engine's own two numbers fitted.
-pub fn all() -> Vec<ContactModel> {
-    let number = |name, unit, range, by_ratio| ContactParameter {
+const fn number(
+    name: &'static str,
+    unit: &'static str,
+    range: [f64; 2],
+    by_ratio: bool,
+) -> ContactParameter {
+    ContactParameter {
         name,
         unit,
         range,
         by_ratio,
-    };
+    }
+}
+
+const RESTITUTION: ContactParameter = number("restitution", "1", [0.0, 0.5], false);
+const FREQUENCY: ContactParameter = number("natural_frequency_hz", "Hz", [8.0, 120.0], true);
+const DAMPING: ContactParameter = number("damping_ratio", "1", [0.2, 3.0], true);
+/// Negative slopes, restitution that grows with speed, are what no material has; they are searched so that a fit may say so.
+const SLOPE: ContactParameter = number("restitution_slope_s_m", "s/m", [-0.2, 0.4], false);
+const TORSION: ContactParameter = number("torsion_radius_m", "m", [0.0, 0.03], false);
+
+/// The models of a study: as the engine comes; the engine's own two numbers fitted; friction by point with compliance.
+pub fn all() -> Vec<ContactModel> {
     vec![
         ContactModel {
             name: "nominal",
@@ -55,20 +70,40 @@ pub fn all() -> Vec<ContactModel> {
             parameters: Vec::new(),
         },
         ContactModel {
+            name: "basic",
+            about: "friction by patch, hard contacts, no laws; friction and restitution fitted",
+            contact_friction: ContactFriction::Patch,
+            parameters: vec![FRICTION, RESTITUTION],
+        },
+        ContactModel {
             name: "extended",
             about: "friction by point, and the law contact_compliance; friction, natural frequency and damping ratio fitted",
             contact_friction: ContactFriction::Point,
-            parameters: vec![
-                FRICTION,
-                number("natural_frequency_hz", "Hz", [8.0, 60.0], true),
-                number("damping_ratio", "1", [0.2, 3.0], true),
-            ],
+            parameters: vec![FRICTION, FREQUENCY, DAMPING],
+        },
+    ]
+}
+
+/// Further models that were tried beside [`all`].
+pub fn trials() -> Vec<ContactModel> {
+    vec![
+        ContactModel {
+            name: "point",
+            about: "friction by point, hard contacts, no laws; friction and restitution fitted",
+            contact_friction: ContactFriction::Point,
+            parameters: vec![FRICTION, RESTITUTION],
         },
         ContactModel {
-            name: "basic",
-            about: "friction by patch, hard contacts; friction and restitution fitted",
-            contact_friction: ContactFriction::Patch,
-            parameters: vec![FRICTION, number("restitution", "1", [0.0, 0.5], false)],
+            name: "by_speed",
+            about: "friction by point, hard contacts, and the law velocity_restitution; friction, restitution at 1 m/s and its slope fitted",
+            contact_friction: ContactFriction::Point,
+            parameters: vec![FRICTION, RESTITUTION, SLOPE],
+        },
+        ContactModel {
+            name: "torsion",
+            about: "as extended, and the law torsional_friction; its radius fitted too",
+            contact_friction: ContactFriction::Point,
+            parameters: vec![FRICTION, FREQUENCY, DAMPING, TORSION],
         },
     ]
 }
@@ -83,6 +118,17 @@ impl ContactParameter {
             low + place * (high - low)
         }
     }
+
+    /// The place in 0..1 of a value; [`ContactParameter::at`] backwards. What lies outside is taken to the edge.
+    pub(super) fn place(&self, value: f64) -> f64 {
+        let [low, high] = self.range;
+        let place = if self.by_ratio {
+            libm::log(value.max(low) / low) / libm::log(high / low)
+        } else {
+            (value - low) / (high - low)
+        };
+        place.clamp(0.0, 1.0)
+    }
 }
 
 impl ContactModel {
@@ -92,25 +138,32 @@ impl ContactModel {
             let mut pairs = self.parameters.iter().zip(values);
             pairs.find(|(p, _)| p.name == name).map(|(_, v)| *v)
         };
-        let frequency = value("natural_frequency_hz");
-        let laws = frequency.map(|natural_frequency_hz| LawSpec {
-            id: "contact_compliance".to_owned(),
+        let law = |id: &str, params: &[(&str, f64)]| LawSpec {
+            id: id.to_owned(),
             version: 1,
             target: None,
-            params: [
-                ("natural_frequency_hz".to_owned(), natural_frequency_hz),
-                (
-                    "damping_ratio".to_owned(),
-                    value("damping_ratio").unwrap_or(1.0),
-                ),
-            ]
-            .into_iter()
-            .collect(),
-        });
+            params: params.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect(),
+        };
+        let mut laws = Vec::new();
+        if let Some(frequency) = value("natural_frequency_hz") {
+            let damping = value("damping_ratio").unwrap_or(1.0);
+            let params = [
+                ("natural_frequency_hz", frequency),
+                ("damping_ratio", damping),
+            ];
+            laws.push(law("contact_compliance", &params));
+        }
+        if let Some(slope) = value("restitution_slope_s_m") {
+            let params = [("slope_s_m", slope), ("reference_m_s", 1.0)];
+            laws.push(law("velocity_restitution", &params));
+        }
+        if let Some(radius) = value("torsion_radius_m") {
+            laws.push(law("torsional_friction", &[("radius_m", radius)]));
+        }
         Settings {
             friction: value("friction").unwrap_or(nominal.friction),
             restitution: value("restitution").unwrap_or(nominal.restitution),
-            laws: laws.into_iter().collect(),
+            laws,
         }
     }
 }

@@ -12,8 +12,8 @@ use dwell_scene::random::Key;
 /// The share of episodes, the best in each quantity, that the cost looks at: one toss in eight lands on another face than
 /// predicted, by chance rather than by parameters.
 const TRIMMED_SHARE: f64 = 0.75;
-/// Where the search starts is the middle of the ranges, and this wide.
-const FIRST_SIGMA: f64 = 0.25;
+/// The search starts this wide, as a share of the ranges, around the bundle's own values and the middles of the others.
+const FIRST_SIGMA: f64 = 0.1;
 
 /// ln of the mean squared distance plus ln of the mean squared angle, each over the best three quarters of the episodes:
 /// the negative logarithm of the profile likelihood of two quantities whose sizes of error are unknown, so that neither
@@ -29,7 +29,8 @@ pub(super) fn cost(scores: &[Score]) -> f64 {
         + libm::log(trimmed(|s| s.rotation_square_rad2).max(1e-18))
 }
 
-/// Searches on the episodes `train`: first on a part of them, then on all.
+/// Searches on the episodes `train`: first on a part of them, then on all. What was best among the last points that were
+/// tried and their mean is chosen.
 pub(super) fn search(
     model: &ContactModel,
     rig: &Rig,
@@ -40,7 +41,15 @@ pub(super) fn search(
     progress: &dyn Tell,
 ) -> Result<Vec<f64>, CalibrationError> {
     let threads = Threads::resolve(options.threads);
-    let start = vec![0.5; model.parameters.len()];
+    let starts = model.parameters.iter().map(|parameter| {
+        let own = match parameter.name {
+            "friction" => Some(tracks.nominal.friction),
+            "restitution" => Some(tracks.nominal.restitution),
+            _ => None,
+        };
+        own.map_or(0.5, |value| parameter.place(value))
+    });
+    let start: Vec<f64> = starts.collect();
     let mut cma = CmaEs::new(&start, FIRST_SIGMA, options.population, key.child("search"));
     let mut part = train.to_vec();
     key.child("part").stream().shuffle(&mut part);
@@ -52,17 +61,32 @@ pub(super) fn search(
             .map(|(parameter, place)| parameter.at(*place))
             .collect()
     };
+    let judge = |point: &[f64], which: &[usize]| {
+        progress.check()?;
+        let set = rig.set(&model.settings(&values(point), tracks.nominal))?;
+        Ok::<f64, CalibrationError>(cost(&scores(&set, tracks, which, threads)?))
+    };
     let [first, then] = options.generations;
+    let last_on = if then > 0 { train } else { &part[..] };
+    let mut best: Option<(f64, Vec<f64>)> = None;
     for generation in 0..first + then {
         let which = if generation < first { &part[..] } else { train };
         let points = cma.ask();
         let mut costs = Vec::with_capacity(points.len());
         for point in &points {
-            progress.check()?;
-            let set = rig.set(&model.settings(&values(point), tracks.nominal))?;
-            costs.push(cost(&scores(&set, tracks, which, threads)?));
+            let found = judge(point, which)?;
+            let comparable = then == 0 || generation >= first;
+            if comparable && best.as_ref().is_none_or(|(least, _)| found < *least) {
+                best = Some((found, point.clone()));
+            }
+            costs.push(found);
         }
         cma.tell(&points, &costs);
     }
-    Ok(values(&cma.mean()))
+    let mean = cma.mean();
+    let of_mean = judge(&mean, last_on)?;
+    Ok(match best {
+        Some((least, point)) if least < of_mean => values(&point),
+        _ => values(&mean),
+    })
 }

@@ -2,7 +2,7 @@
 
 use super::StudyReport;
 use crate::error::CalibrationError;
-use crate::report::whole;
+use crate::report::{page, whole};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -23,7 +23,7 @@ impl StudyReport {
         serde_json::to_value(self).unwrap_or(Value::Null)
     }
 
-    /// Writes `report.json`, `report.html` and `found.json` into `folder`, which is made where it is missing. Each file
+    /// Writes `report.json`, `report.html`, `found.json` and the pictures into `folder`, which is made where it is missing. Each file
     /// appears whole or not at all.
     ///
     /// # Errors
@@ -39,6 +39,10 @@ impl StudyReport {
             "report.json",
             format!("{:#}\n", self.value()).as_bytes(),
         )?;
+        for residuals in &self.residuals {
+            let name = format!("{}.svg", residuals.name);
+            whole(folder, &name, page::alone(residuals).as_bytes())?;
+        }
         whole(folder, "report.html", self.to_html().as_bytes())?;
         whole(folder, "found.json", format!("{found:#}\n").as_bytes())
     }

@@ -1,0 +1,297 @@
+//! A robot on two wheels: the measured turns of its wheels drive the engine's own base, which predicts where it goes.
+
+mod model;
+mod regime;
+mod rig;
+
+pub use model::models;
+pub use rig::DriveRig;
+
+use super::motion::{Deviation, Motion};
+use super::regime::Regime;
+use super::series::{Model, Modelled};
+use super::subject::Subject;
+use crate::bundle::file::DriveRow;
+use crate::bundle::{self, Bundle, Episode};
+use crate::error::CalibrationError;
+use crate::report::Found;
+use dwell_scene::random::Key;
+use glam::{DQuat, DVec3};
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+/// Samples before a start that its pose is estimated from.
+const PAST: usize = 20;
+
+/// The base as it is believed to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NominalBase {
+    /// Radius of both wheels, m.
+    pub wheel_radius_m: f64,
+    /// Distance between the points where they touch the floor, m.
+    pub wheel_base_m: f64,
+}
+
+/// Drives of one robot.
+#[derive(Clone, Debug)]
+pub struct Drives {
+    /// The bundle's title.
+    pub title: String,
+    /// The licence of the data.
+    pub licence: String,
+    /// The robot.
+    pub base: NominalBase,
+    /// Samples per second, Hz.
+    pub rate_hz: f64,
+    /// The episodes, in the order of the file.
+    pub episodes: Vec<Drive>,
+}
+
+/// One drive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// Its name.
+    pub name: String,
+    /// Drives of one session are held out together.
+    pub group: String,
+    /// The kind of path.
+    pub kind: String,
+    /// Where the tracker saw it: x, y in m and the heading in rad, not wrapped. Shape (sample,).
+    pub planar: Vec<[f64; 3]>,
+    /// How far the left and the right wheel turned since the sample before, rad. Shape (sample,).
+    pub turned_rad: Vec<[f64; 2]>,
+    motions: Vec<Motion>,
+    regimes: Vec<Regime>,
+}
+
+impl Drives {
+    /// Reads a measured bundle of drives.
+    ///
+    /// # Errors
+    /// [`CalibrationError`] for a bundle that cannot be read, and for one of another kind.
+    pub fn read(folder: &Path) -> Result<Self, CalibrationError> {
+        Self::of(&bundle::read(folder)?)
+    }
+
+    pub(crate) fn of(bundle: &Bundle) -> Result<Self, CalibrationError> {
+        let (Some(base), bundle::file::Kind::Drive) = (&bundle.manifest.scene.base, bundle.kind())
+        else {
+            let found = format!("{:?}", bundle.kind());
+            return Err(CalibrationError::field(
+                &bundle.name,
+                "kind",
+                found,
+                "drive",
+            ));
+        };
+        let nominal = NominalBase {
+            wheel_radius_m: base.wheel_radius_m,
+            wheel_base_m: base.wheel_base_m,
+        };
+        let drive = |episode: &Episode| {
+            let turned_rad = episode
+                .drive
+                .iter()
+                .map(|row| [row.left_rad, row.right_rad]);
+            let told = Drive::told(
+                planar(&episode.drive),
+                turned_rad.collect(),
+                &nominal,
+                base.rate_hz,
+            );
+            Drive {
+                name: episode.name.clone(),
+                group: episode.group.clone(),
+                kind: episode.conditions.clone(),
+                ..told
+            }
+        };
+        Ok(Self {
+            title: bundle.manifest.title.clone(),
+            licence: bundle.manifest.licence.clone(),
+            base: nominal,
+            rate_hz: base.rate_hz,
+            episodes: bundle.episodes.iter().map(drive).collect(),
+        })
+    }
+}
+
+/// Headings that jump by a turn are made whole.
+fn planar(rows: &[DriveRow]) -> Vec<[f64; 3]> {
+    let mut last = rows.first().map_or(0.0, |row| row.heading);
+    rows.iter()
+        .map(|row| {
+            last += wrapped(row.heading - last);
+            [row.x, row.y, last]
+        })
+        .collect()
+}
+
+/// The same angle within half a turn of zero, rad.
+fn wrapped(angle_rad: f64) -> f64 {
+    angle_rad - TAU * ((angle_rad + PI) / TAU).floor()
+}
+
+/// The motion of a robot at a place in the plane, in a world whose y is up and in which yaw 0 looks along -z.
+fn motion([x, y, heading]: [f64; 3], speed_m_s: f64) -> Motion {
+    let rotation = DQuat::from_rotation_y(heading);
+    Motion {
+        position: DVec3::new(-y, 0.0, -x),
+        rotation,
+        linear: rotation * DVec3::NEG_Z * speed_m_s,
+        angular: DVec3::ZERO,
+    }
+}
+
+impl Drive {
+    /// A drive without a name from what was measured.
+    pub fn told(
+        planar: Vec<[f64; 3]>,
+        turned_rad: Vec<[f64; 2]>,
+        base: &NominalBase,
+        rate_hz: f64,
+    ) -> Self {
+        let speeds = regime::speeds(&turned_rad, base, rate_hz);
+        Self {
+            name: String::new(),
+            group: String::new(),
+            kind: String::new(),
+            motions: planar
+                .iter()
+                .zip(&speeds)
+                .map(|(place, speed)| motion(*place, speed[0]))
+                .collect(),
+            regimes: regime::of(&speeds, base, rate_hz),
+            planar,
+            turned_rad,
+        }
+    }
+}
+
+impl Subject for Drives {
+    type Rig = DriveRig;
+
+    fn count(&self) -> usize {
+        self.episodes.len()
+    }
+
+    fn measured(&self, episode: usize) -> &[Motion] {
+        &self.episodes[episode].motions
+    }
+
+    fn regimes(&self, episode: usize) -> &[Regime] {
+        &self.episodes[episode].regimes
+    }
+
+    fn past(&self) -> usize {
+        PAST
+    }
+
+    fn divergence(&self) -> Deviation {
+        Deviation {
+            position_m: 0.05,
+            rotation_rad: 0.1,
+        }
+    }
+
+    /// The way of the wheels is rolled from the past samples on and laid over what the tracker saw of them: the mean of the
+    /// headings, then of the places. That is the pose at the start by least squares, all of the past used alike.
+    fn roll(
+        &self,
+        rig: &DriveRig,
+        episode: usize,
+        at: usize,
+        samples: usize,
+        nudge: Option<Key>,
+    ) -> Result<Vec<Motion>, CalibrationError> {
+        let drive = &self.episodes[episode];
+        let from = at.saturating_sub(PAST);
+        let way = rig.way(&drive.turned_rad[from + 1..=at + samples], self.rate_hz)?;
+        let seen = &drive.planar[from..=at];
+        let count = seen.len() as f64;
+        let offset = rig.heading_offset_rad;
+        let off = seen.iter().zip(&way).map(|(m, w)| m[2] - offset - w[2]);
+        let (mut turn, turn_sd) = mean(&off.collect::<Vec<f64>>());
+        let turned = |w: &[f64; 3], turn: f64| {
+            let (sin, cos) = libm::sincos(turn);
+            [cos * w[0] - sin * w[1], sin * w[0] + cos * w[1]]
+        };
+        let (mut shift, mut shift_sd) = ([0.0; 2], [0.0; 2]);
+        for axis in 0..2 {
+            let off = seen
+                .iter()
+                .zip(&way)
+                .map(|(m, w)| m[axis] - turned(w, turn)[axis]);
+            (shift[axis], shift_sd[axis]) = mean(&off.collect::<Vec<f64>>());
+        }
+        if let Some(key) = nudge {
+            let mut stream = key.stream();
+            let share = 1.0 / count.sqrt();
+            turn += share * turn_sd * stream.normal();
+            for axis in 0..2 {
+                shift[axis] += share * shift_sd[axis] * stream.normal();
+            }
+        }
+        let ahead = &way[at - from + 1..];
+        Ok(ahead
+            .iter()
+            .map(|w| {
+                let [x, y] = turned(w, turn);
+                motion([x + shift[0], y + shift[1], w[2] + turn + offset], 0.0)
+            })
+            .collect())
+    }
+}
+
+/// Mean and standard deviation.
+fn mean(values: &[f64]) -> (f64, f64) {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    (mean, (squares / (count - 1.0).max(1.0)).sqrt())
+}
+
+impl Modelled for Drives {
+    fn title(&self) -> &str {
+        &self.title
+    }
+
+    fn licence(&self) -> &str {
+        &self.licence
+    }
+
+    fn name(&self, episode: usize) -> &str {
+        &self.episodes[episode].name
+    }
+
+    fn group(&self, episode: usize) -> &str {
+        &self.episodes[episode].group
+    }
+
+    fn kind(&self, episode: usize) -> &str {
+        &self.episodes[episode].kind
+    }
+
+    /// A wheel's distance from the middle.
+    fn lever_m(&self) -> f64 {
+        0.5 * self.base.wheel_base_m
+    }
+
+    fn rig(&self, model: &Model, values: &[f64], finer: u32) -> Result<DriveRig, CalibrationError> {
+        let offset = model.value(values, model::HEADING_OFFSET, 0.0);
+        DriveRig::new(
+            &self.base,
+            self.rate_hz,
+            finer,
+            model::laws(model, values),
+            offset,
+        )
+    }
+
+    fn found(&self, model: &Model, values: &[f64]) -> Found {
+        Found {
+            laws: model::laws(model, values),
+            ..Found::default()
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Parts of a page that every study of roll-outs has.
+
+use super::residuals::Residuals;
+use super::{HORIZONS, Regime, WindowScore};
+use crate::report::page;
+use crate::words::number;
+use std::fmt::Write as _;
+
+/// What windows of a model deviate by.
+pub(crate) fn windows(out: &mut String, model: &str, scores: &[WindowScore]) {
+    let _ = write!(
+        out,
+        "<p><b>{}</b></p><div class=\"scroll\"><table><tr><th>Regime</th>",
+        page::escape(model)
+    );
+    for horizon in HORIZONS {
+        let _ = write!(out, "<th>{horizon} ahead</th>");
+    }
+    out.push_str("</tr>");
+    let regimes = std::iter::once(None).chain(Regime::ALL.map(Some));
+    let rows = regimes.map(|regime| (regime, false)).chain([(None, true)]);
+    for (regime, diverging) in rows {
+        let of = |w: &&WindowScore| w.regime == regime && w.diverging == diverging;
+        if !scores.iter().any(|w| of(&w)) {
+            continue;
+        }
+        let word = if diverging {
+            "diverging"
+        } else {
+            regime.map_or("all others", Regime::word)
+        };
+        let _ = write!(out, "<tr><td>{word}</td>");
+        for horizon in HORIZONS {
+            let found = scores.iter().find(|w| w.horizon == horizon && of(w));
+            let cell = found.map_or_else(String::new, |w| {
+                format!(
+                    "{} ({}) mm<br>{} ({})&deg;<br><span class=\"soft\">{} windows</span>",
+                    number(w.position_rms_mm),
+                    number(w.position_median_mm),
+                    number(w.rotation_rms_deg),
+                    number(w.rotation_median_deg),
+                    w.count
+                )
+            });
+            let _ = write!(out, "<td class=\"n\">{cell}</td>");
+        }
+        out.push_str("</tr>");
+    }
+    out.push_str("</table></div>");
+}
+
+/// Which residuals are the solver's.
+pub(crate) fn solver(out: &mut String, sentences: &[String]) {
+    out.push_str("<h2>Steps</h2>");
+    for sentence in sentences {
+        let _ = write!(out, "<p>{}</p>", page::escape(sentence));
+    }
+}
+
+/// The pictures.
+pub(crate) fn residuals(out: &mut String, residuals: &[Residuals]) {
+    out.push_str("<h2>Residuals</h2>");
+    for one in residuals {
+        let _ = write!(
+            out,
+            "<p>{}</p>{}",
+            page::escape(&one.title),
+            page::picture(one)
+        );
+    }
+}

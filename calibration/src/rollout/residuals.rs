@@ -1,0 +1,157 @@
+//! How residuals spread: by regime, by speed, by kind of episode, for several models beside each other.
+
+use super::regime::Regime;
+use super::windows::End;
+use serde::Serialize;
+
+/// The horizon that is looked at, samples.
+pub const RESIDUAL_HORIZON: usize = 10;
+/// Groups by speed hold equally many windows.
+const SPEEDS: usize = 5;
+/// Windows below which a group is not shown.
+const FEWEST: usize = 10;
+
+/// Which residual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Residual {
+    /// Distance, mm.
+    Position,
+    /// Angle, degrees.
+    Rotation,
+}
+
+impl Residual {
+    fn of(self, end: &End) -> f64 {
+        match self {
+            Self::Position => end.deviation.position_mm(),
+            Self::Rotation => end.deviation.rotation_deg(),
+        }
+    }
+}
+
+/// Residuals in groups, as they are drawn.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Residuals {
+    /// The name of the picture's file, without its ending.
+    pub name: String,
+    /// What it shows.
+    pub title: String,
+    /// Unit of the residuals.
+    pub unit: &'static str,
+    /// The groups.
+    pub groups: Vec<ResidualGroup>,
+}
+
+/// Residuals of one group of windows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ResidualGroup {
+    /// What the windows have in common.
+    pub label: String,
+    /// How many there are.
+    pub count: usize,
+    /// For each model.
+    pub models: Vec<Quantiles>,
+}
+
+/// Where 5, 25, 50, 75 and 95 percent of the residuals lie.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Quantiles {
+    /// The model.
+    pub model: String,
+    /// Rising.
+    pub at: [f64; 5],
+}
+
+/// A model's name and its windows; the windows of all models are the same.
+pub(crate) type Row<'a> = (&'a str, &'a [End]);
+
+/// All pictures: position and, where there are, rotation, by regime, by speed, and by `kinds` (of each episode) where these
+/// are more than one.
+pub(crate) fn all(rows: &[Row<'_>], rotation: bool, kinds: &[&str]) -> Vec<Residuals> {
+    let mut found = Vec::new();
+    let which = [
+        (Residual::Position, "position", "mm"),
+        (Residual::Rotation, "rotation", "degrees"),
+    ];
+    for (residual, word, unit) in which.into_iter().take(if rotation { 2 } else { 1 }) {
+        let mut push = |by: &str, groups: Vec<ResidualGroup>| {
+            if groups.len() > 1 {
+                found.push(Residuals {
+                    name: format!("{word}-by-{by}"),
+                    title: format!("error of {word} {RESIDUAL_HORIZON} samples ahead, by {by}"),
+                    unit,
+                    groups,
+                });
+            }
+        };
+        let regimes = Regime::ALL.map(|regime| {
+            let label = regime.word().to_owned();
+            group(rows, residual, label, &|end| end.regime == regime)
+        });
+        push("regime", regimes.into_iter().flatten().collect());
+        push("speed", by_speed(rows, residual));
+        let mut names: Vec<&str> = kinds.to_vec();
+        names.sort_unstable();
+        names.dedup();
+        let by_kind = names.iter().map(|name| {
+            let label = (*name).to_owned();
+            group(rows, residual, label, &|end| kinds[end.start.0] == *name)
+        });
+        push("kind", by_kind.flatten().collect());
+    }
+    found
+}
+
+fn by_speed(rows: &[Row<'_>], residual: Residual) -> Vec<ResidualGroup> {
+    let Some((_, ends)) = rows.first() else {
+        return Vec::new();
+    };
+    let here = ends.iter().filter(|end| end.horizon == RESIDUAL_HORIZON);
+    let mut speeds: Vec<f64> = here.map(|end| end.speed_m_s).collect();
+    if speeds.is_empty() {
+        return Vec::new();
+    }
+    speeds.sort_by(f64::total_cmp);
+    let edge = |k: usize| speeds[(k * (speeds.len() - 1)) / SPEEDS];
+    let groups = (0..SPEEDS).map(|k| {
+        let (low, high) = (edge(k), edge(k + 1));
+        let inside = |end: &End| {
+            (low..high).contains(&end.speed_m_s) || (k + 1 == SPEEDS && end.speed_m_s >= low)
+        };
+        let label = format!("{low:.2} to {high:.2} m/s");
+        group(rows, residual, label, &inside)
+    });
+    groups.flatten().collect()
+}
+
+/// Quantiles of the windows that belong and that diverge in no model.
+fn group(
+    rows: &[Row<'_>],
+    residual: Residual,
+    label: String,
+    belongs: &dyn Fn(&End) -> bool,
+) -> Option<ResidualGroup> {
+    let (_, first) = rows.first()?;
+    let chosen: Vec<usize> = (0..first.len())
+        .filter(|k| first[*k].horizon == RESIDUAL_HORIZON && belongs(&first[*k]))
+        .filter(|k| rows.iter().all(|(_, ends)| !ends[*k].diverges))
+        .collect();
+    (chosen.len() >= FEWEST).then(|| ResidualGroup {
+        label,
+        count: chosen.len(),
+        models: rows
+            .iter()
+            .map(|(model, ends)| {
+                let mut sizes: Vec<f64> = chosen.iter().map(|k| residual.of(&ends[*k])).collect();
+                sizes.sort_by(f64::total_cmp);
+                let last = (sizes.len() - 1) as f64;
+                let at = [0.05, 0.25, 0.5, 0.75, 0.95]
+                    .map(|share| sizes[(share * last).round() as usize]);
+                Quantiles {
+                    model: (*model).to_owned(),
+                    at,
+                }
+            })
+            .collect(),
+    })
+}

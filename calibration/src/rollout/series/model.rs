@@ -1,0 +1,94 @@
+//! Models that are tried on a series of episodes.
+
+use crate::error::CalibrationError;
+use crate::report::Found;
+use crate::rollout::Subject;
+use serde::Serialize;
+
+/// A number that a model fits.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// SI unit, `"1"` for none.
+    pub unit: &'static str,
+    /// Where the fit starts, and where it stays when the episodes say nothing about it.
+    pub start: f64,
+    /// The range that is searched.
+    pub range: [f64; 2],
+    /// A small change, for derivatives.
+    #[serde(skip)]
+    pub step: f64,
+}
+
+impl Parameter {
+    /// A number that is fitted.
+    pub fn new(
+        name: impl Into<String>,
+        unit: &'static str,
+        start: f64,
+        range: [f64; 2],
+        step: f64,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            unit,
+            start,
+            range,
+            step,
+        }
+    }
+}
+
+/// A way to simulate the episodes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Model {
+    /// A short name.
+    pub name: &'static str,
+    /// What it is, in a sentence.
+    pub about: &'static str,
+    /// The model that it extends; `null`: none.
+    pub extends: Option<&'static str>,
+    /// What is fitted.
+    pub parameters: Vec<Parameter>,
+}
+
+impl Model {
+    /// The value of a parameter by name; `otherwise` where the model does not have it.
+    pub fn value(&self, values: &[f64], name: &str, otherwise: f64) -> f64 {
+        let mut pairs = self.parameters.iter().zip(values);
+        let found = pairs.find(|(parameter, _)| parameter.name == name);
+        found.map_or(otherwise, |(_, value)| *value)
+    }
+}
+
+/// A subject with models of it.
+pub trait Modelled: Subject {
+    /// The bundle's title.
+    fn title(&self) -> &str;
+
+    /// The licence of the data.
+    fn licence(&self) -> &str;
+
+    /// An episode's name.
+    fn name(&self, episode: usize) -> &str;
+
+    /// Episodes of one group are held out together.
+    fn group(&self, episode: usize) -> &str;
+
+    /// What kind of episode it is: what tables are ordered by.
+    fn kind(&self, episode: usize) -> &str;
+
+    /// How far from its centre a turn moves the body, m: what turns angles into distances; 0: turns were not measured.
+    fn lever_m(&self) -> f64;
+
+    /// The simulation, with `finer` as many steps between two samples.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Simulation`] for what physics does not take.
+    fn rig(&self, model: &Model, values: &[f64], finer: u32)
+    -> Result<Self::Rig, CalibrationError>;
+
+    /// What goes into the simulator.
+    fn found(&self, model: &Model, values: &[f64]) -> Found;
+}

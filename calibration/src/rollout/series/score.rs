@@ -1,0 +1,225 @@
+//! Errors of whole episodes, and what a model gains over another.
+
+use super::{ModelOutcome, Modelled};
+use crate::error::CalibrationError;
+use crate::fit::median;
+use crate::rollout::{Deviation, Motion};
+use crate::select::share_gained;
+use crate::words::{number, percent};
+use dwell_scene::random::Key;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Samples of an episode that a fit looks at.
+const FIT_SAMPLES: usize = 60;
+
+/// How far off a whole episode is, by parameters that it did not choose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EpisodeError {
+    /// Its name.
+    pub episode: String,
+    /// What kind it is.
+    pub kind: String,
+    /// The fold that it was held out with.
+    pub fold: usize,
+    /// Distance at the last sample, mm.
+    pub end_mm: f64,
+    /// Angle at the last sample, degrees.
+    pub end_deg: f64,
+    /// Mean distance, mm.
+    pub mean_mm: f64,
+    /// Mean angle, degrees.
+    pub mean_deg: f64,
+    /// Mean square of the distance, and of the angle times the lever, mm².
+    pub square_mm2: f64,
+}
+
+/// Medians over episodes of one kind.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KindErrors {
+    /// The kind; `null`: all episodes.
+    pub kind: Option<String>,
+    /// How many episodes.
+    pub count: usize,
+    /// Distance at the last sample, mm.
+    pub end_mm: f64,
+    /// Angle at the last sample, degrees.
+    pub end_deg: f64,
+    /// Mean distance, mm.
+    pub mean_mm: f64,
+    /// Mean angle, degrees.
+    pub mean_deg: f64,
+}
+
+/// What a model gains over the one that it extends, each episode out of fold.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Gained {
+    /// The other model.
+    pub over: &'static str,
+    /// Share of the squared error that goes away.
+    pub share: f64,
+    /// Its 95 % interval over draws of groups.
+    pub interval: [f64; 2],
+    /// Share of the episodes that are better.
+    pub better_share: f64,
+}
+
+/// The measured motions after the start of whole roll-outs, beside the predicted ones.
+fn rolled<S: Modelled>(
+    subject: &S,
+    rig: &S::Rig,
+    episode: usize,
+) -> Result<Vec<(Motion, Motion)>, CalibrationError> {
+    let measured = subject.measured(episode);
+    let at = subject.past();
+    let samples = measured.len().saturating_sub(at + 1);
+    let predicted = subject.roll(rig, episode, at, samples, None)?;
+    Ok(predicted
+        .into_iter()
+        .zip(measured[at + 1..].iter().copied())
+        .collect())
+}
+
+/// An episode's error.
+pub(super) fn error<S: Modelled>(
+    subject: &S,
+    rig: &S::Rig,
+    episode: usize,
+    fold: usize,
+) -> Result<EpisodeError, CalibrationError> {
+    let pairs = rolled(subject, rig, episode)?;
+    let deviations: Vec<Deviation> = pairs
+        .iter()
+        .map(|(predicted, measured)| Deviation::between(predicted, measured))
+        .collect();
+    let last = deviations.last().copied().unwrap_or_default();
+    let count = deviations.len().max(1) as f64;
+    let mean = |f: &dyn Fn(&Deviation) -> f64| deviations.iter().map(f).sum::<f64>() / count;
+    let lever_m = subject.lever_m();
+    let square = mean(&|d| d.position_m.powi(2) + (lever_m * d.rotation_rad).powi(2));
+    Ok(EpisodeError {
+        episode: subject.name(episode).to_owned(),
+        kind: subject.kind(episode).to_owned(),
+        fold,
+        end_mm: last.position_mm(),
+        end_deg: last.rotation_deg(),
+        mean_mm: mean(&Deviation::position_mm),
+        mean_deg: mean(&Deviation::rotation_deg),
+        square_mm2: 1e6 * square,
+    })
+}
+
+/// What a fit makes small: each episode counts as one, whatever its length. mm.
+pub(super) fn residuals<S: Modelled>(
+    subject: &S,
+    rig: &S::Rig,
+    episode: usize,
+) -> Result<Vec<f64>, CalibrationError> {
+    let pairs = rolled(subject, rig, episode)?;
+    let stride = pairs.len().div_ceil(FIT_SAMPLES).max(1);
+    let seen: Vec<_> = pairs.iter().skip(stride - 1).step_by(stride).collect();
+    let weight = 1e3 / (seen.len().max(1) as f64).sqrt();
+    let lever_m = subject.lever_m();
+    Ok(seen
+        .into_iter()
+        .flat_map(|(predicted, measured)| {
+            let shift = predicted.position - measured.position;
+            let turned = lever_m * crate::bundle::turn(measured.rotation, predicted.rotation);
+            [shift, turned]
+                .map(|vector| (weight * vector).to_array())
+                .concat()
+        })
+        .collect())
+}
+
+/// Medians of all episodes and of each kind.
+pub(super) fn by_kind(episodes: &[EpisodeError]) -> Vec<KindErrors> {
+    let mut names: Vec<&str> = episodes.iter().map(|e| e.kind.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let kinds = std::iter::once(None).chain(names.into_iter().map(Some));
+    kinds
+        .map(|kind| {
+            let here: Vec<&EpisodeError> = episodes
+                .iter()
+                .filter(|e| kind.is_none_or(|kind| e.kind == kind))
+                .collect();
+            let middle = |f: &dyn Fn(&EpisodeError) -> f64| {
+                median(&mut here.iter().map(|e| f(e)).collect::<Vec<f64>>())
+            };
+            KindErrors {
+                kind: kind.map(str::to_owned),
+                count: here.len(),
+                end_mm: middle(&|e| e.end_mm),
+                end_deg: middle(&|e| e.end_deg),
+                mean_mm: middle(&|e| e.mean_mm),
+                mean_deg: middle(&|e| e.mean_deg),
+            }
+        })
+        .collect()
+}
+
+/// What `after` gains over `before`. Groups are drawn, not episodes: those of one session are alike.
+pub(super) fn gained<S: Modelled>(
+    subject: &S,
+    before: &ModelOutcome,
+    after: &ModelOutcome,
+    draws: usize,
+    key: Key,
+) -> Gained {
+    let mut groups: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
+    let mut better = 0;
+    for (k, (b, a)) in before.episodes.iter().zip(&after.episodes).enumerate() {
+        let sums = groups.entry(subject.group(k)).or_default();
+        sums[0] += b.square_mm2;
+        sums[1] += a.square_mm2;
+        better += usize::from(a.square_mm2 < b.square_mm2);
+    }
+    let column = |k: usize| groups.values().map(|sums| sums[k]).collect::<Vec<f64>>();
+    let (share, interval) = share_gained(&column(0), &column(1), draws, key);
+    Gained {
+        over: before.model.name,
+        share,
+        interval,
+        better_share: better as f64 / before.episodes.len().max(1) as f64,
+    }
+}
+
+/// What came out.
+pub(super) fn sentence(best: &ModelOutcome, all: &[ModelOutcome]) -> String {
+    let ends = |outcome: &ModelOutcome| {
+        outcome.kinds.first().map_or_else(String::new, |all| {
+            let turned = if all.end_deg > 0.0 {
+                format!(" and {} degrees", number(all.end_deg))
+            } else {
+                String::new()
+            };
+            format!("{} mm{turned}", number(all.end_mm))
+        })
+    };
+    let mut text = format!(
+        "Over {} episodes, each predicted by parameters that it did not choose, the model \"{}\" ends {} off in the median",
+        best.episodes.len(),
+        best.model.name,
+        ends(best)
+    );
+    if let Some(first) = all
+        .first()
+        .filter(|first| first.model.name != best.model.name)
+    {
+        text = format!("{text}; \"{}\" {}", first.model.name, ends(first));
+    }
+    text.push('.');
+    for outcome in all {
+        if let Some(gain) = &outcome.gain {
+            let [low, high] = gain.interval.map(percent);
+            text = format!(
+                "{text} \"{}\" takes {} ({low} to {high}) of the squared error of \"{}\" away.",
+                outcome.model.name,
+                percent(gain.share),
+                gain.over
+            );
+        }
+    }
+    text
+}

@@ -1,0 +1,76 @@
+//! Searches that a former run has ended, kept in a folder, so that a run that was stopped goes on where it was.
+
+use super::StudyOptions;
+use super::model::ContactModel;
+use crate::error::CalibrationError;
+use crate::report::whole;
+use crate::rollout::Tracks;
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::Path;
+
+/// What decides about the end of a search: equal questions have equal answers.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Question {
+    title: String,
+    samples: usize,
+    model: String,
+    ranges: Vec<[f64; 2]>,
+    fold: usize,
+    folds: usize,
+    seed: u64,
+    population: usize,
+    generations: [usize; 2],
+    first_episodes: usize,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Answer {
+    question: Question,
+    chosen: Vec<f64>,
+}
+
+/// What a model's search in a fold chose: from `folder` where it was answered before, else by `search`, kept there.
+///
+/// # Errors
+/// [`CalibrationError::Write`], and those of `search`.
+pub(super) fn or_search(
+    folder: Option<&Path>,
+    (tracks, model, fold): (&Tracks, &ContactModel, usize),
+    options: &StudyOptions,
+    search: impl FnOnce() -> Result<Vec<f64>, CalibrationError>,
+) -> Result<Vec<f64>, CalibrationError> {
+    let Some(folder) = folder else {
+        return search();
+    };
+    let question = Question {
+        title: tracks.title.clone(),
+        samples: tracks.episodes.iter().map(|e| e.motions.len()).sum(),
+        model: model.name.to_owned(),
+        ranges: model.parameters.iter().map(|p| p.range).collect(),
+        fold,
+        folds: options.folds,
+        seed: options.seed,
+        population: options.population,
+        generations: options.generations,
+        first_episodes: options.first_episodes,
+    };
+    let name = format!("search-{}-{fold}.json", model.name);
+    // What cannot be read is searched again.
+    let text = fs::read_to_string(folder.join(&name)).unwrap_or_default();
+    if let Ok(answer) = serde_json::from_str::<Answer>(&text)
+        && answer.question == question
+        && answer.chosen.len() == model.parameters.len()
+    {
+        return Ok(answer.chosen);
+    }
+    let chosen = search()?;
+    fs::create_dir_all(folder).map_err(|source| CalibrationError::Write {
+        path: folder.to_owned(),
+        source,
+    })?;
+    let answer = Answer { question, chosen };
+    let text = serde_json::to_string_pretty(&answer).unwrap_or_default();
+    whole(folder, &name, text.as_bytes())?;
+    Ok(answer.chosen)
+}

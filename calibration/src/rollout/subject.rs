@@ -1,0 +1,41 @@
+//! What can be rolled out: measured motions, and a simulation that predicts them.
+
+use super::motion::{Deviation, Motion};
+use super::regime::Regime;
+use crate::error::CalibrationError;
+use dwell_scene::random::Key;
+
+/// Measured episodes with a simulation that starts from any of their samples.
+pub trait Subject: Sync {
+    /// The simulation, set to some values.
+    type Rig: Send + Sync;
+
+    /// How many episodes.
+    fn count(&self) -> usize;
+
+    /// What was measured, at even spacing. Shape (sample,).
+    fn measured(&self, episode: usize) -> &[Motion];
+
+    /// What the body did at each sample. Shape (sample,).
+    fn regimes(&self, episode: usize) -> &[Regime];
+
+    /// Samples before a start that its state is estimated from and that must be there.
+    fn past(&self) -> usize;
+
+    /// Apart by more than this, two predictions are of different outcomes.
+    fn divergence(&self) -> Deviation;
+
+    /// The motions at the `samples` samples after the sample `at`. The state there is estimated from measurements up to
+    /// it and none after; with a `nudge` it is drawn from within the uncertainty of that estimate.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Simulation`] for a start that is not finite.
+    fn roll(
+        &self,
+        rig: &Self::Rig,
+        episode: usize,
+        at: usize,
+        samples: usize,
+        nudge: Option<Key>,
+    ) -> Result<Vec<Motion>, CalibrationError>;
+}
