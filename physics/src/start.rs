@@ -7,7 +7,7 @@ use crate::convert::from_rapier;
 use crate::engine::Engine;
 use crate::model::{BodyPlan, Owner, PhysicsModel, shapes};
 use crate::report::{FrozenObject, MovedObject, PassingJoint, StartReport};
-use dwell_scene::{Aabb, ObjectId};
+use dwell_scene::{Aabb, Mobility, ObjectId};
 use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
 use rapier3d::parry::query;
@@ -63,11 +63,13 @@ impl Start<'_> {
             .map_or(RapierPose::IDENTITY, |rigid| *rigid.position())
     }
 
-    /// What the leaves of joints pass through: their own object, and what they overlap where they stand.
+    /// What the leaves of joints pass through: their own object, and what they overlap where they stand. A robot's links
+    /// pass through fewer things: the links they are joined with, and what they are inside of at the start.
     pub(crate) fn passing(&self, report: &mut StartReport) -> Excluded {
         let mut pairs: BTreeSet<(u32, u32)> = BTreeSet::new();
         for (index, plan) in self.model.bodies.iter().enumerate() {
             let Some(joint) = plan.joint else { continue };
+            let robot = self.is_robot(plan.object);
             let mut through = BTreeSet::new();
             let place = self.place(index);
             for piece in &plan.pieces {
@@ -78,27 +80,42 @@ impl Start<'_> {
                 for (_, collider) in queries.intersect_aabb_conservative(aabb) {
                     let entry = entry_index(collider);
                     let other = &self.entries[entry];
+                    let same = self.same_object(other, plan);
                     // Free bodies are moved out of the way instead.
                     let free = other
                         .body
                         .is_some_and(|other| self.model.bodies[other as usize].joint.is_none());
-                    if other.body == Some(index as u32) || (free && !self.same_object(other, plan))
-                    {
+                    if other.body == Some(index as u32) || (free && !same) {
                         continue;
                     }
-                    let touches = self.same_object(other, plan)
-                        || query::distance(
+                    let within = |margin_m: f32| {
+                        query::distance(
                             collider.position(),
                             collider.shape(),
                             &world_from_piece,
                             &*piece.shape,
                         )
-                        .is_ok_and(|found| found.distance <= LEAF_MARGIN_M);
+                        .is_ok_and(|found| found.distance <= margin_m)
+                    };
+                    let inside = || {
+                        depth(
+                            collider.position(),
+                            collider.shape(),
+                            &world_from_piece,
+                            &*piece.shape,
+                            self.owner(entry),
+                        )
+                        .is_some_and(|overlap| self.counts(&overlap))
+                    };
+                    let touches = match (robot, same) {
+                        (true, true) => within(CLEARANCE_M),
+                        (true, false) => !self.is_free(plan) && inside(),
+                        (false, true) => true,
+                        (false, false) => within(LEAF_MARGIN_M),
+                    };
                     if touches {
                         pairs.insert((index as u32, entry as u32));
-                        if let Some(owner) =
-                            other.toucher.filter(|_| !self.same_object(other, plan))
-                        {
+                        if let Some(owner) = other.toucher.filter(|_| !same) {
                             through.insert(self.toucher_name(owner));
                         }
                     }
@@ -106,7 +123,10 @@ impl Start<'_> {
             }
             // Its own object's other parts may come near only later.
             for (entry, other) in self.entries.iter().enumerate() {
-                if other.body != Some(index as u32) && self.same_object(other, plan) {
+                if other.body != Some(index as u32)
+                    && self.same_object(other, plan)
+                    && (!robot || self.are_joined(index, other))
+                {
                     pairs.insert((index as u32, entry as u32));
                 }
             }
@@ -121,6 +141,28 @@ impl Start<'_> {
             entries: pairs.into_iter().collect(),
             carriers: Vec::new(),
         }
+    }
+
+    /// Whether an object has motors of its own.
+    fn is_robot(&self, object: ObjectId) -> bool {
+        let mut joints = self.model.house.joints.iter();
+        joints.any(|joint| joint.object == object && joint.servo.is_some())
+    }
+
+    /// Whether a body's object stands on its own feet.
+    fn is_free(&self, plan: &BodyPlan) -> bool {
+        self.model.house.objects[plan.object].mobility == Mobility::Movable
+    }
+
+    /// Whether a joint joins a body with another one, or with what of its own object never moves.
+    fn are_joined(&self, body: usize, other: &Entry) -> bool {
+        let parent = |body: usize| {
+            let joint = self.model.bodies[body].joint?;
+            let part = self.model.house.joints[joint].parent;
+            Some(part.and_then(|part| self.model.body_of_part[part]))
+        };
+        let other_parent = other.body.and_then(|other| parent(other as usize));
+        parent(body) == Some(other.body) || other_parent == Some(Some(body as u32))
     }
 
     fn same_object(&self, entry: &Entry, plan: &BodyPlan) -> bool {
@@ -299,7 +341,7 @@ impl Start<'_> {
                 ));
             }
             for other in placed {
-                // A lid may lie on its own pot.
+                // A lid may lie on its own pot, and a robot's trunk is not moved away from its own links.
                 let own = self.model.bodies[other.body as usize].object == plan.object;
                 if own || !other.bounds.intersects(&bounds) {
                     continue;

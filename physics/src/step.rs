@@ -5,11 +5,11 @@ use crate::agents::{self, AgentControl, Way};
 use crate::body::Hold;
 use crate::contact::{Collector, ContactEvent, Dress, Hooks, bound, note_motion};
 use crate::error::PhysicsError;
-use crate::joints::{self, Drive, Drivers, Progress};
-use crate::laws::{Acts, Stage};
+use crate::joints::{self, Drive, Drivers, Going, Progress};
+use crate::laws::{Acts, JointLoad, Resistance, Stage};
 use crate::motors;
 use crate::world::PhysicsWorld;
-use dwell_scene::{Aabb, AgentState, JointCommand, State};
+use dwell_scene::{Aabb, AgentState, JointCommand, JointId, State};
 use glam::Vec3;
 
 impl PhysicsWorld {
@@ -45,12 +45,17 @@ impl PhysicsWorld {
         let asleep = self.engine.islands.num_active_bodies() == 0;
         self.drive_joints(state);
         let mut ways = Way::all(state);
+        let mut placed = false;
         for substep in 0..self.settings.steps_per_control {
             self.move_agents(state, controls, &mut ways, substep == 0);
             self.carry_held(state);
             self.shove_on(state);
-            self.physics_step(state, events);
+            placed = self.physics_step(state, events);
             self.keep_held_inside();
+        }
+        if placed {
+            // Colliders follow what was placed, so that a snapshot continues with the same bits.
+            self.flush();
         }
         self.ongoing
             .tell(self.tick, &self.settings.config, &self.table, events);
@@ -69,20 +74,30 @@ impl PhysicsWorld {
         Ok(())
     }
 
-    fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) {
+    /// Returns whether a tree of joints was put on its course at the end of the step.
+    fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) -> bool {
         self.drive_motors(state);
         for joint in &self.joints {
             joints::relax(&mut self.engine, joint);
         }
+        let laws = &self.laws;
+        let resist = |joint: JointId, load: &JointLoad, resistance: &mut Resistance| {
+            for installed in laws {
+                installed.law.resist(joint, load, resistance);
+            }
+        };
+        let resisting = laws.iter().any(|installed| installed.law.resists());
         let drivers = Drivers {
             joints: &self.joints,
             pulls: &self.pulls,
             near: &|joint| state.joint_position[joint],
+            resist: if resisting { Some(&resist) } else { None },
             dt_s: self.settings.dt_s,
         };
-        for tree in &self.trees {
-            joints::exert(&mut self.engine, tree, &drivers);
-        }
+        let trees = self.trees.iter();
+        let courses: Vec<Vec<Going>> = trees
+            .map(|tree| joints::exert(&mut self.engine, tree, &drivers))
+            .collect();
         let half = 0.5 * self.settings.dt_s;
         self.apply_laws(|law, stage| {
             law.half_step(stage, half);
@@ -102,12 +117,17 @@ impl PhysicsWorld {
         let slowest = config.event_min_speed_m_s.min(config.slide_min_speed_m_s);
         let collector = Collector::new(&self.entries, &self.motion, slowest);
         self.engine.step(&hooks, &collector);
+        let mut placed = false;
+        for course in &courses {
+            placed |= joints::settle(&mut self.engine, &self.joints, course);
+        }
         self.ongoing
             .settle(collector, self.tick, config, &self.table, events);
         self.ongoing
             .note_held_back(&self.engine, &self.motion, self.settings.dt_s);
         self.apply_laws(|law, stage| law.half_step(stage, half));
         self.tick += 1;
+        placed
     }
 
     /// Lets each law act on the world between steps.

@@ -35,7 +35,7 @@ impl Element {
     }
 
     /// The effort at a velocity, and how fast it falls there.
-    fn at(&self, velocity: f64) -> (f64, f64) {
+    pub(super) fn at(&self, velocity: f64) -> (f64, f64) {
         let [low, high] = self.bounds;
         let linear = self.offset - self.slope * velocity;
         let (mut effort, mut fall) = if linear > high {
@@ -160,14 +160,9 @@ pub(super) struct Problem {
     pub(super) dt_s: f64,
 }
 
-/// Velocities at the end of the step, and the efforts that lead there. Shape (freedom,) each.
-pub(super) struct Solution {
-    pub(super) velocity: Vec<f64>,
-    pub(super) efforts: Vec<f64>,
-}
-
 impl Problem {
-    pub(super) fn solve(&self) -> Solution {
+    /// The velocities at the end of the step. Shape (freedom,).
+    pub(super) fn solve(&self) -> Vec<f64> {
         let mut velocity = self.free.clone();
         let mut before: Option<Vec<f64>> = None;
         for _ in 0..MOST_ITERATIONS {
@@ -195,11 +190,11 @@ impl Problem {
             }
             before = (stride == 1.0).then_some(falls);
         }
-        let efforts = self.efforts(&velocity);
-        Solution { velocity, efforts }
+        velocity
     }
 
-    fn efforts(&self, velocity: &[f64]) -> Vec<f64> {
+    /// The efforts that lead to these velocities. Shape (freedom,).
+    pub(super) fn efforts(&self, velocity: &[f64]) -> Vec<f64> {
         let mut efforts = vec![0.0; velocity.len()];
         for element in &self.elements {
             element.add(element.at(element.velocity(velocity)).0, &mut efforts);
@@ -309,8 +304,7 @@ mod tests {
                 ],
                 dt_s: 0.01,
             };
-            let solution = problem.solve();
-            let left = problem.gradient(&solution.velocity);
+            let left = problem.gradient(&problem.solve());
             assert!(left.iter().all(|g| g.abs() < 1e-9), "{seed}: {left:?}");
         }
     }

@@ -1,17 +1,22 @@
 //! Doors, drawers, lids and robots: rapier's impulse joints hold the axis and the limits, efforts are ours.
 
+mod chain;
 mod convex;
+mod course;
 mod drive;
 mod element;
 mod exert;
+mod floating;
+mod frame;
 mod latch;
 mod motion;
 mod place;
+mod support;
 mod tree;
 
 pub(crate) use drive::{Drive, Drives, Progress, advance};
-pub(crate) use element::Pull;
-pub(crate) use exert::{Drivers, exert, relax};
+pub(crate) use element::{Gain, Pull};
+pub(crate) use exert::{Drivers, Going, exert, relax, settle};
 pub(crate) use latch::{release, shut, stands_shut, tolerance};
 pub(crate) use place::{Stand, place, says_the_same};
 pub(crate) use tree::{Tree, trees};
@@ -46,8 +51,8 @@ pub(crate) struct Joint {
     pub(crate) latchable: bool,
     /// What is in force.
     pub(crate) values: JointValues,
-    /// Limits that rapier does not keep, rad.
-    own_stop: Option<[f32; 2]>,
+    /// Stops, rad or m. Those that rapier can keep it keeps too: it feels what presses against them.
+    limits: Option<[f32; 2]>,
 }
 
 /// Inserts the joints of a house. `anchor` is a fixed body at the origin that carries no collider.
@@ -97,7 +102,7 @@ pub(crate) fn insert(
             child_from_joint,
             latchable: standing && joint.opens(),
             values,
-            own_stop: exert::own_stop(joint.kind, joint.limits),
+            limits: joint.limits,
         });
     }
     joints
@@ -157,19 +162,6 @@ pub(crate) fn set_values(
         }
     }
     true
-}
-
-/// The joint's axis and a point on it, in world space.
-fn line(engine: &Engine, joint: &Joint) -> (Vec3, Vec3) {
-    let parent = engine
-        .bodies
-        .get(joint.parent_handle)
-        .map_or(RapierPose::IDENTITY, |parent| *parent.position());
-    let world_from_joint = parent * joint.parent_from_joint;
-    (
-        world_from_joint.rotation * joint.axis,
-        world_from_joint.translation,
-    )
 }
 
 /// Where a joint stands and how fast it moves, rad or m (and per second). `near` picks the turn of a hinge.

@@ -5,8 +5,10 @@
 //! Newton-Euler method (5.3), written here in world coordinates about centres of mass.
 
 use super::convex::Inertia;
+use super::floating::Floating;
+use super::support::{self, Support};
 use dwell_scene::JointKind;
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DVec3};
 use rapier3d::dynamics::RigidBody;
 
 /// A body as the dynamics see it.
@@ -24,14 +26,25 @@ pub(super) struct Lump {
 
 impl Lump {
     pub(super) fn of(body: &RigidBody) -> Self {
+        let own = Self::own(body);
+        let turn = DMat3::from_quat(body.position().rotation.as_dquat().normalize());
+        Self {
+            center: body.center_of_mass().as_dvec3(),
+            inertia: turn * own.inertia * turn.transpose(),
+            ..own
+        }
+    }
+
+    /// The same in the body's own frame.
+    pub(super) fn own(body: &RigidBody) -> Self {
         let local = &body.mass_properties().local_mprops;
         let principal = local.principal_inertia().as_dvec3();
-        let turn = body.position().rotation * local.principal_inertia_local_frame;
-        let turn = DMat3::from_quat(turn.as_dquat().normalize());
+        let turn = local.principal_inertia_local_frame.as_dquat();
+        let turn = DMat3::from_quat(turn.normalize());
         Self {
             mass: body.mass().into(),
             heavy: f64::from(body.mass() * body.gravity_scale()),
-            center: body.center_of_mass().as_dvec3(),
+            center: local.local_com.as_dvec3(),
             inertia: turn * DMat3::from_diagonal(principal) * turn.transpose(),
         }
     }
@@ -73,7 +86,7 @@ pub(super) struct Axis {
 
 impl Axis {
     /// Velocity of a point, and rotation, for each unit of this joint's velocity.
-    fn moves(&self, point: DVec3) -> (DVec3, DVec3) {
+    pub(super) fn moves(&self, point: DVec3) -> (DVec3, DVec3) {
         match self.kind {
             JointKind::Hinge => (self.direction.cross(point - self.at), self.direction),
             JointKind::Slide => (self.direction, DVec3::ZERO),
@@ -86,8 +99,8 @@ impl Axis {
 pub(super) struct Moving {
     pub(super) center: DVec3,
     pub(super) angular: DVec3,
-    acceleration: DVec3,
-    angular_acceleration: DVec3,
+    pub(super) acceleration: DVec3,
+    pub(super) angular_acceleration: DVec3,
 }
 
 impl Moving {
@@ -117,43 +130,63 @@ pub(super) struct Motion {
     pub(super) root: Moving,
     /// The root's own mass if it is free to answer, its joints' efforts pushing back on it.
     pub(super) free_root: Option<Lump>,
+    /// What carries a tree whose root is free.
+    pub(super) supports: Vec<Support>,
     pub(super) gravity: DVec3,
 }
 
 impl Motion {
-    /// What the joints resist with. Shape (freedom, freedom).
-    pub(super) fn inertia(&self) -> Inertia {
-        let n = self.axes.len();
+    /// The mass that each joint moves, and the momentum of it for each unit of its velocity. Shape (freedom,) each.
+    fn carried(&self) -> (Vec<Lump>, Vec<(DVec3, DVec3)>) {
         let mut carried = self.masses.clone();
-        for k in (0..n).rev() {
+        for k in (0..carried.len()).rev() {
             if let Some(parent) = self.axes[k].parent {
                 carried[parent] = carried[parent].with(&carried[k]);
             }
         }
+        let momentum = |(axis, lump): (&Axis, &Lump)| {
+            let (linear, angular) = axis.moves(lump.center);
+            (linear * lump.mass, lump.inertia * angular)
+        };
+        let momenta = self.axes.iter().zip(&carried).map(momentum).collect();
+        (carried, momenta)
+    }
+
+    /// What the joints resist with. Shape (freedom, freedom).
+    pub(super) fn inertia(&self) -> Inertia {
+        let n = self.axes.len();
+        let (carried, momenta) = self.carried();
         let mut inertia = Inertia::zero(n);
-        let mut momenta = Vec::with_capacity(n);
-        for (k, axis) in self.axes.iter().enumerate() {
-            let (linear, angular) = axis.moves(carried[k].center);
-            let momentum = (linear * carried[k].mass, carried[k].inertia * angular);
+        for (k, momentum) in momenta.iter().enumerate() {
             let mut other = Some(k);
             while let Some(j) = other {
                 let (linear, angular) = self.axes[j].moves(carried[k].center);
                 inertia.set(k, j, momentum.0.dot(linear) + momentum.1.dot(angular));
                 other = self.axes[j].parent;
             }
-            momenta.push(momentum);
         }
-        if let Some(root) = &self.free_root {
-            lighten(&mut inertia, root, &self.axes, &carried, &momenta);
+        if let Some(floating) = self.floating() {
+            floating.lighten(&mut inertia);
         }
         inertia
     }
 
+    /// How the root answers; `None` for one that does not.
+    fn floating(&self) -> Option<Floating> {
+        let root = self.free_root.as_ref()?;
+        let (carried, momenta) = self.carried();
+        Some(Floating::of(root, &self.axes, &carried, &momenta))
+    }
+
     /// How every body moves when the joints accelerate like this. Shape (freedom,).
     fn moving(&self, accelerations: &[f64]) -> Vec<Moving> {
+        self.moving_over(self.root, accelerations)
+    }
+
+    fn moving_over(&self, root: Moving, accelerations: &[f64]) -> Vec<Moving> {
         let mut moving: Vec<Moving> = Vec::with_capacity(self.axes.len());
         for (k, axis) in self.axes.iter().enumerate() {
-            let parent = axis.parent.map_or(self.root, |parent| moving[parent]);
+            let parent = axis.parent.map_or(root, |parent| moving[parent]);
             let turn = axis.direction * axis.velocity;
             let gain = axis.direction * accelerations[k];
             let center = self.masses[k].center;
@@ -178,140 +211,148 @@ impl Motion {
         moving
     }
 
-    /// The tree a moment later, when its joints accelerate like this. Second order in `h_s` for places, first for the rest.
-    pub(super) fn later(&self, accelerations: &[f64], h_s: f64) -> Self {
-        let moving = self.moving(accelerations);
-        let mut speeds: Vec<DVec3> = Vec::with_capacity(moving.len());
-        let (mut axes, mut masses) = (self.axes.clone(), self.masses.clone());
-        let mut angular = self.angular.clone();
-        for (k, axis) in self.axes.iter().enumerate() {
-            let (parent, carries) = axis
-                .parent
-                .map_or((&self.root, DVec3::ZERO), |p| (&moving[p], speeds[p]));
-            let with_parent = |point: DVec3| carries + parent.angular.cross(point - parent.center);
-            let center = self.masses[k].center;
-            let speed = match axis.kind {
-                JointKind::Hinge => with_parent(axis.at) + self.angular[k].cross(center - axis.at),
-                JointKind::Slide => with_parent(center) + axis.direction * axis.velocity,
-            };
-            speeds.push(speed);
-            let body = &moving[k];
-            let turned = |body: &Moving| {
-                DQuat::from_scaled_axis(
-                    (body.angular + body.angular_acceleration * (0.5 * h_s)) * h_s,
-                )
-            };
-            let turn = DMat3::from_quat(turned(body));
-            masses[k].center += (speed + body.acceleration * (0.5 * h_s)) * h_s;
-            masses[k].inertia = turn * self.masses[k].inertia * turn.transpose();
-            angular[k] += body.angular_acceleration * h_s;
-            let root_stands = axis.parent.is_none();
-            let bent = if root_stands {
-                DQuat::IDENTITY
-            } else {
-                turned(parent)
-            };
-            let shift = if root_stands {
-                DVec3::ZERO
-            } else {
-                (with_parent(axis.at) + parent.acceleration_at(axis.at) * (0.5 * h_s)) * h_s
-            };
-            axes[k].direction = bent * axis.direction;
-            axes[k].at += shift;
-            axes[k].velocity += accelerations[k] * h_s;
-        }
-        Self {
-            axes,
-            masses,
-            angular,
-            ..*self
-        }
-    }
-
-    /// The force on each body besides its weight, and the moment about its centre of mass besides the gyroscopic one, with
-    /// which the joints accelerate like this. Shape (freedom,).
-    pub(super) fn wrenches(&self, accelerations: &[f64]) -> Vec<(DVec3, DVec3)> {
-        let moving = self.moving(accelerations);
-        let wrench = |(body, lump): (&Moving, &Lump)| {
-            let force = body.acceleration * lump.mass - self.gravity * lump.heavy;
-            (force, lump.inertia * body.angular_acceleration)
+    /// The force on each body besides its weight and what carries it, and the moment about its centre of mass besides the
+    /// gyroscopic one, with which the joints accelerate like this: those of the joints' bodies, shape (freedom,), and that
+    /// of a free root. Within a tree over a free root they add up to nothing.
+    pub(super) fn wrenches(&self, accelerations: &[f64]) -> (Vec<Wrench>, Option<Wrench>) {
+        let accelerated = self.floating().map(|floating| {
+            let loads = self.loads();
+            let root = floating.answer(&loads.root[0], accelerations, &self.root);
+            (loads.carried, root)
+        });
+        let root = accelerated.as_ref().map_or(self.root, |(_, root)| *root);
+        let moving = self.moving_over(root, accelerations);
+        let wrench = |body: &Moving, lump: &Lump| Wrench {
+            force: body.acceleration * lump.mass - self.gravity * lump.heavy,
+            moment: lump.inertia * body.angular_acceleration,
         };
-        moving.iter().zip(&self.masses).map(wrench).collect()
+        let mut wrenches: Vec<Wrench> = moving
+            .iter()
+            .zip(&self.masses)
+            .map(|(body, lump)| wrench(body, lump))
+            .collect();
+        let mut of_root = self.free_root.as_ref().map(|lump| wrench(&root, lump));
+        if let (Some((forces, _)), Some(own)) = (&accelerated, &self.free_root) {
+            for (support, force) in self.supports.iter().zip(forces) {
+                let force = DVec3::Y * *force;
+                let (wrench, center) = match (support.link, &mut of_root) {
+                    (Some(k), _) => (&mut wrenches[k], self.masses[k].center),
+                    (None, Some(root)) => (root, own.center),
+                    (None, None) => continue,
+                };
+                wrench.force -= force;
+                wrench.moment -= (support.at - center).cross(force);
+            }
+        }
+        (wrenches, of_root)
     }
 
-    /// The efforts that keep every joint from accelerating, and the part of them that carries weight. The root is taken as
-    /// carried by something.
-    pub(super) fn bias(&self) -> (Vec<f64>, Vec<f64>) {
+    /// What all bodies need so that no joint accelerates, and neither does the root.
+    fn loads(&self) -> Loads {
         let n = self.axes.len();
-        // Force and moment about the world's origin, with motion and of weight alone.
-        let mut loads = Vec::with_capacity(n);
-        for (body, lump) in self.moving(&vec![0.0; n]).iter().zip(&self.masses) {
+        let own = |body: &Moving, lump: &Lump| {
             let weight = -self.gravity * lump.heavy;
             let force = body.acceleration * lump.mass + weight;
             let moment = lump.inertia * body.angular_acceleration
                 + body.angular.cross(lump.inertia * body.angular)
                 + lump.center.cross(force);
-            loads.push([(force, moment), (weight, lump.center.cross(weight))]);
-        }
-        for k in (0..n).rev() {
-            if let Some(parent) = self.axes[k].parent {
-                let below = loads[k];
-                for (load, below) in loads[parent].iter_mut().zip(below) {
-                    *load = (load.0 + below.0, load.1 + below.1);
+            let weight = Wrench {
+                force: weight,
+                moment: lump.center.cross(weight),
+            };
+            [Wrench { force, moment }, weight]
+        };
+        let moving = self.moving(&vec![0.0; n]);
+        let pairs = moving.iter().zip(&self.masses);
+        let mut links: Vec<[Wrench; 2]> = pairs.map(|(body, lump)| own(body, lump)).collect();
+        let mut root = match &self.free_root {
+            Some(lump) => own(&self.root, lump),
+            None => [Wrench::default(); 2],
+        };
+        let mut carried = Vec::new();
+        if let Some(lump) = &self.free_root {
+            let all = links
+                .iter()
+                .fold(root[1], |all, link| all.plus(&link[1], 1.0));
+            let whole = self
+                .masses
+                .iter()
+                .fold(*lump, |whole, mass| whole.with(mass));
+            carried = support::forces(&self.supports, &all, whole.center);
+            for (support, force) in self.supports.iter().zip(&carried) {
+                let force = DVec3::Y * *force;
+                let moment = support.at.cross(force);
+                let load = match support.link {
+                    Some(k) => &mut links[k],
+                    None => &mut root,
+                };
+                for load in load {
+                    *load = load.plus(&Wrench { force, moment }, -1.0);
                 }
             }
         }
+        for k in (0..n).rev() {
+            let below = links[k];
+            let above = match self.axes[k].parent {
+                Some(parent) => &mut links[parent],
+                None => &mut root,
+            };
+            for (load, below) in above.iter_mut().zip(below) {
+                *load = load.plus(&below, 1.0);
+            }
+        }
+        Loads {
+            links,
+            root,
+            carried,
+        }
+    }
+
+    /// The efforts that keep every joint from accelerating, and the part of them that carries weight. A free root is
+    /// carried where it or a joint's body stands on something, and gives way otherwise.
+    pub(super) fn bias(&self) -> (Vec<f64>, Vec<f64>) {
+        let loads = self.loads();
+        let floating = self.floating();
         let along = |which: usize| {
-            let effort = |(axis, load): (&Axis, &[(DVec3, DVec3); 2])| {
-                let (force, moment) = load[which];
+            let effort = |(axis, load): (&Axis, &[Wrench; 2])| {
+                let Wrench { force, moment } = load[which];
                 match axis.kind {
                     JointKind::Hinge => axis.direction.dot(moment - axis.at.cross(force)),
                     JointKind::Slide => axis.direction.dot(force),
                 }
             };
-            self.axes.iter().zip(&loads).map(effort).collect()
+            let mut efforts: Vec<f64> = self.axes.iter().zip(&loads.links).map(effort).collect();
+            if let Some(floating) = &floating {
+                floating.unload(&loads.root[which], &mut efforts);
+            }
+            efforts
         };
         (along(0), along(1))
     }
 }
 
-/// Takes off what the joints' inertia loses because the root gives way (Schur's complement of its six freedoms).
-fn lighten(
-    inertia: &mut Inertia,
-    root: &Lump,
-    axes: &[Axis],
-    carried: &[Lump],
-    momenta: &[(DVec3, DVec3)],
-) {
-    let children = axes
-        .iter()
-        .zip(carried)
-        .filter(|(axis, _)| axis.parent.is_none());
-    let whole = children.fold(*root, |whole, (_, mass)| whole.with(mass));
-    let mut own = Inertia::zero(6);
-    for k in 0..3 {
-        own.set(k, k, whole.mass);
-        for j in 0..3 {
-            own.set(3 + k, 3 + j, whole.inertia.col(j)[k]);
+/// A force, N, and a moment, N·m.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wrench {
+    pub(super) force: DVec3,
+    pub(super) moment: DVec3,
+}
+
+impl Wrench {
+    pub(super) fn plus(&self, other: &Self, times: f64) -> Self {
+        Self {
+            force: self.force + other.force * times,
+            moment: self.moment + other.moment * times,
         }
     }
-    let factor = own.factor();
-    // About the centre of mass of all, linear and angular momentum are apart.
-    let columns: Vec<[f64; 6]> = momenta
-        .iter()
-        .zip(carried)
-        .map(|((linear, angular), mass)| {
-            let angular = *angular + (mass.center - whole.center).cross(*linear);
-            [
-                linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
-            ]
-        })
-        .collect();
-    for (k, column) in columns.iter().enumerate() {
-        let answer = factor.solve(column);
-        for (j, other) in columns.iter().enumerate().take(k + 1) {
-            let lost: f64 = answer.iter().zip(other).map(|(a, b)| a * b).sum();
-            inertia.set(k, j, inertia.get(k, j) - lost);
-        }
-    }
+}
+
+/// Forces and moments about the world's origin, with motion and of weight alone.
+struct Loads {
+    /// On each joint's body and all beyond it. Shape (freedom,).
+    links: Vec<[Wrench; 2]>,
+    /// On everything.
+    root: [Wrench; 2],
+    /// What each support carries, N.
+    carried: Vec<f64>,
 }

@@ -1,10 +1,10 @@
 //! Puts the bodies of a tree where its joints are said to stand, with the velocities they are said to have.
 
+use super::frame::Frame;
 use super::{Joint, Tree};
 use crate::engine::Engine;
 use dwell_scene::JointKind;
-use glam::{DQuat, DVec3, Quat, Vec3};
-use rapier3d::math::Pose as RapierPose;
+use glam::{DVec3, Vec3};
 
 /// Where one joint shall stand.
 #[derive(Clone, Copy, Debug)]
@@ -24,42 +24,6 @@ const ROUNDING: f32 = 5e-7;
 /// The same for velocities, of which the bodies hold the sum along the chain, rad/s or m/s.
 const SPEED_ROUNDING: f32 = 2e-6;
 
-/// A rigid motion in f64.
-#[derive(Clone, Copy)]
-struct Frame {
-    at: DVec3,
-    turn: DQuat,
-}
-
-impl Frame {
-    fn of(pose: &RapierPose) -> Self {
-        Self {
-            at: pose.translation.as_dvec3(),
-            turn: pose.rotation.as_dquat().normalize(),
-        }
-    }
-
-    fn then(&self, other: &Self) -> Self {
-        Self {
-            at: self.at + self.turn * other.at,
-            turn: self.turn * other.turn,
-        }
-    }
-
-    fn inverse(&self) -> Self {
-        let turn = self.turn.inverse();
-        Self {
-            at: -(turn * self.at),
-            turn,
-        }
-    }
-
-    fn pose(&self) -> RapierPose {
-        let rotation: Quat = self.turn.normalize().as_quat();
-        RapierPose::from_parts(self.at.as_vec3(), rotation)
-    }
-}
-
 /// Places a tree's bodies, parents first; what stands and moves as told is left alone, so that it may sleep on. `stands`:
 /// for each of the world's joints.
 pub(crate) fn place(engine: &mut Engine, joints: &[Joint], tree: &Tree, stands: &[Stand]) {
@@ -77,39 +41,35 @@ pub(crate) fn place(engine: &mut Engine, joints: &[Joint], tree: &Tree, stands: 
             continue;
         }
         moved[k] = true;
-        put(engine, joint, stand);
+        let stand = (stand.position.into(), stand.velocity.into());
+        put(engine, joint, stand, true);
     }
 }
 
-fn put(engine: &mut Engine, joint: &Joint, stand: &Stand) {
+/// Puts the body of a joint at a position (rad or m) with a velocity over where its parent is and how that moves.
+pub(super) fn put(
+    engine: &mut Engine,
+    joint: &Joint,
+    (position, velocity): (f64, f64),
+    wake: bool,
+) {
     let Some(parent) = engine.bodies.get(joint.parent_handle) else {
         return;
     };
     let world_from_joint = Frame::of(parent.position()).then(&Frame::of(&joint.parent_from_joint));
     let axis = joint.axis.as_dvec3().normalize_or(DVec3::X);
-    let position = f64::from(stand.position);
-    let motion = match joint.kind {
-        JointKind::Hinge => Frame {
-            at: DVec3::ZERO,
-            turn: DQuat::from_axis_angle(axis, position),
-        },
-        JointKind::Slide => Frame {
-            at: axis * position,
-            turn: DQuat::IDENTITY,
-        },
-    };
     let child_from_joint = Frame::of(&joint.child_from_joint);
     let place = world_from_joint
-        .then(&motion)
+        .then(&Frame::along(joint.kind, axis, position))
         .then(&child_from_joint.inverse());
-    let along = world_from_joint.turn * axis * f64::from(stand.velocity);
+    let along = world_from_joint.turn * axis * velocity;
     let parent_turns = parent.angvel().as_dvec3();
     let parent_center = parent.center_of_mass().as_dvec3();
     let parent_moves = parent.linvel().as_dvec3();
     let Some(child) = engine.bodies.get_mut(joint.child_handle) else {
         return;
     };
-    child.set_position(place.pose(), true);
+    child.set_position(place.pose(), wake);
     let center = child.center_of_mass().as_dvec3();
     let at = world_from_joint.at;
     let with_parent = |point: DVec3| parent_moves + parent_turns.cross(point - parent_center);
@@ -121,8 +81,8 @@ fn put(engine: &mut Engine, joint: &Joint, stand: &Stand) {
         JointKind::Slide => (with_parent(center) + along, parent_turns),
     };
     let (linear, angular): (Vec3, Vec3) = (linear.as_vec3(), angular.as_vec3());
-    child.set_linvel(linear, true);
-    child.set_angvel(angular, true);
+    child.set_linvel(linear, wake);
+    child.set_angvel(angular, wake);
 }
 
 /// Whether bodies say the same of a joint as the numbers it was told, up to their rounding.

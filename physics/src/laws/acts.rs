@@ -53,6 +53,15 @@ pub(crate) trait Acts: Debug + Send + Sync {
     /// Changes what a joint's motor gives for its command in one physics step.
     fn strengthen(&self, _joint: JointId, _pull: &mut Pull) {}
 
+    /// Whether it changes how joints resist: [`Acts::resist`].
+    fn resists(&self) -> bool {
+        false
+    }
+
+    /// Changes how a joint resists in one physics step. It is asked several times in a step, until what the joint resists
+    /// with and what loads it fit.
+    fn resist(&self, _joint: JointId, _load: &JointLoad, _resistance: &mut Resistance) {}
+
     /// Changes how the wheels of an agent's base roll in one physics step.
     fn roll(&self, _agent: AgentId, _rolling: &mut Rolling) {}
 
@@ -94,6 +103,30 @@ impl MotorStep {
             JointCommand::Effort(_) | JointCommand::Off => 0.0,
         }
     }
+}
+
+/// What loads a joint in a physics step; efforts are positive along the joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JointLoad {
+    /// At the middle of the step, rad/s or m/s.
+    pub(crate) velocity: f32,
+    /// What the motor or the hand gives, N·m or N.
+    pub(crate) motor_effort: f32,
+    /// The pull of gravity along the joint, N·m or N.
+    pub(crate) external_effort: f32,
+    /// Whether something drives it.
+    pub(crate) powered: bool,
+}
+
+/// How a joint resists in one physics step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Resistance {
+    /// The largest effort with which it holds or brakes whatever the speed, N·m or N.
+    pub(crate) friction: f32,
+    /// N·m·s/rad or N·s/m.
+    pub(crate) damping: f32,
+    /// Inertia of the joint's own, kg·m² or kg.
+    pub(crate) armature: f32,
 }
 
 /// The world as a law sees it between steps.

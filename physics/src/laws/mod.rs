@@ -12,7 +12,9 @@ mod bodies;
 mod contacts;
 mod target;
 
-pub(crate) use acts::{Acts, Compliance, ContactValues, MotorStep, Side, Stage, Touch};
+pub(crate) use acts::{
+    Acts, Compliance, ContactValues, JointLoad, MotorStep, Resistance, Side, Stage, Touch,
+};
 
 use crate::error::PhysicsError;
 use crate::model::PhysicsModel;
@@ -49,6 +51,8 @@ static LAWS: &[Law] = &[
     actuators::rate_limit::LAW,
     actuators::deadband::LAW,
     actuators::saturation::LAW,
+    actuators::joint_friction::LAW,
+    actuators::motor_constants::LAW,
     bases::unequal_wheels::LAW,
     bases::wheel_slip::LAW,
     bases::gyro_bias_scale::LAW,

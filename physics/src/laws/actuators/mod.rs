@@ -1,12 +1,15 @@
-//! Laws of motors. A target is a joint's name, `OBJECT/JOINT`, or the joint's number; without one they act on every motor.
+//! Laws of motors and joints. A target is a joint's name, `OBJECT/JOINT`, or the joint's number; without one they act on
+//! every motor, friction on every joint.
 //!
 //! Once a physics step each law changes the command that its motor follows, in the order of installation; then what the
-//! motor can give.
+//! motor can give; and, when efforts are computed, how the joint resists.
 
 pub(super) mod backlash;
 pub(super) mod deadband;
 pub(super) mod first_order_lag;
+pub(super) mod joint_friction;
 pub(super) mod latency;
+pub(super) mod motor_constants;
 pub(super) mod rate_limit;
 pub(super) mod saturation;
 
@@ -65,6 +68,20 @@ impl Motors {
     /// A memory for each.
     fn each<T>(&self, make: impl Fn() -> T) -> BTreeMap<JointId, T> {
         self.0.iter().map(|joint| (*joint, make())).collect()
+    }
+}
+
+/// Joints of any kind, in order.
+#[derive(Clone, Debug)]
+struct Hinges(Vec<JointId>);
+
+impl Hinges {
+    fn of(spec: &LawSpec, info: &LawInfo, model: &PhysicsModel) -> Result<Self, PhysicsError> {
+        joints(spec, info, model, "joint", |_| true).map(Self)
+    }
+
+    fn hold(&self, joint: JointId) -> bool {
+        self.0.binary_search(&joint).is_ok()
     }
 }
 

@@ -211,6 +211,12 @@ fn laws_of_motors_continue_bit_for_bit_from_a_snapshot() {
         spec("rate_limit", None, &[("max_rate", 1.5)]),
         spec("backlash", None, &[("half_width", 0.02)]),
         spec("deadband", None, &[("half_width", 0.01)]),
+        spec("joint_friction", None, &[("coulomb", 0.03), ("load", 0.1)]),
+        spec(
+            "motor_constants",
+            None,
+            &[("k_t", 0.1), ("torque_scale", 0.9)],
+        ),
     ];
     let (mut run, joint) = elbow(laws);
     let go = |run: &mut Run, step: usize| {

@@ -4,6 +4,7 @@ mod actuators;
 mod bases;
 mod bodies;
 mod contacts;
+mod friction;
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{PhysicsConfig, laws};

@@ -1,0 +1,216 @@
+//! The course of a tree through one physics step.
+//!
+//! Efforts are implicit and found together for all joints; inertia and what motion and weight ask for are taken at the
+//! middle of the step, which is found by iteration: the implicit midpoint rule, symmetric in time, so that what swings
+//! freely neither gains nor loses energy for long. What turns fast takes shorter steps.
+//!
+//! # Source
+//! E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), II.1.1 and XI.3: the midpoint rule, and the
+//! energy of symmetric methods.
+
+use super::chain::Chain;
+use super::convex::{Element, Problem};
+use super::element::Freedom;
+use super::motion::Motion;
+use super::tree::Tree;
+use super::{Drivers, Joint};
+use crate::laws::{JointLoad, Resistance};
+
+/// A way within a step, rad or m, below which a tree counts as standing.
+const AT_REST: f64 = 1e-5;
+/// The longest way of a joint in one part of a step, rad or m.
+const STRIDE: f64 = 0.05;
+/// The most parts of a step.
+const MOST_PARTS: f64 = 8.0;
+/// How often the middle of a part is looked for.
+const SWEEPS: usize = 3;
+/// How often friction is found anew from the load that it answers to.
+const FRICTION_SWEEPS: usize = 4;
+
+/// The free joints of a tree in a step.
+pub(super) struct Freedoms<'a> {
+    pub(super) tree: &'a Tree,
+    /// Their places in the tree.
+    pub(super) free: &'a [usize],
+    pub(super) joints: &'a [&'a Joint],
+    pub(super) drivers: &'a Drivers<'a>,
+}
+
+/// What becomes of a tree in a step that nothing else touches. Shape (freedom,) each.
+pub(super) struct Course {
+    /// Whether it moves so that rounding alone does not say where to.
+    pub(super) moves: bool,
+    pub(super) positions: Vec<f64>,
+    pub(super) velocities: Vec<f64>,
+    /// Mean accelerations.
+    pub(super) gained: Vec<f64>,
+    /// The tree at the middle of the step.
+    pub(super) middle: Motion,
+}
+
+fn plus(a: &[f64], b: &[f64], share: f64) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + share * b).collect()
+}
+
+/// What changes in a time, per second.
+fn rate(before: &[f64], after: &[f64], time_s: f64) -> Vec<f64> {
+    let pairs = before.iter().zip(after);
+    pairs
+        .map(|(before, after)| (after - before) / time_s)
+        .collect()
+}
+
+impl Freedoms<'_> {
+    /// Where the tree goes from here.
+    pub(super) fn course(&self, chain: &Chain, positions: &[f64], velocities: &[f64]) -> Course {
+        let dt_s = f64::from(self.drivers.dt_s);
+        let fastest = velocities
+            .iter()
+            .fold(0.0, |most: f64, v| most.max(v.abs()));
+        let moves = fastest * dt_s > AT_REST && chain.stands();
+        let parts = if moves {
+            (fastest * dt_s / STRIDE).ceil().clamp(1.0, MOST_PARTS)
+        } else {
+            1.0
+        };
+        let part_s = dt_s / parts;
+        let (mut q, mut v) = (positions.to_vec(), velocities.to_vec());
+        let mut left = parts;
+        while left > 0.0 {
+            let mut gained = self.part(&chain.at(&q, &v), &q, &v, part_s);
+            for _ in 0..if moves { SWEEPS } else { 0 } {
+                let between = plus(&v, &gained, 0.5 * part_s);
+                let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between);
+                gained = self.part(&middle, &q, &v, part_s);
+            }
+            q = plus(&q, &plus(&v, &gained, 0.5 * part_s), part_s);
+            v = plus(&v, &gained, part_s);
+            left -= 1.0;
+        }
+        let middle = if moves {
+            let half = |a: &[f64], b: &[f64]| {
+                a.iter()
+                    .zip(b)
+                    .map(|(a, b)| 0.5 * (a + b))
+                    .collect::<Vec<_>>()
+            };
+            chain.at(&half(positions, &q), &half(velocities, &v))
+        } else {
+            chain.at(positions, velocities)
+        };
+        Course {
+            moves,
+            gained: rate(velocities, &v, dt_s),
+            positions: q,
+            velocities: v,
+            middle,
+        }
+    }
+
+    /// The accelerations in a part of a step that begins with positions `from` and velocities `now`, with inertia and loads
+    /// as in `motion`.
+    fn part(&self, motion: &Motion, from: &[f64], now: &[f64], part_s: f64) -> Vec<f64> {
+        let (bias, weights) = motion.bias();
+        let bare = motion.inertia();
+        let freedom = |k: usize| Freedom {
+            index: k,
+            position: from[k],
+            velocity: now[k],
+            inertia: bare.get(k, k).max(1e-9),
+            weight: weights[k],
+            dt_s: part_s,
+        };
+        let freedoms: Vec<Freedom> = (0..from.len()).map(freedom).collect();
+        let pulls: Vec<Option<Element>> = freedoms
+            .iter()
+            .map(|freedom| {
+                let place = self.tree.joints[self.free[freedom.index]];
+                let pull = self.drivers.pulls[place].as_ref();
+                pull.map(|pull| freedom.pull(pull))
+            })
+            .collect();
+        let gives =
+            |k: usize, velocity: f64| pulls[k].as_ref().map_or(0.0, |pull| pull.at(velocity).0);
+        // What each joint resists with depends on what loads it and on its speed, and these on what it resists with.
+        let mut ends = now.to_vec();
+        let mut sweep = 0;
+        loop {
+            let resistances: Vec<Resistance> = (0..from.len())
+                .map(|k| {
+                    let load = JointLoad {
+                        velocity: (0.5 * (now[k] + ends[k])) as f32,
+                        motor_effort: gives(k, ends[k]) as f32,
+                        external_effort: -weights[k] as f32,
+                        powered: pulls[k].is_some(),
+                    };
+                    self.resistance(k, &load)
+                })
+                .collect();
+            let mut inertia = bare.clone();
+            for (k, resistance) in resistances.iter().enumerate() {
+                inertia.add(k, k, f64::from(resistance.armature).max(1e-9));
+            }
+            let own = |freedom: &Freedom| Freedom {
+                inertia: inertia.get(freedom.index, freedom.index),
+                ..*freedom
+            };
+            let freedoms: Vec<Freedom> = freedoms.iter().map(own).collect();
+            let falling = inertia.factor().solve(&bias);
+            let velocity = Problem {
+                inertia,
+                free: plus(now, &falling, -part_s),
+                elements: self.elements(&freedoms, &resistances),
+                dt_s: part_s,
+            }
+            .solve();
+            sweep += 1;
+            let settled = self.drivers.resist.is_none() || velocity == ends;
+            if settled || sweep == FRICTION_SWEEPS {
+                return rate(now, &velocity, part_s);
+            }
+            ends = velocity;
+        }
+    }
+
+    /// What a joint resists with under a load.
+    fn resistance(&self, k: usize, load: &JointLoad) -> Resistance {
+        let joint = self.joints[k];
+        let mut resistance = Resistance {
+            friction: joint.values.friction,
+            damping: joint.values.damping,
+            armature: joint.values.armature,
+        };
+        if let Some(resist) = self.drivers.resist {
+            resist(joint.id, load, &mut resistance);
+        }
+        resistance
+    }
+
+    /// All that acts along the joints.
+    fn elements(&self, freedoms: &[Freedom], resistances: &[Resistance]) -> Vec<Element> {
+        let mut elements = Vec::with_capacity(3 * freedoms.len());
+        for ((joint, freedom), place) in self.joints.iter().zip(freedoms).zip(self.free) {
+            let resistance = &resistances[freedom.index];
+            if resistance.damping > 0.0 {
+                elements.push(freedom.damping(resistance.damping.into()));
+            }
+            if resistance.friction > 0.0 {
+                elements.push(freedom.friction(resistance.friction.into()));
+            }
+            if let Some(pull) = &self.drivers.pulls[self.tree.joints[*place]] {
+                elements.push(freedom.pull(pull));
+            }
+            if let Some([low, high]) = joint.limits {
+                elements.push(freedom.stop(low.into(), 1.0));
+                elements.push(freedom.stop(high.into(), -1.0));
+            }
+            if let Some((leader, multiplier, offset)) = self.tree.follows[*place]
+                && let Some(leader) = self.free.iter().position(|other| *other == leader)
+            {
+                let leader = &freedoms[leader];
+                elements.push(freedom.follow(leader, multiplier.into(), offset.into()));
+            }
+        }
+        elements
+    }
+}

@@ -1,0 +1,111 @@
+//! A root that is free to answer what its joints do.
+
+use super::convex::{Factor, Inertia};
+use super::motion::{Axis, Lump, Moving, Wrench};
+use glam::DVec3;
+
+/// The six freedoms of a root: the velocity of the tree's centre of mass as if all joints stood, and its rotation.
+///
+/// # Source
+/// R. Featherstone, Rigid Body Dynamics Algorithms (2008), 9.4: floating bases, here with the root's freedoms eliminated
+/// (Schur's complement).
+pub(super) struct Floating {
+    whole: Lump,
+    factor: Factor,
+    /// Linear and angular momentum about the centre of mass of all for each unit of a joint's velocity. Shape (freedom, 6).
+    columns: Vec<[f64; 6]>,
+}
+
+fn six(linear: DVec3, angular: DVec3) -> [f64; 6] {
+    [
+        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
+    ]
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl Floating {
+    pub(super) fn of(
+        root: &Lump,
+        axes: &[Axis],
+        carried: &[Lump],
+        momenta: &[(DVec3, DVec3)],
+    ) -> Self {
+        let children = axes
+            .iter()
+            .zip(carried)
+            .filter(|(axis, _)| axis.parent.is_none());
+        let whole = children.fold(*root, |whole, (_, mass)| whole.with(mass));
+        let mut own = Inertia::zero(6);
+        for k in 0..3 {
+            own.set(k, k, whole.mass);
+            for j in 0..3 {
+                own.set(3 + k, 3 + j, whole.inertia.col(j)[k]);
+            }
+        }
+        // About the centre of mass of all, linear and angular momentum are apart.
+        let columns = momenta
+            .iter()
+            .zip(carried)
+            .map(|((linear, angular), mass)| {
+                six(
+                    *linear,
+                    *angular + (mass.center - whole.center).cross(*linear),
+                )
+            })
+            .collect();
+        Self {
+            whole,
+            factor: own.factor(),
+            columns,
+        }
+    }
+
+    /// Takes off what the joints' inertia loses because the root gives way.
+    pub(super) fn lighten(&self, inertia: &mut Inertia) {
+        for (k, column) in self.columns.iter().enumerate() {
+            let answer = self.factor.solve(column);
+            for (j, other) in self.columns.iter().enumerate().take(k + 1) {
+                inertia.set(k, j, inertia.get(k, j) - dot(&answer, other));
+            }
+        }
+    }
+
+    /// A load about the origin as what the six freedoms feel.
+    fn felt(&self, load: &Wrench) -> [f64; 6] {
+        six(
+            load.force,
+            load.moment - self.whole.center.cross(load.force),
+        )
+    }
+
+    /// Takes off what the joints' efforts lose because the root gives way under a load.
+    pub(super) fn unload(&self, load: &Wrench, efforts: &mut [f64]) {
+        let answer = self.factor.solve(&self.felt(load));
+        for (effort, column) in efforts.iter_mut().zip(&self.columns) {
+            *effort -= dot(&answer, column);
+        }
+    }
+
+    /// How the root accelerates under a load when the joints accelerate like this.
+    pub(super) fn answer(&self, load: &Wrench, accelerations: &[f64], root: &Moving) -> Moving {
+        let mut felt = self.felt(load);
+        for (column, acceleration) in self.columns.iter().zip(accelerations) {
+            for (felt, part) in felt.iter_mut().zip(column) {
+                *felt += part * acceleration;
+            }
+        }
+        let answer = self.factor.solve(&felt);
+        let linear = -DVec3::new(answer[0], answer[1], answer[2]);
+        let angular = -DVec3::new(answer[3], answer[4], answer[5]);
+        Moving {
+            acceleration: root.acceleration
+                + linear
+                + angular.cross(root.center - self.whole.center),
+            angular_acceleration: root.angular_acceleration + angular,
+            ..*root
+        }
+    }
+}

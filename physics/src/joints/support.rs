@@ -1,0 +1,163 @@
+//! What carries a tree whose root is free: the points where it stands on something.
+
+use super::convex::Inertia;
+use super::motion::Wrench;
+use crate::engine::Engine;
+use glam::DVec3;
+use rapier3d::dynamics::RigidBodyHandle;
+use rapier3d::geometry::Collider;
+
+/// How near to a surface a point stands on it, m.
+const STANDS_M: f32 = 1e-3;
+/// How far a surface that carries may lean: the least vertical part of its normal.
+const UPRIGHT: f32 = 0.5;
+/// What three equations are stiffened by, relative to their size, where fewer than three points carry.
+const RIDGE: f64 = 1e-9;
+
+/// A point where a tree stands on something.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Support {
+    /// Which joint's body stands there; `None`: the root.
+    pub(super) link: Option<usize>,
+    /// m.
+    pub(super) at: DVec3,
+}
+
+/// The points where a body stands on what is not of its tree.
+pub(super) fn of_body(
+    engine: &Engine,
+    handle: RigidBodyHandle,
+    link: Option<usize>,
+    tree: &[RigidBodyHandle],
+) -> Vec<Support> {
+    let mut supports = Vec::new();
+    let colliders = engine.bodies.get(handle).map_or(&[][..], |b| b.colliders());
+    for own in colliders {
+        for pair in engine.narrow_phase.contact_pairs_with(*own) {
+            let first = pair.collider1 == *own;
+            let other = if first {
+                pair.collider2
+            } else {
+                pair.collider1
+            };
+            let parent = engine.colliders.get(other).and_then(Collider::parent);
+            if parent.is_none_or(|parent| tree.contains(&parent)) {
+                continue;
+            }
+            for plane in pair.solver_manifolds() {
+                let up = if first {
+                    -plane.data.normal.y
+                } else {
+                    plane.data.normal.y
+                };
+                if up < UPRIGHT {
+                    continue;
+                }
+                for contact in &plane.data.solver_contacts {
+                    if contact.dist > STANDS_M {
+                        continue;
+                    }
+                    let (p, q) = plane
+                        .data
+                        .solver_contact_world_points(contact, &engine.bodies);
+                    let at = 0.5 * (p.as_dvec3() + q.as_dvec3());
+                    supports.push(Support { link, at });
+                }
+            }
+        }
+    }
+    supports.sort_by(|a, b| a.at.x.total_cmp(&b.at.x).then(a.at.z.total_cmp(&b.at.z)));
+    supports
+}
+
+/// The vertical forces with the least squares that carry a weight (about the origin), as far as pushes can. Shape
+/// (support,), N.
+pub(super) fn forces(supports: &[Support], weight: &Wrench, center: DVec3) -> Vec<f64> {
+    let mut carries = vec![true; supports.len()];
+    let mut forces = vec![0.0; supports.len()];
+    let moment = weight.moment - center.cross(weight.force);
+    let needed = [weight.force.y, moment.x, moment.z];
+    let row = |support: &Support| {
+        let arm = support.at - center;
+        [1.0, -arm.z, arm.x]
+    };
+    // Each round one point at least is let go that would have to pull.
+    for _ in 0..supports.len() {
+        let mut squares = Inertia::zero(3);
+        for (support, _) in supports
+            .iter()
+            .zip(&carries)
+            .filter(|(_, carries)| **carries)
+        {
+            let row = row(support);
+            for (j, a) in row.iter().enumerate() {
+                for (k, b) in row.iter().enumerate().take(j + 1) {
+                    squares.add(j, k, a * b);
+                }
+            }
+        }
+        let ridge = RIDGE * squares.get(0, 0).max(1e-9);
+        for k in 0..3 {
+            squares.add(k, k, ridge);
+        }
+        let shares = squares.factor().solve(&needed);
+        let mut pulls = false;
+        for (k, support) in supports.iter().enumerate() {
+            let force: f64 = row(support).iter().zip(&shares).map(|(a, b)| a * b).sum();
+            forces[k] = if carries[k] { force.max(0.0) } else { 0.0 };
+            if carries[k] && force < 0.0 {
+                carries[k] = false;
+                pulls = true;
+            }
+        }
+        if !pulls {
+            break;
+        }
+    }
+    forces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, z: f64) -> Support {
+        Support {
+            link: None,
+            at: DVec3::new(x, 0.0, z),
+        }
+    }
+
+    fn weight(newton: f64, x: f64, z: f64) -> Wrench {
+        let force = DVec3::Y * newton;
+        Wrench {
+            force,
+            moment: DVec3::new(x, 0.3, z).cross(force),
+        }
+    }
+
+    /// On four feet the forces balance the weight and its moment; nearer feet carry more; on the edge the far ones nothing.
+    #[test]
+    fn feet_carry_a_weight_in_balance() {
+        let feet = [at(-1.0, -1.0), at(1.0, -1.0), at(-1.0, 1.0), at(1.0, 1.0)];
+        for (x, z) in [(0.0, 0.0), (0.5, 0.2), (-0.9, 0.05), (0.999, 0.0)] {
+            let found = forces(&feet, &weight(100.0, x, z), DVec3::new(0.2, 0.4, 0.1));
+            let sum: f64 = found.iter().sum();
+            let along = |of: fn(&Support) -> f64| -> f64 {
+                feet.iter()
+                    .zip(&found)
+                    .map(|(foot, force)| of(foot) * force)
+                    .sum()
+            };
+            assert!((sum - 100.0).abs() < 1e-5, "{found:?}");
+            assert!((along(|s| s.at.x) - 100.0 * x).abs() < 1e-4, "{found:?}");
+            assert!((along(|s| s.at.z) - 100.0 * z).abs() < 1e-4, "{found:?}");
+            assert!(found.iter().all(|force| *force >= 0.0), "{found:?}");
+        }
+        let tips = forces(&feet, &weight(100.0, 3.0, 0.0), DVec3::ZERO);
+        assert!(
+            tips.iter().all(|force| *force >= 0.0) && tips[0] == 0.0,
+            "{tips:?}"
+        );
+    }
+}
