@@ -26,6 +26,16 @@ pub enum HousesError {
         /// The names that exist.
         known: Vec<String>,
     },
+    /// A field of a spec for generated houses that cannot be.
+    #[error("{field}: found {found}; possible: {possible}")]
+    Spec {
+        /// The field.
+        field: String,
+        /// What it holds.
+        found: String,
+        /// What is possible.
+        possible: String,
+    },
     /// A folder that holds no house, or more than one.
     #[error("{path}: expected one house in this folder, found {found:?}")]
     NotOneHouse {

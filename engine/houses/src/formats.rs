@@ -33,6 +33,12 @@ pub fn formats() -> &'static [Format] {
             open: |house, _| open_builtin(house.trim_start_matches("builtin:")),
         },
         Format {
+            name: "seed",
+            spelling: "seed:N or seed:N?field=value&field=value",
+            recognizes: |house| house.starts_with("seed:"),
+            open: |house, _| crate::generate::open(house),
+        },
+        Format {
             name: "native",
             spelling: "a path to a .dwell",
             recognizes: |house| crate::native::recognizes(Path::new(house)),

@@ -8,6 +8,7 @@ mod damage;
 mod error;
 mod formats;
 mod furniture;
+pub mod generate;
 pub mod gltf;
 pub mod habitat;
 mod limits;

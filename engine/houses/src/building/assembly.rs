@@ -3,8 +3,7 @@
 use crate::build::{Names, category};
 use crate::furniture::finish::Finish;
 use crate::furniture::model::Model;
-use crate::furniture::textures::Pattern;
-use dwell_scene::parallel::Threads;
+use crate::furniture::textures::{Pattern, painted};
 use dwell_scene::{
     Aabb, Articulation, Category, HouseData, Id, JointKind, Level, LevelId, Light, MaterialId,
     Mesh, MeshId, Object, ObjectId, Part, PartId, Pose, Receptacle, RoomId, SoundEmitter,
@@ -43,6 +42,8 @@ pub(crate) struct Placed {
 #[derive(Debug, Default)]
 pub(crate) struct Assembly {
     pub(crate) data: HouseData,
+    /// The storey that is being built.
+    pub(crate) level: LevelId,
     patterns: Vec<Pattern>,
     finishes: Vec<(Finish, MaterialId)>,
     material_names: Names,
@@ -50,16 +51,19 @@ pub(crate) struct Assembly {
 }
 
 impl Assembly {
-    /// An empty house of one storey.
-    pub(crate) fn new(name: &str) -> Self {
+    /// An empty house without a storey; `source` names what makes it and its version.
+    pub(crate) fn new(name: &str, source: &str) -> Self {
         let mut assembly = Self::default();
         name.clone_into(&mut assembly.data.name);
-        "builtin@1".clone_into(&mut assembly.data.source);
-        assembly.data.levels.push(Level {
-            name: "0".to_owned(),
-            bounds: Aabb::EMPTY,
-        });
+        source.clone_into(&mut assembly.data.source);
         assembly
+    }
+
+    /// Adds a storey above the others; what is added from now on stands on it.
+    pub(crate) fn storey(&mut self) {
+        let name = self.data.levels.len().to_string();
+        let bounds = Aabb::EMPTY;
+        self.level = self.data.levels.push(Level { name, bounds });
     }
 
     /// The material of a finish; equal finishes are one material.
@@ -85,7 +89,8 @@ impl Assembly {
     }
 
     /// Makes a model known.
-    pub(crate) fn kind(&mut self, model: Model) -> Kind {
+    pub(crate) fn kind(&mut self, model: impl Into<Arc<Model>>) -> Kind {
+        let model = model.into();
         let meshes = model
             .parts
             .iter()
@@ -102,7 +107,7 @@ impl Assembly {
             })
             .collect();
         Kind {
-            model: Arc::new(model),
+            model,
             meshes,
             materials,
         }
@@ -126,7 +131,7 @@ impl Assembly {
             name: name.to_owned(),
             kind,
             room,
-            level: LevelId(0),
+            level: self.level,
             mesh,
             materials,
         });
@@ -140,7 +145,11 @@ impl Assembly {
         room: RoomId,
         openness: f32,
     ) -> Placed {
-        let model = Arc::new(Model::clone(&kind.model).ajar(openness));
+        let model = if openness > 0.0 {
+            Arc::new(Model::clone(&kind.model).ajar(openness))
+        } else {
+            kind.model.clone()
+        };
         let data = &mut self.data;
         let (object, first_part) = (
             ObjectId::from_index(data.objects.len()),
@@ -174,7 +183,7 @@ impl Assembly {
                 coarse: model.category.to_owned(),
                 nyu40,
             },
-            level: LevelId(0),
+            level: self.level,
             room: Some(room),
             mobility: model.mobility,
             pickable: model.pickable,
@@ -243,20 +252,20 @@ impl Assembly {
 
     /// The finished tables: textures painted, bounds taken.
     pub(crate) fn finish(mut self) -> HouseData {
-        let patterns = self.patterns;
-        let painted = Threads::default().map(patterns.len(), |k| Arc::new(patterns[k].paint()));
-        for texture in painted {
+        for texture in painted(&self.patterns) {
             self.data.textures.push(texture);
         }
-        let mut bounds = Aabb::EMPTY;
+        let mut bounds = vec![Aabb::EMPTY; self.data.levels.len()];
         for piece in &self.data.structure {
-            bounds = bounds.union(&self.data.meshes[piece.mesh].bounds());
+            let all = &mut bounds[piece.level.index()];
+            *all = all.union(&self.data.meshes[piece.mesh].bounds());
         }
         for part in &self.data.parts {
             let place = part.world_from_part.to_affine();
-            bounds = bounds.union(&self.data.meshes[part.mesh].bounds().transformed(&place));
+            let all = &mut bounds[self.data.objects[part.object].level.index()];
+            *all = all.union(&self.data.meshes[part.mesh].bounds().transformed(&place));
         }
-        if let Some(level) = self.data.levels.get_mut(LevelId(0)) {
+        for (level, bounds) in self.data.levels.iter_mut().zip(bounds) {
             level.bounds = bounds;
         }
         self.data

@@ -3,13 +3,13 @@
 use super::assembly::Assembly;
 use crate::furniture::finish::Finish;
 use crate::furniture::shapes::extrude;
-use dwell_scene::{Aabb, LevelId, Room, RoomId, StructureKind};
+use dwell_scene::{Aabb, Room, RoomId, StructureKind};
 use glam::{Vec2, Vec3};
 
 /// Height of rooms, m.
 pub(crate) const CEILING_M: f32 = 2.6;
-/// Thickness of slabs, m.
-const SLAB_M: f32 = 0.2;
+/// Usual thickness of slabs, m.
+pub(crate) const SLAB_M: f32 = 0.2;
 
 /// A rectangle of the plan: x from, z from, x to, z to, m.
 pub(crate) type Rect = [f32; 4];
@@ -17,13 +17,18 @@ pub(crate) type Rect = [f32; 4];
 /// A room of the plan.
 #[derive(Clone, Debug)]
 pub(crate) struct RoomPlan {
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     /// What people call it, most fitting first.
     pub(crate) kinds: Vec<&'static str>,
     /// The free floor, in rectangles that do not overlap; halves of doorways too.
     pub(crate) floor: Vec<Rect>,
-    /// The corners of its slabs, (x, z) in m, clockwise seen from above; slabs reach to the middle of walls.
-    pub(crate) slab: Vec<[f32; 2]>,
+    /// Height of the floor, m.
+    pub(crate) floor_m: f32,
+    /// The corners of its floor and of its ceiling, (x, z) in m, clockwise seen from above; slabs reach to the middle of
+    /// walls.
+    pub(crate) slabs: [Vec<[f32; 2]>; 2],
+    /// Thickness of floor and ceiling, m.
+    pub(crate) slab_m: [f32; 2],
     pub(crate) floor_finish: Finish,
     pub(crate) ceiling_finish: Finish,
 }
@@ -40,21 +45,21 @@ impl RoomPlan {
         };
         let mut bounds = Aabb::EMPTY;
         for [x0, z0, x1, z1] in &self.floor {
-            bounds.add_point(Vec3::new(*x0, 0.0, *z0));
-            bounds.add_point(Vec3::new(*x1, CEILING_M, *z1));
+            bounds.add_point(Vec3::new(*x0, self.floor_m, *z0));
+            bounds.add_point(Vec3::new(*x1, self.floor_m + CEILING_M, *z1));
         }
         let id = assembly.data.rooms.push(Room {
-            name: self.name.to_owned(),
-            level: LevelId(0),
+            name: self.name.clone(),
+            level: assembly.level,
             kinds: self.kinds.iter().map(|kind| (*kind).to_owned()).collect(),
             footprint: self.floor.iter().copied().flat_map(triangles).collect(),
-            floor_y: 0.0,
-            ceiling_y: CEILING_M,
+            floor_y: self.floor_m,
+            ceiling_y: self.floor_m + CEILING_M,
             bounds,
         });
-        let slab = |top: f32, finish: &Finish| {
+        let slab = |k: usize, top: f32, finish: &Finish| {
             // The prism's (x, y) plane becomes the world's (x, z), its depth runs down.
-            let mut mesh = extrude(&self.slab, SLAB_M)
+            let mut mesh = extrude(&self.slabs[k], self.slab_m[k])
                 .about_x(std::f32::consts::FRAC_PI_2)
                 .at(0.0, top, 0.0)
                 .mesh;
@@ -65,23 +70,28 @@ impl RoomPlan {
             }
             mesh
         };
-        let floor = slab(0.0, &self.floor_finish);
-        let ceiling = slab(CEILING_M + SLAB_M, &self.ceiling_finish);
-        let room = Some(id);
-        assembly.structure(
-            &format!("floor_{}", self.name),
-            StructureKind::Floor,
-            room,
-            floor,
-            std::slice::from_ref(&self.floor_finish),
-        );
-        assembly.structure(
-            &format!("ceiling_{}", self.name),
-            StructureKind::Ceiling,
-            room,
-            ceiling,
-            std::slice::from_ref(&self.ceiling_finish),
-        );
+        let above = self.floor_m + CEILING_M + self.slab_m[1];
+        let pieces = [
+            (
+                StructureKind::Floor,
+                "floor",
+                self.floor_m,
+                &self.floor_finish,
+            ),
+            (
+                StructureKind::Ceiling,
+                "ceiling",
+                above,
+                &self.ceiling_finish,
+            ),
+        ];
+        for (k, (kind, word, top, finish)) in pieces.into_iter().enumerate() {
+            if !self.slabs[k].is_empty() {
+                let name = format!("{word}_{}", self.name);
+                let finishes = std::slice::from_ref(finish);
+                assembly.structure(&name, kind, Some(id), slab(k, top, finish), finishes);
+            }
+        }
         id
     }
 }

@@ -1,7 +1,7 @@
 //! Straight walls with openings.
 
 use super::assembly::Assembly;
-use super::plan::{CEILING_M, Rect};
+use super::plan::Rect;
 use crate::furniture::finish::Finish;
 #[cfg(test)]
 use dwell_scene::Aabb;
@@ -32,8 +32,11 @@ pub(crate) struct Opening {
 /// A straight piece of wall between two rooms, or between a room and the outside.
 #[derive(Clone, Debug)]
 pub(crate) struct Wall {
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     pub(crate) room: RoomId,
+    /// Height of the floor on which it stands, m.
+    pub(crate) floor_m: f32,
+    pub(crate) height_m: f32,
     pub(crate) rect: Rect,
     pub(crate) along: Along,
     pub(crate) front: Bands,
@@ -56,13 +59,13 @@ impl Wall {
             [z0, z1]
         };
         let mut along = ends.to_vec();
-        let mut up = vec![0.0, CEILING_M];
+        let mut up = vec![0.0, self.height_m];
         for opening in &self.openings {
             along.extend(opening.along);
             up.extend(opening.up);
         }
         let bands = self.front.iter().chain(&self.back).map(|(top, _)| *top);
-        up.extend(bands.filter(|top| *top < CEILING_M));
+        up.extend(bands.filter(|top| *top < self.height_m));
         for lines in [&mut along, &mut up] {
             lines.sort_by(f32::total_cmp);
             lines.dedup();
@@ -89,6 +92,7 @@ impl Wall {
     }
 
     fn point(&self, [along, up, across]: [f32; 3]) -> Vec3 {
+        let up = self.floor_m + up;
         match self.along {
             Along::X => Vec3::new(along, up, across),
             Along::Z => Vec3::new(across, up, along),

@@ -7,7 +7,7 @@
 //! - `style`: the taste of one house, which gives things that stand together colours that go together,
 //! - `catalogue`: the list of what a generated house may hold.
 
-// Until houses are generated, only tests ask for these two.
+// Until houses are furnished, only tests ask for it.
 #[cfg_attr(
     not(test),
     expect(dead_code, reason = "the generator will take furniture from here")
@@ -17,9 +17,5 @@ pub(crate) mod finish;
 pub(crate) mod model;
 pub(crate) mod models;
 pub(crate) mod shapes;
-#[cfg_attr(
-    not(test),
-    expect(dead_code, reason = "the generator will take styles from here")
-)]
 pub(crate) mod style;
 pub(crate) mod textures;

@@ -69,8 +69,8 @@ impl House {
             .map(|(id, _)| id)
     }
 
-    /// The room that holds `point`: over its floor, between floor and ceiling (0.3 m below to 0.3 m above), the smallest
-    /// one where rooms overlap.
+    /// The room that holds `point`: over its floor, between floor and ceiling (0.3 m below to 0.3 m above, if no other
+    /// storey's room holds it without that), the smallest one where rooms overlap.
     pub fn room_at(&self, point: Vec3) -> Option<RoomId> {
         let holds = |room: &Room| {
             point.y >= room.floor_y - 0.3
@@ -80,7 +80,12 @@ impl House {
         self.rooms
             .iter_ids()
             .filter(|(_, room)| holds(room))
-            .min_by(|(_, a), (_, b)| a.area_m2().total_cmp(&b.area_m2()))
+            .min_by(|(_, a), (_, b)| {
+                let strays =
+                    |room: &Room| point.y < room.floor_y - 0.01 || point.y > room.ceiling_y + 0.01;
+                let by_storey = strays(a).cmp(&strays(b));
+                by_storey.then(a.area_m2().total_cmp(&b.area_m2()))
+            })
             .map(|(id, _)| id)
     }
 

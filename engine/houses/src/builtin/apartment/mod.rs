@@ -30,7 +30,8 @@ use dwell_scene::HouseData;
 
 /// The furnished apartment.
 pub(super) fn build() -> HouseData {
-    let mut assembly = Assembly::new("apartment");
+    let mut assembly = Assembly::new("apartment", "builtin@1");
+    assembly.storey();
     rooms::build(&mut assembly);
     for wall in walls::walls() {
         wall.build(&mut assembly);

@@ -3,7 +3,7 @@
 use super::openings::DOOR_WIDTH_M;
 use super::style;
 use crate::building::assembly::Assembly;
-use crate::building::plan::{Rect, RoomPlan};
+use crate::building::plan::{Rect, RoomPlan, SLAB_M};
 use crate::furniture::finish::Finish;
 use dwell_scene::RoomId;
 
@@ -47,10 +47,12 @@ fn plan(
     floor_finish: Finish,
 ) -> RoomPlan {
     RoomPlan {
-        name,
+        name: name.to_owned(),
         kinds: kinds.to_vec(),
         floor: floor.to_vec(),
-        slab,
+        floor_m: 0.0,
+        slabs: [slab.clone(), slab],
+        slab_m: [SLAB_M; 2],
         floor_finish,
         ceiling_finish: style::ceiling(),
     }

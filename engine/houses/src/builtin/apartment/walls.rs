@@ -3,7 +3,7 @@
 use super::openings::holes;
 use super::rooms::{BATH, BEDROOM, CHILD, HALL, KITCHEN, LIVING, OUTER_M};
 use super::style as s;
-use crate::building::plan::Rect;
+use crate::building::plan::{CEILING_M, Rect};
 use crate::building::wall::{Along, Bands, Wall};
 use dwell_scene::RoomId;
 
@@ -28,8 +28,10 @@ fn wall(
 ) -> Wall {
     let openings = holes(rect, along);
     Wall {
-        name,
+        name: name.to_owned(),
         room,
+        floor_m: 0.0,
+        height_m: CEILING_M,
         rect,
         along,
         front,

@@ -24,6 +24,7 @@ pub(crate) mod plants;
 pub(crate) mod radio;
 pub(crate) mod seats;
 pub(crate) mod sofa;
+pub(crate) mod stairs;
 pub(crate) mod table;
 pub(crate) mod taps;
 pub(crate) mod television;

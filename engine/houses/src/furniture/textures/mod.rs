@@ -13,8 +13,11 @@ mod tiles;
 
 use canvas::Canvas;
 use dwell_scene::Texture;
+use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use noise::Noise;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A colour, sRGB-encoded, each 0 to 255.
 pub(crate) type Srgb = [u8; 3];
@@ -120,6 +123,27 @@ impl Pattern {
             rgba: canvas.into_rgba(),
         }
     }
+}
+
+/// The images of patterns, in their order. Each is painted once in a process and then shared by all houses.
+pub(crate) fn painted(patterns: &[Pattern]) -> Vec<Arc<Texture>> {
+    static PAINTED: Mutex<BTreeMap<Pattern, Arc<Texture>>> = Mutex::new(BTreeMap::new());
+    let lock = || PAINTED.lock().unwrap_or_else(PoisonError::into_inner);
+    let known: Vec<Option<Arc<Texture>>> = {
+        let painted = lock();
+        patterns.iter().map(|p| painted.get(p).cloned()).collect()
+    };
+    let new: Vec<&Pattern> = patterns
+        .iter()
+        .zip(&known)
+        .filter_map(|(pattern, known)| known.is_none().then_some(pattern))
+        .collect();
+    let images = Threads::default().map(new.len(), |k| Arc::new(new[k].paint()));
+    let mut painted = lock();
+    for (pattern, image) in new.into_iter().zip(images) {
+        painted.entry(*pattern).or_insert(image);
+    }
+    patterns.iter().map(|p| painted[p].clone()).collect()
 }
 
 #[cfg(test)]

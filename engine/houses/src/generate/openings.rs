@@ -1,0 +1,377 @@
+//! Doors where builders put them, and windows by what a room is for.
+//!
+//! A door stands beside a corner of the room into which it swings, its hinges at that corner, so that the open leaf lies
+//! against the wall. No two leaves meet, and no open leaf stands before another door.
+
+use super::plan::{Area, Cells, FloorPlan, LinkKind, Run, Steps, Storey, metres, steps};
+use super::rooms::{RoomKind, Windows};
+use dwell_scene::random::{Key, Stream};
+
+/// Thickness of walls between rooms, m.
+pub(crate) const INNER_M: f32 = 0.1;
+/// Thickness of walls to the outside, m.
+pub(crate) const OUTER_M: f32 = 0.2;
+/// Width of the opening of a door, in steps.
+const DOOR: Steps = 19;
+/// From the middle of the wall at a corner to the opening.
+const CORNER: Steps = 3;
+/// Upper edge of doors, m.
+pub(crate) const DOOR_M: f32 = 2.06;
+/// Upper edge of openings without a leaf, m.
+const ARCH_M: f32 = 2.2;
+
+/// A rectangle in metres: x from, z from, x to, z to.
+pub(crate) type Zone = [f32; 4];
+
+/// What fills a hole in a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Filling {
+    /// A leaf into the room.
+    Door {
+        /// Whether it hangs on the right as one stands in the room and looks at the wall from inside.
+        hinge_right: bool,
+        /// Whether it has a pane.
+        glazed: bool,
+        /// Whether one comes into the house here.
+        entrance: bool,
+    },
+    /// Nothing.
+    Open,
+    /// A window.
+    Window {
+        /// Of frosted glass.
+        frosted: bool,
+    },
+}
+
+/// A hole in a wall with what fills it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hole {
+    /// The room to which it belongs: that into which a leaf swings.
+    pub(crate) room: usize,
+    /// The room behind; `None`: outside.
+    pub(crate) behind: Option<usize>,
+    /// Whether the wall runs along x.
+    pub(crate) along_x: bool,
+    /// The middle of the wall, across it, m.
+    pub(crate) at_m: f32,
+    /// Along the wall, m.
+    pub(crate) from_m: f32,
+    pub(crate) to_m: f32,
+    /// Above the floor, m.
+    pub(crate) low_m: f32,
+    pub(crate) high_m: f32,
+    /// +1 when the room lies at larger coordinates across the wall, else -1.
+    pub(crate) inward: f32,
+    pub(crate) filling: Filling,
+}
+
+impl Hole {
+    /// The thickness of its wall, m.
+    pub(crate) fn wall_m(&self, storey: &Storey) -> f32 {
+        let outside = self
+            .behind
+            .is_none_or(|room| storey.rooms[room].kind.is_outside());
+        if outside { OUTER_M } else { INNER_M }
+    }
+
+    /// A rectangle before it in its room (`side` 1) or in the one behind (-1), from the wall's middle to `depth_m`.
+    pub(crate) fn front(&self, side: f32, depth_m: f32, margin_m: f32) -> Zone {
+        let far = self.at_m + self.inward * side * depth_m;
+        let (low, high) = (self.at_m.min(far), self.at_m.max(far));
+        let (from, to) = (self.from_m - margin_m, self.to_m + margin_m);
+        if self.along_x {
+            [from, low, to, high]
+        } else {
+            [low, from, high, to]
+        }
+    }
+
+    /// The floor that its leaf passes, if it has one.
+    pub(crate) fn sweep(&self) -> Option<Zone> {
+        matches!(self.filling, Filling::Door { .. })
+            .then(|| self.front(1.0, self.to_m - self.from_m + 0.1, 0.06))
+    }
+
+    /// Where its leaf stands when open.
+    fn open_leaf(&self) -> Option<Zone> {
+        let Filling::Door { hinge_right, .. } = self.filling else {
+            return None;
+        };
+        let zone = self.front(1.0, self.to_m - self.from_m + 0.1, 0.0);
+        let low_end = self.hinge_at_low_end(hinge_right);
+        let mut leaf = zone;
+        let axis = usize::from(!self.along_x);
+        if low_end {
+            leaf[axis] = self.from_m - 0.12;
+            leaf[axis + 2] = self.from_m + 0.12;
+        } else {
+            leaf[axis] = self.to_m - 0.12;
+            leaf[axis + 2] = self.to_m + 0.12;
+        }
+        Some(leaf)
+    }
+
+    /// Whether hinges on the right mean hinges at the smaller coordinate along the wall. The model's +Z looks into the
+    /// room and its right is +X: with the room at larger z, right is the larger x; at larger x, the smaller z.
+    fn hinge_at_low_end(&self, hinge_right: bool) -> bool {
+        let right_is_high = if self.along_x {
+            self.inward > 0.0
+        } else {
+            self.inward < 0.0
+        };
+        hinge_right != right_is_high
+    }
+
+    /// The yaw that turns the model's +Z into the room, degrees.
+    pub(crate) fn yaw_deg(&self) -> f32 {
+        match (self.along_x, self.inward > 0.0) {
+            (true, true) => 0.0,
+            (true, false) => 180.0,
+            (false, true) => 90.0,
+            (false, false) => -90.0,
+        }
+    }
+}
+
+/// Whether two zones share some floor.
+pub(crate) fn overlap(a: &Zone, b: &Zone) -> bool {
+    a[0] < b[2] - 1e-4 && b[0] < a[2] - 1e-4 && a[1] < b[3] - 1e-4 && b[1] < a[3] - 1e-4
+}
+
+/// The holes of every storey; the second is the number of doors that stand in each other's way all the same.
+pub(crate) fn openings(plan: &FloorPlan, key: Key) -> (Vec<Vec<Hole>>, usize) {
+    let mut tight = 0;
+    let all = plan.storeys.iter().enumerate().map(|(k, storey)| {
+        let key = key.child(k as u64);
+        let runs = Cells::new(&storey.rooms).runs();
+        let stairs = plan.stairs.map(|stairs| stairs.area);
+        let (mut holes, faults) = doors(storey, &runs, stairs, &mut key.child("doors").stream());
+        tight += faults;
+        windows(
+            storey,
+            &runs,
+            stairs,
+            &mut holes,
+            &mut key.child("windows").stream(),
+        );
+        holes
+    });
+    (all.collect(), tight)
+}
+
+/// Deals that are tried for doors that leave each other alone.
+const DEALS: usize = 24;
+
+/// The doors of a storey; the second is the number of those that stand in the way of others all the same.
+fn doors(
+    storey: &Storey,
+    runs: &[Run],
+    stairs: Option<Area>,
+    stream: &mut Stream,
+) -> (Vec<Hole>, usize) {
+    let mut best: Option<(Vec<Hole>, usize)> = None;
+    for _ in 0..DEALS {
+        let dealt = deal(storey, runs, stairs, stream);
+        if best.as_ref().is_none_or(|(_, least)| dealt.1 < *least) {
+            best = Some(dealt);
+        }
+        if best.as_ref().is_some_and(|(_, tight)| *tight == 0) {
+            break;
+        }
+    }
+    best.unwrap_or_default()
+}
+
+fn deal(
+    storey: &Storey,
+    runs: &[Run],
+    stairs: Option<Area>,
+    stream: &mut Stream,
+) -> (Vec<Hole>, usize) {
+    let mut holes: Vec<Hole> = Vec::new();
+    let mut tight = 0;
+    for link in &storey.links {
+        let mut found = candidates(storey, runs, link.into, link.from, link.kind, stream);
+        stream.shuffle(&mut found);
+        // A leaf swings out of a small room only where it cannot swing in.
+        let inside = |room: &usize| !storey.rooms[*room].kind.is_outside();
+        if let Some(from) = link.from.filter(inside) {
+            let mut out = candidates(storey, runs, from, Some(link.into), link.kind, stream);
+            stream.shuffle(&mut out);
+            found.extend(out);
+        }
+        let clear = |hole: &Hole| {
+            let on_stairs = stairs.is_some_and(|area| {
+                let zone = area.map(metres);
+                [1.0, -1.0]
+                    .iter()
+                    .any(|side| overlap(&hole.front(*side, 0.5, 0.0), &zone))
+            });
+            !on_stairs && holes.iter().all(|other| apart(hole, other))
+        };
+        let good = found.iter().position(clear);
+        tight += usize::from(good.is_none());
+        holes.extend(found.get(good.unwrap_or(0)).copied());
+    }
+    (holes, tight)
+}
+
+/// Whether two doors of a storey leave each other alone.
+fn apart(a: &Hole, b: &Hole) -> bool {
+    let meet = |p: Option<Zone>, q: Option<Zone>| match (p, q) {
+        (Some(p), Some(q)) => overlap(&p, &q),
+        _ => false,
+    };
+    let blocked = |leaf: &Hole, door: &Hole| {
+        leaf.open_leaf().is_some_and(|leaf| {
+            [1.0, -1.0]
+                .iter()
+                .any(|side| overlap(&leaf, &door.front(*side, 0.6, 0.0)))
+        })
+    };
+    let beside = |p: f32, q: f32| overlap(&a.front(p, 0.1, 0.1), &b.front(q, 0.1, 0.1));
+    let same = beside(1.0, 1.0) || beside(1.0, -1.0);
+    !same && !meet(a.sweep(), b.sweep()) && !blocked(a, b) && !blocked(b, a)
+}
+
+/// Where a door between two rooms can be: at both ends and in the middle of every stretch that is long enough.
+fn candidates(
+    storey: &Storey,
+    runs: &[Run],
+    room: usize,
+    behind: Option<usize>,
+    kind: LinkKind,
+    stream: &mut Stream,
+) -> Vec<Hole> {
+    use RoomKind::{Balcony, DiningRoom, LivingRoom, Lobby, Studio, Terrace};
+    let kinds = [Some(room), behind].map(|room| room.map(|room| storey.rooms[room].kind));
+    let between = runs.iter().filter(|run| run.parts(Some(room), behind));
+    let mut holes = Vec::new();
+    for run in between {
+        let length = run.to - run.from;
+        let wide = match kind {
+            LinkKind::Open => (length - 12).min(steps(stream.range(1.5, 2.2))),
+            LinkKind::Door => DOOR,
+        };
+        if length < wide + 5 {
+            continue;
+        }
+        let inward = if run.sides[1] == Some(room) {
+            1.0
+        } else {
+            -1.0
+        };
+        let gap = CORNER.min((length - wide) / 2);
+        let (start, end) = (run.from + gap, run.to - gap - wide);
+        let middle = run.from + (length - wide) / 2;
+        for (from, hinge_low) in [(start, true), (end, false), (middle, stream.below(2) == 0)] {
+            let mut hole = Hole {
+                room,
+                behind,
+                along_x: run.along_x,
+                at_m: metres(run.at),
+                from_m: metres(from),
+                to_m: metres(from + wide),
+                low_m: 0.0,
+                high_m: if kind == LinkKind::Open {
+                    ARCH_M
+                } else {
+                    DOOR_M
+                },
+                inward,
+                filling: Filling::Open,
+            };
+            if kind == LinkKind::Door {
+                let outside = matches!(kinds[1], Some(Balcony | Terrace));
+                let glazed = outside
+                    || matches!(kinds[0], Some(LivingRoom | DiningRoom | Studio | Lobby))
+                        && behind.is_some();
+                let right = hole.hinge_at_low_end(true) == hinge_low;
+                hole.filling = Filling::Door {
+                    hinge_right: right,
+                    glazed,
+                    entrance: behind.is_none(),
+                };
+            }
+            holes.push(hole);
+        }
+    }
+    holes
+}
+
+fn windows(
+    storey: &Storey,
+    runs: &[Run],
+    stairs: Option<Area>,
+    holes: &mut Vec<Hole>,
+    stream: &mut Stream,
+) {
+    for (room, plan) in storey.rooms.iter().enumerate() {
+        let traits = plan.kind.traits();
+        // Width, lower and upper edge in m, how many at most, and how much wall each takes.
+        let (wide_m, low_m, high_m, most, each_m) = match traits.windows {
+            Windows::Wide => (
+                stream.range(1.4, 2.0),
+                stream.range(0.5, 0.85),
+                2.25,
+                4,
+                3.2,
+            ),
+            Windows::Usual => (stream.range(1.1, 1.6), 0.9, 2.2, 2, 3.6),
+            Windows::High => (stream.range(0.9, 1.3), 1.2, 2.2, 1, 3.0),
+            Windows::Frosted => (stream.range(0.5, 0.7), 1.45, 2.1, 1, 3.0),
+            Windows::None => continue,
+        };
+        let mut outer: Vec<&Run> = runs
+            .iter()
+            .filter(|run| run.parts(Some(room), None) && run.to - run.from >= 18)
+            .collect();
+        outer.sort_by_key(|run| run.from - run.to);
+        let mut left = most;
+        for run in outer {
+            let length_m = metres(run.to - run.from);
+            let count = ((length_m / each_m) as usize).clamp(1, left);
+            let pitch = length_m / count as f32;
+            for k in 0..count {
+                let middle = metres(run.from) + pitch * (k as f32 + 0.5);
+                let half = 0.5 * wide_m.min(pitch - 0.5);
+                // To the step, so that walls keep to the grid.
+                let [from_m, to_m] = [middle - half, middle + half].map(|edge| metres(steps(edge)));
+                let hole = Hole {
+                    room,
+                    behind: None,
+                    along_x: run.along_x,
+                    at_m: metres(run.at),
+                    from_m,
+                    to_m,
+                    low_m,
+                    high_m,
+                    inward: if run.sides[1] == Some(room) {
+                        1.0
+                    } else {
+                        -1.0
+                    },
+                    filling: Filling::Window {
+                        frosted: traits.windows == Windows::Frosted,
+                    },
+                };
+                let free = |other: &Hole| {
+                    other.along_x != hole.along_x
+                        || (other.at_m - hole.at_m).abs() > 0.01
+                        || other.to_m + 0.2 < hole.from_m
+                        || hole.to_m + 0.2 < other.from_m
+                };
+                let on_stairs = stairs
+                    .is_some_and(|area| overlap(&hole.front(1.0, 0.5, 0.0), &area.map(metres)));
+                if to_m - from_m >= 0.4 && !on_stairs && holes.iter().all(free) {
+                    holes.push(hole);
+                    left -= 1;
+                }
+            }
+            if left == 0 || matches!(traits.windows, Windows::Frosted | Windows::High) {
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,347 @@
+//! The best of many drawn plans.
+
+use super::links::{join, score_links};
+use super::storey::{Arrangement, Frame, STAIRS_DEPTH, STAIRS_WIDTH, draw, end_width};
+use super::{Area, FloorPlan, PlanRoom, Stairs, Steps, Storey, metres, steps};
+use crate::generate::programme::{Programme, Wanted};
+use crate::generate::rooms::RoomKind;
+use crate::generate::spec::HomeKind;
+use dwell_scene::random::{Key, Stream};
+
+/// Plans that are drawn before the best is taken.
+const DRAWN: u64 = 96;
+/// Plans that are drawn at most while none fits.
+const AT_MOST: u64 = 1600;
+
+/// The best plan of a bounded number of drawn ones; `None` when none fits.
+pub(crate) fn lay_out(
+    programme: &Programme,
+    adjacency: &[[RoomKind; 2]],
+    key: Key,
+) -> Option<FloorPlan> {
+    let mut best: Option<(f32, FloorPlan)> = None;
+    for round in 0..AT_MOST {
+        if round >= DRAWN && best.is_some() {
+            break;
+        }
+        let mut stream = key.child(round).stream();
+        let Some((score, plan)) = attempt(programme, adjacency, &mut stream) else {
+            continue;
+        };
+        if best.as_ref().is_none_or(|(least, _)| score < *least) {
+            best = Some((score, plan));
+        }
+    }
+    let (_, mut plan) = best?;
+    add_outside(
+        &mut plan,
+        programme.outside,
+        &mut key.child("outside").stream(),
+    );
+    turn(&mut plan, &mut key.child("turn").stream());
+    Some(plan)
+}
+
+/// One plan with its faults: the less the better.
+fn attempt(
+    programme: &Programme,
+    adjacency: &[[RoomKind; 2]],
+    stream: &mut Stream,
+) -> Option<(f32, FloorPlan)> {
+    let stairs = programme.storeys.len() > 1;
+    let arrangements: Vec<Arrangement> = programme
+        .storeys
+        .iter()
+        .enumerate()
+        .map(|(k, rooms)| arrange(rooms, programme.home, stairs, k == 0, stream))
+        .collect();
+    let frame = frame(&arrangements, programme.home, stairs, stream)?;
+    let mut storeys = Vec::new();
+    let mut score = 0.0;
+    for (k, (arrangement, wanted)) in arrangements.iter().zip(&programme.storeys).enumerate() {
+        let rooms = draw(&frame, arrangement, k == 0, stream)?;
+        score += faults(&rooms, wanted)?;
+        let links = join(&rooms, k == 0, adjacency)?;
+        storeys.push(Storey { rooms, links });
+    }
+    let unmet = score_links(&storeys, adjacency);
+    score += 3.0 * unmet.len() as f32;
+    let stairs = stairs.then(|| {
+        let west = arrangements.iter().any(|a| a.west.is_some());
+        debug_assert!(!west, "stairs stand at the west end");
+        Stairs {
+            area: [0, 0, STAIRS_WIDTH, frame.strips[0]],
+            climb: [0, -1],
+            across: [1, 0],
+        }
+    });
+    let plan = FloorPlan {
+        storeys,
+        stairs,
+        unmet,
+    };
+    Some((score, plan))
+}
+
+/// Deals the rooms of a storey to the strips and ends.
+fn arrange(
+    rooms: &[Wanted],
+    home: HomeKind,
+    stairs: bool,
+    ground: bool,
+    stream: &mut Stream,
+) -> Arrangement {
+    use RoomKind::{DiningRoom, Kitchen, LivingRoom, Lobby, Studio};
+    let mut rest: Vec<Wanted> = rooms.to_vec();
+    let mut arrangement = Arrangement::default();
+    let public = |room: &Wanted| matches!(room.kind, LivingRoom | Lobby | Studio);
+    let mut main = rest.iter().position(public);
+    // Without a room for all, the largest one takes the end, or none on an upper storey.
+    if main.is_none() && (rest.len() < 3 || stream.below(2) == 0) {
+        main = (0..rest.len()).max_by(|a, b| rest[*a].area_m2.total_cmp(&rest[*b].area_m2));
+    }
+    if let Some(k) = main {
+        let end = rest.remove(k);
+        arrangement.east = Some(end);
+        if public(&end) {
+            for kind in [Kitchen, DiningRoom] {
+                let found = rest.iter().position(|room| room.kind == kind);
+                if let Some(k) = found.filter(|_| stream.below(5) < 2) {
+                    arrangement.carved.push(rest.remove(k));
+                }
+            }
+        }
+    }
+    let may_west = !stairs && ground && rest.len() >= 5;
+    if may_west && home != HomeKind::Studio && stream.below(3) == 0 {
+        let largest = (0..rest.len()).max_by(|a, b| rest[*a].area_m2.total_cmp(&rest[*b].area_m2));
+        arrangement.west = largest.map(|k| rest.remove(k));
+    }
+    stream.shuffle(&mut rest);
+    // A few rooms can all stand on one side; else both sides get about the same floor, small rooms to the north.
+    let both = rest.len() >= 2 && (rest.len() > 3 || stream.below(3) > 0);
+    if stream.below(2) == 0 {
+        rest.sort_by(|a, b| a.area_m2.total_cmp(&b.area_m2));
+    }
+    let total: f32 = rest.iter().map(|room| room.area_m2).sum();
+    let mut north = 0.0;
+    let share = stream.range(0.34, 0.56);
+    for room in rest {
+        let to_north = !both || north + 0.5 * room.area_m2 < share * total;
+        if to_north {
+            north += room.area_m2;
+        }
+        arrangement.strips[usize::from(!to_north)].push(room);
+    }
+    for strip in &mut arrangement.strips {
+        stream.shuffle(strip);
+    }
+    arrangement
+}
+
+/// Depths and width that suit the first storey; the others follow.
+fn frame(
+    arrangements: &[Arrangement],
+    home: HomeKind,
+    stairs: bool,
+    stream: &mut Stream,
+) -> Option<Frame> {
+    let used = |strip: usize| arrangements.iter().any(|a| !a.strips[strip].is_empty());
+    let draw = |used: bool, low: f32, high: f32, stream: &mut Stream| {
+        let depth = steps(stream.range(low, high));
+        if used { depth } else { 0 }
+    };
+    let north = draw(used(0) || stairs, 2.2, 4.6, stream);
+    let south = draw(used(1), 2.6, 4.9, stream);
+    let strips = [
+        if stairs {
+            north.max(STAIRS_DEPTH)
+        } else {
+            north
+        },
+        south,
+    ];
+    let any = strips.iter().any(|depth| *depth > 0);
+    let corridor = match (any, home) {
+        (false, _) => steps(stream.range(3.4, 6.5)),
+        (_, HomeKind::Office) => steps(stream.range(1.5, 2.0)),
+        _ => steps(stream.range(1.25, 1.6)),
+    };
+    let mut frame = Frame {
+        strips,
+        corridor,
+        width: 0,
+        stairs,
+    };
+    // The floor of all rooms stays what it shall be.
+    let width = |arrangement: &Arrangement| {
+        let mut floor = [0.0; 2];
+        let mut widest: Steps = 0;
+        for k in 0..2 {
+            let extra = if k == 0 && stairs { STAIRS_WIDTH } else { 0 };
+            let leg = if k == 1 && arrangement.west.is_some() {
+                31
+            } else {
+                0
+            };
+            let wish = arrangement.wish(k, strips[k]) + extra + leg;
+            floor[k] = metres(wish) * metres(strips[k]);
+            if strips[k] > 0 {
+                widest = widest.max(wish);
+            }
+        }
+        let depth = metres(strips[0] + strips[1]);
+        let mean = if depth > 0.0 {
+            (floor[0] + floor[1]) / depth
+        } else {
+            0.0
+        };
+        let ends = end_width(arrangement.east_m2(), frame.depth())
+            + end_width(arrangement.west.map_or(0.0, |r| r.area_m2), frame.depth());
+        steps(mean).max(widest * 9 / 10) + ends
+    };
+    let widths: Vec<Steps> = arrangements.iter().map(width).collect();
+    let widest = widths.iter().copied().max()?;
+    frame.width = widest;
+    (metres(frame.width) <= 30.0).then_some(frame)
+}
+
+/// How far rooms are from what is wanted; `None` when one cannot be used.
+fn faults(rooms: &[PlanRoom], wanted: &[Wanted]) -> Option<f32> {
+    let mut score = 0.0;
+    let mut open: Vec<&Wanted> = wanted.iter().collect();
+    for room in rooms {
+        let area_m2: f32 = room
+            .areas
+            .iter()
+            .map(|[x0, z0, x1, z1]| metres(x1 - x0) * metres(z1 - z0))
+            .sum();
+        if room.kind == RoomKind::Hallway {
+            score += 0.04 * area_m2;
+            continue;
+        }
+        let of_kind = |w: &&Wanted| w.kind == room.kind;
+        let nearest = (0..open.len())
+            .filter(|k| of_kind(&open[*k]))
+            .min_by(|a, b| {
+                let far = |k: usize| (open[k].area_m2 - area_m2).abs();
+                far(*a).total_cmp(&far(*b))
+            })?;
+        let target = open.remove(nearest).area_m2;
+        let traits = room.kind.traits();
+        if area_m2 < 0.9 * traits.area_m2[0] || area_m2 > 2.0 * traits.area_m2[2] {
+            return None;
+        }
+        let ratio = area_m2 / target;
+        score += 2.0 * (ratio.max(1.0 / ratio) - 1.0);
+        let [x0, z0, x1, z1] = room.areas[0];
+        let (w, d) = (metres(x1 - x0), metres(z1 - z0));
+        let (short, long) = (w.min(d), w.max(d));
+        let aspect = long / short;
+        if short < traits.least_width_m - 0.01 || aspect > 3.2 {
+            return None;
+        }
+        score += (aspect - 1.5).max(0.0);
+    }
+    Some(score)
+}
+
+/// A balcony or terrace at the longest outer wall of the room for all (or the largest), if there is one long enough.
+fn add_outside(plan: &mut FloorPlan, kind: Option<RoomKind>, stream: &mut Stream) {
+    let (Some(kind), Some(storey)) = (kind, plan.storeys.first_mut()) else {
+        return;
+    };
+    let depth = if kind == RoomKind::Balcony {
+        steps(stream.range(1.5, 2.0))
+    } else {
+        steps(stream.range(2.4, 3.4))
+    };
+    let cells = super::Cells::new(&storey.rooms);
+    let social = |room: &PlanRoom| {
+        use RoomKind::{Bedroom, LivingRoom, Lobby, Office, Studio};
+        match room.kind {
+            LivingRoom | Studio | Lobby => 3,
+            Bedroom => 2,
+            Office => 1,
+            _ => 0,
+        }
+    };
+    let runs = cells.runs();
+    let outer = runs.iter().filter_map(|run| {
+        let (room, outward) = match run.sides {
+            [Some(room), None] => (room, 1),
+            [None, Some(room)] => (room, -1),
+            _ => return None,
+        };
+        let rank = social(&storey.rooms[room]);
+        (rank > 0 && run.to - run.from >= 50).then_some((
+            rank,
+            run.to - run.from,
+            room,
+            outward,
+            run,
+        ))
+    });
+    let Some((_, length, room, outward, run)) =
+        outer.max_by_key(|(rank, length, room, ..)| (*rank, *length, usize::MAX - *room))
+    else {
+        return;
+    };
+    let long = length.min(steps(stream.range(2.6, 4.6)));
+    let from = run.from + (length - long) / 2;
+    let (near, far) = if outward > 0 {
+        (run.at, run.at + depth)
+    } else {
+        (run.at - depth, run.at)
+    };
+    let area: Area = if run.along_x {
+        [from, near, from + long, far]
+    } else {
+        [near, from, far, from + long]
+    };
+    storey.rooms.push(PlanRoom {
+        kind,
+        areas: vec![area],
+    });
+    storey.links.push(super::Link {
+        into: room,
+        from: Some(storey.rooms.len() - 1),
+        kind: super::LinkKind::Door,
+    });
+}
+
+/// Mirrors and turns the plan in one of eight ways and moves its corner to the origin.
+fn turn(plan: &mut FloorPlan, stream: &mut Stream) {
+    let [swap, flip_x, flip_z] = [0; 3].map(|_| stream.below(2) == 1);
+    let point = |x: Steps, z: Steps| {
+        let (x, z) = if swap { (z, x) } else { (x, z) };
+        (if flip_x { -x } else { x }, if flip_z { -z } else { z })
+    };
+    let area = |[x0, z0, x1, z1]: Area| -> Area {
+        let ((a, b), (c, d)) = (point(x0, z0), point(x1, z1));
+        [a.min(c), b.min(d), a.max(c), b.max(d)]
+    };
+    let mut corner = [Steps::MAX; 2];
+    for room in plan.storeys.iter_mut().flat_map(|storey| &mut storey.rooms) {
+        for place in &mut room.areas {
+            *place = area(*place);
+            corner = [corner[0].min(place[0]), corner[1].min(place[1])];
+        }
+    }
+    let shift = |place: &mut Area| {
+        for (k, value) in place.iter_mut().enumerate() {
+            *value -= corner[k % 2];
+        }
+    };
+    for room in plan.storeys.iter_mut().flat_map(|storey| &mut storey.rooms) {
+        room.areas.iter_mut().for_each(shift);
+    }
+    if let Some(stairs) = &mut plan.stairs {
+        stairs.area = area(stairs.area);
+        shift(&mut stairs.area);
+        for way in [&mut stairs.climb, &mut stairs.across] {
+            let (x, z) = point(way[0], way[1]);
+            *way = [x, z];
+        }
+    }
+}

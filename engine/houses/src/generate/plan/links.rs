@@ -1,0 +1,103 @@
+//! Which rooms are joined: all with the hallway or the living room, never through a bedroom or a bathroom.
+
+use super::{Cells, Link, LinkKind, PlanRoom, Run, Steps, Storey};
+use crate::generate::rooms::RoomKind;
+
+/// The least stretch of wall for a door with its frame and the wall beside it.
+const DOOR_RUN: Steps = 24;
+/// The least stretch for a wide opening.
+const OPEN_RUN: Steps = 40;
+
+/// The longest stretch between two rooms.
+fn shared(runs: &[Run], a: usize, b: Option<usize>) -> Steps {
+    let between = runs.iter().filter(|run| run.parts(Some(a), b));
+    between.map(|run| run.to - run.from).max().unwrap_or(0)
+}
+
+/// Joins the rooms of a storey; `None` when one cannot be reached.
+pub(super) fn join(
+    rooms: &[PlanRoom],
+    ground: bool,
+    adjacency: &[[RoomKind; 2]],
+) -> Option<Vec<Link>> {
+    use RoomKind::{DiningRoom, Hallway, Kitchen, LivingRoom, Lobby, Studio};
+    let runs = Cells::new(rooms).runs();
+    let of = |wanted: fn(RoomKind) -> bool| rooms.iter().position(|room| wanted(room.kind));
+    let hallway = of(|kind| kind == Hallway);
+    let public = of(|kind| matches!(kind, LivingRoom | Lobby | Studio));
+    // Where one comes in, and from where the others are reached.
+    let hub = hallway.or(public).or((!rooms.is_empty()).then_some(0))?;
+    let mut links = Vec::new();
+    if ground {
+        (shared(&runs, hub, None) >= DOOR_RUN).then_some(())?;
+        links.push(Link {
+            into: hub,
+            from: None,
+            kind: LinkKind::Door,
+        });
+    }
+    for (k, room) in rooms.iter().enumerate().filter(|(k, _)| *k != hub) {
+        let behind = matches!(room.kind, Kitchen | DiningRoom);
+        let social = public.filter(|p| *p != k && behind);
+        // Kitchens and dining rooms open wide to the living room where they touch it.
+        if let Some(public) = social.filter(|p| shared(&runs, k, Some(*p)) >= OPEN_RUN) {
+            links.push(Link {
+                into: k,
+                from: Some(public),
+                kind: LinkKind::Open,
+            });
+        } else if shared(&runs, k, Some(hub)) >= DOOR_RUN {
+            links.push(Link {
+                into: k,
+                from: Some(hub),
+                kind: LinkKind::Door,
+            });
+        } else {
+            return None;
+        }
+    }
+    for [a, b] in adjacency {
+        let pairs = (0..rooms.len()).flat_map(|p| (0..rooms.len()).map(move |q| (p, q)));
+        let mut fitting = pairs.filter(|(p, q)| {
+            p != q
+                && rooms[*p].kind == *a
+                && rooms[*q].kind == *b
+                && shared(&runs, *p, Some(*q)) >= DOOR_RUN
+        });
+        let joined = |links: &[Link], p: usize, q: usize| {
+            links.iter().any(|link| {
+                (link.into, link.from) == (p, Some(q)) || (link.into, link.from) == (q, Some(p))
+            })
+        };
+        if let Some((p, q)) = fitting.next()
+            && !joined(&links, p, q)
+        {
+            links.push(Link {
+                into: p,
+                from: Some(q),
+                kind: LinkKind::Door,
+            });
+        }
+    }
+    Some(links)
+}
+
+/// Pairs of kinds that should be joined and are not.
+pub(super) fn score_links(storeys: &[Storey], adjacency: &[[RoomKind; 2]]) -> Vec<[RoomKind; 2]> {
+    let joined = |[a, b]: &[RoomKind; 2]| {
+        storeys.iter().any(|storey| {
+            storey.links.iter().any(|link| {
+                let kinds = [
+                    Some(storey.rooms[link.into].kind),
+                    link.from.map(|from| storey.rooms[from].kind),
+                ];
+                kinds == [Some(*a), Some(*b)] || kinds == [Some(*b), Some(*a)]
+            })
+        })
+    };
+    adjacency
+        .iter()
+        .filter(|pair| !joined(pair))
+        .copied()
+        .collect()
+}

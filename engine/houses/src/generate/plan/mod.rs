@@ -1,0 +1,88 @@
+//! Floor plans: rectilinear rooms on a grid of 5 cm, drawn along a corridor as builders do.
+//!
+//! A storey is a strip of rooms north of a corridor, a strip south of it, and rooms over the full depth at its ends. The
+//! corridor reaches every room, so that none is reached through a bedroom or a bathroom; a kitchen or dining room may be
+//! carved from the living room instead, and the corridor's end may go to the room behind it.
+
+mod cells;
+mod layout;
+mod links;
+mod storey;
+
+pub(crate) use cells::{Cells, Run};
+pub(crate) use layout::lay_out;
+
+use super::rooms::RoomKind;
+
+/// A length in steps of 5 cm.
+pub(crate) type Steps = i32;
+
+/// Metres of a step.
+pub(crate) const STEP_M: f32 = 0.05;
+
+/// Steps of a length in metres, rounded.
+pub(crate) fn steps(metres: f32) -> Steps {
+    (metres / STEP_M).round() as Steps
+}
+
+/// Metres of a number of steps.
+pub(crate) fn metres(steps: Steps) -> f32 {
+    steps as f32 * STEP_M
+}
+
+/// A rectangle between the middles of walls: x from, z from, x to, z to.
+pub(crate) type Area = [Steps; 4];
+
+/// A room of the plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PlanRoom {
+    pub(crate) kind: RoomKind,
+    /// Rectangles that touch each other and do not overlap.
+    pub(crate) areas: Vec<Area>,
+}
+
+/// What joins two rooms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LinkKind {
+    /// A door.
+    Door,
+    /// A wide opening without a leaf.
+    Open,
+}
+
+/// Two rooms that are joined, or a room and the outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Link {
+    /// The room into which the leaf swings.
+    pub(crate) into: usize,
+    /// The other one; `None`: the outside.
+    pub(crate) from: Option<usize>,
+    pub(crate) kind: LinkKind,
+}
+
+/// A storey of the plan.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Storey {
+    pub(crate) rooms: Vec<PlanRoom>,
+    pub(crate) links: Vec<Link>,
+}
+
+/// The stairs from every storey to the next: two flights beside each other with a landing at the far end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Stairs {
+    /// Its place on every storey, part of the hallway.
+    pub(crate) area: Area,
+    /// The direction in which the first flight climbs, (x, z).
+    pub(crate) climb: [Steps; 2],
+    /// The direction from the first flight to the second.
+    pub(crate) across: [Steps; 2],
+}
+
+/// The plan of a house.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FloorPlan {
+    pub(crate) storeys: Vec<Storey>,
+    pub(crate) stairs: Option<Stairs>,
+    /// Pairs of kinds that should have been joined and are not.
+    pub(crate) unmet: Vec<[RoomKind; 2]>,
+}

@@ -1,0 +1,255 @@
+//! One storey: rooms in strips along a corridor.
+
+use super::{Area, PlanRoom, Steps, metres, steps};
+use crate::generate::programme::Wanted;
+use crate::generate::rooms::RoomKind;
+use dwell_scene::random::Stream;
+
+/// Width of the stairs' place: two flights and a gap between them.
+pub(super) const STAIRS_WIDTH: Steps = 44;
+/// The least depth of the strip that holds the stairs.
+pub(super) const STAIRS_DEPTH: Steps = 66;
+/// A doorway with what it needs on both sides.
+const DOORWAY: Steps = 25;
+
+/// What all storeys of a house share: the strips' depths and the corridor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Frame {
+    /// Depth of the strips north and south of the corridor; 0: none.
+    pub(super) strips: [Steps; 2],
+    pub(super) corridor: Steps,
+    /// From west to east.
+    pub(super) width: Steps,
+    /// Whether stairs stand at the west end of the northern strip.
+    pub(super) stairs: bool,
+}
+
+impl Frame {
+    pub(super) fn depth(&self) -> Steps {
+        self.strips[0] + self.corridor + self.strips[1]
+    }
+
+    /// Where the corridor begins and ends from north to south.
+    fn aisle(&self) -> [Steps; 2] {
+        [self.strips[0], self.strips[0] + self.corridor]
+    }
+}
+
+/// Which room stands where on a storey.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Arrangement {
+    /// Rooms of the northern and the southern strip from west to east.
+    pub(super) strips: [Vec<Wanted>; 2],
+    /// A room over the full depth at the east end, and rooms carved from it.
+    pub(super) east: Option<Wanted>,
+    pub(super) carved: Vec<Wanted>,
+    /// A room over the full depth at the west end; the way in then crosses the southern strip.
+    pub(super) west: Option<Wanted>,
+}
+
+impl Arrangement {
+    /// Floor of the rooms at the east end, m².
+    pub(super) fn east_m2(&self) -> f32 {
+        let rooms = self.east.iter().chain(&self.carved);
+        rooms.map(|room| room.area_m2).sum()
+    }
+
+    /// How wide a strip wants to be.
+    pub(super) fn wish(&self, strip: usize, depth: Steps) -> Steps {
+        let rooms = self.strips[strip].iter();
+        rooms.map(|room| width_of(room, depth)).sum()
+    }
+}
+
+/// The width of a room in a strip.
+pub(super) fn width_of(room: &Wanted, depth: Steps) -> Steps {
+    let least = steps(room.kind.traits().least_width_m);
+    let depth_m = metres(depth).max(0.5);
+    steps(room.area_m2 / depth_m).max(least)
+}
+
+/// Widths of rooms that fill `length` exactly, in proportion to what they want; `None` when they do not fit.
+fn fill(rooms: &[Wanted], depth: Steps, length: Steps) -> Option<Vec<Steps>> {
+    let wishes: Vec<Steps> = rooms.iter().map(|room| width_of(room, depth)).collect();
+    let total: Steps = wishes.iter().sum();
+    if total == 0 {
+        return (length == 0).then(Vec::new);
+    }
+    let mut widths: Vec<Steps> = wishes
+        .iter()
+        .map(|wish| (wish * length / total).max(1))
+        .collect();
+    let rest = length - widths.iter().sum::<Steps>();
+    *widths.last_mut()? += rest;
+    let fits = rooms
+        .iter()
+        .zip(&widths)
+        .all(|(room, width)| *width >= steps(room.kind.traits().least_width_m));
+    fits.then_some(widths)
+}
+
+/// The rooms of a storey; the hallway is the last one if there is any. `None` when they do not fit the frame.
+pub(super) fn draw(
+    frame: &Frame,
+    arrangement: &Arrangement,
+    way_in: bool,
+    stream: &mut Stream,
+) -> Option<Vec<PlanRoom>> {
+    let depth = frame.depth();
+    let east_width = end_width(arrangement.east_m2(), depth);
+    let west_width = end_width(arrangement.west.map_or(0.0, |room| room.area_m2), depth);
+    let (from, to) = (west_width, frame.width - east_width);
+    let [north, south] = frame.aisle();
+    let mut rooms = Vec::new();
+    let mut hallway = Vec::new();
+    let has_strips = arrangement.strips.iter().any(|strip| !strip.is_empty());
+    if to - from
+        < if has_strips || frame.stairs {
+            DOORWAY
+        } else {
+            0
+        }
+    {
+        return None;
+    }
+    let mut lasts = [0; 2];
+    let mut left = Vec::new();
+    for (k, strip) in arrangement.strips.iter().enumerate() {
+        let (z0, z1) = if k == 0 { (0, north) } else { (south, depth) };
+        let mut x = from;
+        if k == 0 && frame.stairs {
+            hallway.push([x, z0, x + STAIRS_WIDTH, z1]);
+            x += STAIRS_WIDTH;
+        }
+        if k == 1 && way_in && arrangement.west.is_some() {
+            let leg = steps(stream.range(1.35, 1.7));
+            hallway.push([x, z0, x + leg, z1]);
+            x += leg;
+        }
+        if z1 == z0 {
+            continue;
+        }
+        if strip.is_empty() && to > x {
+            // Nobody wants it: the room at the end takes it.
+            arrangement.east?;
+            left.push([x, z0, to, z1]);
+            continue;
+        }
+        for (room, width) in strip.iter().zip(fill(strip, z1 - z0, to - x)?) {
+            rooms.push(PlanRoom {
+                kind: room.kind,
+                areas: vec![[x, z0, x + width, z1]],
+            });
+            x += width;
+            lasts[k] = width;
+        }
+    }
+    let mut end = to;
+    if has_strips || frame.stairs {
+        // The corridor may stop at the last doors and leave the rest to the room behind.
+        let spare = lasts
+            .iter()
+            .filter(|width| **width > 0)
+            .min()
+            .map_or(0, |w| w - DOORWAY);
+        let tongue = spare >= 16 && to - from - spare >= 2 * DOORWAY && left.is_empty();
+        if tongue && arrangement.east.is_some() && stream.below(2) == 0 {
+            end = to - spare;
+        }
+        hallway.insert(0, [from, north, end, south]);
+    }
+    if let Some(room) = arrangement.west {
+        rooms.push(PlanRoom {
+            kind: room.kind,
+            areas: vec![[0, 0, west_width, depth]],
+        });
+    }
+    if let Some(room) = arrangement.east {
+        let block = [to, 0, frame.width, depth];
+        let mut areas = vec![block];
+        areas.append(&mut left);
+        if end < to {
+            areas.push([end, north, to, south]);
+        }
+        let mut living = PlanRoom {
+            kind: room.kind,
+            areas,
+        };
+        for (k, carved) in arrangement.carved.iter().enumerate() {
+            rooms.push(carve(&mut living, block, carved, k == 0, [north, south])?);
+        }
+        rooms.push(living);
+    }
+    if !hallway.is_empty() {
+        rooms.push(PlanRoom {
+            kind: RoomKind::Hallway,
+            areas: hallway,
+        });
+    }
+    Some(rooms)
+}
+
+/// The width of a room over the full depth.
+pub(super) fn end_width(area_m2: f32, depth: Steps) -> Steps {
+    if area_m2 > 0.0 {
+        steps(area_m2 / metres(depth).max(0.5)).max(steps(2.8))
+    } else {
+        0
+    }
+}
+
+/// Takes a corner of the room at the east end for another one: at the north or the south. What is left must keep its width
+/// and stay at the corridor's end.
+fn carve(
+    living: &mut PlanRoom,
+    block: Area,
+    carved: &Wanted,
+    at_north: bool,
+    aisle: [Steps; 2],
+) -> Option<PlanRoom> {
+    let [x0, z0, x1, z1] = block;
+    let least = steps(carved.kind.traits().least_width_m);
+    let width = x1 - x0;
+    // All of the block's width, unless that makes a corridor of it.
+    let mut wide = width;
+    let mut deep = steps(carved.area_m2 / metres(wide));
+    if deep < least {
+        deep = least;
+        wide = steps(carved.area_m2 / metres(deep));
+        // A niche beside it would be of no use.
+        if width - wide < 30 {
+            wide = width;
+        }
+    }
+    let limit = if at_north { aisle[0] } else { z1 - aisle[1] };
+    if deep > limit || wide < least || wide > width {
+        return None;
+    }
+    let (corner, beside) = if at_north {
+        (
+            [x1 - wide, z0, x1, z0 + deep],
+            [x0, z0, x1 - wide, z0 + deep],
+        )
+    } else {
+        (
+            [x1 - wide, z1 - deep, x1, z1],
+            [x0, z1 - deep, x1 - wide, z1],
+        )
+    };
+    let main = living.areas.first_mut()?;
+    if at_north {
+        main[1] = z0 + deep;
+    } else {
+        main[3] = z1 - deep;
+    }
+    if main[3] - main[1] < steps(2.6) {
+        return None;
+    }
+    if beside[2] > beside[0] {
+        living.areas.push(beside);
+    }
+    Some(PlanRoom {
+        kind: carved.kind,
+        areas: vec![corner],
+    })
+}

@@ -1,0 +1,522 @@
+//! The building: rooms with their slabs, walls with holes, doors, windows, stairs and railings.
+
+use super::looks::{RoomLook, facade, look, reveal};
+use super::openings::{Filling, Hole, INNER_M, OUTER_M, Zone, overlap};
+use super::outline::outline;
+use super::plan::{Cells, FloorPlan, PlanRoom, Run, Storey, metres};
+use super::rooms::RoomKind;
+use super::spec::DoorStates;
+use crate::build::Names;
+use crate::building::assembly::Assembly;
+use crate::building::plan::{CEILING_M, RoomPlan};
+use crate::building::site::yaw;
+use crate::building::wall::{Along, Bands, Opening, Wall};
+use crate::furniture::finish::Finish;
+use crate::furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
+use crate::furniture::models::stairs::{Stairs, railing};
+use crate::furniture::style::Style;
+use dwell_scene::random::Key;
+use dwell_scene::{Pose, RoomId};
+use glam::Vec3;
+
+/// Thickness of the ceiling below another storey, m.
+const CEILING_SLAB_M: f32 = 0.1;
+/// Thickness of floors, and of the ceiling under the roof, m.
+const FLOOR_SLAB_M: f32 = 0.2;
+/// From one storey's floor to the next one's, m.
+pub(crate) const STOREY_M: f32 = CEILING_M + CEILING_SLAB_M + FLOOR_SLAB_M;
+/// Half of the thickness of a railing with its distance from the edge, m.
+const RAILING_INSET_M: f32 = 0.05;
+
+/// The building's parts that later stages ask for.
+pub(crate) struct Shell {
+    /// The ids of the rooms, by storey.
+    pub(crate) rooms: Vec<Vec<RoomId>>,
+}
+
+/// What a shell is built from.
+pub(crate) struct Builder<'a> {
+    pub(crate) plan: &'a FloorPlan,
+    pub(crate) holes: &'a [Vec<Hole>],
+    pub(crate) style: &'a Style,
+    pub(crate) doors: DoorStates,
+    pub(crate) key: Key,
+}
+
+/// Half of the thickness of what stands between a room and its neighbour, m; 0 where nothing does.
+fn half_wall(storey: &Storey, room: usize, other: Option<usize>) -> f32 {
+    let outside = |room: usize| storey.rooms[room].kind.is_outside();
+    match other {
+        Some(other) if other == room => 0.0,
+        None if outside(room) => 0.0,
+        Some(other) if !outside(room) && !outside(other) => 0.5 * INNER_M,
+        _ => 0.5 * OUTER_M,
+    }
+}
+
+/// The free floor of a room between its walls, in rectangles that do not overlap, m.
+pub(crate) fn free_floor(storey: &Storey, cells: &Cells, room: usize) -> Vec<Zone> {
+    let rectangles = cells.of(room).into_iter().map(|(area, neighbours)| {
+        let [west, north, east, south] = neighbours.map(|other| half_wall(storey, room, other));
+        let [x0, z0, x1, z1] = area.map(metres);
+        [x0 + west, z0 + north, x1 - east, z1 - south]
+    });
+    rectangles.collect()
+}
+
+/// The rectangles that a room's slab covers: to the middle of inner and to the outer face of outer walls, m.
+fn slab(storey: &Storey, cells: &Cells, room: usize, hole: Option<Zone>) -> Vec<[f32; 2]> {
+    let inside = !storey.rooms[room].kind.is_outside();
+    let grown = cells.of(room).into_iter().filter_map(|(area, neighbours)| {
+        let zone = area.map(metres);
+        if hole.is_some_and(|hole| overlap(&hole, &zone)) {
+            return None;
+        }
+        let [west, north, east, south] = neighbours.map(|other| {
+            let to_outside = other.is_none_or(|other| storey.rooms[other].kind.is_outside());
+            match (inside, to_outside) {
+                (true, true) => 0.5 * OUTER_M,
+                (false, false) => -0.5 * OUTER_M,
+                _ => 0.0,
+            }
+        });
+        let [x0, z0, x1, z1] = zone;
+        Some([x0 - west, z0 - north, x1 + east, z1 + south])
+    });
+    outline(&grown.collect::<Vec<_>>())
+}
+
+impl Builder<'_> {
+    /// Adds the building to an empty house.
+    pub(crate) fn build(&self, assembly: &mut Assembly) -> Shell {
+        let mut names = Names::default();
+        let outside = facade(self.key.child("facade"));
+        let mut shell = Shell { rooms: Vec::new() };
+        for (level, storey) in self.plan.storeys.iter().enumerate() {
+            assembly.storey();
+            let cells = Cells::new(&storey.rooms);
+            let looks: Vec<RoomLook> = (0..storey.rooms.len())
+                .map(|room| {
+                    let key = self
+                        .key
+                        .child("look")
+                        .child(level as u64)
+                        .child(room as u64);
+                    look(storey.rooms[room].kind, self.style, key)
+                })
+                .collect();
+            let ids = self.rooms(level, &cells, &looks, &mut names, assembly);
+            self.walls(level, &cells, &looks, &outside, &ids, assembly);
+            self.fillings(level, &ids, assembly);
+            self.stairs(level, &ids, assembly);
+            self.railings(level, &cells, &ids, assembly);
+            shell.rooms.push(ids);
+        }
+        shell
+    }
+
+    fn storey(&self, level: usize) -> &Storey {
+        &self.plan.storeys[level]
+    }
+
+    fn floor_m(level: usize) -> f32 {
+        STOREY_M * level as f32
+    }
+
+    fn rooms(
+        &self,
+        level: usize,
+        cells: &Cells,
+        looks: &[RoomLook],
+        names: &mut Names,
+        assembly: &mut Assembly,
+    ) -> Vec<RoomId> {
+        let storey = self.storey(level);
+        let top = level + 1 == self.plan.storeys.len();
+        let well = |there: bool| {
+            self.plan
+                .stairs
+                .filter(|_| there)
+                .map(|s| s.area.map(metres))
+        };
+        let rooms = storey.rooms.iter().enumerate().map(|(room, plan)| {
+            let traits = plan.kind.traits();
+            let void = well(level > 0 && plan.kind == RoomKind::Hallway);
+            let mut floor = free_floor(storey, cells, room);
+            floor.retain(|zone| void.is_none_or(|void| !overlap(&void, zone)));
+            floor.extend(self.doorways(level, room));
+            let outside = plan.kind.is_outside();
+            let ceiling = if outside {
+                Vec::new()
+            } else {
+                let void = well(!top && plan.kind == RoomKind::Hallway);
+                slab(storey, cells, room, void)
+            };
+            let built = RoomPlan {
+                name: names.unique(traits.name),
+                kinds: traits.words.to_vec(),
+                floor,
+                floor_m: Self::floor_m(level),
+                slabs: [slab(storey, cells, room, void), ceiling],
+                slab_m: [
+                    FLOOR_SLAB_M,
+                    if top { FLOOR_SLAB_M } else { CEILING_SLAB_M },
+                ],
+                floor_finish: looks[room].floor.clone(),
+                ceiling_finish: looks[room].ceiling.clone(),
+            };
+            built.build(assembly)
+        });
+        rooms.collect()
+    }
+
+    /// Halves of doorways belong to the room on their side.
+    fn doorways(&self, level: usize, room: usize) -> Vec<Zone> {
+        let storey = self.storey(level);
+        let doors = self.holes[level]
+            .iter()
+            .filter(|hole| !matches!(hole.filling, Filling::Window { .. }));
+        doors
+            .filter_map(|hole| {
+                let half = 0.5 * hole.wall_m(storey);
+                if hole.room == room {
+                    Some(hole.front(1.0, half, 0.0))
+                } else {
+                    (hole.behind == Some(room)).then(|| hole.front(-1.0, half, 0.0))
+                }
+            })
+            .collect()
+    }
+
+    fn walls(
+        &self,
+        level: usize,
+        cells: &Cells,
+        looks: &[RoomLook],
+        outside: &Bands,
+        ids: &[RoomId],
+        assembly: &mut Assembly,
+    ) {
+        let storey = self.storey(level);
+        let runs: Vec<Run> = cells
+            .runs()
+            .into_iter()
+            .filter(|run| !is_railing(storey, run))
+            .collect();
+        let top = level + 1 == self.plan.storeys.len();
+        for (k, run) in runs.iter().enumerate() {
+            let half = 0.5 * thickness(storey, run);
+            let at = metres(run.at);
+            let from = metres(run.from) - reach(storey, &runs, run, false);
+            let to = metres(run.to) + reach(storey, &runs, run, true);
+            let rect = if run.along_x {
+                [from, at - half, to, at + half]
+            } else {
+                [at - half, from, at + half, to]
+            };
+            let bands = |side: Option<usize>| match side {
+                Some(room) if !storey.rooms[room].kind.is_outside() => looks[room].walls.clone(),
+                _ => outside.clone(),
+            };
+            let indoors = |room: &usize| !storey.rooms[*room].kind.is_outside();
+            let room = run.sides.iter().flatten().find(|room| indoors(room));
+            let Some(room) = room.or(run.sides.iter().flatten().next()) else {
+                continue;
+            };
+            let high = !top
+                && self.plan.stairs.is_some_and(|stairs| {
+                    let zone = [
+                        rect[0] - 0.01,
+                        rect[1] - 0.01,
+                        rect[2] + 0.01,
+                        rect[3] + 0.01,
+                    ];
+                    overlap(&zone, &stairs.area.map(metres))
+                });
+            let openings = self.holes[level].iter().filter(|hole| {
+                let (low, end) = (metres(run.from) - 1e-3, metres(run.to) + 1e-3);
+                hole.along_x == run.along_x
+                    && (hole.at_m - at).abs() < 1e-3
+                    && hole.from_m > low
+                    && hole.to_m < end
+            });
+            let wall = Wall {
+                name: format!("{level}_{k}"),
+                room: ids[*room],
+                floor_m: Self::floor_m(level),
+                height_m: if high { STOREY_M } else { CEILING_M },
+                rect,
+                along: if run.along_x { Along::X } else { Along::Z },
+                front: bands(run.sides[1]),
+                back: bands(run.sides[0]),
+                edge: reveal(),
+                openings: openings
+                    .map(|hole| Opening {
+                        along: [hole.from_m, hole.to_m],
+                        up: [hole.low_m, hole.high_m],
+                    })
+                    .collect(),
+            };
+            wall.build(assembly);
+        }
+    }
+
+    fn fillings(&self, level: usize, ids: &[RoomId], assembly: &mut Assembly) {
+        let storey = self.storey(level);
+        let floor = Self::floor_m(level);
+        let key = self.key.child("fillings").child(level as u64);
+        for (k, hole) in self.holes[level].iter().enumerate() {
+            let middle = 0.5 * (hole.from_m + hole.to_m);
+            let (x, z) = if hole.along_x {
+                (middle, hole.at_m)
+            } else {
+                (hole.at_m, middle)
+            };
+            let wall_m = hole.wall_m(storey);
+            let width_m = hole.to_m - hole.from_m;
+            let turn = yaw(hole.yaw_deg());
+            match hole.filling {
+                Filling::Open => {}
+                Filling::Door {
+                    hinge_right,
+                    glazed,
+                    entrance,
+                } => {
+                    let mut door = Door {
+                        width_m,
+                        height_m: hole.high_m,
+                        wall_m,
+                        hinge_right,
+                        glazed,
+                        ..Door::default()
+                    };
+                    if entrance {
+                        door.leaf = entrance_leaf(self.style);
+                    }
+                    let kind = assembly.kind(door.build());
+                    let openness = self.openness(hole, key.child(k as u64));
+                    let pose = Pose::new(Vec3::new(x, floor, z), turn);
+                    assembly.place(&kind, pose, ids[hole.room], openness);
+                }
+                Filling::Window { frosted } => {
+                    let pane = if frosted {
+                        frosted_pane()
+                    } else {
+                        clear_pane()
+                    };
+                    let window = Window {
+                        width_m,
+                        height_m: hole.high_m - hole.low_m,
+                        wall_m,
+                        lights: if width_m > 1.0 { 2 } else { 1 },
+                        pane,
+                        sill_m: 0.03,
+                    };
+                    let kind = assembly.kind(window.build());
+                    let y = floor + 0.5 * (hole.low_m + hole.high_m);
+                    assembly.place(
+                        &kind,
+                        Pose::new(Vec3::new(x, y, z), turn),
+                        ids[hole.room],
+                        0.0,
+                    );
+                }
+            }
+        }
+    }
+
+    fn openness(&self, hole: &Hole, key: Key) -> f32 {
+        let outside = hole
+            .behind
+            .is_none_or(|_| matches!(hole.filling, Filling::Door { entrance: true, .. }));
+        if outside {
+            return 0.0;
+        }
+        match self.doors {
+            DoorStates::Closed => 0.0,
+            DoorStates::Open => 1.0,
+            DoorStates::Ajar => 0.5,
+            DoorStates::Mixed => {
+                let mut draw = key.stream();
+                [0.0, 0.4, 1.0, 1.0][draw.below(4)]
+            }
+        }
+    }
+
+    fn stairs(&self, level: usize, ids: &[RoomId], assembly: &mut Assembly) {
+        let Some(stairs) = self.plan.stairs else {
+            return;
+        };
+        let storey = self.storey(level);
+        let hallway = storey
+            .rooms
+            .iter()
+            .position(|r| r.kind == RoomKind::Hallway);
+        let Some(room) = hallway.map(|room| ids[room]) else {
+            return;
+        };
+        let last = level + 1 == self.plan.storeys.len();
+        // Between the walls; at the front it ends with the hallway's floor.
+        let [x0, z0, x1, z1] = stairs.area.map(metres);
+        let inset = 0.5 * OUTER_M + 0.005;
+        let climb = Vec3::new(stairs.climb[0] as f32, 0.0, stairs.climb[1] as f32);
+        let across = Vec3::new(stairs.across[0] as f32, 0.0, stairs.across[1] as f32);
+        let size = Vec3::new(x1 - x0, 0.0, z1 - z0);
+        let depth_m = size.dot(climb.abs()) - inset;
+        let width_m = size.dot(across.abs()) - 2.0 * inset;
+        let middle = Vec3::new(0.5 * (x0 + x1), 0.0, 0.5 * (z0 + z1));
+        let front = middle - climb * (0.5 * size.dot(climb.abs()));
+        // The model climbs towards -Z with its second flight at +X.
+        let mirrored = across.dot(Vec3::Y.cross(climb)) > 0.0;
+        let turn = match (stairs.climb[0], stairs.climb[1]) {
+            (0, -1) => 0.0,
+            (-1, _) => 90.0,
+            (0, _) => 180.0,
+            _ => -90.0,
+        };
+        let up = Vec3::Y * Self::floor_m(level);
+        if last {
+            // The first flight would start here: a railing instead.
+            let side = -across * 0.25 * width_m;
+            let rail = railing(0.5 * width_m, &self.style.metal);
+            let kind = assembly.kind(rail);
+            let back = climb * (RAILING_INSET_M - 0.1);
+            assembly.place(
+                &kind,
+                Pose::new(front + side + back + up, yaw(turn)),
+                room,
+                0.0,
+            );
+            return;
+        }
+        let model = Stairs {
+            width_m,
+            depth_m,
+            rise_m: STOREY_M,
+            goes_on: level + 2 < self.plan.storeys.len(),
+            mirrored,
+            wood: self.style.wood.clone(),
+            paint: Finish::plain("stair_white", "wood", [238, 236, 230]),
+        };
+        let kind = assembly.kind(model.build());
+        assembly.place(&kind, Pose::new(front + up, yaw(turn)), room, 0.0);
+    }
+
+    fn railings(&self, level: usize, cells: &Cells, ids: &[RoomId], assembly: &mut Assembly) {
+        let storey = self.storey(level);
+        let rails: Vec<Run> = cells
+            .runs()
+            .into_iter()
+            .filter(|run| is_railing(storey, run))
+            .collect();
+        for run in &rails {
+            let inward = if run.sides[1].is_some() { 1.0 } else { -1.0 };
+            let Some(room) = run.sides.iter().flatten().next() else {
+                continue;
+            };
+            // A terrace on the ground has none.
+            if storey.rooms[*room].kind != RoomKind::Balcony {
+                continue;
+            }
+            // Shorter at the building's wall, and at corners, where rails along x take the corner.
+            let cut = |end: bool| {
+                let at = if end { run.to } else { run.from };
+                let turns = rails.iter().any(|other| {
+                    other.along_x != run.along_x
+                        && other.at == at
+                        && (other.from == run.at || other.to == run.at)
+                });
+                match (turns, run.along_x) {
+                    (true, true) => 0.02,
+                    (true, false) => 0.08,
+                    _ => 0.5 * OUTER_M + 0.01,
+                }
+            };
+            let (from, to) = (metres(run.from) + cut(false), metres(run.to) - cut(true));
+            let middle = 0.5 * (from + to);
+            let at = metres(run.at) + inward * RAILING_INSET_M;
+            let (x, z, turn) = if run.along_x {
+                (middle, at, 0.0)
+            } else {
+                (at, middle, 90.0)
+            };
+            let kind = assembly.kind(railing(to - from, &self.style.metal));
+            let pose = Pose::new(Vec3::new(x, Self::floor_m(level), z), yaw(turn));
+            assembly.place(&kind, pose, ids[*room], 0.0);
+        }
+    }
+}
+
+/// Whether a stretch parts a balcony from the open air.
+fn is_railing(storey: &Storey, run: &Run) -> bool {
+    let outside = |room: &PlanRoom| room.kind.is_outside();
+    match run.sides {
+        [Some(room), None] | [None, Some(room)] => outside(&storey.rooms[room]),
+        _ => false,
+    }
+}
+
+/// Thickness of the wall over a stretch, m.
+fn thickness(storey: &Storey, run: &Run) -> f32 {
+    let indoors = |side: &Option<usize>| side.is_some_and(|k| !storey.rooms[k].kind.is_outside());
+    if run.sides.iter().all(indoors) {
+        INNER_M
+    } else {
+        OUTER_M
+    }
+}
+
+/// How far a wall reaches beyond (or, below 0, ends before) the crossing at one of its ends, so that walls meet without
+/// a gap and without lying in each other: what goes straight on goes through, and at a corner the wall along z does.
+fn reach(storey: &Storey, runs: &[Run], run: &Run, end: bool) -> f32 {
+    let at = if end { run.to } else { run.from };
+    let here = |other: &&Run| {
+        let (along, across) = if other.along_x == run.along_x {
+            (at, run.at)
+        } else {
+            (run.at, at)
+        };
+        other.at == across && (other.from == along || other.to == along) && *other != run
+    };
+    let half = |other: &Run| 0.5 * thickness(storey, other);
+    let straight = runs.iter().filter(here).find(|o| o.along_x == run.along_x);
+    let crossing: Vec<&Run> = runs
+        .iter()
+        .filter(here)
+        .filter(|other| other.along_x != run.along_x)
+        .collect();
+    let widest = crossing.iter().map(|other| half(other)).fold(0.0, f32::max);
+    match (straight, crossing.len()) {
+        // Both directions go through: walls along z do.
+        (Some(_), 2..) if run.along_x => -widest,
+        (Some(other), _) => {
+            let (own, others) = (half(run), half(other));
+            if own > others {
+                widest
+            } else if own < others {
+                -widest
+            } else {
+                0.0
+            }
+        }
+        (None, 0) => 0.0,
+        // A side wall ends at the one that goes through.
+        (None, 2..) => -widest,
+        (None, _) => {
+            if run.along_x {
+                -widest
+            } else {
+                widest
+            }
+        }
+    }
+}
+
+/// The leaf of the way in.
+fn entrance_leaf(style: &Style) -> Finish {
+    Finish {
+        name: "entrance_door",
+        substance: "wood_door",
+        ..style.wood.clone()
+    }
+}

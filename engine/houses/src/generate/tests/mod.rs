@@ -1,0 +1,4 @@
+//! What must hold for every generated house.
+
+mod building;
+mod specs;

@@ -1,0 +1,145 @@
+//! Specs that are wrong say so; those that are right are kept.
+
+use crate::error::HousesError;
+use crate::generate::{DoorStates, HomeKind, HouseSpec, RoomKind, generate};
+
+fn refused(spec: &HouseSpec, wanted: &str) -> String {
+    match generate(1, spec) {
+        Err(HousesError::Spec {
+            field,
+            found,
+            possible,
+        }) => {
+            assert_eq!(field, wanted);
+            assert!(!found.is_empty() && !possible.is_empty());
+            possible
+        }
+        other => panic!("{other:?} instead of a refused {wanted}"),
+    }
+}
+
+#[test]
+fn impossible_specs_name_the_field_and_what_is_possible() {
+    let base = HouseSpec::default;
+    for area in [0.0, -3.0, f32::NAN, f32::INFINITY, 11.0, 1e9] {
+        refused(
+            &HouseSpec {
+                area_m2: Some(area),
+                ..base()
+            },
+            "area_m2",
+        );
+    }
+    let crowded = HouseSpec {
+        rooms: vec![RoomKind::Bedroom; 40],
+        area_m2: Some(20.0),
+        ..base()
+    };
+    assert!(refused(&crowded, "rooms").contains("12"));
+    let tight = HouseSpec {
+        rooms: vec![RoomKind::Bedroom; 10],
+        area_m2: Some(20.0),
+        ..base()
+    };
+    assert!(refused(&tight, "area_m2").contains("to"));
+    refused(
+        &HouseSpec {
+            storeys: Some(0),
+            ..base()
+        },
+        "storeys",
+    );
+    refused(
+        &HouseSpec {
+            storeys: Some(2),
+            home: Some(HomeKind::Studio),
+            ..base()
+        },
+        "storeys",
+    );
+    refused(
+        &HouseSpec {
+            rooms: vec![RoomKind::Hallway],
+            ..base()
+        },
+        "rooms",
+    );
+    refused(
+        &HouseSpec {
+            rooms: vec![RoomKind::Balcony],
+            ..base()
+        },
+        "rooms",
+    );
+    refused(
+        &HouseSpec {
+            clutter: 1.5,
+            ..base()
+        },
+        "clutter",
+    );
+    refused(
+        &HouseSpec {
+            furniture_density: f32::NAN,
+            ..base()
+        },
+        "furniture_density",
+    );
+    let baroque = HouseSpec {
+        style: Some("baroque".to_owned()),
+        ..base()
+    };
+    assert!(refused(&baroque, "style").contains("nordic"));
+    // A look for tests is none for training.
+    refused(
+        &HouseSpec {
+            style: Some("industrial".to_owned()),
+            ..base()
+        },
+        "style",
+    );
+    refused(
+        &HouseSpec {
+            rooms: vec![RoomKind::Kitchen],
+            adjacency: vec![[RoomKind::Kitchen, RoomKind::Gym]],
+            ..base()
+        },
+        "adjacency",
+    );
+    assert!(serde_json::from_str::<HouseSpec>(r#"{"roms": []}"#).is_err());
+    assert!(serde_json::from_str::<HouseSpec>(r#"{"rooms": ["throne_room"]}"#).is_err());
+}
+
+#[test]
+fn a_spec_is_kept() {
+    for seed in 0..12 {
+        let spec = HouseSpec {
+            rooms: vec![
+                RoomKind::LivingRoom,
+                RoomKind::Kitchen,
+                RoomKind::Bedroom,
+                RoomKind::Bathroom,
+                RoomKind::Toilet,
+            ],
+            area_m2: Some(75.0),
+            adjacency: vec![[RoomKind::Kitchen, RoomKind::LivingRoom]],
+            doors: DoorStates::Closed,
+            ..HouseSpec::default()
+        };
+        let generated = generate(seed, &spec).unwrap();
+        let house = &generated.house;
+        for kind in &spec.rooms {
+            let word = kind.traits().words[0];
+            let count = house.rooms.iter().filter(|r| r.kinds[0] == word).count();
+            assert_eq!(count, 1, "seed {seed}: {word}");
+        }
+        let area: f32 = house.rooms.iter().map(dwell_scene::Room::area_m2).sum();
+        assert!((60.0..90.0).contains(&area), "seed {seed}: {area} m2");
+        assert!(house.joints.iter().all(|joint| joint.initial == 0.0));
+    }
+    let studio = HouseSpec {
+        rooms: vec![RoomKind::Studio],
+        ..HouseSpec::default()
+    };
+    assert_eq!(generate(3, &studio).unwrap().house.rooms.len(), 1);
+}
