@@ -71,7 +71,7 @@ impl World {
             PhysicsWorld::over(engines.physics().clone(), &physics_config, &mut state)?;
         let mut rays = RayScene::new(house);
         rays.update(&state);
-        let start = (state.clone(), physics.snapshot());
+        let start = (state.clone(), physics.moment());
         let sound = Sound::new(config);
         let key = Key::root(0);
         let events = Vec::new();
@@ -302,7 +302,7 @@ impl World {
     /// A number that changes with any bit of state, physics, sound queues or random streams.
     pub fn hash(&self) -> u64 {
         let mut bytes = self.state.hash().to_le_bytes().to_vec();
-        bytes.extend_from_slice(&xxh3_64(&self.physics.snapshot()).to_le_bytes());
+        bytes.extend_from_slice(&xxh3_64(&self.physics.moment()).to_le_bytes());
         bytes.extend_from_slice(&xxh3_64(&self.sound.to_bytes()).to_le_bytes());
         bytes.extend_from_slice(&postcard::to_stdvec(&self.key).unwrap_or_default());
         xxh3_64(&bytes)
@@ -351,7 +351,7 @@ impl World {
             parts.key.child("sound"),
             &parts.sound,
         )?;
-        let before = self.physics.snapshot();
+        let before = self.physics.moment();
         if let Err(error) = self.physics.restore(&mut state, &parts.physics) {
             let mut old = self.state.clone();
             self.physics.restore(&mut old, &before)?;

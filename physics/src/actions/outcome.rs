@@ -77,6 +77,45 @@ pub enum ActionCode {
     Slipped,
 }
 
+impl ActionCode {
+    /// All codes, in order.
+    pub const ALL: [Self; 33] = [
+        Self::Done,
+        Self::Started,
+        Self::NoTarget,
+        Self::ForeignState,
+        Self::UnknownAgent,
+        Self::UnknownObject,
+        Self::BadNumber,
+        Self::Oneself,
+        Self::NotAThing,
+        Self::StoodOn,
+        Self::TooFar,
+        Self::NotVisible,
+        Self::Behind,
+        Self::NotPickable,
+        Self::TooHeavy,
+        Self::TooLarge,
+        Self::Stuck,
+        Self::HandFull,
+        Self::HandEmpty,
+        Self::HeldByOther,
+        Self::NoSpace,
+        Self::NoSupport,
+        Self::NotContainer,
+        Self::Closed,
+        Self::Full,
+        Self::NotMovable,
+        Self::Shut,
+        Self::NotOpenable,
+        Self::AlreadyOpen,
+        Self::AlreadyClosed,
+        Self::NoSwitch,
+        Self::Blocked,
+        Self::Slipped,
+    ];
+}
+
 /// What an agent points at.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pointed {
@@ -147,4 +186,19 @@ pub(super) fn done(
     object: Option<ObjectId>,
 ) -> ActionOutcome {
     ActionOutcome::done(code, sentence, object)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_of_codes_is_whole_and_in_order() {
+        // A new code at the end is missed here until the list has it.
+        let last = ActionCode::ALL.len() - 1;
+        assert_eq!(ActionCode::Slipped as usize, last);
+        for (k, code) in ActionCode::ALL.into_iter().enumerate() {
+            assert_eq!(code as usize, k);
+        }
+    }
 }

@@ -27,6 +27,8 @@ pub(super) struct Report {
     pub(super) speed: f32,
     /// When the surfaces meet at that speed, from the beginning of the step, s.
     pub(super) meets_s: f32,
+    /// How fast they approach then, m/s.
+    pub(super) meeting: f32,
     /// Sum of slip speed times impulse.
     pub(super) slip: f32,
     /// How fast the centres of mass pass each other along the surface, m/s.
@@ -161,6 +163,7 @@ impl<'a> Collector<'a> {
             moment: Vec3::ZERO,
             speed: 0.0,
             meets_s: 0.0,
+            meeting: 0.0,
             slip: 0.0,
             passing: 0.0,
         };
@@ -212,7 +215,9 @@ impl Report {
             if approach > self.speed {
                 self.speed = approach;
                 let gap = (q - p + b.ahead - a.ahead).dot(normal);
-                self.meets_s = meets(gap, approach, (a.gravity - b.gravity).dot(normal));
+                let pull = (a.gravity - b.gravity).dot(normal);
+                self.meeting = meeting_speed(gap, approach, pull);
+                self.meets_s = 2.0 * gap / (approach + self.meeting).max(1e-6);
             }
             here += push;
             self.moment += place * push;
@@ -227,11 +232,10 @@ impl Report {
     }
 }
 
-/// When surfaces a `gap` apart meet that approach at `speed`, faster by `acceleration`; negative when they met before.
-fn meets(gap: f32, speed: f32, acceleration: f32) -> f32 {
-    let inside = speed * speed + 2.0 * acceleration * gap;
-    let root = inside.max(0.0).sqrt();
-    2.0 * gap / (speed + root).max(1e-6)
+/// How fast surfaces meet that are a `gap` apart and approach at `speed`, faster by `acceleration`; they meet after twice the
+/// gap over the sum of both speeds, which is negative when they met before.
+fn meeting_speed(gap: f32, speed: f32, acceleration: f32) -> f32 {
+    (speed * speed + 2.0 * acceleration * gap).max(0.0).sqrt()
 }
 
 /// Where the two surfaces of a contact point stood before the step.

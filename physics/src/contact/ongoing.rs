@@ -117,9 +117,9 @@ impl Ongoing {
     }
 
     fn hit(&mut self, pair: Pair, group: &[Report], begin_s: f64, dt_s: f32) {
-        // The first to meet of those that come fast enough to be told; steps before this one belong to it.
+        // The solver may stop a thing shortly before it touches, or after a step in which it passed a little.
         let fastest = group.iter().max_by(|a, b| a.speed.total_cmp(&b.speed));
-        let meets_s = fastest.map_or(0.0, |report| report.meets_s.clamp(-dt_s, dt_s));
+        let meets_s = fastest.map_or(0.0, |report| report.meets_s.clamp(-dt_s, 2.0 * dt_s));
         let impulse: f32 = group.iter().map(|report| report.impulse).sum();
         let slip: f32 = group.iter().map(|report| report.slip).sum();
         let impact = self.impacts.entry(pair).or_insert(Impact {
@@ -137,7 +137,7 @@ impl Ongoing {
             impact.impulse_n_s += report.impulse;
             impact.tangential_n_s += report.tangential;
             impact.moment += report.moment;
-            impact.speed_m_s = impact.speed_m_s.max(report.speed);
+            impact.speed_m_s = impact.speed_m_s.max(report.meeting);
         }
     }
 

@@ -350,7 +350,7 @@ impl Run {
 
     /// State and physics in one number.
     pub(crate) fn hash(&self) -> (u64, Vec<u8>) {
-        (self.state.hash(), self.world.snapshot())
+        (self.state.hash(), self.world.moment())
     }
 }
 

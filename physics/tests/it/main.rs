@@ -26,5 +26,7 @@ mod laws;
 mod motion;
 mod parameters;
 mod placing;
+mod refusals;
 mod snapshot;
 mod start;
+mod truth;

@@ -251,3 +251,149 @@ fn worlds_over_one_model_share_its_shapes() {
         .collect();
     assert!(Arc::ptr_eq(worlds[0].model(), worlds[1].model()));
 }
+
+/// A snapshot with its state: at most 256 KiB and 2 KiB a body, for a furnished house, an arm of six links, and 500 things that
+/// lie on a heap.
+#[test]
+fn snapshots_stay_within_their_size() {
+    let size = |run: &Run| run.world.snapshot().len() + run.state.to_bytes(&run.house).len();
+    let bound = |bodies: usize| (256 + 2 * bodies) * 1024;
+    let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
+    let mut apartment = Run::over(Arc::new(house), PhysicsConfig::default());
+    apartment.steps(20);
+    let mut build = Build::room([6.0, 4.0, 6.0]);
+    for k in 0..500_u16 {
+        let (x, y, z) = (k % 8, k / 64, k / 8 % 8);
+        let at = Vec3::new(f32::from(x), f32::from(y), f32::from(z)) * 0.13;
+        let piece = Piece::cuboid(Vec3::splat(0.05), at + Vec3::new(2.5, 0.1, 2.5));
+        build.movable(&format!("cube_{k}"), piece);
+    }
+    let mut heap = build.run();
+    heap.steps(100);
+    let mut build = Build::room([4.0, 3.0, 4.0]);
+    let at = |k: u8| Vec3::new(1.0 + 0.2 * f32::from(k), 1.0, 2.0);
+    let links: Vec<Piece> = (0..6)
+        .map(|k| Piece::cuboid(Vec3::new(0.08, 0.03, 0.03), at(k)))
+        .collect();
+    let arm = build.object("arm", dwell_scene::Mobility::Movable, &links);
+    let parts: Vec<_> = build.data.objects[arm].parts().collect();
+    for (k, part) in parts.iter().enumerate() {
+        let parent = k.checked_sub(1).map(|before| parts[before]);
+        let from = parent.map_or(dwell_scene::Pose::from_position(at(0)), |_| {
+            dwell_scene::Pose::from_position(Vec3::X * 0.1)
+        });
+        let to = Vec3::NEG_X * if k == 0 { 0.0 } else { 0.1 };
+        let kind = dwell_scene::JointKind::Hinge;
+        build.data.joints.push(dwell_scene::Articulation {
+            parent,
+            parent_from_joint: from,
+            child_from_joint: dwell_scene::Pose::from_position(to),
+            ..dwell_scene::Articulation::new(&format!("j{k}"), arm, *part, kind, Vec3::Z)
+        });
+    }
+    let mut arm = build.run();
+    arm.steps(20);
+    for (name, run) in [("apartment", &apartment), ("heap", &heap), ("arm", &arm)] {
+        let mut again = run.clone();
+        again
+            .world
+            .restore(&mut again.state, &run.world.snapshot())
+            .unwrap();
+        assert!(
+            again.hash() == run.hash(),
+            "{name}: packed and unpacked it is the same"
+        );
+        let (found, bodies) = (size(run), run.report.bodies);
+        println!(
+            "  {name}: {bodies} bodies, {found} bytes of {}",
+            bound(bodies)
+        );
+        assert!(
+            bodies > 5 && found <= bound(bodies),
+            "{name}: {found} bytes"
+        );
+    }
+}
+
+/// A flipped bit is found wherever it is: every byte of the header, and of the body every one that a stride of a prime meets.
+#[test]
+fn a_flipped_bit_is_found_wherever_it_is() {
+    let (mut run, ..) = busy();
+    run.walk(10, &controls(0));
+    let bytes = run.world.snapshot();
+    let before = run.hash();
+    let header = 0..32_usize.min(bytes.len());
+    let body = (32..bytes.len()).step_by(97);
+    let mut damaged = bytes.clone();
+    for at in header.chain(body) {
+        for bit in [0, 3, 7] {
+            damaged[at] ^= 1 << bit;
+            let refused = run.world.restore(&mut run.state, &damaged).unwrap_err();
+            let why = refused.to_string();
+            let named = ["begin with", "version", "house", "settings", "check sum"];
+            assert!(
+                named.iter().any(|word| why.contains(word)),
+                "byte {at}: {why}"
+            );
+            damaged[at] ^= 1 << bit;
+        }
+    }
+    // Longer and shorter than it was written.
+    damaged.push(0);
+    assert!(run.world.restore(&mut run.state, &damaged).is_err());
+    assert!(before == run.hash());
+    run.world.restore(&mut run.state, &bytes).unwrap();
+    assert!(before == run.hash());
+}
+
+/// Taken while a hand holds by a spring, another firmly, a door swings, some things sleep and others fall: it goes on alike.
+#[test]
+fn holds_swings_and_sleep_go_on_bit_for_bit() {
+    let (mut run, _, agent) = busy();
+    let other = AgentId(1);
+    let held = run
+        .house
+        .objects
+        .ids()
+        .find(|id| run.house.objects[*id].name == "ball_0")
+        .unwrap();
+    run.walk(30, &[]);
+    run.act(agent, Action::Drop);
+    let beside = run.position(held);
+    let Run { world, state, .. } = &mut run;
+    world
+        .place_agent(state, other, beside.with_y(0.0) + Vec3::Z * 0.6, 0.0)
+        .unwrap();
+    run.rays.update(&run.state);
+    let spring = dwell_physics::Grasp::Spring {
+        frequency_hz: 4.0,
+        damping_ratio: 0.7,
+    };
+    let told = run.act(
+        other,
+        Action::Pick {
+            target: held.into(),
+            grasp: spring,
+        },
+    );
+    assert!(told.success, "{}", told.sentence);
+    let asleep = run.world.awake_count() < run.report.bodies;
+    assert!(asleep, "{} awake", run.world.awake_count());
+    for step in 0..6 {
+        run.walk(1, &controls(step));
+        let (physics, state) = (run.world.snapshot(), run.state.to_bytes(&run.house));
+        let mut fresh = Run::over(run.house.clone(), PhysicsConfig::default());
+        fresh.state = State::from_bytes(&run.house, &state).unwrap();
+        fresh.world.restore(&mut fresh.state, &physics).unwrap();
+        let mut original = run.clone();
+        for later in 0..40 {
+            original.walk(1, &controls(later));
+            fresh.walk(1, &controls(later));
+            assert!(
+                original.hash() == fresh.hash(),
+                "{step}, {later} steps later"
+            );
+            assert_eq!(original.world.awake_count(), fresh.world.awake_count());
+        }
+    }
+}
