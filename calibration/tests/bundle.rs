@@ -7,6 +7,7 @@
 
 use dwell_calibration::bundle::file::Kind;
 use dwell_calibration::{CalibrationError, Options, calibrate};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -209,13 +210,13 @@ fn drive(change: impl Fn(usize, &mut [f64; 6])) -> Result<(Kind, usize), String>
         "episode,t_s,x,y,heading,left_rad,right_rad\n".to_owned(),
     );
     for episode in 0..4 {
-        episodes += &format!("d{episode},g{episode},straight\n");
+        writeln!(episodes, "d{episode},g{episode},straight").unwrap();
         for k in 0..60 {
             let step = if k == 0 { 0.0 } else { 0.2 };
             let mut row = [0.05 * k as f64, 0.01 * k as f64, 0.0, 0.0, step, step];
             change(k, &mut row);
             let cells = row.map(|cell| cell.to_string()).join(",");
-            rows += &format!("d{episode},{cells}\n");
+            writeln!(rows, "d{episode},{cells}").unwrap();
         }
     }
     put("episodes.csv", episodes);

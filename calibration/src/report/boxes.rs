@@ -2,13 +2,15 @@
 
 use super::html::escape;
 use super::page::COLOURS;
-use super::svg::{Scale, WIDTH};
+use super::svg::{self, Scale};
 use crate::rollout::Residuals;
 use crate::words::number;
 use std::fmt::Write as _;
 
 const LEFT: f64 = 56.0;
-const TOP: f64 = 30.0;
+const TOP: f64 = 46.0;
+/// The least width of a group: its label must fit.
+const GROUP: f64 = 100.0;
 const PLOT: f64 = 170.0;
 const BOTTOM: f64 = 40.0;
 /// Colours and letters of a picture that stands alone, light and dark.
@@ -28,6 +30,7 @@ pub(crate) fn alone(residuals: &Residuals) -> String {
 
 fn drawn(residuals: &Residuals, style: &str) -> String {
     let height = TOP + PLOT + BOTTOM;
+    let full = svg::WIDTH.max(LEFT + GROUP * residuals.groups.len() as f64);
     let boxes = || residuals.groups.iter().flat_map(|group| &group.models);
     let most = boxes().map(|b| b.at[4]).fold(1e-9, f64::max);
     let y = Scale {
@@ -37,14 +40,14 @@ fn drawn(residuals: &Residuals, style: &str) -> String {
         to: TOP,
     };
     let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"{}\">{style}",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {full} {height}\" role=\"img\" aria-label=\"{}\">{style}",
         escape(&residuals.title)
     );
     for tick in y.ticks() {
         let at = y.at(tick);
         let _ = write!(
             out,
-            "<line class=\"grid\" x1=\"{LEFT}\" y1=\"{at:.1}\" x2=\"{WIDTH}\" y2=\"{at:.1}\"/><text x=\"{:.1}\" \
+            "<line class=\"grid\" x1=\"{LEFT}\" y1=\"{at:.1}\" x2=\"{full}\" y2=\"{at:.1}\"/><text x=\"{:.1}\" \
              y=\"{:.1}\" text-anchor=\"end\">{}</text>",
             LEFT - 6.0,
             at + 4.0,
@@ -57,7 +60,7 @@ fn drawn(residuals: &Residuals, style: &str) -> String {
         "<text x=\"12\" y=\"{middle:.1}\" transform=\"rotate(-90 12 {middle:.1})\" text-anchor=\"middle\">{}</text>",
         escape(residuals.unit)
     );
-    let width = (WIDTH - LEFT) / residuals.groups.len().max(1) as f64;
+    let width = (full - LEFT) / residuals.groups.len().max(1) as f64;
     for (k, group) in residuals.groups.iter().enumerate() {
         let from = LEFT + width * k as f64;
         let slot = 0.8 * width / group.models.len().max(1) as f64;
@@ -106,7 +109,7 @@ fn drawn(residuals: &Residuals, style: &str) -> String {
     }
     let _ = write!(
         out,
-        "<text x=\"{WIDTH}\" y=\"17\" text-anchor=\"end\">{}; box: half, line: 5 to 95 %</text></svg>",
+        "<text x=\"{LEFT}\" y=\"35\">{}; box: the middle half, line: 5 to 95 %</text></svg>",
         escape(&residuals.title)
     );
     out

@@ -24,7 +24,7 @@ mod windows;
 pub use motion::{Deviation, Motion};
 pub use refine::{FINER, Refinement, refinements};
 pub use regime::Regime;
-pub use residuals::{Quantiles, RESIDUAL_HORIZON, ResidualGroup, Residuals};
+pub use residuals::{Quantiles, ResidualGroup, Residuals};
 pub use rig::{Rig, STEPS_PER_SAMPLE, Settings};
 pub use score::{Score, deviations, diverging, scores};
 pub use start::{Noise, Start};

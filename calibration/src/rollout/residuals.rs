@@ -4,8 +4,6 @@ use super::regime::Regime;
 use super::windows::End;
 use serde::Serialize;
 
-/// The horizon that is looked at, samples.
-pub const RESIDUAL_HORIZON: usize = 10;
 /// Groups by speed hold equally many windows.
 const SPEEDS: usize = 5;
 /// Windows below which a group is not shown.
@@ -65,9 +63,25 @@ pub struct Quantiles {
 /// A model's name and its windows; the windows of all models are the same.
 pub(crate) type Row<'a> = (&'a str, &'a [End]);
 
-/// All pictures: position and, where there are, rotation, by regime, by speed, and by `kinds` (of each episode) where these
+/// All pictures of the windows that look `horizon` samples ahead: position and, where there are, rotation, by regime, by speed, and by `kinds` (of each episode) where these
 /// are more than one.
-pub(crate) fn all(rows: &[Row<'_>], rotation: bool, kinds: &[&str]) -> Vec<Residuals> {
+pub(crate) fn all(
+    rows: &[Row<'_>],
+    horizon: usize,
+    rotation: bool,
+    kinds: &[&str],
+) -> Vec<Residuals> {
+    // Every model has the same windows in the same order.
+    let ahead: Vec<(&str, Vec<&End>)> = rows
+        .iter()
+        .map(|(name, ends)| {
+            (
+                *name,
+                ends.iter().filter(|end| end.horizon == horizon).collect(),
+            )
+        })
+        .collect();
+    let rows = &ahead[..];
     let mut found = Vec::new();
     let which = [
         (Residual::Position, "position", "mm"),
@@ -78,7 +92,7 @@ pub(crate) fn all(rows: &[Row<'_>], rotation: bool, kinds: &[&str]) -> Vec<Resid
             if groups.len() > 1 {
                 found.push(Residuals {
                     name: format!("{word}-by-{by}"),
-                    title: format!("error of {word} {RESIDUAL_HORIZON} samples ahead, by {by}"),
+                    title: format!("error of {word} {horizon} samples ahead, by {by}"),
                     unit,
                     groups,
                 });
@@ -102,12 +116,11 @@ pub(crate) fn all(rows: &[Row<'_>], rotation: bool, kinds: &[&str]) -> Vec<Resid
     found
 }
 
-fn by_speed(rows: &[Row<'_>], residual: Residual) -> Vec<ResidualGroup> {
+fn by_speed(rows: &[(&str, Vec<&End>)], residual: Residual) -> Vec<ResidualGroup> {
     let Some((_, ends)) = rows.first() else {
         return Vec::new();
     };
-    let here = ends.iter().filter(|end| end.horizon == RESIDUAL_HORIZON);
-    let mut speeds: Vec<f64> = here.map(|end| end.speed_m_s).collect();
+    let mut speeds: Vec<f64> = ends.iter().map(|end| end.speed_m_s).collect();
     if speeds.is_empty() {
         return Vec::new();
     }
@@ -126,14 +139,14 @@ fn by_speed(rows: &[Row<'_>], residual: Residual) -> Vec<ResidualGroup> {
 
 /// Quantiles of the windows that belong and that diverge in no model.
 fn group(
-    rows: &[Row<'_>],
+    rows: &[(&str, Vec<&End>)],
     residual: Residual,
     label: String,
     belongs: &dyn Fn(&End) -> bool,
 ) -> Option<ResidualGroup> {
     let (_, first) = rows.first()?;
     let chosen: Vec<usize> = (0..first.len())
-        .filter(|k| first[*k].horizon == RESIDUAL_HORIZON && belongs(&first[*k]))
+        .filter(|k| belongs(first[*k]))
         .filter(|k| rows.iter().all(|(_, ends)| !ends[*k].diverges))
         .collect();
     (chosen.len() >= FEWEST).then(|| ResidualGroup {
@@ -142,7 +155,7 @@ fn group(
         models: rows
             .iter()
             .map(|(model, ends)| {
-                let mut sizes: Vec<f64> = chosen.iter().map(|k| residual.of(&ends[*k])).collect();
+                let mut sizes: Vec<f64> = chosen.iter().map(|k| residual.of(ends[*k])).collect();
                 sizes.sort_by(f64::total_cmp);
                 let last = (sizes.len() - 1) as f64;
                 let at = [0.05, 0.25, 0.5, 0.75, 0.95]

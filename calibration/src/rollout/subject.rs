@@ -25,6 +25,11 @@ pub trait Subject: Sync {
     /// Apart by more than this, two predictions are of different outcomes.
     fn divergence(&self) -> Deviation;
 
+    /// How many samples ahead a residual tells most: pictures show that horizon, one of [`HORIZONS`](super::HORIZONS).
+    fn telling_horizon(&self) -> usize {
+        10
+    }
+
     /// The motions at the `samples` samples after the sample `at`. The state there is estimated from measurements up to
     /// it and none after; with a `nudge` it is drawn from within the uncertainty of that estimate.
     ///

@@ -194,6 +194,10 @@ impl Subject for Drives {
         }
     }
 
+    fn telling_horizon(&self) -> usize {
+        40
+    }
+
     /// The way of the wheels is rolled from the past samples on and laid over what the tracker saw of them: the mean of the
     /// headings, then of the places. That is the pose at the start by least squares, all of the past used alike.
     fn roll(

@@ -150,7 +150,12 @@ pub fn run<S: Modelled>(
         licence: subject.licence().to_owned(),
         options: options.clone(),
         sentence: best.map_or_else(String::new, |best| score::sentence(best, &outcomes)),
-        residuals: residuals::all(&rows, subject.lever_m() > 0.0, &kinds),
+        residuals: residuals::all(
+            &rows,
+            subject.telling_horizon(),
+            subject.lever_m() > 0.0,
+            &kinds,
+        ),
         solver: outcomes
             .iter()
             .map(|o| told(o.model.name, &o.refinements))
@@ -272,8 +277,11 @@ impl<S: Modelled> Study<'_, S> {
         let mut train: Vec<usize> = (0..self.fold_of.len())
             .filter(|episode| self.fold_of[*episode] != fold)
             .collect();
-        let key = self.key.child(fold as u64);
-        key.child("part").stream().shuffle(&mut train);
+        // All models look at the same episodes.
+        let key = Key::root(self.options.seed)
+            .child("part")
+            .child(fold as u64);
+        key.stream().shuffle(&mut train);
         train.truncate(self.options.fit_episodes);
         train.sort_unstable();
         let variables: Vec<Variable> = self

@@ -16,8 +16,8 @@ pub use peer::{Comparison, Paired, Peer};
 use super::refine::sentence as told;
 use super::residuals::{self, Residuals};
 use super::{
-    End, FINER, Noise, Refinement, Rig, Score, Summary, Tracks, WindowScore, Windowing, diverging,
-    ends, refinements, scores, windows,
+    End, FINER, Noise, Refinement, Rig, Score, Subject as _, Summary, Tracks, WindowScore,
+    Windowing, diverging, ends, refinements, scores, windows,
 };
 use crate::error::CalibrationError;
 use crate::progress::{Progress, Tell};
@@ -173,7 +173,7 @@ pub fn run(
             .iter()
             .map(|r| told(r.model.name, &r.refinements))
             .collect(),
-        residuals: residuals::all(&rows, true, &[]),
+        residuals: residuals::all(&rows, tracks.telling_horizon(), true, &[]),
         sentence: best.map_or_else(String::new, |best| sentence(best, &reports)),
         found: best.map_or_else(Found::default, |best| found(tracks, best)),
         models: reports,
