@@ -16,7 +16,8 @@ pub(in crate::laws) const LAW: Law = Law {
                    mass for a ball on the floor, a quarter of it at each corner of a cube that stands on a face), \
                    k = m (2 pi f_n)^2 (N/m) and b = 2 zeta m 2 pi f_n (N s/m); the contact pushes as long as there is \
                    depth, so that zeta makes the rebound and the pairs' restitution does not enter. f_n = 0: contacts as \
-                   hard as the rate allows. One value for the whole world",
+                   hard as the rate allows. One frequency for every pair in the world, so that k grows with the mass that presses: \
+                   not a stiffness of two materials, which the solver has no place for",
         source: "K. L. Johnson, Contact Mechanics (1985), chapter 11 (spring and dashpot); E. Catto, Soft Constraints, GDC \
                  (2011)",
         engine: ActsIn::Physics,
