@@ -31,6 +31,7 @@ struct Link {
 pub(super) struct Chain {
     links: Vec<Link>,
     root: Moving,
+    root_velocity: DVec3,
     free_root: Option<Lump>,
     supports: Vec<Support>,
     /// Whether what it hangs on stands.
@@ -79,6 +80,7 @@ impl Chain {
         Self {
             links: free.iter().map(link).collect(),
             root: root.map_or_else(Moving::default, evenly),
+            root_velocity: root.map_or(DVec3::ZERO, |root| root.linvel().as_dvec3()),
             free_root,
             supports,
             stands: root.is_none_or(still),
@@ -133,6 +135,7 @@ impl Chain {
             angular,
             root: self.root,
             free_root: self.free_root,
+            root_velocity: self.root_velocity,
             supports: self.supports.clone(),
             gravity: self.gravity,
         }

@@ -94,7 +94,7 @@ impl Inertia {
         self.set(i, j, self.get(i, j) + value);
     }
 
-    fn times(&self, vector: &[f64]) -> Vec<f64> {
+    pub(super) fn times(&self, vector: &[f64]) -> Vec<f64> {
         let row = |i: usize| {
             let row = &self.values[i * self.size..(i + 1) * self.size];
             row.iter().zip(vector).map(|(a, b)| a * b).sum()

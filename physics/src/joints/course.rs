@@ -9,8 +9,9 @@
 //! energy of symmetric methods.
 
 use super::chain::Chain;
-use super::convex::{Element, Problem};
+use super::convex::{Element, Inertia, Problem};
 use super::element::Freedom;
+use super::footing::{self, Answer, Hold, Reduced};
 use super::motion::Motion;
 use super::tree::Tree;
 use super::{Drivers, Joint};
@@ -26,6 +27,8 @@ const MOST_PARTS: f64 = 8.0;
 const SWEEPS: usize = 3;
 /// How often friction is found anew from the load that it answers to.
 const FRICTION_SWEEPS: usize = 4;
+/// How often what carries a tree is looked at anew.
+const GROUND_ROUNDS: usize = 6;
 
 /// The free joints of a tree in a step.
 pub(super) struct Freedoms<'a> {
@@ -44,8 +47,27 @@ pub(super) struct Course {
     pub(super) velocities: Vec<f64>,
     /// Mean accelerations.
     pub(super) gained: Vec<f64>,
+    /// What a free root does.
+    pub(super) answer: Option<Answer>,
     /// The tree at the middle of the step.
     pub(super) middle: Motion,
+}
+
+/// Accelerations of the joints and of a free root.
+struct Part {
+    gained: Vec<f64>,
+    answer: Option<Answer>,
+}
+
+/// What the joints start a part of a step with. Shape (freedom,).
+#[derive(Clone, Copy)]
+struct Seen<'a> {
+    from: &'a [f64],
+    now: &'a [f64],
+    weights: &'a [f64],
+    /// What the joints resist with where nothing carries the tree. Shape (freedom, freedom).
+    bare: &'a Inertia,
+    part_s: f64,
 }
 
 fn plus(a: &[f64], b: &[f64], share: f64) -> Vec<f64> {
@@ -75,13 +97,18 @@ impl Freedoms<'_> {
         };
         let part_s = dt_s / parts;
         let (mut q, mut v) = (positions.to_vec(), velocities.to_vec());
+        let mut answer = None;
         let mut left = parts;
         while left > 0.0 {
-            let mut gained = self.part(&chain.at(&q, &v), &q, &v, part_s);
+            let Part {
+                mut gained,
+                answer: of_root,
+            } = self.part(&chain.at(&q, &v), &q, &v, part_s);
+            answer = of_root;
             for _ in 0..if moves { SWEEPS } else { 0 } {
                 let between = plus(&v, &gained, 0.5 * part_s);
                 let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between);
-                gained = self.part(&middle, &q, &v, part_s);
+                gained = self.part(&middle, &q, &v, part_s).gained;
             }
             q = plus(&q, &plus(&v, &gained, 0.5 * part_s), part_s);
             v = plus(&v, &gained, part_s);
@@ -103,15 +130,51 @@ impl Freedoms<'_> {
             gained: rate(velocities, &v, dt_s),
             positions: q,
             velocities: v,
+            answer,
             middle,
         }
     }
 
     /// The accelerations in a part of a step that begins with positions `from` and velocities `now`, with inertia and loads
     /// as in `motion`.
-    fn part(&self, motion: &Motion, from: &[f64], now: &[f64], part_s: f64) -> Vec<f64> {
-        let (bias, weights) = motion.bias();
+    fn part(&self, motion: &Motion, from: &[f64], now: &[f64], part_s: f64) -> Part {
+        let loads = motion.loads();
+        let weights = motion.weights(&loads);
         let bare = motion.inertia();
+        let mut holds = vec![Hold::Sticks; motion.supports.len()];
+        let mut round = 0;
+        loop {
+            let reduced = Reduced::of(motion, &loads, now, &holds, part_s);
+            let seen = Seen {
+                from,
+                now,
+                weights: &weights,
+                bare: &bare,
+                part_s,
+            };
+            let velocity = self.solve(&reduced, &seen);
+            let gained = rate(now, &velocity, part_s);
+            let footing = reduced.footing.as_ref();
+            let answer = footing.map(|footing| footing.answer(&velocity, &holds));
+            round += 1;
+            match answer {
+                Some(answer)
+                    if round < GROUND_ROUNDS
+                        && footing::let_go(motion, &loads, &answer, &mut holds) => {}
+                answer => return Part { gained, answer },
+            }
+        }
+    }
+
+    /// The velocities at the end of a part of a step.
+    fn solve(&self, reduced: &Reduced, seen: &Seen<'_>) -> Vec<f64> {
+        let Seen {
+            from,
+            now,
+            weights,
+            bare,
+            part_s,
+        } = *seen;
         let freedom = |k: usize| Freedom {
             index: k,
             position: from[k],
@@ -146,19 +209,18 @@ impl Freedoms<'_> {
                     self.resistance(k, &load)
                 })
                 .collect();
-            let mut inertia = bare.clone();
+            let mut inertia = reduced.inertia.clone();
+            let mut momentum = reduced.momentum.clone();
+            let mut freedoms = freedoms.clone();
             for (k, resistance) in resistances.iter().enumerate() {
-                inertia.add(k, k, f64::from(resistance.armature).max(1e-9));
+                let armature = f64::from(resistance.armature).max(1e-9);
+                inertia.add(k, k, armature);
+                momentum[k] += armature * now[k];
+                freedoms[k].inertia += armature;
             }
-            let own = |freedom: &Freedom| Freedom {
-                inertia: inertia.get(freedom.index, freedom.index),
-                ..*freedom
-            };
-            let freedoms: Vec<Freedom> = freedoms.iter().map(own).collect();
-            let falling = inertia.factor().solve(&bias);
             let velocity = Problem {
+                free: inertia.factor().solve(&momentum),
                 inertia,
-                free: plus(now, &falling, -part_s),
                 elements: self.elements(&freedoms, &resistances),
                 dt_s: part_s,
             }
@@ -166,7 +228,7 @@ impl Freedoms<'_> {
             sweep += 1;
             let settled = self.drivers.resist.is_none() || velocity == ends;
             if settled || sweep == FRICTION_SWEEPS {
-                return rate(now, &velocity, part_s);
+                return velocity;
             }
             ends = velocity;
         }

@@ -95,7 +95,9 @@ pub(crate) fn exert(engine: &mut Engine, tree: &Tree, drivers: &Drivers<'_>) -> 
 /// Gives every body all that acts on it, the reactions of its joints included: rapier's rows, which are solved in turn and
 /// would give way under a long chain, then find nothing left to do.
 fn carry(engine: &mut Engine, tree: &Tree, joints: &[&Joint], course: &Course) {
-    let (wrenches, root) = course.middle.wrenches(&course.gained);
+    let (wrenches, root) = course
+        .middle
+        .wrenches(&course.gained, course.answer.as_ref());
     let handles = joints.iter().map(|joint| joint.child_handle);
     let all = handles
         .zip(wrenches)

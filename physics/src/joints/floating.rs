@@ -10,10 +10,11 @@ use glam::DVec3;
 /// R. Featherstone, Rigid Body Dynamics Algorithms (2008), 9.4: floating bases, here with the root's freedoms eliminated
 /// (Schur's complement).
 pub(super) struct Floating {
-    whole: Lump,
+    /// The tree as one body.
+    pub(super) whole: Lump,
     factor: Factor,
     /// Linear and angular momentum about the centre of mass of all for each unit of a joint's velocity. Shape (freedom, 6).
-    columns: Vec<[f64; 6]>,
+    pub(super) columns: Vec<[f64; 6]>,
 }
 
 fn six(linear: DVec3, angular: DVec3) -> [f64; 6] {
@@ -22,7 +23,7 @@ fn six(linear: DVec3, angular: DVec3) -> [f64; 6] {
     ]
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -38,13 +39,6 @@ impl Floating {
             .zip(carried)
             .filter(|(axis, _)| axis.parent.is_none());
         let whole = children.fold(*root, |whole, (_, mass)| whole.with(mass));
-        let mut own = Inertia::zero(6);
-        for k in 0..3 {
-            own.set(k, k, whole.mass);
-            for j in 0..3 {
-                own.set(3 + k, 3 + j, whole.inertia.col(j)[k]);
-            }
-        }
         // About the centre of mass of all, linear and angular momentum are apart.
         let columns = momenta
             .iter()
@@ -58,7 +52,7 @@ impl Floating {
             .collect();
         Self {
             whole,
-            factor: own.factor(),
+            factor: six_by_six(&whole).factor(),
             columns,
         }
     }
@@ -73,8 +67,19 @@ impl Floating {
         }
     }
 
+    /// What the six freedoms resist with.
+    pub(super) fn inertia(&self) -> Inertia {
+        six_by_six(&self.whole)
+    }
+
+    /// The six velocities of a root whose centre of mass moves like this.
+    pub(super) fn before(&self, root: &Moving, velocity: DVec3) -> [f64; 6] {
+        let there = velocity + root.angular.cross(self.whole.center - root.center);
+        six(there, root.angular)
+    }
+
     /// A load about the origin as what the six freedoms feel.
-    fn felt(&self, load: &Wrench) -> [f64; 6] {
+    pub(super) fn felt(&self, load: &Wrench) -> [f64; 6] {
         six(
             load.force,
             load.moment - self.whole.center.cross(load.force),
@@ -89,17 +94,10 @@ impl Floating {
         }
     }
 
-    /// How the root accelerates under a load when the joints accelerate like this.
-    pub(super) fn answer(&self, load: &Wrench, accelerations: &[f64], root: &Moving) -> Moving {
-        let mut felt = self.felt(load);
-        for (column, acceleration) in self.columns.iter().zip(accelerations) {
-            for (felt, part) in felt.iter_mut().zip(column) {
-                *felt += part * acceleration;
-            }
-        }
-        let answer = self.factor.solve(&felt);
-        let linear = -DVec3::new(answer[0], answer[1], answer[2]);
-        let angular = -DVec3::new(answer[3], answer[4], answer[5]);
+    /// The root when its six velocities change like this, per second.
+    pub(super) fn accelerated(&self, root: &Moving, gained: &[f64; 6]) -> Moving {
+        let linear = DVec3::new(gained[0], gained[1], gained[2]);
+        let angular = DVec3::new(gained[3], gained[4], gained[5]);
         Moving {
             acceleration: root.acceleration
                 + linear
@@ -108,4 +106,15 @@ impl Floating {
             ..*root
         }
     }
+}
+
+fn six_by_six(whole: &Lump) -> Inertia {
+    let mut own = Inertia::zero(6);
+    for k in 0..3 {
+        own.set(k, k, whole.mass);
+        for j in 0..3 {
+            own.set(3 + k, 3 + j, whole.inertia.col(j)[k]);
+        }
+    }
+    own
 }

@@ -7,6 +7,7 @@ mod drive;
 mod element;
 mod exert;
 mod floating;
+mod footing;
 mod frame;
 mod latch;
 mod motion;

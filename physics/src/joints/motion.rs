@@ -6,6 +6,7 @@
 
 use super::convex::Inertia;
 use super::floating::Floating;
+use super::footing::Answer;
 use super::support::{self, Support};
 use dwell_scene::JointKind;
 use glam::{DMat3, DVec3};
@@ -130,6 +131,8 @@ pub(super) struct Motion {
     pub(super) root: Moving,
     /// The root's own mass if it is free to answer, its joints' efforts pushing back on it.
     pub(super) free_root: Option<Lump>,
+    /// The velocity of the root's centre of mass, m/s.
+    pub(super) root_velocity: DVec3,
     /// What carries a tree whose root is free.
     pub(super) supports: Vec<Support>,
     pub(super) gravity: DVec3,
@@ -154,6 +157,15 @@ impl Motion {
 
     /// What the joints resist with. Shape (freedom, freedom).
     pub(super) fn inertia(&self) -> Inertia {
+        let mut inertia = self.held_inertia();
+        if let Some(floating) = self.floating() {
+            floating.lighten(&mut inertia);
+        }
+        inertia
+    }
+
+    /// The same while the root is held. Shape (freedom, freedom).
+    pub(super) fn held_inertia(&self) -> Inertia {
         let n = self.axes.len();
         let (carried, momenta) = self.carried();
         let mut inertia = Inertia::zero(n);
@@ -165,14 +177,11 @@ impl Motion {
                 other = self.axes[j].parent;
             }
         }
-        if let Some(floating) = self.floating() {
-            floating.lighten(&mut inertia);
-        }
         inertia
     }
 
     /// How the root answers; `None` for one that does not.
-    fn floating(&self) -> Option<Floating> {
+    pub(super) fn floating(&self) -> Option<Floating> {
         let root = self.free_root.as_ref()?;
         let (carried, momenta) = self.carried();
         Some(Floating::of(root, &self.axes, &carried, &momenta))
@@ -212,15 +221,17 @@ impl Motion {
     }
 
     /// The force on each body besides its weight and what carries it, and the moment about its centre of mass besides the
-    /// gyroscopic one, with which the joints accelerate like this: those of the joints' bodies, shape (freedom,), and that
-    /// of a free root. Within a tree over a free root they add up to nothing.
-    pub(super) fn wrenches(&self, accelerations: &[f64]) -> (Vec<Wrench>, Option<Wrench>) {
-        let accelerated = self.floating().map(|floating| {
-            let loads = self.loads();
-            let root = floating.answer(&loads.root[0], accelerations, &self.root);
-            (loads.carried, root)
-        });
-        let root = accelerated.as_ref().map_or(self.root, |(_, root)| *root);
+    /// gyroscopic one, with which joints and root accelerate like this: those of the joints' bodies, shape (freedom,), and
+    /// that of a free root. Within a tree over a free root they add up to nothing.
+    pub(super) fn wrenches(
+        &self,
+        accelerations: &[f64],
+        answer: Option<&Answer>,
+    ) -> (Vec<Wrench>, Option<Wrench>) {
+        let root = match (self.floating(), answer) {
+            (Some(floating), Some(answer)) => floating.accelerated(&self.root, &answer.gained),
+            _ => self.root,
+        };
         let moving = self.moving_over(root, accelerations);
         let wrench = |body: &Moving, lump: &Lump| Wrench {
             force: body.acceleration * lump.mass - self.gravity * lump.heavy,
@@ -232,23 +243,21 @@ impl Motion {
             .map(|(body, lump)| wrench(body, lump))
             .collect();
         let mut of_root = self.free_root.as_ref().map(|lump| wrench(&root, lump));
-        if let (Some((forces, _)), Some(own)) = (&accelerated, &self.free_root) {
-            for (support, force) in self.supports.iter().zip(forces) {
-                let force = DVec3::Y * *force;
+        if let (Some(answer), Some(own)) = (answer, &self.free_root) {
+            for (k, support) in self.supports.iter().enumerate() {
                 let (wrench, center) = match (support.link, &mut of_root) {
-                    (Some(k), _) => (&mut wrenches[k], self.masses[k].center),
+                    (Some(link), _) => (&mut wrenches[link], self.masses[link].center),
                     (None, Some(root)) => (root, own.center),
                     (None, None) => continue,
                 };
-                wrench.force -= force;
-                wrench.moment -= (support.at - center).cross(force);
+                *wrench = wrench.plus(&answer.wrench(k, support.at, center), -1.0);
             }
         }
         (wrenches, of_root)
     }
 
     /// What all bodies need so that no joint accelerates, and neither does the root.
-    fn loads(&self) -> Loads {
+    pub(super) fn loads(&self) -> Loads {
         let n = self.axes.len();
         let own = |body: &Moving, lump: &Lump| {
             let weight = -self.gravity * lump.heavy;
@@ -274,10 +283,8 @@ impl Motion {
             let all = links
                 .iter()
                 .fold(root[1], |all, link| all.plus(&link[1], 1.0));
-            let whole = self
-                .masses
-                .iter()
-                .fold(*lump, |whole, mass| whole.with(mass));
+            let masses = self.masses.iter();
+            let whole = masses.fold(*lump, |whole, mass| whole.with(mass));
             carried = support::forces(&self.supports, &all, whole.center);
             for (support, force) in self.supports.iter().zip(&carried) {
                 let force = DVec3::Y * *force;
@@ -286,9 +293,7 @@ impl Motion {
                     Some(k) => &mut links[k],
                     None => &mut root,
                 };
-                for load in load {
-                    *load = load.plus(&Wrench { force, moment }, -1.0);
-                }
+                load[1] = load[1].plus(&Wrench { force, moment }, -1.0);
             }
         }
         for k in (0..n).rev() {
@@ -308,26 +313,26 @@ impl Motion {
         }
     }
 
-    /// The efforts that keep every joint from accelerating, and the part of them that carries weight. A free root is
-    /// carried where it or a joint's body stands on something, and gives way otherwise.
-    pub(super) fn bias(&self) -> (Vec<f64>, Vec<f64>) {
-        let loads = self.loads();
-        let floating = self.floating();
-        let along = |which: usize| {
-            let effort = |(axis, load): (&Axis, &[Wrench; 2])| {
-                let Wrench { force, moment } = load[which];
-                match axis.kind {
-                    JointKind::Hinge => axis.direction.dot(moment - axis.at.cross(force)),
-                    JointKind::Slide => axis.direction.dot(force),
-                }
-            };
-            let mut efforts: Vec<f64> = self.axes.iter().zip(&loads.links).map(effort).collect();
-            if let Some(floating) = &floating {
-                floating.unload(&loads.root[which], &mut efforts);
+    /// The efforts that bear the loads with motion (0) or of weight (1). Shape (freedom,).
+    pub(super) fn along(&self, loads: &Loads, which: usize) -> Vec<f64> {
+        let effort = |(axis, load): (&Axis, &[Wrench; 2])| {
+            let Wrench { force, moment } = load[which];
+            match axis.kind {
+                JointKind::Hinge => axis.direction.dot(moment - axis.at.cross(force)),
+                JointKind::Slide => axis.direction.dot(force),
             }
-            efforts
         };
-        (along(0), along(1))
+        self.axes.iter().zip(&loads.links).map(effort).collect()
+    }
+
+    /// The efforts that carry weight: a free root is carried where it or a joint's body stands on something, and gives way
+    /// otherwise. Shape (freedom,).
+    pub(super) fn weights(&self, loads: &Loads) -> Vec<f64> {
+        let mut efforts = self.along(loads, 1);
+        if let Some(floating) = self.floating() {
+            floating.unload(&loads.root[1], &mut efforts);
+        }
+        efforts
     }
 }
 
@@ -347,12 +352,12 @@ impl Wrench {
     }
 }
 
-/// Forces and moments about the world's origin, with motion and of weight alone.
-struct Loads {
+/// Forces and moments about the world's origin: with motion, and of weight and what carries it alone.
+pub(super) struct Loads {
     /// On each joint's body and all beyond it. Shape (freedom,).
-    links: Vec<[Wrench; 2]>,
+    pub(super) links: Vec<[Wrench; 2]>,
     /// On everything.
-    root: [Wrench; 2],
-    /// What each support carries, N.
-    carried: Vec<f64>,
+    pub(super) root: [Wrench; 2],
+    /// The weight on each support, N.
+    pub(super) carried: Vec<f64>,
 }

@@ -21,6 +21,7 @@ pub(super) struct Support {
     pub(super) link: Option<usize>,
     /// m.
     pub(super) at: DVec3,
+    pub(super) friction: f64,
 }
 
 /// The points where a body stands on what is not of its tree.
@@ -61,7 +62,11 @@ pub(super) fn of_body(
                         .data
                         .solver_contact_world_points(contact, &engine.bodies);
                     let at = 0.5 * (p.as_dvec3() + q.as_dvec3());
-                    supports.push(Support { link, at });
+                    supports.push(Support {
+                        link,
+                        at,
+                        friction: plane.data.friction.into(),
+                    });
                 }
             }
         }
@@ -125,6 +130,7 @@ mod tests {
         Support {
             link: None,
             at: DVec3::new(x, 0.0, z),
+            friction: 0.5,
         }
     }
 

@@ -17,6 +17,7 @@ pub(crate) struct Build {
 }
 
 /// A part to be added.
+#[derive(Clone)]
 pub(crate) struct Piece {
     pub(crate) collider: Collider,
     pub(crate) substance: &'static str,
