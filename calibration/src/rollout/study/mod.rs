@@ -40,7 +40,7 @@ pub struct StudyOptions {
     pub folds: usize,
     /// Points of a generation of the search, at least 4; default 6.
     pub population: usize,
-    /// Generations on a part of the training episodes, then on all of them; default 10 and 0.
+    /// Generations on a part of the training episodes, then on all of them; default 6 and 0.
     pub generations: [usize; 2],
     /// How many episodes that part has; default 60.
     pub first_episodes: usize,
@@ -60,7 +60,7 @@ impl Default for StudyOptions {
             threads: None,
             folds: 5,
             population: 6,
-            generations: [10, 0],
+            generations: [6, 0],
             first_episodes: 60,
             window_stride: 20,
             bootstrap_draws: 2_000,
