@@ -29,6 +29,12 @@ impl CategoryRow {
         self.movable == 1
     }
 
+    /// Mass of a usual specimen, kg; 0 where that means nothing.
+    #[cfg(test)]
+    pub(crate) fn mass_kg(&self) -> f32 {
+        self.mass_kg
+    }
+
     /// Whether it has a switch.
     pub(crate) fn is_switchable(&self) -> bool {
         self.switchable == 1

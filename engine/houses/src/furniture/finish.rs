@@ -93,6 +93,22 @@ impl Finish {
         self
     }
 
+    /// Share of substance in bars and thin plates of it: metal ones are tubes and sheets.
+    pub(crate) fn hollow(&self) -> f32 {
+        let metals = ["steel", "chrome", "brass", "aluminium"];
+        if metals.contains(&self.substance) {
+            0.15
+        } else {
+            1.0
+        }
+    }
+
+    /// Share of substance in something stuffed that it covers: the whole weighs as much as upholstery.
+    pub(crate) fn padded(&self) -> f32 {
+        let stuffed = library().get_or_default("upholstery").density_kg_m3;
+        (stuffed / self.substance().density_kg_m3).min(1.0)
+    }
+
     /// What it is made of.
     pub(crate) fn substance(&self) -> &'static Substance {
         library().get_or_default(self.substance)

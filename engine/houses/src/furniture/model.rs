@@ -262,6 +262,52 @@ impl Model {
         self
     }
 
+    /// The same model, every length `factor` times as long, of the same densities; images keep their scale.
+    #[must_use]
+    pub(crate) fn resized(mut self, factor: f32) -> Self {
+        for part in &mut self.parts {
+            let mut mesh = Mesh::clone(&part.mesh);
+            for position in &mut mesh.positions {
+                *position *= factor;
+            }
+            part.mesh = Arc::new(mesh);
+            part.mass_kg *= factor * factor * factor;
+            for collider in &mut part.colliders {
+                resize(collider, factor);
+            }
+        }
+        for joint in &mut self.joints {
+            joint.position *= factor;
+            if joint.kind == JointKind::Slide {
+                joint.open *= factor;
+                joint.initial *= factor;
+            }
+        }
+        for light in &mut self.lights {
+            light.position *= factor;
+            if let LightShape::Line { end } = &mut light.shape {
+                *end *= factor;
+            }
+        }
+        for sound in &mut self.sounds {
+            sound.position *= factor;
+        }
+        for space in &mut self.spaces {
+            space.space = Aabb::new(space.space.min * factor, space.space.max * factor);
+        }
+        self
+    }
+
+    /// The same model with `paint` on every surface whose finish is called `name`; masses stay.
+    #[must_use]
+    pub(crate) fn repainted(mut self, name: &str, paint: &Finish) -> Self {
+        let finishes = self.parts.iter_mut().flat_map(|part| &mut part.finishes);
+        for finish in finishes.filter(|finish| finish.name == name) {
+            finish.clone_from(paint);
+        }
+        self
+    }
+
     /// The box around it with all joints closed, model space.
     pub(crate) fn bounds(&self) -> Aabb {
         self.parts.iter().fold(Aabb::EMPTY, |bounds, part| {
@@ -282,6 +328,33 @@ impl Model {
             JointKind::Slide => Pose::from_position(joint.axis * joint.initial),
         };
         self.model_from_part(joint.parent) * to_axis * motion * to_axis.inverse()
+    }
+}
+
+fn resize(collider: &mut Collider, factor: f32) {
+    match collider {
+        Collider::Cuboid {
+            part_from_box,
+            half_extents,
+        } => {
+            part_from_box.position *= factor;
+            *half_extents *= factor;
+        }
+        Collider::Cylinder {
+            part_from_cylinder,
+            half_height,
+            radius,
+        } => {
+            part_from_cylinder.position *= factor;
+            *half_height *= factor;
+            *radius *= factor;
+        }
+        Collider::Ball { center, radius } => {
+            *center *= factor;
+            *radius *= factor;
+        }
+        Collider::Hull { points } => points.iter_mut().for_each(|point| *point *= factor),
+        Collider::ExactMesh => {}
     }
 }
 
@@ -337,6 +410,30 @@ impl Part {
         self.mesh.append(&solid.mesh, slot as u16);
         self.colliders.append(&mut solid.colliders);
         self
+    }
+
+    /// The same part with one more bar or plate: metal ones are tubes and sheets.
+    #[must_use]
+    pub(crate) fn with_bar(self, finish: &Finish, solid: Solid) -> Self {
+        self.with_filled(finish, solid, finish.hollow())
+    }
+
+    /// The same part with each of `solids`, bars or plates: metal ones are tubes and sheets.
+    #[must_use]
+    pub(crate) fn with_bars(
+        self,
+        finish: &Finish,
+        solids: impl IntoIterator<Item = Solid>,
+    ) -> Self {
+        solids
+            .into_iter()
+            .fold(self, |part, solid| part.with_bar(finish, solid))
+    }
+
+    /// The same part with one more stuffed shape under a cover.
+    #[must_use]
+    pub(crate) fn with_padding(self, cover: &Finish, solid: Solid) -> Self {
+        self.with_filled(cover, solid, cover.padded())
     }
 
     /// The same part with each of `solids`.

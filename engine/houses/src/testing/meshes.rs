@@ -4,9 +4,9 @@ use dwell_scene::{Aabb, Collider, Mesh};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
-/// Panics unless every edge of the mesh is met by as many faces from one side as from the other, vertices at exactly the
-/// same place counting as one.
-pub(crate) fn assert_closed(name: &str, mesh: &Mesh) {
+/// How many edges of the mesh are not met by as many faces from one side as from the other, vertices at exactly the same
+/// place counting as one.
+pub(crate) fn open_edges(mesh: &Mesh) -> usize {
     let key = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
     let mut edges: BTreeMap<([u32; 3], [u32; 3]), i32> = BTreeMap::new();
     for triangle in 0..mesh.triangles.len() {
@@ -16,8 +16,13 @@ pub(crate) fn assert_closed(name: &str, mesh: &Mesh) {
             *edges.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
         }
     }
-    let open = edges.values().filter(|count| **count != 0).count();
-    assert_eq!(open, 0, "{name}: {open} of {} edges are open", edges.len());
+    edges.values().filter(|count| **count != 0).count()
+}
+
+/// Panics unless the mesh is closed.
+pub(crate) fn assert_closed(name: &str, mesh: &Mesh) {
+    let open = open_edges(mesh);
+    assert_eq!(open, 0, "{name}: {open} edges are open");
 }
 
 /// The box around collision pieces; `None` without any.

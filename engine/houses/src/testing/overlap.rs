@@ -86,7 +86,7 @@ impl Convex {
     }
 
     /// The farthest coordinate along a unit direction.
-    fn along(&self, direction: Vec3) -> f32 {
+    pub(crate) fn along(&self, direction: Vec3) -> f32 {
         let far = self
             .points
             .iter()

@@ -2,11 +2,13 @@
 
 use crate::building::site::{Side, Site};
 use crate::furniture::finish::{
-    Finish, cloth, grey_board, oak, porcelain, terry, upholstery, walnut, white_lacquer,
+    Finish, black, brass, cloth, grey_board, oak, porcelain, terry, upholstery, walnut,
+    white_lacquer,
 };
 use crate::furniture::models::bath_things::{laundry_basket, wall_mirror};
 use crate::furniture::models::bed::Bed;
 use crate::furniture::models::bookshelf::book;
+use crate::furniture::models::cabinet::Front;
 use crate::furniture::models::decoration::{handbag, open_box, picture};
 use crate::furniture::models::dresser::Dresser;
 use crate::furniture::models::gadgets::alarm_clock;
@@ -31,7 +33,7 @@ pub(super) fn furnish(site: &mut Site<'_>) {
         width_m: 1.8,
         doors: 4,
         body: grey_board(),
-        front: white_lacquer(),
+        front: Front::plain(white_lacquer(), black()),
         ..Wardrobe::default()
     };
     let tall = site.kind(tall.build());
@@ -49,7 +51,7 @@ pub(super) fn furnish(site: &mut Site<'_>) {
     let chest = site.kind(
         Dresser {
             wood: walnut(),
-            front: walnut(),
+            front: Front::plain(walnut(), brass()),
             ..Dresser::default()
         }
         .build(),

@@ -3,11 +3,12 @@
 use crate::building::site::{Side, Site};
 use crate::furniture::finish::lampshade;
 use crate::furniture::finish::{
-    Finish, beech, cloth, painted_steel, pine, plastic, terry, upholstery, white_lacquer,
+    Finish, beech, black, cloth, painted_steel, pine, plastic, terry, upholstery, white_lacquer,
 };
 use crate::furniture::models::bath_things::pedal_bin;
 use crate::furniture::models::bed::Bed;
 use crate::furniture::models::bookshelf::{Bookshelf, SHELVES, book, book_row};
+use crate::furniture::models::cabinet::Front;
 use crate::furniture::models::decoration::{
     globe, open_box, pencil_cup, poster, teddy_bear, toy_ball, toy_block, toy_train,
 };
@@ -147,7 +148,7 @@ fn play(site: &mut Site<'_>) {
         height_m: 1.9,
         doors: 2,
         body: white_lacquer(),
-        front: beech(),
+        front: Front::plain(beech(), black()),
         ..Wardrobe::default()
     };
     let closet = site.kind(closet.build());

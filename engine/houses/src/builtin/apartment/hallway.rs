@@ -1,8 +1,11 @@
 //! The hallway.
 
 use crate::building::site::{Side, Site};
-use crate::furniture::finish::{Finish, cloth, leather, oak, porcelain, upholstery, white_lacquer};
+use crate::furniture::finish::{
+    Finish, black, cloth, leather, oak, porcelain, upholstery, white_lacquer,
+};
 use crate::furniture::models::bath_things::wall_mirror;
+use crate::furniture::models::cabinet::Front;
 use crate::furniture::models::decoration::{picture, shoes};
 use crate::furniture::models::gadgets::telephone;
 use crate::furniture::models::lamps::ceiling_dome;
@@ -40,7 +43,7 @@ pub(super) fn furnish(site: &mut Site<'_>) {
         depth_m: 0.3,
         doors: 2,
         body: white_lacquer(),
-        front: oak(),
+        front: Front::plain(oak(), black()),
     };
     let mut cupboard = cupboard.build();
     cupboard.name = "shoe_cabinet";

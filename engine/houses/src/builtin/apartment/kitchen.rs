@@ -3,11 +3,12 @@
 use crate::building::site::{Side, Site};
 use crate::furniture::finish::{Finish, granite, pine};
 use crate::furniture::finish::{
-    cloth, glass, lacquer, oak, painted_steel, plastic, porcelain, steel, terracotta,
+    black, cloth, glass, lacquer, oak, painted_steel, plastic, porcelain, steel, terracotta,
 };
 use crate::furniture::models::appliances::{coffee_machine, kettle, microwave, toaster};
 use crate::furniture::models::bath_things::{pedal_bin, soap_dispenser};
 use crate::furniture::models::bookshelf::wall_shelf;
+use crate::furniture::models::cabinet::Front;
 use crate::furniture::models::chair::Chair;
 use crate::furniture::models::cooker::{cooker, range_hood};
 use crate::furniture::models::crockery::{
@@ -51,7 +52,7 @@ fn worktops(site: &mut Site<'_>) {
     site.against(&cold, Side::North, NORTH, 6.9, 0.0);
     let narrow = KitchenUnit {
         bays: vec![Bay::Drawers],
-        front: front(),
+        front: Front::plain(front(), steel()),
         worktop: granite(),
         ..KitchenUnit::default()
     };
@@ -61,7 +62,7 @@ fn worktops(site: &mut Site<'_>) {
     let stove = site.against(&stove, Side::North, NORTH, 8.18, 0.0);
     let long = KitchenUnit {
         bays: vec![Bay::Door, Bay::Sink, Bay::Drawers, Bay::Door],
-        front: front(),
+        front: Front::plain(front(), steel()),
         ..KitchenUnit::default()
     };
     let long = site.kind(long.build());
@@ -100,10 +101,10 @@ fn worktops(site: &mut Site<'_>) {
     let dirty = site.kind(plate(0.12, &white_glaze()));
     site.put(&dirty, &long, "sink", [0.0, 0.02], 0.0);
 
-    let single = site.kind(wall_cabinet(1, 0.6, 0.7, &front()));
+    let single = site.kind(wall_cabinet(1, 0.6, 0.7, &Front::plain(front(), steel())));
     let over = site.hang(&single, Side::North, NORTH, 7.57, CABINETS_M);
     let far = site.hang(&single, Side::North, NORTH, 10.59, CABINETS_M);
-    let hood = site.kind(range_hood());
+    let hood = site.kind(range_hood(0.6));
     site.hang(&hood, Side::North, NORTH, 8.18, 1.6);
     // Crockery behind the doors.
     let dish = site.kind(plate(0.12, &white_glaze()));
@@ -126,7 +127,7 @@ fn west_side(site: &mut Site<'_>) {
         height_m: 0.88,
         depth_m: 0.44,
         wood: oak(),
-        front: front(),
+        front: Front::plain(front(), black()),
     };
     let chest = site.kind(chest.build());
     let chest = site.against(&chest, Side::West, WEST, 2.1, 0.0);

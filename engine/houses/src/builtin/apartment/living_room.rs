@@ -3,9 +3,11 @@
 use crate::building::assembly::Placed;
 use crate::building::site::{Side, Site};
 use crate::furniture::finish::{
-    Finish, cloth, lampshade, marble, oak, painted_steel, porcelain, terracotta, upholstery, walnut,
+    Finish, black, cloth, lampshade, marble, oak, painted_steel, porcelain, terracotta, upholstery,
+    walnut,
 };
 use crate::furniture::models::bookshelf::{Bookshelf, SHELVES, book, book_row, cover};
+use crate::furniture::models::cabinet::Front;
 use crate::furniture::models::chair::Chair;
 use crate::furniture::models::crockery::{bowl, plate, tumbler, white_glaze};
 use crate::furniture::models::decoration::{magazines, picture, sculpture};
@@ -229,7 +231,7 @@ fn dining(site: &mut Site<'_>) {
         width_m: 1.4,
         height_m: 0.8,
         wood: walnut(),
-        front: walnut(),
+        front: Front::plain(walnut(), black()),
         ..Lowboard::default()
     };
     let board = site.kind(board.build());

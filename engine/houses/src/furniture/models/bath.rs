@@ -8,6 +8,12 @@ use glam::Vec3;
 
 /// A washbasin on a cabinet with two doors; its tap stands at the middle of the back.
 pub(crate) fn washbasin(width_m: f32) -> Model {
+    let look = Front::plain(oak(), lacquer("black_lacquer", [38, 38, 40]));
+    washbasin_with(width_m, &look)
+}
+
+/// The same with a cabinet of another look.
+pub(crate) fn washbasin_with(width_m: f32, look: &Front) -> Model {
     let (x, z) = (0.5 * width_m, 0.23);
     let white = sanitary();
     let (rim, low, t) = (0.86, 0.74, 0.03);
@@ -24,7 +30,7 @@ pub(crate) fn washbasin(width_m: f32) -> Model {
         block([-bx, low + t, front_z], [bx, rim, z]),
     ];
     let body = Part::new("body")
-        .with_all(&oak(), carcass.boards(&[], &[]))
+        .with_all(&look.board, carcass.boards(&[], &[]))
         .with_filled(
             &white,
             basin.into_iter().fold(Solid::default(), Solid::and),
@@ -42,10 +48,6 @@ pub(crate) fn washbasin(width_m: f32) -> Model {
         );
     let face = carcass.max[2];
     let (a, b) = (carcass.min[0], carcass.max[0]);
-    let look = Front {
-        board: oak(),
-        handle: lacquer("black_lacquer", [38, 38, 40]),
-    };
     let (low_in, high_in) = carcass.space(0.0, 1.0);
     Model::articulated("washbasin", "sink")
         .part(body)
@@ -61,7 +63,7 @@ pub(crate) fn washbasin(width_m: f32) -> Model {
             [-0.5 * GAP_M, carcass.max[1]],
             face,
             true,
-            &look,
+            look,
         ))
         .hinged("left_door", [a, 0.0, face + BOARD_M], Vec3::NEG_Y, 1.7)
         .part(door(
@@ -70,7 +72,7 @@ pub(crate) fn washbasin(width_m: f32) -> Model {
             [b, carcass.max[1]],
             face,
             false,
-            &look,
+            look,
         ))
         .hinged("right_door", [b, 0.0, face + BOARD_M], Vec3::Y, 1.7)
 }

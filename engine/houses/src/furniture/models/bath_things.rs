@@ -54,12 +54,12 @@ pub(crate) fn folded_towel(cloth: &Finish) -> Model {
         .with_filled(
             cloth,
             rounded_block([-0.17, 0.0, -0.12], [0.17, 0.035, 0.12], 0.016, 2),
-            0.6,
+            0.3,
         )
         .with_filled(
             cloth,
             rounded_block([-0.165, 0.035, -0.115], [0.165, 0.07, 0.12], 0.016, 2),
-            0.6,
+            0.3,
         );
     Model::pickable("towel", "towel").part(body)
 }

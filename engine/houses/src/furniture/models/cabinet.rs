@@ -2,12 +2,15 @@
 
 use crate::furniture::finish::Finish;
 use crate::furniture::model::Part;
-use crate::furniture::shapes::{Solid, block, rod};
+use crate::furniture::shapes::{Solid, block, cylinder, frame, rod};
+use std::f32::consts::FRAC_PI_2;
 
 /// Thickness of boards, m.
 pub(super) const BOARD_M: f32 = 0.018;
 /// Thickness of back panels, m.
 const BACK_M: f32 = 0.006;
+/// Which of a carcass' boards is its top.
+pub(super) const TOP: usize = 3;
 /// Gap between neighbouring fronts, m.
 pub(super) const GAP_M: f32 = 0.005;
 
@@ -88,11 +91,54 @@ impl Carcass {
 
 /// How a front is opened.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Front {
+pub(crate) struct Front {
     /// The board's finish.
-    pub(super) board: Finish,
+    pub(crate) board: Finish,
     /// The handle's finish.
-    pub(super) handle: Finish,
+    pub(crate) handle: Finish,
+    /// Round knobs instead of bars.
+    pub(crate) knobs: bool,
+    /// A frame around a panel instead of a plain board.
+    pub(crate) panelled: bool,
+}
+
+impl Front {
+    /// A plain board with a bar to pull.
+    pub(crate) fn plain(board: Finish, handle: Finish) -> Self {
+        Self {
+            board,
+            handle,
+            knobs: false,
+            panelled: false,
+        }
+    }
+
+    /// Adds the frame of a panel to a leaf between two corners whose face is at `z`.
+    fn trim(&self, leaf: Part, low: [f32; 2], high: [f32; 2], z: f32) -> Part {
+        const BAR_M: f32 = 0.045;
+        let (width, height) = (high[0] - low[0], high[1] - low[1]);
+        if !self.panelled || width.min(height) < 3.2 * BAR_M {
+            return leaf;
+        }
+        let (x, y) = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]));
+        let shade = Finish {
+            srgb: self.board.srgb.map(|c| (f32::from(c) * 0.88) as u8),
+            ..self.board.clone()
+        };
+        let edge = BAR_M + 0.004;
+        leaf.with(
+            &self.board,
+            frame(width, height, BAR_M, 0.005).at(x, y, z).untouchable(),
+        )
+        .with(
+            &shade,
+            block(
+                [low[0] + edge, low[1] + edge, z],
+                [high[0] - edge, high[1] - edge, z + 0.0015],
+            )
+            .untouchable(),
+        )
+    }
 }
 
 /// A door in front of a carcass: from the lower left corner (x, y) to the upper right one, its back at z. The handle is an
@@ -118,10 +164,22 @@ pub(super) fn door(
     };
     let half = 0.07_f32.min(0.3 * (high[1] - low[1]));
     let face = z + BOARD_M;
-    Part::new(name).with(&front.board, leaf).with(
-        &front.handle,
-        upright_handle(x, middle - half, middle + half, face),
-    )
+    let pull = if front.knobs {
+        knob(x, middle, face)
+    } else {
+        upright_handle(x, middle - half, middle + half, face)
+    };
+    front
+        .trim(Part::new(name).with(&front.board, leaf), low, high, face)
+        .with(&front.handle, pull)
+}
+
+/// A round knob on the face at `z`.
+fn knob(x: f32, y: f32, z: f32) -> Solid {
+    let stem = cylinder(0.006, 0.014, 8).untouchable();
+    stem.and(cylinder(0.014, 0.014, 14).at(0.0, 0.012, 0.0))
+        .about_x(FRAC_PI_2)
+        .at(x, y, z)
 }
 
 /// An upright bar handle on the face at `z`.
@@ -173,21 +231,17 @@ pub(super) fn drawer(
     let wood = crate::furniture::finish::pine();
     let face = z + BOARD_M;
     let half = 0.08_f32.min(0.25 * (high[0] - low[0]));
-    Part::new(name)
-        .with(
-            &front.board,
-            block([low[0], low[1], z], [high[0], high[1], face]),
-        )
+    let (x, y) = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]));
+    let pull = if front.knobs {
+        knob(x, y, face)
+    } else {
+        level_handle(x, y, face, half)
+    };
+    let leaf = block([low[0], low[1], z], [high[0], high[1], face]);
+    front
+        .trim(Part::new(name).with(&front.board, leaf), low, high, face)
         .with_all(&wood, walls)
-        .with(
-            &front.handle,
-            level_handle(
-                0.5 * (low[0] + high[0]),
-                0.5 * (low[1] + high[1]),
-                face,
-                half,
-            ),
-        )
+        .with(&front.handle, pull)
 }
 
 /// The free space in a [`drawer`].

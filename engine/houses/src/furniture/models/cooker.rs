@@ -71,15 +71,16 @@ pub(crate) fn cooker() -> Model {
 }
 
 /// A hood on the wall over a cooker; y = 0 is its lower edge.
-pub(crate) fn range_hood() -> Model {
+pub(crate) fn range_hood(width_m: f32) -> Model {
+    let x = 0.5 * width_m;
     let shine = steel();
     let skirt = [
-        [-0.3, 0.0],
-        [0.3, 0.0],
-        [0.3, 0.06],
+        [-x, 0.0],
+        [x, 0.0],
+        [x, 0.06],
         [0.12, 0.22],
         [-0.12, 0.22],
-        [-0.3, 0.06],
+        [-x, 0.06],
     ];
     let body = Part::new("body")
         .with_filled(

@@ -179,7 +179,7 @@ pub(crate) fn pan(radius_m: f32) -> Model {
 pub(crate) fn jar(height_m: f32, body: &Finish, lid: &Finish) -> Model {
     let r = 0.32 * height_m;
     let part = Part::new("body")
-        .with_filled(body, cylinder(r, 0.86 * height_m, 20), 0.08)
+        .with_filled(body, cylinder(r, 0.86 * height_m, 20), 0.2)
         .with_filled(
             lid,
             cylinder(r * 1.04, 0.14 * height_m, 20).at(0.0, 0.86 * height_m, 0.0),

@@ -3,7 +3,7 @@
 use crate::furniture::finish::{Finish, black, leather, oak, paper, pine, plastic, upholstery};
 use crate::furniture::model::{Model, Part};
 use crate::furniture::shapes::{
-    ball, block, cone, cylinder, frame, lathe, panel, ring, rod, rounded_block, tube,
+    ball, block, cone, cylinder, frame, lathe, loft, oval, panel, ring, rod, rounded_block, tube,
 };
 use crate::furniture::textures::Srgb;
 use std::f32::consts::FRAC_PI_2;
@@ -180,28 +180,28 @@ pub(crate) fn toy_train() -> Model {
 /// A pair of shoes side by side.
 pub(crate) fn shoes(hide: &Finish) -> Model {
     let sole = plastic("sole", [60, 52, 46]);
-    let side = [
-        [-0.14, 0.014],
-        [0.14, 0.014],
-        [0.14, 0.04],
-        [0.06, 0.065],
-        [0.0, 0.1],
-        [-0.13, 0.105],
-    ];
+    let inside = plastic("shoe_lining", [30, 28, 28]);
     let mut body = Part::new("body");
     for x in [-0.06, 0.06] {
-        let upper = crate::furniture::shapes::extrude(&side, 0.09)
-            .about_y(-FRAC_PI_2)
-            .at(x + 0.045, 0.0, 0.0);
-        body = body.with_filled(hide, upper, 0.3).with(
-            &sole,
-            rounded_block(
-                [x - 0.048, 0.0, -0.145],
-                [x + 0.048, 0.014, 0.145],
-                0.006,
-                1,
-            ),
-        );
+        let outline = |half_x: f32, half_z: f32, y: f32, z: f32| oval(half_x, half_z, y, z, 20);
+        let foot = loft(&[
+            outline(0.044, 0.14, 0.0, 0.0),
+            outline(0.046, 0.143, 0.016, 0.0),
+        ]);
+        let upper = loft(&[
+            outline(0.043, 0.138, 0.016, 0.0),
+            outline(0.042, 0.13, 0.045, -0.006),
+            outline(0.037, 0.096, 0.068, -0.038),
+            outline(0.033, 0.062, 0.1, -0.07),
+        ]);
+        let opening = loft(&[
+            outline(0.027, 0.054, 0.1, -0.07),
+            outline(0.027, 0.054, 0.1006, -0.07),
+        ]);
+        body = body
+            .with_filled(hide, upper.at(x, 0.0, 0.0), 0.3)
+            .with(&inside, opening.at(x, 0.0, 0.0).untouchable())
+            .with_filled(&sole, foot.at(x, 0.0, 0.0), 0.6);
     }
     Model::pickable("shoes", "shoes").part(body)
 }

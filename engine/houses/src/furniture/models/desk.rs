@@ -17,6 +17,7 @@ pub(crate) struct Desk {
     pub(crate) height_m: f32,
     pub(crate) top: Finish,
     pub(crate) body: Finish,
+    pub(crate) front: Front,
 }
 
 impl Default for Desk {
@@ -27,6 +28,7 @@ impl Default for Desk {
             height_m: 0.74,
             top: oak(),
             body: white_lacquer(),
+            front: Front::plain(white_lacquer(), black()),
         }
     }
 }
@@ -69,10 +71,7 @@ impl Desk {
             [-x, self.height_m, -z],
             [x, self.height_m + 0.6, z],
         );
-        let front = Front {
-            board: self.body.clone(),
-            handle: black(),
-        };
+        let front = self.front.clone();
         let face = carcass.max[2];
         for (k, name) in ["upper_drawer", "middle_drawer", "lower_drawer"]
             .into_iter()

@@ -17,7 +17,7 @@ pub(crate) struct Dresser {
     pub(crate) depth_m: f32,
     pub(crate) rows: usize,
     pub(crate) wood: Finish,
-    pub(crate) front: Finish,
+    pub(crate) front: Front,
 }
 
 impl Default for Dresser {
@@ -28,7 +28,7 @@ impl Default for Dresser {
             depth_m: 0.45,
             rows: 3,
             wood: walnut(),
-            front: walnut(),
+            front: Front::plain(walnut(), brass()),
         }
     }
 }
@@ -70,10 +70,7 @@ impl Dresser {
             [-x, self.height_m, -z],
             [x, self.height_m + 0.6, z],
         );
-        let front = Front {
-            board: self.front.clone(),
-            handle: brass(),
-        };
+        let front = self.front.clone();
         let half = carcass.max[0];
         for (k, name) in NAMES.into_iter().take(2 * self.rows).enumerate() {
             let left = if k % 2 == 0 { -half } else { 0.0 };

@@ -2,7 +2,7 @@
 
 use crate::furniture::finish::{Finish, beech, black, steel};
 use crate::furniture::model::{Model, Part};
-use crate::furniture::shapes::{block, lathe, rod, rounded_block};
+use crate::furniture::shapes::{block, lathe, loft, oval, rod, rounded_block};
 
 /// An apple, a pear or an orange: a round fruit with a stalk; its colours are ground, blush, freckle.
 pub(crate) fn fruit(radius_m: f32, skin: &Finish) -> Model {
@@ -114,12 +114,10 @@ pub(crate) fn cutlery(name: &'static str) -> Model {
             .and(block([-0.012, 0.0, -0.1], [-0.008, 0.003, -0.06]))
             .and(block([-0.002, 0.0, -0.1], [0.002, 0.003, -0.06]))
             .and(block([0.008, 0.0, -0.1], [0.012, 0.003, -0.06])),
-        _ => block([-0.004, 0.0, -0.05], [0.004, 0.003, 0.0]).and(rounded_block(
-            [-0.02, 0.0, -0.105],
-            [0.02, 0.007, -0.05],
-            0.0034,
-            1,
-        )),
+        _ => block([-0.004, 0.0, -0.05], [0.004, 0.003, 0.0]).and(loft(&[
+            oval(0.01, 0.018, 0.0, -0.077, 14),
+            oval(0.02, 0.03, 0.007, -0.077, 14),
+        ])),
     };
     Model::pickable(name, name).part(Part::new("body").with(&steel(), handle.and(head)))
 }

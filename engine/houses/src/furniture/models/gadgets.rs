@@ -172,8 +172,8 @@ pub(crate) fn wall_clock(radius_m: f32) -> Model {
         )
         .with(
             &dial,
-            panel(edge * 1.25, edge * 1.25, 0.002)
-                .at(0.0, -0.625 * edge, 0.022)
+            panel(edge, edge, 0.002)
+                .at(0.0, -0.5 * edge, 0.022)
                 .untouchable(),
         );
     Model::fixed("wall_clock", "clock")

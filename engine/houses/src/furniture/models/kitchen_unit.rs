@@ -1,6 +1,6 @@
 //! Fitted kitchens: base units with worktop and sink, and cabinets on the wall.
 
-use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, door, drawer, drawer_space};
+use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, TOP, door, drawer, drawer_space};
 use crate::furniture::finish::{Finish, black, granite, lacquer, steel};
 use crate::furniture::model::{Model, Part};
 use crate::furniture::shapes::{Solid, block};
@@ -29,7 +29,7 @@ pub(crate) struct KitchenUnit {
     pub(crate) bay_m: f32,
     /// From left to right as one stands before it, at most four.
     pub(crate) bays: Vec<Bay>,
-    pub(crate) front: Finish,
+    pub(crate) front: Front,
     pub(crate) worktop: Finish,
 }
 
@@ -39,7 +39,7 @@ impl Default for KitchenUnit {
         Self {
             bay_m: 0.6,
             bays: vec![Bay::Drawers, Bay::Sink, Bay::Door],
-            front,
+            front: Front::plain(front, steel()),
             worktop: granite(),
         }
     }
@@ -64,9 +64,12 @@ impl KitchenUnit {
         };
         let face = carcass.max[2];
         let walls: Vec<f32> = (1..count).map(|k| k as f32 / count as f32).collect();
+        // The worktop is the lid: a board below it would go through the sink.
+        let mut boards = carcass.boards(&[], &walls);
+        boards.remove(TOP);
         let mut body = Part::new("body")
             .with(&black(), block([-x, 0.0, -z + 0.02], [x, 0.1, face - 0.04]))
-            .with_all(&carcass_board(), carcass.boards(&[], &walls));
+            .with_all(&carcass_board(), boards);
         let left_of = |k: usize| -x + self.bay_m * k as f32;
         // The worktop has a hole for each sink.
         let mut start = -x;
@@ -74,13 +77,13 @@ impl KitchenUnit {
             let middle = left_of(k) + 0.5 * self.bay_m;
             let (a, b) = (middle - 0.25, middle + 0.25);
             body = body
-                .with(&self.worktop, block([start, under, -z], [a, WORKTOP_M, z]))
-                .with(&self.worktop, block([a, under, -z], [b, WORKTOP_M, -0.19]))
-                .with(&self.worktop, block([a, under, 0.21], [b, WORKTOP_M, z]))
+                .with_bar(&self.worktop, block([start, under, -z], [a, WORKTOP_M, z]))
+                .with_bar(&self.worktop, block([a, under, -z], [b, WORKTOP_M, -0.19]))
+                .with_bar(&self.worktop, block([a, under, 0.21], [b, WORKTOP_M, z]))
                 .with_all(&steel(), basin(middle));
             start = b;
         }
-        body = body.with(&self.worktop, block([start, under, -z], [x, WORKTOP_M, z]));
+        body = body.with_bar(&self.worktop, block([start, under, -z], [x, WORKTOP_M, z]));
         let mut model = Model::articulated("kitchen_unit", "kitchen_set").part(body);
         // Worktop left and right of the sink, and the basin.
         let sink = self
@@ -112,10 +115,7 @@ impl KitchenUnit {
                 [middle + 0.23, WORKTOP_M, 0.19],
             );
         }
-        let front = Front {
-            board: self.front.clone(),
-            handle: steel(),
-        };
+        let front = self.front.clone();
         for (k, bay) in self.bays.iter().take(count).enumerate() {
             let (a, b) = (left_of(k) + 0.5 * GAP_M, left_of(k + 1) - 0.5 * GAP_M);
             let inside = (
@@ -174,8 +174,15 @@ fn basin(middle: f32) -> Vec<Solid> {
     ]
 }
 
+const SHELVES: [[&str; 2]; 4] = [
+    ["lower_shelf", "upper_shelf"],
+    ["lower_shelf_2", "upper_shelf_2"],
+    ["lower_shelf_3", "upper_shelf_3"],
+    ["lower_shelf_4", "upper_shelf_4"],
+];
+
 /// Cabinets on the wall: `doors` doors of `door_m` width; y = 0 is their lower edge.
-pub(crate) fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &Finish) -> Model {
+pub(crate) fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &Front) -> Model {
     const DEPTH_M: f32 = 0.34;
     let count = doors.clamp(1, DOORS.len());
     let x = 0.5 * door_m * count as f32;
@@ -188,13 +195,17 @@ pub(crate) fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &Fin
     let (low, middle) = carcass.space(0.0, 0.5);
     let (upper, high) = carcass.space(0.5, 1.0);
     let mut model = Model::articulated("wall_cabinet", "hanging_kitchen_cabinet")
-        .part(Part::new("body").with_all(&white, carcass.boards(&[0.5], &walls)))
-        .inside("lower_shelf", low, middle)
-        .inside("upper_shelf", upper, high);
-    let look = Front {
-        board: front.clone(),
-        handle: steel(),
-    };
+        .part(Part::new("body").with_all(&white, carcass.boards(&[0.5], &walls)));
+    let look = front;
+    for (k, [lower, above]) in SHELVES.into_iter().take(count).enumerate() {
+        let (a, b) = (
+            -x + door_m * k as f32 + BOARD_M,
+            -x + door_m * (k + 1) as f32 - BOARD_M,
+        );
+        model = model
+            .inside(lower, [a, low[1], low[2]], [b, middle[1], middle[2]])
+            .inside(above, [a, upper[1], upper[2]], [b, high[1], high[2]]);
+    }
     let z = carcass.max[2];
     for (k, name) in DOORS.into_iter().take(count).enumerate() {
         let (a, b) = (-x + door_m * k as f32, -x + door_m * (k + 1) as f32);

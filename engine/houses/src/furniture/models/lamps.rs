@@ -106,7 +106,7 @@ pub(crate) fn desk_lamp(lacquer: &Finish) -> Model {
         20,
     );
     let body = Part::new("body")
-        .with(lacquer, cylinder(0.1, 0.02, 24))
+        .with_filled(lacquer, cylinder(0.1, 0.02, 24), 0.4)
         .with(
             &chrome(),
             tube(
@@ -115,7 +115,7 @@ pub(crate) fn desk_lamp(lacquer: &Finish) -> Model {
                 8,
             ),
         )
-        .with(lacquer, head.about_x(-0.25).at(0.0, 0.31, 0.05))
+        .with_filled(lacquer, head.about_x(-0.25).at(0.0, 0.31, 0.05), 0.3)
         .with(
             &milk_glass(),
             ball(0.025, 12).at(0.0, 0.34, 0.045).untouchable(),
@@ -206,8 +206,12 @@ pub(crate) fn ceiling_dome(radius_m: f32, power_w: f32) -> Model {
         28,
     );
     let body = Part::new("body")
-        .with(&chrome(), cylinder(radius_m, 0.02, 28).at(0.0, -0.02, 0.0))
-        .with_filled(&milk_glass(), glass, 0.1);
+        .with_filled(
+            &chrome(),
+            cylinder(radius_m, 0.02, 28).at(0.0, -0.02, 0.0),
+            0.1,
+        )
+        .with_filled(&milk_glass(), glass, 0.08);
     Model::fixed("ceiling_dome", "chandelier")
         .switched(true)
         .part(body)

@@ -8,6 +8,12 @@ use glam::Vec3;
 
 /// A small cupboard on legs: an open shelf below a drawer.
 pub(crate) fn nightstand(width_m: f32, height_m: f32, wood: &Finish) -> Model {
+    let front = Front::plain(wood.clone(), brass());
+    nightstand_with(width_m, height_m, wood, &front)
+}
+
+/// The same with a front of another look.
+pub(crate) fn nightstand_with(width_m: f32, height_m: f32, wood: &Finish, front: &Front) -> Model {
     const DEPTH_M: f32 = 0.38;
     const SHARE: f32 = 0.52;
     let carcass = Carcass::standing(width_m, 0.14, height_m, DEPTH_M);
@@ -22,15 +28,11 @@ pub(crate) fn nightstand(width_m: f32, height_m: f32, wood: &Finish) -> Model {
     let split = carcass.min[1] + SHARE * (height_m - carcass.min[1]);
     let (front_low, front_high) = ([-x, split], [x, height_m - 0.002]);
     let (min, max) = drawer_space(front_low, front_high, face, 0.3);
-    let front = Front {
-        board: wood.clone(),
-        handle: brass(),
-    };
     Model::articulated("nightstand", "stand")
         .part(body)
         .top("top", [-x, height_m, -face], [x, height_m + 0.6, face])
         .top("shelf", low, high)
-        .part(drawer("drawer", front_low, front_high, face, 0.3, &front))
+        .part(drawer("drawer", front_low, front_high, face, 0.3, front))
         .sliding("drawer", Vec3::Z, 0.24)
         .inside("drawer", min, max)
 }

@@ -21,13 +21,13 @@ pub(crate) fn office_chair(cloth: &Finish) -> Model {
         .with_filled(
             cloth,
             cushion([-0.24, 0.445, -0.23], [0.24, 0.52, 0.25]),
-            0.7,
+            0.7 * cloth.padded(),
         )
         .with(&dark, block([-0.03, 0.43, -0.27], [0.03, 0.72, -0.245]))
         .with_filled(
             cloth,
             cushion([-0.22, 0.62, -0.245], [0.22, 1.08, -0.175]),
-            0.7,
+            0.7 * cloth.padded(),
         );
     let mut body = body;
     for side in [-1.0, 1.0] {
@@ -66,7 +66,7 @@ pub(crate) fn stool(height_m: f32, wood: &Finish, legs: &Finish) -> Model {
     let under = height_m - 0.035;
     let mut body = Part::new("body").with(wood, cylinder(0.17, 0.035, 26).at(0.0, under, 0.0));
     for (x, z) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-        body = body.with(
+        body = body.with_bar(
             legs,
             tapered_leg(
                 [0.15 * x, 0.0, 0.15 * z],
@@ -78,7 +78,7 @@ pub(crate) fn stool(height_m: f32, wood: &Finish, legs: &Finish) -> Model {
     }
     let bar = height_m * 0.3;
     let out = 0.13;
-    body = body.with_all(
+    body = body.with_bars(
         legs,
         [
             rod([-out, bar, -out], [out, bar, -out], 0.009),
@@ -106,7 +106,7 @@ pub(crate) fn pouf(radius_m: f32, height_m: f32, cloth: &Finish) -> Model {
         (0.86 * r, h),
         (0.0, h),
     ];
-    let body = Part::new("body").with(cloth, crate::furniture::shapes::lathe(&shape, 28));
+    let body = Part::new("body").with_padding(cloth, crate::furniture::shapes::lathe(&shape, 28));
     let half = 0.5 * r;
     Model::movable("pouf", "ottoman").part(body).top(
         "top",
@@ -135,7 +135,7 @@ pub(crate) fn shoe_bench(width_m: f32, wood: &Finish, cloth: &Finish) -> Model {
                 0.02,
                 2,
             ),
-            0.5,
+            0.5 * cloth.padded(),
         );
     Model::movable("shoe_bench", "bench_chair")
         .part(body)

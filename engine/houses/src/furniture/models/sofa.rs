@@ -50,17 +50,17 @@ impl Sofa {
         let inner = 0.5 * self.seat_width_m * self.seats as f32;
         let (x, z) = (inner + ARM_M, 0.5 * self.depth_m);
         let mut body = Part::new("body")
-            .with(
+            .with_padding(
                 &self.cover,
-                rounded_block([-x, 0.12, -z], [x, 0.28, z - 0.03], 0.03, 2),
+                rounded_block([-x, 0.12, -z], [x, 0.28, z - 0.03], 0.03, 1),
             )
-            .with(
+            .with_padding(
                 &self.cover,
                 rounded_block([-x, 0.28, -z], [x, self.back_m - 0.06, -z + 0.16], 0.06, 2),
             );
         for side in [-1.0_f32, 1.0] {
             let (a, b) = (side * x, side * inner);
-            body = body.with(
+            body = body.with_padding(
                 &self.cover,
                 rounded_block(
                     [a.min(b), 0.28, -z + 0.16],
@@ -81,11 +81,11 @@ impl Sofa {
             let left = -inner + self.seat_width_m * k as f32 + 0.004;
             let right = left + self.seat_width_m - 0.008;
             body = body
-                .with(
+                .with_padding(
                     &self.cover,
                     cushion([left, 0.28, -z + 0.16], [right, 0.45, z]),
                 )
-                .with(
+                .with_padding(
                     &self.cover,
                     cushion([left, 0.44, -z + 0.15], [right, self.back_m, -z + 0.34]),
                 );

@@ -63,7 +63,7 @@ impl Table {
         );
         for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
             let (a, b) = (sx * (x - inset), sz * (z - inset));
-            body = body.with(
+            body = body.with_bar(
                 &self.legs,
                 tapered_leg([a, 0.0, b], [a, under, b], self.leg_m * 0.7, self.leg_m),
             );
@@ -76,11 +76,11 @@ impl Table {
         for side in [-1.0_f32, 1.0] {
             let (bz, bx) = (side * (z - inset), side * (x - inset));
             body = body
-                .with(
+                .with_bar(
                     &self.legs,
                     block([-ax, low, bz - 0.01], [ax, under, bz + 0.01]),
                 )
-                .with(
+                .with_bar(
                     &self.legs,
                     block([bx - 0.01, low, -az], [bx + 0.01, under, az]),
                 );

@@ -84,8 +84,11 @@ pub(crate) fn folded_blanket(width_m: f32, depth_m: f32, cloth: &Finish) -> Mode
         let slack = 0.006 * (k % 2) as f32;
         rounded_block([-x + slack, y, -z], [x, y + 0.028, z - slack], 0.012, 1)
     };
-    Model::pickable("folded_blanket", "blanket")
-        .part(Part::new("body").with_all(cloth, (0..3).map(layer)))
+    Model::pickable("folded_blanket", "blanket").part(
+        (0..3).map(layer).fold(Part::new("body"), |part, fold| {
+            part.with_filled(cloth, fold, 0.4)
+        }),
+    )
 }
 
 /// A clothes rack on the wall: hooks on a board with a coat and a scarf; y = 0 is the board's middle.

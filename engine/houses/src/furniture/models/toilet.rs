@@ -58,7 +58,9 @@ pub(crate) fn toilet() -> Model {
             cylinder(0.022, 0.01, 16).at(0.0, 0.79, -z + 0.08),
         )
         .with(&seat, plate(0.4, 0.415));
-    let lid = Part::new("lid").with_filled(&seat, plate(0.417, 0.435), 0.5);
+    // The lid ends a little behind its hinge, so that it turns clear of the seat.
+    let cover = [0.417, 0.435].map(|y| outline(0.187, back + 0.024, z, y));
+    let lid = Part::new("lid").with_filled(&seat, loft(&cover), 0.5);
     Model::articulated("toilet", "toilet")
         .switched(false)
         .part(body)

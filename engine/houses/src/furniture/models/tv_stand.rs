@@ -18,7 +18,7 @@ pub(crate) struct Lowboard {
     /// m.
     pub(crate) depth_m: f32,
     pub(crate) wood: Finish,
-    pub(crate) front: Finish,
+    pub(crate) front: Front,
 }
 
 impl Default for Lowboard {
@@ -30,7 +30,7 @@ impl Default for Lowboard {
             height_m: 0.46,
             depth_m: 0.42,
             wood: oak(),
-            front: white_lacquer(),
+            front: Front::plain(white_lacquer(), black()),
         }
     }
 }
@@ -62,10 +62,7 @@ impl Lowboard {
                 [-middle, lower[1], lower[2]],
                 [middle, upper[1], upper[2]],
             );
-        let front = Front {
-            board: self.front.clone(),
-            handle: black(),
-        };
+        let front = self.front.clone();
         for (name, left) in [("left_door", true), ("right_door", false)] {
             let near = if left {
                 carcass.min[0]

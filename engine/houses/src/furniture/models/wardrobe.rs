@@ -17,7 +17,7 @@ pub(crate) struct Wardrobe {
     pub(crate) depth_m: f32,
     pub(crate) doors: usize,
     pub(crate) body: Finish,
-    pub(crate) front: Finish,
+    pub(crate) front: Front,
 }
 
 impl Default for Wardrobe {
@@ -28,7 +28,7 @@ impl Default for Wardrobe {
             depth_m: 0.58,
             doors: 3,
             body: white_lacquer(),
-            front: oak(),
+            front: Front::plain(oak(), black()),
         }
     }
 }
@@ -51,13 +51,10 @@ impl Wardrobe {
         let (shelf_low, shelf_high) = carcass.space(0.84, 1.0);
         let mut model = Model::articulated("wardrobe", "wardrobe_cabinet")
             .part(body)
-            .inside("inside", low, high)
+            .inside("inside", low, [high[0], rail - 0.03, high[2]])
             .inside("hat_shelf", shelf_low, shelf_high)
             .top("top", [-x, self.height_m, -z], [x, self.height_m + 0.4, z]);
-        let front = Front {
-            board: self.front.clone(),
-            handle: black(),
-        };
+        let front = self.front.clone();
         let count = self.doors.min(NAMES.len());
         let step = self.width_m / count as f32;
         for (k, name) in NAMES.into_iter().take(count).enumerate() {

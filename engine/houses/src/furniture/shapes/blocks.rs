@@ -56,7 +56,12 @@ pub(crate) fn rounded_block(min: [f32; 3], max: [f32; 3], radius_m: f32, steps: 
         let border = |j: usize| {
             radius * dwell_scene::math::tan(std::f32::consts::FRAC_PI_4 * j as f32 / steps as f32)
         };
-        if k <= steps {
+        // The ends are exact, so that neighbouring sides meet.
+        if k == 0 {
+            -half
+        } else if k == count - 1 {
+            half
+        } else if k <= steps {
             -(half - radius + border(steps - k))
         } else {
             half - radius + border(k - steps - 1)

@@ -7,12 +7,14 @@ use super::smooth::smooth_normals;
 use dwell_scene::{Collider, Mesh, math};
 use glam::{Vec2, Vec3};
 
-/// Grid lines along each edge.
+/// Grid lines along each edge of a pillow.
 const LINES: usize = 9;
+/// Grid lines along each edge of a cushion: a sofa has six.
+const CUSHION_LINES: usize = 6;
 
-/// Grid line `k` in -1 to 1: denser towards the rims, exactly symmetric.
-fn line(k: usize) -> f32 {
-    let t = 2.0 * k as f32 / (LINES - 1) as f32 - 1.0;
+/// Grid line `k` of `count` in -1 to 1: denser towards the rims, exactly symmetric.
+fn line(k: usize, count: usize) -> f32 {
+    let t = (2.0 * k as f32 - (count - 1) as f32) / (count - 1) as f32;
     t * (1.5 - 0.5 * t * t)
 }
 
@@ -23,8 +25,9 @@ pub(crate) fn cushion(min: [f32; 3], max: [f32; 3]) -> Solid {
     let mut mesh = Mesh::default();
     // The points of a cube, pulled in to |x|^8 + |y|^8 + |z|^8 = 1.
     for [axis, right, up] in SIDES {
-        add_grid(&mut mesh, LINES, LINES, |i, j| {
-            let cube = axis + right * line(i) + up * line(j);
+        add_grid(&mut mesh, CUSHION_LINES, CUSHION_LINES, |i, j| {
+            let at = |k| line(k, CUSHION_LINES);
+            let cube = axis + right * at(i) + up * at(j);
             let power = |x: f32, n: f32| math::pow(x.abs(), n);
             let round = power(cube.x, 8.0) + power(cube.y, 8.0) + power(cube.z, 8.0);
             let on_unit = cube * math::pow(round, -1.0 / 8.0);
@@ -55,7 +58,7 @@ pub(crate) fn pillow(size_m: [f32; 3]) -> Solid {
     let mut mesh = Mesh::default();
     for side in [1.0_f32, -1.0] {
         add_grid(&mut mesh, LINES, LINES, |i, j| {
-            let (s, t) = (line(i), -side * line(j));
+            let (s, t) = (line(i, LINES), -side * line(j, LINES));
             let position = place(s, t, side);
             Vertex {
                 position,

@@ -16,6 +16,7 @@ mod revolve;
 mod sheet;
 mod smooth;
 mod solid;
+mod trough;
 mod tube;
 mod vessel;
 
@@ -30,6 +31,7 @@ pub(crate) use loft::{loft, oval};
 pub(crate) use revolve::{ball, cone, cylinder, lathe};
 pub(crate) use sheet::panel;
 pub(crate) use solid::{Solid, turn};
+pub(crate) use trough::trough;
 pub(crate) use tube::{ring, rod, tube};
 pub(crate) use vessel::vessel;
 

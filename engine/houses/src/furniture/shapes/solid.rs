@@ -64,6 +64,13 @@ impl Solid {
         self
     }
 
+    /// The same shape, which nobody sees: it stands for many thin things in collisions.
+    #[must_use]
+    pub(crate) fn unseen(mut self) -> Self {
+        self.mesh = Mesh::default();
+        self
+    }
+
     /// Both shapes.
     #[must_use]
     pub(crate) fn and(mut self, other: Self) -> Self {

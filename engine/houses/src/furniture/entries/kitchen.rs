@@ -1,0 +1,298 @@
+//! Fitted kitchens, their appliances, and crockery.
+
+use crate::furniture::draw::Draw;
+use crate::furniture::finish::{Finish, glass, painted_steel, paper, plastic, steel};
+use crate::furniture::model::Model;
+use crate::furniture::models::kitchen_unit::{Bay, KitchenUnit, wall_cabinet as cabinets};
+use crate::furniture::models::{appliances, cooker, crockery, food, fridge, taps};
+use crate::furniture::style::Style;
+use dwell_scene::random::Key;
+
+/// The casing of an appliance: the style's, or white, or steel.
+fn casing(style: &Style, d: &Draw, name: &'static str) -> Finish {
+    let white = Finish {
+        name,
+        srgb: [238, 239, 240],
+        ..style.appliance.clone()
+    };
+    let metal = Finish {
+        name,
+        srgb: [172, 174, 178],
+        ..style.appliance.clone()
+    };
+    match d.below("casing", 4) {
+        0 => white,
+        1 => metal,
+        _ => Finish {
+            name,
+            ..style.appliance.clone()
+        },
+    }
+}
+
+fn run(style: &Style, bay_m: f32, bays: Vec<Bay>) -> Model {
+    KitchenUnit {
+        bay_m,
+        bays,
+        front: style.kitchen_doors(),
+        worktop: style.worktop.clone(),
+    }
+    .build()
+}
+
+pub(in crate::furniture) fn base_unit(style: &Style, key: Key) -> Model {
+    let d = Draw::new("base_unit", key);
+    run(
+        style,
+        d.m("width"),
+        vec![d.of("bay", [Bay::Door, Bay::Drawers])],
+    )
+}
+
+pub(in crate::furniture) fn sink_unit(style: &Style, key: Key) -> Model {
+    let d = Draw::new("sink_unit", key);
+    run(style, d.m("width"), vec![Bay::Sink])
+}
+
+pub(in crate::furniture) fn kitchen_unit(style: &Style, key: Key) -> Model {
+    let d = Draw::new("kitchen_unit", key);
+    let other = d.of("other", [Bay::Door, Bay::Drawers]);
+    let bays = match d.below("order", 3) {
+        0 => vec![Bay::Drawers, Bay::Sink, other],
+        1 => vec![other, Bay::Drawers, Bay::Sink],
+        _ => vec![Bay::Sink, Bay::Door, Bay::Drawers],
+    };
+    run(style, d.m("width") / 3.0, bays)
+}
+
+pub(in crate::furniture) fn wall_cabinet(style: &Style, key: Key) -> Model {
+    let d = Draw::new("wall_cabinet", key);
+    let width = d.m("width");
+    let doors = if width > 0.62 { 2 } else { 1 };
+    cabinets(
+        doors,
+        width / doors as f32,
+        d.m("height"),
+        &style.kitchen_doors(),
+    )
+}
+
+pub(in crate::furniture) fn refrigerator(style: &Style, key: Key) -> Model {
+    let d = Draw::new("refrigerator", key);
+    let case = casing(style, &d, "fridge_casing");
+    fridge::refrigerator(d.m("width"), d.m("height"), d.m("depth")).repainted("fridge_white", &case)
+}
+
+pub(in crate::furniture) fn stove(style: &Style, key: Key) -> Model {
+    let d = Draw::new("cooker", key);
+    cooker::cooker().repainted("cooker_steel", &casing(style, &d, "cooker_casing"))
+}
+
+pub(in crate::furniture) fn range_hood(_style: &Style, key: Key) -> Model {
+    let d = Draw::new("range_hood", key);
+    let shine = if d.chance("dark", 0.3) {
+        painted_steel("hood_black", [44, 44, 47])
+    } else {
+        Finish {
+            name: "hood_steel",
+            ..steel()
+        }
+    };
+    cooker::range_hood(d.m("width")).repainted("steel", &shine)
+}
+
+pub(in crate::furniture) fn microwave(style: &Style, key: Key) -> Model {
+    let d = Draw::new("microwave", key);
+    appliances::microwave()
+        .resized(d.m("width") / 0.48)
+        .repainted("microwave_white", &casing(style, &d, "microwave_casing"))
+}
+
+pub(in crate::furniture) fn washer(style: &Style, key: Key) -> Model {
+    let d = Draw::new("washer", key);
+    appliances::washer().repainted("washer_white", &casing(style, &d, "washer_casing"))
+}
+
+pub(in crate::furniture) fn kettle(style: &Style, key: Key) -> Model {
+    let d = Draw::new("kettle", key);
+    let tone = style.cloth(&mut d.stream("tone")).srgb;
+    let body = match d.below("body", 3) {
+        0 => painted_steel("kettle_enamel", tone),
+        1 => painted_steel("kettle_white", [236, 236, 232]),
+        _ => Finish {
+            name: "kettle_steel",
+            ..steel()
+        },
+    };
+    appliances::kettle()
+        .resized(d.m("height") / 0.22)
+        .repainted("steel", &body)
+}
+
+pub(in crate::furniture) fn toaster(style: &Style, key: Key) -> Model {
+    let d = Draw::new("toaster", key);
+    let tone = style.cloth(&mut d.stream("tone")).srgb;
+    let case = plastic(
+        "toaster_case",
+        d.of(
+            "case",
+            [tone, [232, 218, 186], [52, 54, 58], [190, 193, 197]],
+        ),
+    );
+    appliances::toaster()
+        .resized(d.m("height") / 0.18)
+        .repainted("cream_plastic", &case)
+}
+
+pub(in crate::furniture) fn coffee_machine(style: &Style, key: Key) -> Model {
+    let d = Draw::new("coffee_machine", key);
+    let tone = style.cloth(&mut d.stream("tone")).srgb;
+    let case = plastic(
+        "coffee_machine_case",
+        d.of("case", [tone, [54, 56, 60], [196, 198, 202], [150, 36, 38]]),
+    );
+    appliances::coffee_machine()
+        .resized(d.m("height") / 0.33)
+        .repainted("anthracite_plastic", &case)
+}
+
+pub(in crate::furniture) fn mixer_tap(style: &Style, key: Key) -> Model {
+    let d = Draw::new("mixer_tap", key);
+    let metal = Finish {
+        name: "tap_metal",
+        substance: "chrome",
+        ..style.metal.clone()
+    };
+    let tap = taps::mixer_tap(d.m("height"), d.m("reach"));
+    if d.chance("metal", 0.3) {
+        tap.repainted("chrome", &metal)
+    } else {
+        tap
+    }
+}
+
+pub(in crate::furniture) fn bottle(_style: &Style, key: Key) -> Model {
+    let d = Draw::new("bottle", key);
+    let body = Finish {
+        srgb: d.of("glass", [[52, 92, 60], [110, 60, 40], [186, 206, 214]]),
+        ..glass()
+    };
+    let label = paper(
+        "bottle_label",
+        d.of(
+            "label",
+            [
+                [240, 240, 236],
+                [226, 206, 150],
+                [150, 40, 44],
+                [60, 90, 70],
+            ],
+        ),
+    );
+    let cap = painted_steel(
+        "bottle_cap",
+        d.of(
+            "cap",
+            [[168, 171, 175], [150, 40, 44], [40, 44, 50], [190, 156, 84]],
+        ),
+    );
+    crockery::bottle(d.m("height"), &body, &label, &cap)
+}
+
+pub(in crate::furniture) fn bowl(style: &Style, key: Key) -> Model {
+    let d = Draw::new("bowl", key);
+    crockery::bowl(0.5 * d.m("width"), style.glaze(&mut d.stream("glaze")))
+}
+
+pub(in crate::furniture) fn jar(style: &Style, key: Key) -> Model {
+    let d = Draw::new("jar", key);
+    let lid = if d.chance("wood", 0.5) {
+        style.wood.clone()
+    } else {
+        steel()
+    };
+    crockery::jar(d.m("height"), style.glaze(&mut d.stream("glaze")), &lid)
+}
+
+pub(in crate::furniture) fn mug(style: &Style, key: Key) -> Model {
+    let d = Draw::new("mug", key);
+    crockery::mug(style.glaze(&mut d.stream("glaze"))).resized(d.m("height") / 0.095)
+}
+
+pub(in crate::furniture) fn plate(style: &Style, key: Key) -> Model {
+    let d = Draw::new("plate", key);
+    crockery::plate(0.5 * d.m("width"), style.glaze(&mut d.stream("glaze")))
+}
+
+pub(in crate::furniture) fn pan(_style: &Style, key: Key) -> Model {
+    let d = Draw::new("pan", key);
+    let iron = painted_steel(
+        "pan_metal",
+        d.of("metal", [[40, 40, 42], [168, 171, 175], [150, 60, 40]]),
+    );
+    crockery::pan(0.5 * d.m("depth")).repainted("black_steel", &iron)
+}
+
+pub(in crate::furniture) fn pot(style: &Style, key: Key) -> Model {
+    let d = Draw::new("pot", key);
+    let tone = style.cloth(&mut d.stream("tone")).srgb;
+    let metal = if d.chance("enamel", 0.5) {
+        painted_steel("pot_enamel", tone)
+    } else {
+        steel()
+    };
+    crockery::pot(0.5 * d.m("depth"), &metal)
+}
+
+pub(in crate::furniture) fn tumbler(_style: &Style, key: Key) -> Model {
+    crockery::tumbler().resized(Draw::new("tumbler", key).m("height") / 0.12)
+}
+
+pub(in crate::furniture) fn utensils(style: &Style, key: Key) -> Model {
+    let d = Draw::new("utensils", key);
+    let cup = Finish {
+        name: "beaker",
+        substance: "steel",
+        ..style.glaze(&mut d.stream("cup")).clone()
+    };
+    crockery::utensils()
+        .resized(d.m("height") / 0.31)
+        .repainted("steel", &cup)
+}
+
+pub(in crate::furniture) fn bread(_style: &Style, key: Key) -> Model {
+    food::bread().resized(Draw::new("bread", key).m("width") / 0.26)
+}
+
+pub(in crate::furniture) fn cutting_board(style: &Style, key: Key) -> Model {
+    let d = Draw::new("cutting_board", key);
+    let wood = &style.wood;
+    let board = food::cutting_board().resized(d.m("width") / 0.38);
+    if wood.pattern.is_some() && wood.tile_m > 0.0 {
+        board.repainted("beech", wood)
+    } else {
+        board
+    }
+}
+
+pub(in crate::furniture) fn fruit(_style: &Style, key: Key) -> Model {
+    let d = Draw::new("fruit", key);
+    let skins = [food::red_skin(), food::green_skin(), food::orange_skin()];
+    food::fruit(0.5 * d.m("width"), &skins[d.below("skin", 3)])
+}
+
+pub(in crate::furniture) fn knife_block(_style: &Style, key: Key) -> Model {
+    food::knife_block().resized(Draw::new("knife_block", key).m("height") / 0.31)
+}
+
+pub(in crate::furniture) fn knife(_style: &Style, key: Key) -> Model {
+    food::cutlery("knife").resized(Draw::new("knife", key).m("depth") / 0.21)
+}
+
+pub(in crate::furniture) fn fork(_style: &Style, key: Key) -> Model {
+    food::cutlery("fork").resized(Draw::new("fork", key).m("depth") / 0.2)
+}
+
+pub(in crate::furniture) fn spoon(_style: &Style, key: Key) -> Model {
+    food::cutlery("spoon").resized(Draw::new("spoon", key).m("depth") / 0.205)
+}

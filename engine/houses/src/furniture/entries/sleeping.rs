@@ -1,0 +1,77 @@
+//! Beds and what stands in bedrooms.
+
+use crate::furniture::draw::Draw;
+use crate::furniture::model::Model;
+use crate::furniture::models::bed::Bed;
+use crate::furniture::models::nightstand::nightstand_with;
+use crate::furniture::models::textiles;
+use crate::furniture::models::wardrobe::Wardrobe;
+use crate::furniture::style::Style;
+use dwell_scene::random::Key;
+
+fn bed(style: &Style, d: &Draw) -> Model {
+    let covered = d.chance("covered", 0.4);
+    Bed {
+        mattress_m: [d.m("width") - 0.14, d.m("depth") - 0.13],
+        head_m: d.m("height"),
+        wood: style.any_wood(&mut d.stream("wood")).clone(),
+        headboard: covered.then(|| style.cover(&mut d.stream("head")).clone()),
+        blanket: style.cloth(&mut d.stream("blanket")).clone(),
+        ..Bed::default()
+    }
+    .build()
+}
+
+pub(in crate::furniture) fn double_bed(style: &Style, key: Key) -> Model {
+    bed(style, &Draw::new("double_bed", key))
+}
+
+pub(in crate::furniture) fn single_bed(style: &Style, key: Key) -> Model {
+    bed(style, &Draw::new("single_bed", key))
+}
+
+pub(in crate::furniture) fn nightstand(style: &Style, key: Key) -> Model {
+    let d = Draw::new("nightstand", key);
+    let wood = style.any_wood(&mut d.stream("wood"));
+    nightstand_with(d.m("width"), d.m("height"), wood, &style.doors())
+}
+
+pub(in crate::furniture) fn wardrobe(style: &Style, key: Key) -> Model {
+    let d = Draw::new("wardrobe", key);
+    let width = d.m("width");
+    Wardrobe {
+        width_m: width,
+        height_m: d.m("height"),
+        depth_m: d.m("depth"),
+        doors: ((width / 0.48).round() as usize).clamp(2, 4),
+        body: style.any_wood(&mut d.stream("wood")).clone(),
+        front: style.doors(),
+    }
+    .build()
+}
+
+pub(in crate::furniture) fn pillow(style: &Style, key: Key) -> Model {
+    let d = Draw::new("pillow", key);
+    textiles::pillow(
+        [d.m("width"), d.m("height"), d.m("depth")],
+        &style.cloths[0],
+    )
+}
+
+pub(in crate::furniture) fn cushion(style: &Style, key: Key) -> Model {
+    let d = Draw::new("cushion", key);
+    let edge = d.m("width");
+    textiles::pillow(
+        [edge, d.m("height"), edge],
+        style.cloth(&mut d.stream("cloth")),
+    )
+}
+
+pub(in crate::furniture) fn folded_blanket(style: &Style, key: Key) -> Model {
+    let d = Draw::new("folded_blanket", key);
+    textiles::folded_blanket(
+        d.m("width"),
+        d.m("depth"),
+        style.cloth(&mut d.stream("cloth")),
+    )
+}

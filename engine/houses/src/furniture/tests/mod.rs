@@ -1,0 +1,6 @@
+//! What must hold for every entry of the catalogue, in every style, whatever is drawn.
+
+mod bodies;
+mod cases;
+mod joints;
+mod sizes;
