@@ -8,36 +8,55 @@ use crate::furniture::models::bookshelf::Bookshelf;
 use crate::furniture::models::desk::Desk;
 use crate::furniture::models::dresser::Dresser;
 use crate::furniture::models::plants::{Plant, deep_green, fresh_green};
-use crate::furniture::models::sofa::Sofa;
+use crate::furniture::models::sofa::{Arm, Sofa};
+use crate::furniture::models::table::Table;
 use crate::furniture::models::tv_stand::Lowboard;
 use crate::furniture::models::{lamps, plants, radio, seats, television, textiles};
-use crate::furniture::style::Style;
+use crate::furniture::style::{Leg, Style};
 use dwell_scene::random::Key;
+
+/// Builds and proportions that seats of one family share.
+fn seat(style: &Style, d: &Draw, cover: Finish) -> Sofa {
+    let arm = match style.leg {
+        Leg::Turned => d.of("arm", [Arm::Rolled, Arm::Rolled, Arm::Block]),
+        Leg::Metal => Arm::Block,
+        Leg::Tapered | Leg::Square => d.of("arm", [Arm::Block, Arm::Block, Arm::Wood]),
+    };
+    Sofa {
+        arm,
+        arm_m: match arm {
+            Arm::Block => d.range("arm_m", 0.09, 0.2),
+            Arm::Rolled => d.range("arm_m", 0.14, 0.19),
+            Arm::Wood => 0.06,
+        },
+        arm_top_m: d.range("arm_top", 0.54, 0.65),
+        leg_m: d.range("leg", 0.07, 0.18),
+        depth_m: d.m("depth"),
+        back_m: d.m("height"),
+        wood: style.wood.clone(),
+        ..Sofa::armchair(cover)
+    }
+}
 
 pub(in crate::furniture) fn sofa(style: &Style, key: Key) -> Model {
     let d = Draw::new("sofa", key);
-    let width = d.m("width");
-    // Seats of 0.55 to 0.77 m between two arms.
-    let seats = (((width - 0.3) / 0.62).round() as usize).clamp(2, 3);
+    let family = seat(style, &d, style.cover(&mut d.stream("cover")).clone());
+    let width = d.m("width") - 2.0 * family.arm_m;
+    let seats = ((width / 0.64).round() as usize).clamp(2, 3);
     Sofa {
         seats,
-        seat_width_m: (width - 0.3) / seats as f32,
-        depth_m: d.m("depth"),
-        back_m: d.m("height"),
-        cover: style.cover(&mut d.stream("cover")).clone(),
-        wood: style.wood.clone(),
+        seat_width_m: width / seats as f32,
+        ..family
     }
     .build()
 }
 
 pub(in crate::furniture) fn armchair(style: &Style, key: Key) -> Model {
     let d = Draw::new("armchair", key);
+    let family = seat(style, &d, style.cover(&mut d.stream("cover")).clone());
     Sofa {
-        seat_width_m: d.m("width") - 0.3,
-        depth_m: d.m("depth"),
-        back_m: d.m("height"),
-        wood: style.wood.clone(),
-        ..Sofa::armchair(style.cover(&mut d.stream("cover")).clone())
+        seat_width_m: d.m("width") - 2.0 * family.arm_m,
+        ..family
     }
     .build()
 }
@@ -71,6 +90,19 @@ pub(in crate::furniture) fn shoe_bench(style: &Style, key: Key) -> Model {
 pub(in crate::furniture) fn desk(style: &Style, key: Key) -> Model {
     let d = Draw::new("desk", key);
     let wood = style.any_wood(&mut d.stream("wood")).clone();
+    if d.chance("plain", 0.3) {
+        return Table {
+            name: "writing_table",
+            category: "desk",
+            size_m: [d.m("width"), d.m("depth")],
+            height_m: d.m("height"),
+            top: wood,
+            legs: style.leg_finish().clone(),
+            leg_m: 0.055,
+            ..Table::default()
+        }
+        .build();
+    }
     let same = d.chance("one_wood", 0.5);
     Desk {
         width_m: d.m("width"),
@@ -154,11 +186,16 @@ pub(in crate::furniture) fn loudspeaker(style: &Style, key: Key) -> Model {
 
 pub(in crate::furniture) fn floor_lamp(style: &Style, key: Key) -> Model {
     let d = Draw::new("floor_lamp", key);
+    let cloth = shade(style, &d);
+    if d.chance("tripod", 0.35) {
+        let legs = style.any_wood(&mut d.stream("legs"));
+        return lamps::tripod_lamp(d.m("height"), legs, &cloth);
+    }
     let foot = Finish {
         name: "lamp_foot",
         ..style.metal.clone()
     };
-    lamps::floor_lamp(d.m("height"), &shade(style, &d)).repainted("black_plastic", &foot)
+    lamps::floor_lamp(d.m("height"), &cloth).repainted("black_plastic", &foot)
 }
 
 pub(in crate::furniture) fn table_lamp(style: &Style, key: Key) -> Model {
@@ -230,10 +267,11 @@ pub(in crate::furniture) fn rug(style: &Style, key: Key) -> Model {
     let d = Draw::new("rug", key);
     let [a, b] = ["ground", "border"].map(|tone| style.cloth(&mut d.stream(tone)).srgb);
     let pattern = d.stream("pattern").bits();
+    let recipe = d.of("recipe", ["rug", "rug", "stripes", "checks"]);
     let weave = Finish::picture(
         "woven_rug",
         "carpet",
-        "rug",
+        recipe,
         [a, b, [232, 222, 200]],
         pattern,
     );

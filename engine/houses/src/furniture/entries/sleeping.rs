@@ -6,15 +6,18 @@ use crate::furniture::models::bed::Bed;
 use crate::furniture::models::nightstand::nightstand_with;
 use crate::furniture::models::textiles;
 use crate::furniture::models::wardrobe::Wardrobe;
-use crate::furniture::style::Style;
+use crate::furniture::style::{Leg, Style};
 use dwell_scene::random::Key;
 
 fn bed(style: &Style, d: &Draw) -> Model {
     let covered = d.chance("covered", 0.4);
+    // Turned and heavy legs go with bars.
+    let old = matches!(style.leg, Leg::Turned | Leg::Square);
     Bed {
         mattress_m: [d.m("width") - 0.14, d.m("depth") - 0.13],
         head_m: d.m("height"),
         wood: style.any_wood(&mut d.stream("wood")).clone(),
+        barred: !covered && d.chance("barred", if old { 0.6 } else { 0.2 }),
         headboard: covered.then(|| style.cover(&mut d.stream("head")).clone()),
         blanket: style.cloth(&mut d.stream("blanket")).clone(),
         ..Bed::default()

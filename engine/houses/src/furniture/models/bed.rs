@@ -2,7 +2,7 @@
 
 use crate::furniture::finish::{Finish, cloth, oak};
 use crate::furniture::model::{Model, Part};
-use crate::furniture::shapes::{blanket, block, rounded_block, tapered_leg};
+use crate::furniture::shapes::{Solid, blanket, block, rounded_block, tapered_leg};
 
 /// A bed with a mattress, made up with a blanket; pillows are things of their own. The head is at -Z.
 #[derive(Clone, Debug)]
@@ -12,6 +12,8 @@ pub(crate) struct Bed {
     /// Height of the headboard, m.
     pub(crate) head_m: f32,
     pub(crate) wood: Finish,
+    /// Headboard of posts and bars instead of a panel.
+    pub(crate) barred: bool,
     /// Headboard, if not of wood.
     pub(crate) headboard: Option<Finish>,
     pub(crate) sheet: Finish,
@@ -24,6 +26,7 @@ impl Default for Bed {
             mattress_m: [1.6, 2.0],
             head_m: 1.05,
             wood: oak(),
+            barred: false,
             headboard: None,
             sheet: cloth("white_linen", [238, 236, 230]),
             blanket: cloth("teal_linen", [86, 120, 124]),
@@ -56,11 +59,8 @@ impl Bed {
             .with(
                 &self.wood,
                 block([-x + 0.03, 0.25, -z + 0.03], [x - 0.03, 0.27, z - 0.03]),
-            )
-            .with(
-                head,
-                rounded_block([-x, 0.12, -z - 0.06], [x, self.head_m, -z], 0.02, 2),
             );
+        body = body.with_all(head, self.head(x, z));
         for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
             let (a, b) = (sx * (x - 0.06), sz * (z - 0.07));
             body = body.with(
@@ -117,5 +117,31 @@ impl Bed {
                 [-mx, MATTRESS_TOP_M + 0.035, mz - cover + 0.25],
                 [mx, 1.2, mz - 0.1],
             )
+    }
+
+    /// The headboard behind the bed's end at (±`x`, -`z`).
+    fn head(&self, x: f32, z: f32) -> Vec<Solid> {
+        if !self.barred {
+            let panel = rounded_block([-x, 0.12, -z - 0.06], [x, self.head_m, -z], 0.02, 2);
+            return vec![panel];
+        }
+        let (back, front) = (-z - 0.05, -z);
+        let rail = |low: f32, high: f32| {
+            block(
+                [-x + 0.05, low, back + 0.01],
+                [x - 0.05, high, front - 0.01],
+            )
+        };
+        let post = |at: f32| block([at - 0.025, 0.0, back], [at + 0.025, self.head_m, front]);
+        let (low, top) = (0.42, self.head_m - 0.1);
+        let count = (2.0 * x / 0.13) as usize;
+        let bar = |k: usize| {
+            let at = -x + 0.05 + (2.0 * x - 0.1) * k as f32 / count as f32;
+            block([at - 0.012, low, -z - 0.033], [at + 0.012, top, -z - 0.017])
+        };
+        let mut solids = vec![post(-x + 0.025), post(x - 0.025)];
+        solids.extend([rail(low - 0.07, low), rail(top, self.head_m - 0.02)]);
+        solids.extend((1..count).map(bar));
+        solids
     }
 }

@@ -4,7 +4,9 @@ use super::chair::Chair;
 use crate::furniture::draw::Draw;
 use crate::furniture::finish::{Finish, painted_steel, plastic, rattan};
 use crate::furniture::model::{Model, Part};
-use crate::furniture::shapes::{block, cushion, cylinder, rod, rounded_block, tapered_leg, tube};
+use crate::furniture::shapes::{
+    block, cushion, cylinder, extrude, rod, rounded_block, tapered_leg, tube,
+};
 use crate::furniture::style::Style;
 use dwell_scene::random::Key;
 
@@ -79,27 +81,30 @@ fn shell(style: &Style, d: &Draw) -> Model {
         ],
     );
     let hull = plastic("chair_shell", tone);
+    let (half, rise) = (x - 0.03, h - seat + 0.02);
+    // A back that narrows upwards, with cut corners.
+    let outline = [
+        [-half, 0.0],
+        [half, 0.0],
+        [half, 0.45 * rise],
+        [0.86 * half, 0.85 * rise],
+        [0.6 * half, rise],
+        [-0.6 * half, rise],
+        [-0.86 * half, 0.85 * rise],
+        [-half, 0.45 * rise],
+    ];
+    let back = extrude(&outline, 0.014).about_x(-0.17);
     let mut body = Part::new("body")
         .with(
             &hull,
             rounded_block(
-                [-x + 0.02, seat - 0.018, -z + 0.06],
+                [-x + 0.02, seat - 0.022, -z + 0.05],
                 [x - 0.02, seat, z],
-                0.008,
-                1,
+                0.0105,
+                2,
             ),
         )
-        .with(
-            &hull,
-            rounded_block(
-                [-x + 0.03, 0.0, -0.007],
-                [x - 0.03, h - seat + 0.02, 0.007],
-                0.006,
-                1,
-            )
-            .about_x(-0.17)
-            .at(0.0, seat - 0.015, -z + 0.08),
-        );
+        .with(&hull, back.at(0.0, seat - 0.015, -z + 0.07));
     let legs = if d.chance("metal", 0.5) {
         &style.metal
     } else {

@@ -4,7 +4,7 @@ use crate::furniture::finish::{
     Finish, black, brass, chrome, lampshade, milk_glass, painted_steel, plastic, white_lacquer,
 };
 use crate::furniture::model::{Model, Part};
-use crate::furniture::shapes::{Solid, ball, block, cone, cylinder, lathe, rod, tube};
+use crate::furniture::shapes::{Solid, ball, block, cone, cylinder, lathe, rod, tapered_leg, tube};
 use dwell_scene::LightShape;
 use glam::Vec3;
 
@@ -51,6 +51,31 @@ pub(crate) fn floor_lamp(height_m: f32, cloth: &Finish) -> Model {
         .switched(true)
         .part(body)
         .shining([0.0, low + 0.14, 0.0], 9.0)
+}
+
+/// A lamp on three legs of wood with a drum of cloth.
+pub(crate) fn tripod_lamp(height_m: f32, wood: &Finish, cloth: &Finish) -> Model {
+    let low = height_m - 0.3;
+    let mut body = Part::new("body");
+    for k in 0..3 {
+        let (sin, cos) = dwell_scene::math::sin_cos(std::f32::consts::TAU * (k as f32 + 0.5) / 3.0);
+        let (foot, top) = (
+            [0.27 * sin, 0.0, 0.27 * cos],
+            [0.025 * sin, low + 0.02, 0.025 * cos],
+        );
+        body = body.with(wood, tapered_leg(foot, top, 0.022, 0.032));
+    }
+    let body = body
+        .with(&black(), cylinder(0.045, 0.03, 16).at(0.0, low, 0.0))
+        .with(
+            &milk_glass(),
+            ball(0.04, 14).at(0.0, low + 0.15, 0.0).untouchable(),
+        )
+        .with(cloth, shade(0.23, 0.21, 0.26).at(0.0, low + 0.04, 0.0));
+    Model::movable("tripod_lamp", "floor_lamp")
+        .switched(true)
+        .part(body)
+        .shining([0.0, low + 0.15, 0.0], 9.0)
 }
 
 /// A lamp for a bedside table or a sideboard; `base` is its foot's finish.
