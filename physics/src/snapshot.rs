@@ -26,7 +26,7 @@ use xxhash_rust::xxh3::xxh3_64;
 /// What a snapshot begins with, and what a moment begins with, which is not packed.
 const MAGIC: &[u8; 4] = b"dwph";
 const MAGIC_OF_MOMENTS: &[u8; 4] = b"dwpm";
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 /// How hard a snapshot is packed (1 to 10): further levels take twice the time for a tenth less.
 const PACKING: u8 = 1;
 /// Nothing that a packed snapshot holds is larger, bytes.

@@ -135,7 +135,11 @@ pub(crate) fn advance(
             target,
             max_effort,
             max_velocity: servo.joint_velocity(),
-            feed_forward: servo.feed_forward && gain != Gain::Effort,
+            feed_forward: if servo.feed_forward && gain != Gain::Effort {
+                1.0
+            } else {
+                0.0
+            },
             gain,
         };
         return (Some(pull), None);
@@ -148,7 +152,7 @@ pub(crate) fn advance(
         target: hand.ramp,
         max_effort: hand_effort,
         max_velocity: f32::INFINITY,
-        feed_forward: false,
+        feed_forward: 0.0,
         gain: Gain::Hand {
             frequency_rad_s: HAND_FREQUENCY_RAD_S,
             lead: speed_and_lead(kind).1,

@@ -18,8 +18,8 @@ pub(crate) struct Pull {
     pub(crate) max_effort: f32,
     /// It drives to no higher speed, rad/s or m/s; may be infinite.
     pub(crate) max_velocity: f32,
-    /// Whether the weight of what hangs on the joint is carried besides.
-    pub(crate) feed_forward: bool,
+    /// How much of the weight of what hangs on the joint is carried besides.
+    pub(crate) feed_forward: f32,
     pub(crate) gain: Gain,
 }
 
@@ -115,7 +115,7 @@ impl Freedom {
     /// A motor or a hand.
     pub(super) fn pull(&self, pull: &Pull) -> Element {
         let target = f64::from(pull.target);
-        let carry = if pull.feed_forward { self.weight } else { 0.0 };
+        let carry = f64::from(pull.feed_forward) * self.weight;
         let most = f64::from(pull.max_effort);
         let spring = |stiffness: f64, damping: f64| {
             let offset = stiffness * (target - self.position) + carry;
@@ -175,7 +175,7 @@ mod tests {
             target,
             max_effort,
             max_velocity: f32::INFINITY,
-            feed_forward: false,
+            feed_forward: 0.0,
             gain: Gain::Servo { stiffness, damping },
         }
     }

@@ -53,6 +53,7 @@ static LAWS: &[Law] = &[
     actuators::saturation::LAW,
     actuators::joint_friction::LAW,
     actuators::motor_constants::LAW,
+    actuators::compliance::LAW,
     bases::unequal_wheels::LAW,
     bases::wheel_slip::LAW,
     bases::gyro_bias_scale::LAW,

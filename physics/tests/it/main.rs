@@ -28,5 +28,6 @@ mod parameters;
 mod placing;
 mod refusals;
 mod snapshot;
+mod standing;
 mod start;
 mod truth;

@@ -5,6 +5,7 @@
 //! motor can give; and, when efforts are computed, how the joint resists.
 
 pub(super) mod backlash;
+pub(super) mod compliance;
 pub(super) mod deadband;
 pub(super) mod first_order_lag;
 pub(super) mod joint_friction;

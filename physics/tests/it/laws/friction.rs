@@ -366,3 +366,43 @@ fn torque_scale_supply_and_rotor_change_the_acceleration() {
         "{found}"
     );
 }
+
+/// Under its own weight the joint stands `compliance * torque` below where the motor is, which stands where it is told if
+/// it carries the weight ahead and `torque / stiffness` below if not.
+#[test]
+fn what_gives_deflects_in_proportion_to_the_load() {
+    for (compliance, feed_forward) in [(0.01, true), (0.05, true), (0.05, false), (0.0, false)] {
+        let mut build = Build::room([4.0, 3.0, 4.0]);
+        let arm = Piece::cuboid(Vec3::new(0.2, 0.02, 0.02), Vec3::new(2.2, 2.0, 1.0));
+        let arm = build.object("arm", Mobility::Articulated, &[arm]);
+        let at = Vec3::new(2.0, 2.0, 1.0);
+        let joint = build.joint(arm, JointKind::Hinge, Vec3::Z, at, [-1.0, 1.0]);
+        build.data.joints[joint].servo = Some(Servo {
+            stiffness: 80.0,
+            damping: 4.0,
+            max_effort: 100.0,
+            feed_forward,
+            ..Servo::default()
+        });
+        let house = build.house();
+        let mut state = State::new(&house);
+        state.laws = vec![spec(
+            "joint_compliance",
+            None,
+            &[("compliance", compliance)],
+        )];
+        let mut run = Run::from_state(house, awake(), state);
+        for target in [0.0_f64, 0.7] {
+            run.state.joint_command[joint] = JointCommand::Position(target as f32);
+            run.steps(60);
+            let q = f64::from(run.state.joint_position[joint]);
+            let torque = weight() * q.cos();
+            let servo = if feed_forward { 0.0 } else { torque / 80.0 };
+            let expected = target - compliance * torque - servo;
+            assert!(
+                (q - expected).abs() < 1e-4,
+                "{compliance} {target}: {q} {expected}"
+            );
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Compliance: gears and shafts that give between motor and joint.
+
+use super::Motors;
+use crate::error::PhysicsError;
+use crate::joints::{Gain, Pull};
+use crate::laws::{Acts, Law, value};
+use crate::model::PhysicsModel;
+use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::{JointId, LawInfo, LawSpec, State};
+
+pub(in crate::laws) const LAW: Law = Law {
+    info: LawInfo {
+        id: "joint_compliance",
+        version: 1,
+        name: "compliance of a joint's drive",
+        equation: "a motor that holds a position measures itself and acts through a spring: q = theta - compliance * effort, \
+                   effort = k (target - theta) - d dtheta/dt + carried weight, q the joint and theta the motor's end of the \
+                   spring, which has no inertia; so the joint feels the stiffness k / (1 + k compliance), the damping \
+                   d / (1 + k compliance)^2 and the part 1 / (1 + k compliance) of the carried weight. Motors told a velocity \
+                   or an effort give the same effort as without",
+        source: "M. W. Spong, Modeling and control of elastic joint robots, J. Dyn. Sys. Meas. Control 109 (1987), with a motor \
+                 lighter than what it moves",
+        engine: ActsIn::Physics,
+        acts_on: "joint",
+        params: &[ParamInfo {
+            name: "compliance",
+            unit: "rad/(N m) or m/N",
+            default: 0.0,
+            low: 0.0,
+            high: 1.0,
+            plausible: [0.001, 0.01],
+        }],
+        rivals: &["backlash", "motor_constants", "mass"],
+        separating_experiment: "hold still and hang known loads on the joint, upwards and downwards: what gives deflects in \
+                                proportion to the load and rings when it is struck; backlash jumps by the same way for every \
+                                load; a wrong torque constant or mass shows in efforts and not at a motor that carries its \
+                                weight ahead",
+    },
+    install,
+};
+
+#[derive(Clone, Debug)]
+struct Compliance {
+    motors: Motors,
+    /// rad/(N·m) or m/N.
+    compliance: f32,
+}
+
+fn install(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    _state: &State,
+) -> Result<Box<dyn Acts>, PhysicsError> {
+    Ok(Box::new(Compliance {
+        motors: Motors::of(spec, info, model)?,
+        compliance: value(spec, info, "compliance"),
+    }))
+}
+
+impl Acts for Compliance {
+    fn drives(&self) -> bool {
+        true
+    }
+
+    fn strengthen(&self, joint: JointId, pull: &mut Pull) {
+        if !self.motors.hold(joint) {
+            return;
+        }
+        if let Gain::Servo { stiffness, damping } = &mut pull.gain {
+            let part = 1.0 / (1.0 + *stiffness * self.compliance);
+            *stiffness *= part;
+            *damping *= part * part;
+            pull.feed_forward *= part;
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Acts> {
+        Box::new(self.clone())
+    }
+}
