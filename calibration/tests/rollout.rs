@@ -7,8 +7,8 @@
 
 use dwell_calibration::rollout::study::{ContactModel, ContactParameter, Peer, StudyOptions, run};
 use dwell_calibration::rollout::{
-    HORIZONS, Motion, Noise, Nominal, Regime, Rig, Settings, Start, Track, TrackedBody, Tracks,
-    Windowing, diverging, ends, scores, windows,
+    HORIZONS, Motion, Noise, Nominal, Regime, Rig, Settings, Track, TrackedBody, Tracks, Windowing,
+    diverging, ends, scores, window_start, windows,
 };
 use dwell_physics::ContactFriction;
 use dwell_scene::parallel::Threads;
@@ -61,7 +61,6 @@ fn motion(height_m: f64, linear: DVec3, angular: DVec3) -> Motion {
 }
 
 /// A parabola, and a spin about a principal axis: 0.2 mm and 0.05 degrees are a tenth of what is looked for at 40 samples.
-/// Ten first-order steps a sample shift a fall by g t dt / 2, which is taken off.
 #[test]
 fn a_flight_is_a_parabola_and_a_steady_spin() {
     let (v, w) = (DVec3::new(1.0, 1.5, -0.4), DVec3::new(0.0, 6.0, 0.0));
@@ -69,8 +68,7 @@ fn a_flight_is_a_parabola_and_a_steady_spin() {
     let found = rig(0.3).roll(&start, 40).unwrap();
     for (k, there) in found.iter().enumerate() {
         let t = (k + 1) as f64 / RATE_HZ;
-        let dt = 0.1 / RATE_HZ;
-        let fall = DVec3::NEG_Y * (0.5 * GRAVITY_M_S2 * t * (t + dt));
+        let fall = DVec3::NEG_Y * (0.5 * GRAVITY_M_S2 * t * t);
         assert!((there.position - (start.position + v * t + fall)).length() < 2e-4);
         let turned = DQuat::from_rotation_y(6.0 * t);
         assert!(there.rotation.angle_between(turned) < 1e-3, "{k}");
@@ -269,7 +267,7 @@ fn window_starts_in_flight_do_not_lag() {
         position_m: 2e-5,
         rotation_rad: 2e-4,
     };
-    let found = Start::of(&track, 20, 1.0 / RATE_HZ, GRAVITY_M_S2, &noise).motion;
+    let found = window_start(&track, 20, 1.0 / RATE_HZ, GRAVITY_M_S2, &noise, None);
     assert!((found.linear - honest[20].linear).length() < 5e-3);
     assert!((track.motions[20].linear - honest[20].linear).length() > 0.1);
     assert!((found.angular - honest[20].angular).length() < 1e-2);

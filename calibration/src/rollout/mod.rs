@@ -27,7 +27,7 @@ pub use regime::Regime;
 pub use residuals::{Quantiles, ResidualGroup, Residuals};
 pub use rig::{Rig, STEPS_PER_SAMPLE, Settings};
 pub use score::{Score, deviations, diverging, scores};
-pub use start::{Noise, Start};
+pub use start::{Noise, window_start};
 pub use subject::Subject;
 pub use summary::{Spread, Summary};
 pub use track::{Nominal, Track, TrackedBody, Tracks};

@@ -2,7 +2,7 @@
 
 use super::motion::{Deviation, Motion};
 use super::rig::Rig;
-use super::start::Start;
+use super::start::window_start;
 use super::subject::Subject;
 use super::track::{Track, Tracks};
 use crate::error::CalibrationError;
@@ -100,13 +100,22 @@ pub fn diverging(
             let rolled = rig.roll(start, samples)?;
             Ok::<_, CalibrationError>(rolled.last().copied().unwrap_or(*start))
         };
-        let (step_s, g) = (tracks.step_s(), tracks.gravity_m_s2);
-        let known = Start::of(track, track.start, step_s, g, &tracks.noise);
-        let start = known.at(track.start_motion);
-        let plain = last(&track.start_motion)?;
+        let estimate = |nudge: Option<Key>| {
+            let (step_s, g) = (tracks.step_s(), tracks.gravity_m_s2);
+            window_start(track, track.start, step_s, g, &tracks.noise, nudge)
+        };
+        let (known, plain) = (estimate(None), last(&track.start_motion)?);
         for nudge in 0..NUDGES {
-            let key = key.child(which[k] as u64).child(nudge);
-            if Deviation::between(&last(&start.nudged(key))?, &plain).exceeds(&limit) {
+            let other = estimate(Some(key.child(which[k] as u64).child(nudge)));
+            // The start that is told, moved as the noise moves an estimate of it.
+            let turned = other.rotation * known.rotation.inverse();
+            let start = Motion {
+                position: track.start_motion.position + other.position - known.position,
+                rotation: (turned * track.start_motion.rotation).normalize(),
+                linear: track.start_motion.linear + other.linear - known.linear,
+                angular: track.start_motion.angular + other.angular - known.angular,
+            };
+            if Deviation::between(&last(&start)?, &plain).exceeds(&limit) {
                 return Ok(true);
             }
         }

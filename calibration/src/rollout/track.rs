@@ -3,7 +3,7 @@
 use super::motion::{Deviation, Motion};
 use super::regime::{self, Regime};
 use super::rig::Rig;
-use super::start::{Noise, Start};
+use super::start::{Noise, window_start};
 use super::subject::Subject;
 use crate::bundle::{self, Bundle, Episode, Rates, turn};
 use crate::error::CalibrationError;
@@ -190,9 +190,9 @@ impl Subject for Tracks {
         nudge: Option<Key>,
     ) -> Result<Vec<Motion>, CalibrationError> {
         let track = &self.episodes[episode];
-        let start = Start::of(track, at, self.step_s(), self.gravity_m_s2, &self.noise);
+        let (step_s, g) = (self.step_s(), self.gravity_m_s2);
         rig.roll(
-            &nudge.map_or(start.motion, |key| start.nudged(key)),
+            &window_start(track, at, step_s, g, &self.noise, nudge),
             samples,
         )
     }
