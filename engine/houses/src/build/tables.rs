@@ -13,7 +13,15 @@ pub(crate) struct CategoryRow {
     aliases: String,
     pub(crate) nyu40_name: String,
     movable: u8,
-    switchable: u8,
+    pub(crate) switchable: u8,
+    #[cfg(test)]
+    pub(crate) openable: u8,
+    #[cfg(test)]
+    pub(crate) sounding: u8,
+    #[cfg(test)]
+    pub(crate) supports: u8,
+    #[cfg(test)]
+    pub(crate) contains: u8,
     mounted: u8,
     substances: String,
     fill: f32,

@@ -41,16 +41,16 @@ impl Entry {
     }
 }
 
-/// The entries of a kind that suit a style.
-pub(crate) fn entries_of(kind: &str, style: &Style) -> Vec<&'static Entry> {
-    let all = entries().iter();
-    all.filter(|entry| entry.kind == kind && entry.suits(style))
+/// The entries of a kind that suit a style, with their places in the list.
+pub(crate) fn entries_of(kind: &str, style: &Style) -> Vec<(usize, &'static Entry)> {
+    let all = entries().iter().enumerate();
+    all.filter(|(_, entry)| entry.kind == kind && entry.suits(style))
         .collect()
 }
 
 /// All entries.
 pub(crate) fn entries() -> &'static [Entry] {
-    const ALL: &[Entry] = &[
+    static ALL: &[Entry] = &[
         // Seats.
         entry("sofa", "sofa", living::sofa),
         entry("armchair", "armchair", living::armchair),
@@ -95,13 +95,25 @@ pub(crate) fn entries() -> &'static [Entry] {
         entry("cushion", "pillow", sleeping::cushion),
         entry("folded_blanket", "blanket", sleeping::folded_blanket),
         // Fitted kitchens.
-        entry("kitchen_unit", "kitchen_set", kitchen::kitchen_unit),
-        entry("base_unit", "kitchen_set", kitchen::base_unit),
         entry("sink_unit", "kitchen_set", kitchen::sink_unit),
+        entry("sink_unit_2", "kitchen_set", kitchen::sink_unit_2),
+        entry("sink_unit_3", "kitchen_set", kitchen::sink_unit_3),
+        entry("base_unit_1", "kitchen_set", kitchen::base_unit_1),
+        entry("base_unit_2", "kitchen_set", kitchen::base_unit_2),
         entry(
             "wall_cabinet",
             "hanging_kitchen_cabinet",
             kitchen::wall_cabinet,
+        ),
+        entry(
+            "wall_cabinet_2",
+            "hanging_kitchen_cabinet",
+            kitchen::wall_cabinet_2,
+        ),
+        entry(
+            "wall_cabinet_3",
+            "hanging_kitchen_cabinet",
+            kitchen::wall_cabinet_3,
         ),
         entry("larder", "kitchen_cabinet", storage::larder),
         entry("cooker", "cooker", kitchen::stove),
@@ -141,6 +153,7 @@ pub(crate) fn entries() -> &'static [Entry] {
         entry("shower_head", "shower", bath::shower_head),
         entry("shower_screen", "shower", bath::shower_screen),
         entry("washbasin", "sink", bath::washbasin),
+        entry("hand_basin", "sink", bath::hand_basin),
         entry("basin", "sink", bath_more::basin),
         entry("toilet", "toilet", bath::water_closet),
         entry("paper_holder", "toilet_paper", bath::paper_holder),
@@ -238,6 +251,7 @@ pub(crate) fn entries() -> &'static [Entry] {
         entry("jug", "jug", tableware::jug),
         entry("teapot", "teapot", tableware::teapot),
         entry("jar", "containers", kitchen::jar),
+        entry("clip_jar", "containers", tableware::clip_jar),
         entry("pot", "pot", kitchen::pot),
         entry("pan", "pan", kitchen::pan),
         entry("utensils", "utensil_holder", kitchen::utensils),
@@ -254,6 +268,7 @@ pub(crate) fn entries() -> &'static [Entry] {
         entry("cake", "cake", tableware::cake),
         // Small things.
         entry("plant", "plant", living::plant),
+        entry("snake_plant", "plant", living::snake_plant),
         entry("small_plant", "plant", living::small_plant),
         entry("flowers", "flowers", wear::flowers),
         entry("vase", "vase", small::vase),

@@ -32,6 +32,11 @@ pub(in crate::furniture) fn washbasin(style: &Style, key: Key) -> Model {
     bath::washbasin_with(d.m("width"), &style.doors()).repainted("white_porcelain", &ware(&d))
 }
 
+pub(in crate::furniture) fn hand_basin(style: &Style, key: Key) -> Model {
+    let d = Draw::new("hand_basin", key);
+    bath::washbasin_with(d.m("width"), &style.doors()).repainted("white_porcelain", &ware(&d))
+}
+
 pub(in crate::furniture) fn water_closet(style: &Style, key: Key) -> Model {
     let d = Draw::new("toilet", key);
     let seat = Finish {

@@ -40,8 +40,8 @@ fn run(style: &Style, bay_m: f32, bays: Vec<Bay>) -> Model {
     .build()
 }
 
-pub(in crate::furniture) fn base_unit(style: &Style, key: Key) -> Model {
-    let d = Draw::new("base_unit", key);
+pub(in crate::furniture) fn base_unit_1(style: &Style, key: Key) -> Model {
+    let d = Draw::new("base_unit_1", key);
     run(
         style,
         d.m("width"),
@@ -49,32 +49,58 @@ pub(in crate::furniture) fn base_unit(style: &Style, key: Key) -> Model {
     )
 }
 
+pub(in crate::furniture) fn base_unit_2(style: &Style, key: Key) -> Model {
+    let d = Draw::new("base_unit_2", key);
+    let bays = d.of(
+        "order",
+        [[Bay::Door, Bay::Drawers], [Bay::Drawers, Bay::Door]],
+    );
+    run(style, 0.5 * d.m("width"), bays.to_vec())
+}
+
 pub(in crate::furniture) fn sink_unit(style: &Style, key: Key) -> Model {
     let d = Draw::new("sink_unit", key);
     run(style, d.m("width"), vec![Bay::Sink])
 }
 
-pub(in crate::furniture) fn kitchen_unit(style: &Style, key: Key) -> Model {
-    let d = Draw::new("kitchen_unit", key);
+pub(in crate::furniture) fn sink_unit_2(style: &Style, key: Key) -> Model {
+    let d = Draw::new("sink_unit_2", key);
     let other = d.of("other", [Bay::Door, Bay::Drawers]);
-    let bays = match d.below("order", 3) {
-        0 => vec![Bay::Drawers, Bay::Sink, other],
-        1 => vec![other, Bay::Drawers, Bay::Sink],
-        _ => vec![Bay::Sink, Bay::Door, Bay::Drawers],
-    };
-    run(style, d.m("width") / 3.0, bays)
+    let bays = d.of("order", [[Bay::Sink, other], [other, Bay::Sink]]);
+    run(style, 0.5 * d.m("width"), bays.to_vec())
 }
 
-pub(in crate::furniture) fn wall_cabinet(style: &Style, key: Key) -> Model {
-    let d = Draw::new("wall_cabinet", key);
-    let width = d.m("width");
-    let doors = if width > 0.62 { 2 } else { 1 };
+pub(in crate::furniture) fn sink_unit_3(style: &Style, key: Key) -> Model {
+    let d = Draw::new("sink_unit_3", key);
+    let other = d.of("other", [Bay::Door, Bay::Drawers]);
+    let orders = [
+        [Bay::Drawers, Bay::Sink, other],
+        [other, Bay::Sink, Bay::Drawers],
+        [Bay::Sink, Bay::Door, Bay::Drawers],
+    ];
+    run(style, d.m("width") / 3.0, d.of("order", orders).to_vec())
+}
+
+fn cabinet(style: &Style, name: &'static str, key: Key, doors: usize) -> Model {
+    let d = Draw::new(name, key);
     cabinets(
         doors,
-        width / doors as f32,
+        d.m("width") / doors as f32,
         d.m("height"),
         &style.kitchen_doors(),
     )
+}
+
+pub(in crate::furniture) fn wall_cabinet(style: &Style, key: Key) -> Model {
+    cabinet(style, "wall_cabinet", key, 1)
+}
+
+pub(in crate::furniture) fn wall_cabinet_2(style: &Style, key: Key) -> Model {
+    cabinet(style, "wall_cabinet_2", key, 2)
+}
+
+pub(in crate::furniture) fn wall_cabinet_3(style: &Style, key: Key) -> Model {
+    cabinet(style, "wall_cabinet_3", key, 3)
 }
 
 pub(in crate::furniture) fn refrigerator(style: &Style, key: Key) -> Model {
@@ -241,7 +267,12 @@ pub(in crate::furniture) fn pot(style: &Style, key: Key) -> Model {
     } else {
         steel()
     };
-    crockery::pot(0.5 * d.m("depth"), &metal)
+    let radius = 0.5 * d.m("depth");
+    if d.chance("lid", 0.5) {
+        crockery::pot(radius, &metal)
+    } else {
+        crockery::open_pot(radius, &metal)
+    }
 }
 
 pub(in crate::furniture) fn tumbler(_style: &Style, key: Key) -> Model {

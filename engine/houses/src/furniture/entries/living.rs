@@ -181,7 +181,11 @@ pub(in crate::furniture) fn loudspeaker(style: &Style, key: Key) -> Model {
     } else {
         plain
     };
-    radio::loudspeaker(d.m("height")).repainted("walnut", &case)
+    let height = d.m("height");
+    radio::loudspeaker(height)
+        .switched(false)
+        .sounding([0.0, 0.66 * height, 0.14], "radio", 70.0)
+        .repainted("walnut", &case)
 }
 
 pub(in crate::furniture) fn floor_lamp(style: &Style, key: Key) -> Model {
@@ -223,9 +227,6 @@ pub(in crate::furniture) fn plant(style: &Style, key: Key) -> Model {
     let d = Draw::new("plant", key);
     let height = d.m("height");
     let pot = style.glaze(&mut d.stream("pot")).clone();
-    if d.chance("sword", 0.25) {
-        return plants::sansevieria(height.min(0.9), &pot);
-    }
     Plant {
         height_m: height,
         pot_m: 0.5 * d.m("pot"),
@@ -241,6 +242,11 @@ pub(in crate::furniture) fn plant(style: &Style, key: Key) -> Model {
         key: key.child("crown"),
     }
     .build()
+}
+
+pub(in crate::furniture) fn snake_plant(style: &Style, key: Key) -> Model {
+    let d = Draw::new("snake_plant", key);
+    plants::sansevieria(d.m("height"), style.glaze(&mut d.stream("pot")))
 }
 
 pub(in crate::furniture) fn small_plant(style: &Style, key: Key) -> Model {

@@ -73,7 +73,7 @@ pub(in crate::furniture) fn curtains(style: &Style, key: Key) -> Model {
 
 pub(in crate::furniture) fn radiator(_style: &Style, key: Key) -> Model {
     let d = Draw::new("radiator", key);
-    openings::radiator(d.m("width"), d.m("height"))
+    openings::radiator(d.m("width"), d.m("height")).switched(true)
 }
 
 pub(in crate::furniture) fn light_switch(_style: &Style, key: Key) -> Model {

@@ -2,7 +2,7 @@
 
 use crate::furniture::finish::{Finish, black, chrome, enamel, glass, plastic, steel};
 use crate::furniture::model::{Model, Part};
-use crate::furniture::shapes::{block, cylinder, lathe, ring, rod, rounded_block, tube};
+use crate::furniture::shapes::{Solid, block, cylinder, lathe, ring, rod, rounded_block, tube};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 
@@ -58,6 +58,7 @@ pub(crate) fn toaster() -> Model {
     Model::pickable("toaster", "toaster")
         .switched(false)
         .part(body)
+        .sounding([0.0, 0.1, 0.0], "hum", 36.0)
 }
 
 /// A filter coffee machine with its jug.
@@ -157,13 +158,58 @@ pub(crate) fn microwave() -> Model {
         .hinged("door", [-x, 0.0, z - 0.006], Vec3::NEG_Y, 1.6)
 }
 
+/// The case of a machine with a drum behind a round door: a body about the axis, `half_m` wide to either side, between two
+/// corners in (y, z), hollow around (0, `middle_m`), with a hole in its front. The last block closes the drum behind.
+pub(super) fn drum_case(half_m: f32, low: [f32; 2], high: [f32; 2], middle_m: f32) -> [Solid; 9] {
+    let (x, [base, back], [top, front]) = (half_m, low, high);
+    let (a, b, c, d) = (-DRUM_M, DRUM_M, middle_m - DRUM_M, middle_m + DRUM_M);
+    let (plate, deep) = (front - 0.05, front - 0.05 - DRUM_DEPTH_M);
+    let (left, right) = (-HOLE_M, HOLE_M);
+    let (under, over) = (middle_m - HOLE_M, middle_m + HOLE_M);
+    [
+        block([-x, base, back], [a, top, front]),
+        block([b, base, back], [x, top, front]),
+        block([a, base, back], [b, c, front]),
+        block([a, d, back], [b, top, front]),
+        block([a, c, plate], [left, d, front]),
+        block([right, c, plate], [b, d, front]),
+        block([left, c, plate], [right, under, front]),
+        block([left, over, plate], [right, d, front]),
+        block([a, c, back], [b, d, deep]),
+    ]
+}
+
+/// Half the width of a drum's free space, m.
+const DRUM_M: f32 = 0.22;
+/// Depth of a drum, m.
+const DRUM_DEPTH_M: f32 = 0.36;
+/// Half the width of the hole before a drum: a square within its round rim, m.
+const HOLE_M: f32 = 0.105;
+
+/// The free space of a drum behind a front at z = `front_m`.
+pub(super) fn drum_space(middle_m: f32, front_m: f32) -> ([f32; 3], [f32; 3]) {
+    let r = DRUM_M - 0.006;
+    (
+        [-r, middle_m - DRUM_M, front_m - 0.045 - DRUM_DEPTH_M],
+        [r, middle_m + r, front_m - 0.055],
+    )
+}
+
 /// A washing machine with a round door.
 pub(crate) fn washer() -> Model {
     let white = enamel("washer_white", [238, 239, 240]);
     let (x, h, z) = (0.298, 0.85, 0.29);
     let dark = Finish::plain("washer_window", "glass", [62, 70, 78]).clear(1.0);
+    let (case_low, case_high) = ([0.012, -z], [h, z]);
     let body = Part::new("body")
-        .with(&white, rounded_block([-x, 0.012, -z], [x, h, z], 0.01, 1))
+        .with_all(&white, drum_case(x, case_low, case_high, 0.42))
+        .with(
+            &chrome(),
+            ring(0.15, 0.006, 28)
+                .about_x(FRAC_PI_2)
+                .at(0.0, 0.42, z)
+                .untouchable(),
+        )
         .with(
             &black(),
             block([-x + 0.03, 0.0, -z + 0.03], [x - 0.03, 0.012, z - 0.03]),
@@ -195,11 +241,13 @@ pub(crate) fn washer() -> Model {
                 .about_x(FRAC_PI_2)
                 .at(0.0, 0.42, z + 0.018),
         );
+    let (low, high) = drum_space(0.42, z);
     Model::articulated("washing_machine", "washer")
         .switched(false)
         .part(body)
         .sounding([0.0, 0.42, z], "washing_machine", 62.0)
         .top("top", [-x, h, -z], [x, h + 0.5, z])
+        .inside("drum", low, high)
         .part(door)
         .hinged("door", [-0.17, 0.0, z + 0.034], Vec3::NEG_Y, 1.8)
 }

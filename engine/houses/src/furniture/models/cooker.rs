@@ -64,6 +64,7 @@ pub(crate) fn cooker() -> Model {
     Model::articulated("cooker", "cooker")
         .switched(false)
         .part(body)
+        .sounding([0.0, 0.54, face], "fan", 46.0)
         .top("hob", [-x, WORKTOP_M, -z], [x, WORKTOP_M + 0.4, z])
         .inside("oven", [-x + w, 0.508, -z + w], [x - w, 0.78, face - 0.01])
         .part(door)

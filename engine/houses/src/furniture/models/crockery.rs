@@ -86,7 +86,9 @@ pub(crate) fn bowl(radius_m: f32, glaze: &Finish) -> Model {
 /// A tumbler.
 pub(crate) fn tumbler() -> Model {
     let shell = vessel(&[(0.0, 0.0), (0.03, 0.0), (0.037, 0.12)], 0.003, 20);
-    Model::pickable("tumbler", "drinking_glass").part(Part::new("body").with(&glass(), shell))
+    Model::pickable("tumbler", "drinking_glass")
+        .part(Part::new("body").with(&glass(), shell))
+        .inside("inside", [-0.018, 0.004, -0.018], [0.018, 0.12, 0.018])
 }
 
 /// A bottle; `cap` closes it.
@@ -161,6 +163,35 @@ pub(crate) fn pot(radius_m: f32, color: &Finish) -> Model {
         .with_all(&black(), [grip(-1.0), grip(1.0)])
         .with(&black(), cylinder(0.018, 0.022, 12).at(0.0, h + 0.026, 0.0));
     Model::pickable("pot", "pot").part(body)
+}
+
+/// A cooking pot with two grips, open.
+pub(crate) fn open_pot(radius_m: f32, color: &Finish) -> Model {
+    let (r, h) = (radius_m, radius_m * 1.15);
+    let shell = vessel(
+        &[(0.0, 0.0), (0.94 * r, 0.0), (r, 0.1 * h), (r, h)],
+        0.004,
+        26,
+    );
+    let grip = |side: f32| {
+        let x = side * r;
+        let path = [
+            [x, h * 0.75, -0.04],
+            [x + side * 0.035, h * 0.78, -0.03],
+            [x + side * 0.035, h * 0.78, 0.03],
+            [x, h * 0.75, 0.04],
+        ];
+        tube(&path, 0.006, 8)
+    };
+    let body = Part::new("body")
+        .with_filled(color, shell, 0.4)
+        .with_all(&black(), [grip(-1.0), grip(1.0)]);
+    let half = 0.62 * r;
+    Model::pickable("open_pot", "pot").part(body).inside(
+        "inside",
+        [-half, 0.006, -half],
+        [half, h, half],
+    )
 }
 
 /// A frying pan, its handle towards +X.

@@ -141,7 +141,10 @@ pub(crate) fn iron(_style: &Style, key: Key) -> Model {
             &black(),
             rod([0.0, 0.02, z - 0.02], [0.0, 0.68 * h, z - 0.025], 0.015),
         );
-    Model::pickable("iron", "iron").switched(false).part(body)
+    Model::pickable("iron", "iron")
+        .switched(false)
+        .part(body)
+        .sounding([0.0, 0.5 * h, -z], "noise", 56.0)
 }
 
 /// A hair dryer lying on its side, the nozzle towards +X.
@@ -422,6 +425,7 @@ pub(crate) fn game_console(_style: &Style, key: Key) -> Model {
     Model::movable("game_console", "game_console")
         .switched(false)
         .part(body)
+        .sounding([0.0, 0.3 * h, -z], "fan", 36.0)
 }
 
 /// Headphones hung over a stand.
@@ -453,6 +457,7 @@ pub(crate) fn headphones(style: &Style, key: Key) -> Model {
     Model::pickable("headphones", "headphones")
         .switched(false)
         .part(body)
+        .sounding([r, y - 0.02, 0.0], "radio", 48.0)
 }
 
 /// A stereo: an amplifier with a record player on top.

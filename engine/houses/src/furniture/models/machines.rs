@@ -1,5 +1,6 @@
 //! Larger machines: dishwasher, dryer, water cooler, air conditioner, fans, vacuum cleaner, treadmill.
 
+use super::appliances::{drum_case, drum_space};
 use super::cabinet::level_handle;
 use crate::furniture::draw::Draw;
 use crate::furniture::finish::{Finish, black, chrome, enamel, plastic, steel};
@@ -100,12 +101,14 @@ pub(crate) fn dryer(style: &Style, key: Key) -> Model {
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth - 0.045);
     let dark = Finish::plain("dryer_window", "glass", [40, 44, 50]).clear(1.0);
-    let body = Part::new("body")
-        .with_filled(
-            &style.appliance,
-            rounded_block([-x, 0.012, -0.5 * depth], [x, h, z], 0.01, 1),
-            0.75,
-        )
+    let middle = 0.46 * h;
+    let (case_low, case_high) = ([0.012, -0.5 * depth], [h, z]);
+    let case = drum_case(x, case_low, case_high, middle);
+    let body = case
+        .into_iter()
+        .fold(Part::new("body"), |part, wall| {
+            part.with_filled(&style.appliance, wall, 0.9)
+        })
         .with(
             &black(),
             block(
@@ -127,7 +130,7 @@ pub(crate) fn dryer(style: &Style, key: Key) -> Model {
                 .about_x(FRAC_PI_2)
                 .at(0.02, h - 0.075, z + 0.004),
         );
-    let middle = 0.46 * h;
+    let (low, high) = drum_space(middle, z);
     let door = Part::new("door")
         .with_filled(
             &chrome(),
@@ -152,6 +155,7 @@ pub(crate) fn dryer(style: &Style, key: Key) -> Model {
             [-x + 0.02, h, -0.5 * depth + 0.02],
             [x - 0.02, h + 0.5, z - 0.02],
         )
+        .inside("drum", low, high)
         .part(door)
         .hinged("door", [0.2, 0.0, z + 0.03], Vec3::Y, 1.6)
 }

@@ -164,5 +164,10 @@ pub(crate) fn vase(height_m: f32, glaze: &Finish, bloom: Option<&Finish>) -> Mod
             body = body.with(&stem, leaf(0.12, 0.03, 0.5).placed(&pose));
         }
     }
-    Model::pickable("vase", "vase").part(body)
+    let neck = 0.24 * r;
+    Model::pickable("vase", "vase").part(body).inside(
+        "inside",
+        [-neck, 0.008, -neck],
+        [neck, h, neck],
+    )
 }

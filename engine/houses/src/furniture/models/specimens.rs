@@ -80,6 +80,7 @@ pub(crate) fn all() -> Vec<Model> {
         crockery::bowl(0.1, &glaze),
         crockery::jar(0.2, &glaze, &steel()),
         crockery::mug(&glaze),
+        crockery::open_pot(0.11, &steel()),
         crockery::pan(0.13),
         crockery::plate(0.13, &glaze),
         crockery::pot(0.12, &painted_steel("red", [180, 40, 40])),

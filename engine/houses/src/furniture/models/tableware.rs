@@ -7,6 +7,7 @@ use crate::furniture::model::{Model, Part};
 use crate::furniture::shapes::{ball, block, cylinder, lathe, rod, trough, tube, vessel};
 use crate::furniture::style::Style;
 use dwell_scene::random::Key;
+use glam::Vec3;
 use std::f32::consts::TAU;
 
 /// A teapot with spout, handle and lid.
@@ -204,7 +205,52 @@ pub(crate) fn wine_glass(_style: &Style, key: Key) -> Model {
     let body = Part::new("body")
         .with(&glass(), foot)
         .with(&glass(), cup.at(0.0, 0.45 * h, 0.0));
-    Model::pickable("wine_glass", "drinking_glass").part(body)
+    let half = 0.3 * r;
+    Model::pickable("wine_glass", "drinking_glass")
+        .part(body)
+        .inside("inside", [-half, 0.46 * h, -half], [half, h, half])
+}
+
+/// A jar for flour, tea or sweets; its lid turns up on a clip at the back.
+pub(crate) fn clip_jar(style: &Style, key: Key) -> Model {
+    let d = Draw::new("clip_jar", key);
+    let (w, h) = (d.m("width"), d.m("height"));
+    let (r, rim) = (0.5 * w, 0.86 * h);
+    let stuff = if d.chance("glass", 0.5) {
+        glass()
+    } else {
+        style.glaze(&mut d.stream("glaze")).clone()
+    };
+    let cover = if d.chance("wood", 0.5) {
+        style.wood.clone()
+    } else {
+        stuff.clone()
+    };
+    let shell = vessel(
+        &[
+            (0.0, 0.0),
+            (0.94 * r, 0.0),
+            (r, 0.06 * h),
+            (r, 0.97 * rim),
+            (0.96 * r, rim),
+        ],
+        0.004,
+        22,
+    );
+    let clip = block([-0.012, 0.9 * rim, -r - 0.006], [0.012, rim, -r]);
+    let body = Part::new("body").with(&stuff, shell).with(&steel(), clip);
+    let lid = Part::new("lid")
+        .with(&cover, cylinder(r, 0.09 * h, 22).at(0.0, rim + 0.001, 0.0))
+        .with(
+            &cover,
+            cylinder(0.25 * r, 0.045 * h, 14).at(0.0, 0.955 * h, 0.0),
+        );
+    let half = 0.6 * r;
+    Model::pickable("clip_jar", "containers")
+        .part(body)
+        .inside("inside", [-half, 0.006, -half], [half, rim, half])
+        .part(lid)
+        .hinged("lid", [0.0, rim + 0.001, -r], Vec3::NEG_X, 1.5)
 }
 
 /// A bowl heaped with fruit.

@@ -1,5 +1,6 @@
 //! What must hold for every entry of the catalogue, in every style, whatever is drawn.
 
+mod affordances;
 mod bodies;
 mod cases;
 mod joints;
