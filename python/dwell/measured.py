@@ -80,7 +80,12 @@ DRIVE: Row = {
     "title": "what was measured, in a line",
     "licence": "of the data",
     "notes": "",
-    "base": {"wheel_radius_m": 0.042, "wheel_base_m": 0.2, "rate_hz": 20.0, "ticks_per_turn": 2796.8},
+    "base": {
+        "wheel_radius_m": 0.042,
+        "wheel_base_m": 0.2,
+        "rate_hz": 20.0,
+        "ticks_per_turn": 2796.8,
+    },
     "episodes": {
         "file": "index.csv",
         "episode": "episode",
