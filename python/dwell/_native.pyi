@@ -112,6 +112,8 @@ class World:
     def __new__(cls, house: House, config_json: str = ..., seed: int = ...) -> Self: ...
     def step(self, controls: NDArray[np.float32]) -> None:
         """One control step; ``controls``: shape (agent, 4): forward m/s, right m/s, yaw rad/s (positive to the left), pitch rad/s (positive up)."""
+    def step_json(self, controls_json: str) -> None:
+        """One control step; ``[{"forward_m_s": 1.0, ...}, ...]``, the fields of the native ``AgentControl``."""
     def act(self, agent: int, action_json: str) -> str:
         """``{"kind": "pick", "object": "mug_1"}`` and kin; answers ``{success, code, sentence, object, pointed}``."""
     def notices_json(self) -> str:

@@ -67,6 +67,6 @@ def _plain(at: str, value: object) -> Any:  # noqa: ANN401 - any JSON value
     raise ConfigError(f"{at} is {value!r}; expected numbers, text, lists or mappings")
 
 
-def to_json(settings: Mapping[str, object]) -> str:
+def to_json(settings: Mapping[str, object] | Sequence[object]) -> str:
     """Settings as JSON text for the native side; what JSON cannot hold is refused by its place."""
     return json.dumps(_plain("", settings))

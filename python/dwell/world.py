@@ -17,6 +17,9 @@ from dwell.navigation import Navigation, Walker
 from dwell.settings import Laws, world_settings
 
 Channel = Literal["rgb", "depth", "instance", "semantic"]
+#: Ids have 32 bits.
+_MOST_IDS = 2**32 - 1
+
 JointCommand = Literal["off", "position", "velocity", "effort"]
 
 
@@ -96,7 +99,7 @@ class World:
         self,
         house: House | str,
         *,
-        agents: int = 1,
+        agents: int | Sequence[Mapping[str, Any]] = 1,
         seed: int = 0,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
@@ -106,7 +109,16 @@ class World:
 
         Args:
             house: A house or a HOUSE string.
-            agents: How many agents live in it.
+            agents: How many agents live in it, all of the default body; or a body for each, as a
+                mapping of what differs: ``radius_m``, ``height_m``, ``eye_height_m``,
+                ``step_height_m``, ``max_slope_rad``, ``mass_kg``, ``lift_kg``, ``reach_m`` and
+                ``locomotion``, which is ``{"walking": {...}}`` (``max_speed_m_s``,
+                ``max_crouched_speed_m_s``, ``crouched_height_m``),
+                ``{"differential_drive": {...}}`` (``wheel_base_m``, ``left_wheel_radius_m``,
+                ``right_wheel_radius_m``, ``max_wheel_speed_rad_s``,
+                ``max_wheel_acceleration_rad_s2``) or ``{"holonomic": {...}}``
+                (``max_forward_m_s``, ``max_sideways_m_s``, ``max_yaw_rate_rad_s``,
+                ``max_acceleration_m_s2``, ``max_yaw_acceleration_rad_s2``).
             seed: The seed of everything random.
             laws: Laws to install, as ``{"id", "version", "target", "params"}``; or what calibration
                 found (laws and parameters), as a mapping or as the path of its ``found.json``.
@@ -115,7 +127,11 @@ class World:
             **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``.
         """
         self.house = house if isinstance(house, House) else House.open(house)
-        bodies: list[dict[str, Any]] = [{}] * whole("agents", agents, high=64)
+        bodies: list[dict[str, Any]]
+        if isinstance(agents, Sequence) and not isinstance(agents, str):
+            bodies = [dict(body) for body in agents]
+        else:
+            bodies = [{}] * whole("agents", agents, high=64)
         settings = {"agents": bodies, **world_settings(laws, parameters, config)}
         self._config, self._seed = to_json(settings), whole("seed", seed)
         self._native = _native.World(self.house.native, self._config, self._seed)
@@ -143,15 +159,42 @@ class World:
         """Simulated time, s."""
         return self._native.time_s
 
-    def step(self, controls: NDArray[np.float32] | Sequence[Sequence[float]] | None = None) -> None:
+    def step(
+        self,
+        controls: NDArray[np.float32]
+        | Sequence[Sequence[float]]
+        | Sequence[Mapping[str, Any]]
+        | None = None,
+    ) -> None:
         """Makes one control step.
 
         Args:
             controls: Shape (agent, 4): forward m/s, right m/s, yaw rad/s (positive to the left),
-                pitch rad/s (positive up). ``None``: everybody stands still.
+                pitch rad/s (positive up). Legs have these velocities at once, running up to their
+                ``max_speed_m_s``; wheels go towards them as fast as they accelerate. Or a mapping
+                for each agent with ``forward_m_s``, ``right_m_s``, ``yaw_rate_rad_s``,
+                ``pitch_rate_rad_s``; ``wheel_rad_s`` (left, right) of a differential drive instead
+                of velocities; ``crouch`` of legs. Agents without one stand still, and so does
+                everybody for ``None``.
+
+        Raises:
+            ConfigError: For a field that does not exist.
+            DwellError: For numbers that are not finite, more controls than agents, or what the
+                agent's body cannot do. Nothing has happened then.
+
+        Examples:
+            >>> import dwell
+            >>> robot = {"locomotion": {"differential_drive": {"wheel_base_m": 0.4}}}
+            >>> world = dwell.World("builtin:apartment", agents=[robot])
+            >>> world.step([{"wheel_rad_s": (4.0, 4.0)}])
+            >>> world.agents()[0]["base"]["wheel_rad_s"][0] > 0.0
+            True
         """
         if controls is None:
             controls = np.zeros((len(self.agents()), 4), np.float32)
+        if not isinstance(controls, np.ndarray) and any(isinstance(c, Mapping) for c in controls):
+            self._native.step_json(to_json(list(controls)))
+            return
         self._native.step(np.ascontiguousarray(controls, np.float32))
 
     def act(
@@ -316,13 +359,29 @@ class World:
             value: The number.
 
         Raises:
+            ConfigError: For a kind that does not exist or a number that is not finite.
             UsageError: There is no such joint, or it cannot obey.
         """
-        self._native.command_joint(joint, kind, value)
+        joint = whole("joint", joint, high=_MOST_IDS)
+        self._native.command_joint(joint, kind, finite("value", value))
 
     def set_joints(self, joints: Mapping[int, tuple[float, float]]) -> None:
-        """Puts joints to a position and a velocity at once; ids as in :meth:`joints`."""
-        rows = [(joint, position, velocity) for joint, (position, velocity) in joints.items()]
+        """Puts joints to a position and a velocity at once; what hangs on them moves along.
+
+        Args:
+            joints: By id, as in :meth:`joints`: (rad or m, and per second).
+
+        Raises:
+            ConfigError: For what is no pair of finite numbers.
+            UsageError: There is no such joint. Nothing has changed then.
+        """
+        rows = []
+        for joint, stand in joints.items():
+            if not isinstance(stand, Sequence) or len(stand) != 2:
+                at = f"joint {joint!r}"
+                raise ConfigError(f"{at}: expected (position, velocity), found {stand!r}")
+            position, velocity = (finite(f"joint {joint!r}", number) for number in stand)
+            rows.append((whole("joint", joint, high=_MOST_IDS), position, velocity))
         self._native.set_joints(rows)
 
     def parameter(self, address: str) -> dict[str, Any]:

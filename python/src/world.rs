@@ -151,6 +151,13 @@ impl PyWorld {
         self.with(py, |running| Ok(running.world.step(&controls)?))
     }
 
+    fn step_json(&self, py: Python<'_>, controls_json: &str) -> PyResult<()> {
+        self.with(py, |running| {
+            let controls: Vec<AgentControl> = serde_json::from_str(controls_json)?;
+            Ok(running.world.step(&controls)?)
+        })
+    }
+
     fn act(&self, py: Python<'_>, agent: usize, action_json: &str) -> PyResult<String> {
         self.with(py, |running| {
             let agent = running.agent(agent)?;
