@@ -262,6 +262,45 @@ impl Model {
         self
     }
 
+    /// The same model with the parts, joints and sounds of another one mounted on its root at `pose`; that one's root is
+    /// called `name` here, and its switch is the whole's.
+    #[must_use]
+    pub(crate) fn mounting(mut self, other: Self, name: &'static str, pose: &Pose) -> Self {
+        let first = self.parts.len();
+        for mut part in other.parts {
+            let solid = Solid {
+                mesh: Mesh::clone(&part.mesh),
+                colliders: part.colliders,
+            };
+            let Solid { mesh, colliders } = solid.placed(pose);
+            part.mesh = Arc::new(mesh);
+            part.colliders = colliders;
+            self.parts.push(part);
+        }
+        if let Some(root) = self.parts.get_mut(first) {
+            root.name = name;
+        }
+        if !other.joints.is_empty() && self.mobility == Mobility::Fixed {
+            self.mobility = Mobility::Articulated;
+        }
+        self.joints
+            .extend(other.joints.into_iter().map(|joint| ModelJoint {
+                parent: joint.parent + first,
+                child: joint.child + first,
+                position: pose.transform_point(joint.position),
+                axis: pose.transform_vector(joint.axis),
+                ..joint
+            }));
+        self.sounds
+            .extend(other.sounds.into_iter().map(|sound| ModelSound {
+                part: sound.part + first,
+                position: pose.transform_point(sound.position),
+                ..sound
+            }));
+        self.switch = self.switch.or(other.switch);
+        self
+    }
+
     /// The same model, every length `factor` times as long, of the same densities; images keep their scale.
     #[must_use]
     pub(crate) fn resized(mut self, factor: f32) -> Self {

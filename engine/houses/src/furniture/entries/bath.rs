@@ -1,11 +1,13 @@
 //! Sanitary ware and small things of bathrooms.
 
+use super::tapped;
 use crate::furniture::draw::Draw;
 use crate::furniture::finish::{Finish, plastic, sanitary};
 use crate::furniture::model::Model;
 use crate::furniture::models::{bath, bath_things, toilet};
 use crate::furniture::style::Style;
 use dwell_scene::random::Key;
+use std::f32::consts::FRAC_PI_2;
 
 /// Sanitary ware is white, sometimes of a pale colour.
 fn ware(d: &Draw) -> Finish {
@@ -21,20 +23,28 @@ fn ware(d: &Draw) -> Finish {
     }
 }
 
-pub(in crate::furniture) fn bathtub(_style: &Style, key: Key) -> Model {
+pub(in crate::furniture) fn bathtub(style: &Style, key: Key) -> Model {
     let d = Draw::new("bathtub", key);
-    bath::bathtub(d.m("width"), d.m("depth"), d.chance("left", 0.5))
-        .repainted("white_porcelain", &ware(&d))
+    let (length, left) = (d.m("width"), d.chance("left", 0.5));
+    let tub = bath::bathtub(length, d.m("depth"), left).repainted("white_porcelain", &ware(&d));
+    let side = if left { -1.0 } else { 1.0 };
+    let at = [side * (0.5 * length - 0.045), bath::TUB_RIM_M, 0.0];
+    tapped(tub, style, &d, [0.16, 0.14], at, -side * FRAC_PI_2)
+}
+
+fn vanity(style: &Style, d: &Draw) -> Model {
+    let basin = bath::washbasin_with(d.m("width"), &style.doors());
+    let basin = basin.repainted("white_porcelain", &ware(d));
+    let sizes = [d.range("tap", 0.13, 0.2), 0.13];
+    tapped(basin, style, d, sizes, [0.0, bath::BASIN_RIM_M, -0.17], 0.0)
 }
 
 pub(in crate::furniture) fn washbasin(style: &Style, key: Key) -> Model {
-    let d = Draw::new("washbasin", key);
-    bath::washbasin_with(d.m("width"), &style.doors()).repainted("white_porcelain", &ware(&d))
+    vanity(style, &Draw::new("washbasin", key))
 }
 
 pub(in crate::furniture) fn hand_basin(style: &Style, key: Key) -> Model {
-    let d = Draw::new("hand_basin", key);
-    bath::washbasin_with(d.m("width"), &style.doors()).repainted("white_porcelain", &ware(&d))
+    vanity(style, &Draw::new("hand_basin", key))
 }
 
 pub(in crate::furniture) fn water_closet(style: &Style, key: Key) -> Model {

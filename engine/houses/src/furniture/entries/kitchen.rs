@@ -1,9 +1,12 @@
 //! Fitted kitchens, their appliances, and crockery.
 
+use super::tapped;
 use crate::furniture::draw::Draw;
 use crate::furniture::finish::{Finish, glass, painted_steel, paper, plastic, steel};
 use crate::furniture::model::Model;
-use crate::furniture::models::kitchen_unit::{Bay, KitchenUnit, wall_cabinet as cabinets};
+use crate::furniture::models::kitchen_unit::{
+    Bay, KitchenUnit, WORKTOP_M, wall_cabinet as cabinets,
+};
 use crate::furniture::models::{appliances, cooker, crockery, food, fridge, taps};
 use crate::furniture::style::Style;
 use dwell_scene::random::Key;
@@ -58,16 +61,31 @@ pub(in crate::furniture) fn base_unit_2(style: &Style, key: Key) -> Model {
     run(style, 0.5 * d.m("width"), bays.to_vec())
 }
 
+/// A run with a sink and its tap.
+fn sink(style: &Style, d: &Draw, bay_m: f32, bays: Vec<Bay>) -> Model {
+    let place = bays.iter().position(|bay| *bay == Bay::Sink).unwrap_or(0);
+    let middle = bay_m * (place as f32 + 0.5 - 0.5 * bays.len() as f32);
+    let sizes = [d.range("tap", 0.2, 0.3), d.range("reach", 0.16, 0.19)];
+    tapped(
+        run(style, bay_m, bays),
+        style,
+        d,
+        sizes,
+        [middle, WORKTOP_M, -0.24],
+        0.0,
+    )
+}
+
 pub(in crate::furniture) fn sink_unit(style: &Style, key: Key) -> Model {
     let d = Draw::new("sink_unit", key);
-    run(style, d.m("width"), vec![Bay::Sink])
+    sink(style, &d, d.m("width"), vec![Bay::Sink])
 }
 
 pub(in crate::furniture) fn sink_unit_2(style: &Style, key: Key) -> Model {
     let d = Draw::new("sink_unit_2", key);
     let other = d.of("other", [Bay::Door, Bay::Drawers]);
     let bays = d.of("order", [[Bay::Sink, other], [other, Bay::Sink]]);
-    run(style, 0.5 * d.m("width"), bays.to_vec())
+    sink(style, &d, 0.5 * d.m("width"), bays.to_vec())
 }
 
 pub(in crate::furniture) fn sink_unit_3(style: &Style, key: Key) -> Model {
@@ -78,7 +96,12 @@ pub(in crate::furniture) fn sink_unit_3(style: &Style, key: Key) -> Model {
         [other, Bay::Sink, Bay::Drawers],
         [Bay::Sink, Bay::Door, Bay::Drawers],
     ];
-    run(style, d.m("width") / 3.0, d.of("order", orders).to_vec())
+    sink(
+        style,
+        &d,
+        d.m("width") / 3.0,
+        d.of("order", orders).to_vec(),
+    )
 }
 
 fn cabinet(style: &Style, name: &'static str, key: Key, doors: usize) -> Model {

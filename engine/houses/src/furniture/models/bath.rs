@@ -6,6 +6,11 @@ use crate::furniture::model::{Model, Part};
 use crate::furniture::shapes::{Solid, block, cylinder, extrude, rod, tube};
 use glam::Vec3;
 
+/// Height of a washbasin's rim, m.
+pub(crate) const BASIN_RIM_M: f32 = 0.86;
+/// Height of a tub's rim, m.
+pub(crate) const TUB_RIM_M: f32 = 0.57;
+
 /// A washbasin on a cabinet with two doors; its tap stands at the middle of the back.
 pub(crate) fn washbasin(width_m: f32) -> Model {
     let look = Front::plain(oak(), lacquer("black_lacquer", [38, 38, 40]));
@@ -16,7 +21,7 @@ pub(crate) fn washbasin(width_m: f32) -> Model {
 pub(crate) fn washbasin_with(width_m: f32, look: &Front) -> Model {
     let (x, z) = (0.5 * width_m, 0.23);
     let white = sanitary();
-    let (rim, low, t) = (0.86, 0.74, 0.03);
+    let (rim, low, t) = (BASIN_RIM_M, 0.74, 0.03);
     let (bx, back, front_z) = (x - 0.06, -0.11, z - 0.04);
     let carcass = Carcass {
         min: [-x + 0.01, 0.24, -z],
@@ -79,7 +84,7 @@ pub(crate) fn washbasin_with(width_m: f32, look: &Front) -> Model {
 
 /// A tub along x, boxed in; its tap stands on the rim of the end where it is deep.
 pub(crate) fn bathtub(length_m: f32, width_m: f32, tap_left: bool) -> Model {
-    let (x, z, h) = (0.5 * length_m, 0.5 * width_m, 0.57);
+    let (x, z, h) = (0.5 * length_m, 0.5 * width_m, TUB_RIM_M);
     let white = sanitary();
     let (ix, iz, floor) = (x - 0.09, z - 0.07, 0.14);
     let shell = [

@@ -2,7 +2,7 @@
 
 use crate::furniture::finish::{Finish, beech, black, steel};
 use crate::furniture::model::{Model, Part};
-use crate::furniture::shapes::{block, lathe, loft, oval, rod, rounded_block};
+use crate::furniture::shapes::{block, extrude, lathe, loft, oval, rod, rounded_block};
 
 /// An apple, a pear or an orange: a round fruit with a stalk; its colours are ground, blush, freckle.
 pub(crate) fn fruit(radius_m: f32, skin: &Finish) -> Model {
@@ -108,7 +108,18 @@ pub(crate) fn knife_block() -> Model {
 pub(crate) fn cutlery(name: &'static str) -> Model {
     let handle = block([-0.006, 0.0, 0.0], [0.006, 0.0035, 0.1]);
     let head = match name {
-        "knife" => block([-0.008, 0.0, -0.11], [0.008, 0.0025, 0.0]),
+        "knife" => extrude(
+            &[
+                [-0.008, 0.0],
+                [0.008, 0.0],
+                [0.009, 0.06],
+                [0.004, 0.1],
+                [-0.005, 0.112],
+                [-0.008, 0.108],
+            ],
+            0.0025,
+        )
+        .about_x(-std::f32::consts::FRAC_PI_2),
         "fork" => block([-0.004, 0.0, -0.05], [0.004, 0.003, 0.0])
             .and(block([-0.012, 0.0, -0.06], [0.012, 0.003, -0.05]))
             .and(block([-0.012, 0.0, -0.1], [-0.008, 0.003, -0.06]))
