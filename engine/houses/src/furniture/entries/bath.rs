@@ -54,7 +54,10 @@ pub(in crate::furniture) fn water_closet(style: &Style, key: Key) -> Model {
         substance: "plastic",
         ..style.wood.clone()
     };
-    let closet = toilet::toilet().repainted("white_porcelain", &ware(&d));
+    let size = d.m("height") / 0.79;
+    let closet = toilet::toilet()
+        .resized(size)
+        .repainted("white_porcelain", &ware(&d));
     if d.chance("wooden", 0.2) && seat.pattern.is_none() {
         closet.repainted("white_plastic", &seat)
     } else {

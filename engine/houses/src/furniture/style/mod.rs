@@ -229,4 +229,21 @@ mod tests {
             }
         }
     }
+
+    /// A look that is held out has woods and covers that no training house has.
+    #[test]
+    fn held_out_styles_share_no_wood_and_no_cover_with_training() {
+        let (train, held): (Vec<_>, Vec<_>) =
+            STYLES.iter().partition(|style| style.split == Split::Train);
+        for style in held {
+            for known in &train {
+                assert_ne!(style.wood, known.wood, "{} {}", style.name, known.name);
+                for cover in &style.upholstery {
+                    let colors = known.upholstery.iter().map(|other| other.srgb);
+                    let shared = colors.into_iter().any(|color| color == cover.srgb);
+                    assert!(!shared, "{} {}: {}", style.name, known.name, cover.name);
+                }
+            }
+        }
+    }
 }

@@ -4,6 +4,8 @@ use super::cases::{Case, Summary, every_draw, every_draw_in_every_style};
 use crate::build::category;
 use crate::furniture::catalogue::entries;
 use crate::furniture::draw::{Spread, spreads};
+use crate::furniture::style::STYLES;
+use dwell_scene::random::Key;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The spreads of a model that is no kind of its own, or of the kind.
@@ -116,4 +118,27 @@ fn the_same_key_gives_the_same_bytes() {
         let same = format!("{:?}", case.model) == format!("{again:?}");
         (!same).then(|| "differs".to_owned()).into_iter().collect()
     });
+}
+
+/// Twenty houses do not have the same thing twenty times: of 20 draws at least three differ.
+#[test]
+fn other_keys_give_other_things() {
+    for entry in entries() {
+        let style = STYLES.iter().find(|style| entry.suits(style)).unwrap();
+        let different: BTreeSet<String> = (0..20)
+            .map(|number| format!("{:?}", (entry.build)(style, Key::root(number))))
+            .collect();
+        assert!(different.len() >= 3, "{}: {}", entry.kind, different.len());
+    }
+}
+
+/// The page on furniture counts what is there.
+#[test]
+fn the_page_on_furniture_counts_kinds_and_categories() {
+    let categories: BTreeSet<_> = entries().iter().map(|entry| entry.category).collect();
+    let kinds: BTreeSet<_> = entries().iter().map(|entry| entry.kind).collect();
+    let claim = format!("{} kinds of {} categories", kinds.len(), categories.len());
+    let page = include_str!("../../../../../docs/furniture.md");
+    assert!(page.contains(&claim), "the page should say {claim}");
+    assert!(categories.len() >= 84);
 }
