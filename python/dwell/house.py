@@ -37,7 +37,7 @@ class House:
         """Opens a HOUSE string.
 
         Args:
-            house: ``builtin:NAME``, or the path of a SUNCG ``house.json``, a ``.dwell`` folder, a
+            house: ``builtin:NAME``, ``seed:N``, or the path of a SUNCG ``house.json``, a ``.dwell`` folder, a
                 ``.glb``, ``.gltf`` or ``.obj`` file, a ``.scene_instance.json`` of Habitat, a
                 robot's ``.urdf`` or MuJoCo ``.xml``.
 
@@ -50,6 +50,28 @@ class House:
         """
         name = os.fspath(house)
         return cls(_native.House.open(name), (House.open, (name,)))
+
+    @classmethod
+    def generate(cls, seed: int, **spec: Any) -> House:
+        """Makes the furnished house of a seed; the same seed and spec give the same house.
+
+        Args:
+            seed: Any whole number from 0.
+            **spec: What shall not be drawn from the seed: ``home`` (``"studio"``, ``"apartment"``,
+                ``"house"``, ``"office"``), ``storeys`` (1 to 3), ``area_m2``, ``rooms`` (names such as
+                ``"living_room"``), ``adjacency`` (pairs of them), ``style``, ``furniture_density`` and
+                ``clutter`` (0 to 1), ``doors`` (``"open"``, ``"closed"``, ``"ajar"``, ``"mixed"``),
+                ``split`` (``"train"``, ``"val"``, ``"test"``, ``"all"``: which looks it may have).
+
+        Returns:
+            The house; what was given up stands in ``info()["report"]``.
+
+        Raises:
+            HouseError: A field cannot be had; the message names it and says what is possible.
+        """
+        fields = "&".join(f"{name}={json.dumps(value)}" for name, value in spec.items())
+        name = f"seed:{whole('seed', seed)}"
+        return cls.open(f"{name}?{fields}" if fields else name)
 
     @classmethod
     def shoebox(

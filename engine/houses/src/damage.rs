@@ -11,6 +11,12 @@ use serde::{Deserialize, Serialize};
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Damage {
+    /// Something that a generated house should have had and has not.
+    #[error("given up: {what}")]
+    GivenUp {
+        /// What.
+        what: String,
+    },
     /// A mesh file that does not exist; the thing has no shape from it.
     #[error("mesh {path:?} does not exist; left out")]
     MissingMesh {

@@ -6,13 +6,9 @@
 //! - `models`: the things, one file a family,
 //! - `style`: the taste of one house, which gives things that stand together colours that go together,
 //! - `draw`, `entries`: sizes and variants drawn by a key,
-//! - `catalogue`: the list of what a generated house may hold.
+//! - `catalogue`: the list of what a generated house may hold,
+//! - `stock`: models of the catalogue, built once and shared.
 
-// Until houses are furnished, only tests ask for it.
-#[cfg_attr(
-    not(test),
-    expect(dead_code, reason = "the generator will take furniture from here")
-)]
 pub(crate) mod catalogue;
 pub(crate) mod draw;
 mod entries;
@@ -20,6 +16,7 @@ pub(crate) mod finish;
 pub(crate) mod model;
 pub(crate) mod models;
 pub(crate) mod shapes;
+pub(crate) mod stock;
 pub(crate) mod style;
 pub(crate) mod textures;
 

@@ -94,7 +94,7 @@ impl Hole {
     }
 
     /// Where its leaf stands when open.
-    fn open_leaf(&self) -> Option<Zone> {
+    pub(crate) fn open_leaf(&self) -> Option<Zone> {
         let Filling::Door { hinge_right, .. } = self.filling else {
             return None;
         };
@@ -194,13 +194,6 @@ fn deal(
     for link in &storey.links {
         let mut found = candidates(storey, runs, link.into, link.from, link.kind, stream);
         stream.shuffle(&mut found);
-        // A leaf swings out of a small room only where it cannot swing in.
-        let inside = |room: &usize| !storey.rooms[*room].kind.is_outside();
-        if let Some(from) = link.from.filter(inside) {
-            let mut out = candidates(storey, runs, from, Some(link.into), link.kind, stream);
-            stream.shuffle(&mut out);
-            found.extend(out);
-        }
         let clear = |hole: &Hole| {
             let on_stairs = stairs.is_some_and(|area| {
                 let zone = area.map(metres);
@@ -208,13 +201,57 @@ fn deal(
                     .iter()
                     .any(|side| overlap(&hole.front(*side, 0.5, 0.0), &zone))
             });
-            !on_stairs && holes.iter().all(|other| apart(hole, other))
+            !on_stairs
+                && leaves_passage(storey, runs, hole)
+                && holes.iter().all(|other| apart(hole, other))
         };
         let good = found.iter().position(clear);
         tight += usize::from(good.is_none());
         holes.extend(found.get(good.unwrap_or(0)).copied());
     }
     (holes, tight)
+}
+
+/// Depth of a room in which a leaf may stand free, m: one passes behind it.
+const FREE_LEAF_M: f32 = 1.75;
+
+/// Whether one can pass the open leaf: it lies against a wall of a corner, or the room is deep.
+fn leaves_passage(storey: &Storey, runs: &[Run], hole: &Hole) -> bool {
+    let Filling::Door { hinge_right, .. } = hole.filling else {
+        return true;
+    };
+    let zone = hole.front(1.0, FREE_LEAF_M, 0.1);
+    let area = |z: &Zone| (z[2] - z[0]).max(0.0) * (z[3] - z[1]).max(0.0);
+    let common = |a: Zone| {
+        area(&[
+            a[0].max(zone[0]),
+            a[1].max(zone[1]),
+            a[2].min(zone[2]),
+            a[3].min(zone[3]),
+        ])
+    };
+    let areas = storey.rooms[hole.room].areas.iter();
+    let covered: f32 = areas.map(|area| common(area.map(metres))).sum();
+    if covered > area(&zone) - 1e-3 {
+        return true;
+    }
+    let hinge = if hole.hinge_at_low_end(hinge_right) {
+        hole.from_m
+    } else {
+        hole.to_m
+    };
+    runs.iter().any(|run| {
+        let beside = run.along_x != hole.along_x
+            && run.sides.contains(&Some(hole.room))
+            && (metres(run.at) - hinge).abs() < 0.25;
+        let (from, to) = (metres(run.from), metres(run.to));
+        let inward = if hole.inward > 0.0 {
+            (from - hole.at_m).abs() < 0.01 && to - from > 0.85
+        } else {
+            (to - hole.at_m).abs() < 0.01 && to - from > 0.85
+        };
+        beside && inward
+    })
 }
 
 /// Whether two doors of a storey leave each other alone.
@@ -334,39 +371,37 @@ fn windows(
             let count = ((length_m / each_m) as usize).clamp(1, left);
             let pitch = length_m / count as f32;
             for k in 0..count {
-                let middle = metres(run.from) + pitch * (k as f32 + 0.5);
                 let half = 0.5 * wide_m.min(pitch - 0.5);
-                // To the step, so that walls keep to the grid.
-                let [from_m, to_m] = [middle - half, middle + half].map(|edge| metres(steps(edge)));
-                let hole = Hole {
-                    room,
-                    behind: None,
-                    along_x: run.along_x,
-                    at_m: metres(run.at),
-                    from_m,
-                    to_m,
-                    low_m,
-                    high_m,
-                    inward: if run.sides[1] == Some(room) {
-                        1.0
-                    } else {
-                        -1.0
-                    },
-                    filling: Filling::Window {
-                        frosted: traits.windows == Windows::Frosted,
-                    },
-                };
-                let free = |other: &Hole| {
-                    other.along_x != hole.along_x
-                        || (other.at_m - hole.at_m).abs() > 0.01
-                        || other.to_m + 0.2 < hole.from_m
-                        || hole.to_m + 0.2 < other.from_m
-                };
-                let on_stairs = stairs
-                    .is_some_and(|area| overlap(&hole.front(1.0, 0.5, 0.0), &area.map(metres)));
-                if to_m - from_m >= 0.4 && !on_stairs && holes.iter().all(free) {
-                    holes.push(hole);
-                    left -= 1;
+                // In the middle of its stretch, or aside of open leaves.
+                for aside in [0.0, 0.3, -0.3, 0.6, -0.6] {
+                    let middle = metres(run.from) + pitch * (k as f32 + 0.5) + aside;
+                    // To the step, so that walls keep to the grid.
+                    let [from_m, to_m] =
+                        [middle - half, middle + half].map(|edge| metres(steps(edge)));
+                    let hole = Hole {
+                        room,
+                        behind: None,
+                        along_x: run.along_x,
+                        at_m: metres(run.at),
+                        from_m,
+                        to_m,
+                        low_m,
+                        high_m,
+                        inward: if run.sides[1] == Some(room) {
+                            1.0
+                        } else {
+                            -1.0
+                        },
+                        filling: Filling::Window {
+                            frosted: traits.windows == Windows::Frosted,
+                        },
+                    };
+                    let in_wall = from_m > metres(run.from) + 0.2 && to_m < metres(run.to) - 0.2;
+                    if to_m - from_m >= 0.4 && in_wall && is_clear(&hole, holes, stairs) {
+                        holes.push(hole);
+                        left -= 1;
+                        break;
+                    }
                 }
             }
             if left == 0 || matches!(traits.windows, Windows::Frosted | Windows::High) {
@@ -374,4 +409,22 @@ fn windows(
             }
         }
     }
+}
+
+/// Whether a window keeps clear of other holes, of open leaves and of the stairs.
+fn is_clear(hole: &Hole, holes: &[Hole], stairs: Option<Area>) -> bool {
+    let before = hole.front(1.0, 0.5 * OUTER_M + 0.12, 0.02);
+    let free = |other: &Hole| {
+        let beside = other.along_x != hole.along_x
+            || (other.at_m - hole.at_m).abs() > 0.01
+            || other.to_m + 0.2 < hole.from_m
+            || hole.to_m + 0.2 < other.from_m;
+        let leaf = other
+            .open_leaf()
+            .is_some_and(|leaf| overlap(&leaf, &before));
+        beside && !leaf
+    };
+    let deep = hole.front(1.0, 0.5, 0.0);
+    let on_stairs = stairs.is_some_and(|area| overlap(&deep, &area.map(metres)));
+    !on_stairs && holes.iter().all(free)
 }

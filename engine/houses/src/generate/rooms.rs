@@ -162,7 +162,7 @@ impl RoomKind {
                 1,
             ),
             Self::Bathroom => traits("bathroom", &["bathroom"], [4.6, 7.0, 14.0], 2.0, Frosted, 1),
-            Self::Toilet => traits("toilet", &["toilet"], [2.0, 2.6, 5.5], 1.2, Frosted, 0),
+            Self::Toilet => traits("toilet", &["toilet"], [2.6, 3.2, 6.0], 1.4, Frosted, 0),
             Self::Office => traits("office", &["office"], [8.0, 12.0, 26.0], 2.5, Usual, 0),
             Self::Lobby => traits("lobby", &["lobby"], [14.0, 24.0, 60.0], 3.4, Wide, 0),
             Self::Wardrobe => traits("wardrobe", &["wardrobe"], [3.6, 5.5, 12.0], 1.7, None, 1),

@@ -1,5 +1,6 @@
 //! The building: rooms with their slabs, walls with holes, doors, windows, stairs and railings.
 
+use super::furnish::Furnished;
 use super::looks::{RoomLook, facade, look, reveal};
 use super::openings::{Filling, Hole, INNER_M, OUTER_M, Zone, overlap};
 use super::outline::outline;
@@ -7,7 +8,7 @@ use super::plan::{Cells, FloorPlan, PlanRoom, Run, Storey, metres};
 use super::rooms::RoomKind;
 use super::spec::DoorStates;
 use crate::build::Names;
-use crate::building::assembly::Assembly;
+use crate::building::assembly::{Assembly, Kind};
 use crate::building::plan::{CEILING_M, RoomPlan};
 use crate::building::site::yaw;
 use crate::building::wall::{Along, Bands, Opening, Wall};
@@ -16,8 +17,10 @@ use crate::furniture::models::openings::{Door, Window, clear_pane, frosted_pane}
 use crate::furniture::models::stairs::{Stairs, railing};
 use crate::furniture::style::Style;
 use dwell_scene::random::Key;
-use dwell_scene::{Pose, RoomId};
+use dwell_scene::{LevelId, Pose, RoomId};
 use glam::Vec3;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Thickness of the ceiling below another storey, m.
 const CEILING_SLAB_M: f32 = 0.1;
@@ -34,6 +37,27 @@ pub(crate) struct Shell {
     pub(crate) rooms: Vec<Vec<RoomId>>,
 }
 
+impl Shell {
+    /// Puts furniture into the rooms.
+    pub(crate) fn furnish(&self, storeys: &[Vec<Furnished>], assembly: &mut Assembly) {
+        // The same stock is one kind in the house.
+        let mut kinds: BTreeMap<usize, Kind> = BTreeMap::new();
+        for (level, rooms) in storeys.iter().enumerate() {
+            assembly.level = LevelId(level as u32);
+            let up = Pose::from_position(Vec3::Y * Builder::floor_m(level));
+            for (room, furnished) in rooms.iter().enumerate() {
+                for piece in &furnished.pieces {
+                    let model = &piece.stock.model;
+                    let kind = kinds
+                        .entry(Arc::as_ptr(model) as usize)
+                        .or_insert_with(|| assembly.kind(model.clone()));
+                    assembly.place(kind, up * piece.pose, self.rooms[level][room], 0.0);
+                }
+            }
+        }
+    }
+}
+
 /// What a shell is built from.
 pub(crate) struct Builder<'a> {
     pub(crate) plan: &'a FloorPlan,
@@ -44,11 +68,11 @@ pub(crate) struct Builder<'a> {
 }
 
 /// Half of the thickness of what stands between a room and its neighbour, m; 0 where nothing does.
-fn half_wall(storey: &Storey, room: usize, other: Option<usize>) -> f32 {
+pub(crate) fn half_wall(storey: &Storey, room: usize, other: Option<usize>) -> f32 {
     let outside = |room: usize| storey.rooms[room].kind.is_outside();
     match other {
         Some(other) if other == room => 0.0,
-        None if outside(room) => 0.0,
+        None if outside(room) => 2.0 * RAILING_INSET_M,
         Some(other) if !outside(room) && !outside(other) => 0.5 * INNER_M,
         _ => 0.5 * OUTER_M,
     }
@@ -209,6 +233,10 @@ impl Builder<'_> {
             let at = metres(run.at);
             let from = metres(run.from) - reach(storey, &runs, run, false);
             let to = metres(run.to) + reach(storey, &runs, run, true);
+            // Between two crossings that lie closer than their walls are thick nothing is left.
+            if to - from < 0.01 {
+                continue;
+            }
             let rect = if run.along_x {
                 [from, at - half, to, at + half]
             } else {

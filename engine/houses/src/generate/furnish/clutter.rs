@@ -1,0 +1,106 @@
+//! Small things on and in larger ones.
+
+use super::place::REST_GAP_M;
+use super::rules::Clutter;
+use super::space::{Piece, Space};
+use crate::building::site::yaw;
+use crate::furniture::stock::{Stock, stock};
+use crate::furniture::style::Style;
+use dwell_scene::random::{Key, Stream};
+use dwell_scene::{Aabb, Holding, Pose};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// Places that are tried for one thing.
+const TRIES: usize = 14;
+/// Nothing lies higher, m.
+const HIGHEST_M: f32 = 2.4;
+/// Kept free at the edges of what things stand on, m.
+const EDGE_M: f32 = 0.01;
+
+/// Follows one rule on everything that stands in the room.
+pub(crate) fn scatter(space: &mut Space, rule: &Clutter, amount: f32, style: &Style, key: Key) {
+    let hosts = space.pieces.len();
+    for host in 0..hosts {
+        let kind = space.pieces[host].stock.kind;
+        if !rule.on.iter().any(|on| on == kind) {
+            continue;
+        }
+        let spaces = space.pieces[host].stock.model.spaces.len();
+        for k in 0..spaces {
+            let key = key.child(host as u64).child(k as u64);
+            on_one(space, rule, [host, k], amount, style, key);
+        }
+    }
+}
+
+fn on_one(
+    space: &mut Space,
+    rule: &Clutter,
+    [host, k]: [usize; 2],
+    amount: f32,
+    style: &Style,
+    key: Key,
+) {
+    let top = &space.pieces[host].stock.model.spaces[k];
+    let wanted = if rule.inside {
+        Holding::In
+    } else {
+        Holding::On
+    };
+    let named = rule.spaces.is_empty() || rule.spaces.iter().any(|name| name == top.name);
+    let mut draw = key.stream();
+    if top.holding != wanted || !named || draw.uniform_f32() >= rule.chance * amount {
+        return;
+    }
+    let count = rule.count[0] + draw.below(rule.count[1] - rule.count[0] + 1);
+    for item in 0..count {
+        let key = key.child("item").child(item as u64);
+        let Some(kind) = draw.choose(&rule.kinds) else {
+            return;
+        };
+        let Some(stock) = stock(kind, style, key) else {
+            continue;
+        };
+        for _ in 0..TRIES {
+            let Some(pose) = place(&space.pieces[host], k, &stock, rule.turn_deg, &mut draw) else {
+                break;
+            };
+            let piece = Piece::new(&stock, pose).of(host);
+            if piece.bounds.max.y < HIGHEST_M && space.rests(&piece, host, rule.inside) {
+                space.add_small(piece);
+                break;
+            }
+        }
+    }
+}
+
+/// Somewhere in a space of the host, turned at random; `None` when the thing is too large.
+fn place(
+    host: &Piece,
+    k: usize,
+    stock: &Arc<Stock>,
+    turn_deg: f32,
+    draw: &mut Stream,
+) -> Option<Pose> {
+    let top = &host.stock.model.spaces[k];
+    let turn = yaw(draw.range(-turn_deg, turn_deg));
+    let turned = stock
+        .felt
+        .transformed(&Pose::new(Vec3::ZERO, turn).to_affine());
+    let free = Aabb {
+        min: top.space.min + Vec3::new(EDGE_M, 0.0, EDGE_M),
+        max: top.space.max - Vec3::new(EDGE_M, 0.0, EDGE_M),
+    };
+    let room = free.size() - turned.size();
+    if room.min_element() < 0.0 {
+        return None;
+    }
+    let at = Vec3::new(
+        free.min.x - turned.min.x + room.x * draw.uniform_f32(),
+        free.min.y - turned.min.y + REST_GAP_M,
+        free.min.z - turned.min.z + room.z * draw.uniform_f32(),
+    );
+    let model_from_part = host.stock.model.model_from_part(top.part);
+    Some(host.pose * model_from_part * Pose::new(at, turn))
+}

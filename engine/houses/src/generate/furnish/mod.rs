@@ -1,0 +1,284 @@
+//! Furniture by the rules of `assets/furnishing.toml`.
+
+mod clutter;
+mod place;
+mod rules;
+mod sized;
+mod space;
+
+pub(crate) use space::Piece;
+
+use super::openings::{Filling, Hole};
+use super::plan::{Cells, FloorPlan, Storey, metres};
+use super::rooms::RoomKind;
+use super::spec::HouseSpec;
+use crate::building::site::yaw;
+use crate::furniture::stock::{Stock, VARIANTS, stock};
+use crate::furniture::style::Style;
+use dwell_scene::Pose;
+use dwell_scene::random::{Key, Stream};
+use glam::Vec3;
+use rules::{Place, Rule, Run, rules};
+use space::Space;
+use std::sync::Arc;
+
+/// Half of the width of the paths that are kept, m: the first that a room allows, then narrower ones for what it needs.
+const PATHS_M: [f32; 3] = [0.4, 0.35, 0.3];
+/// Places that are tried for one thing.
+const TRIES: usize = 160;
+
+/// What stands in one room, heights above its floor.
+pub(crate) struct Furnished {
+    pub(crate) pieces: Vec<Piece>,
+    /// What a room of its kind has and this one has not.
+    pub(crate) missing: Vec<String>,
+    /// Whether its paths are narrower than they should be.
+    narrow: bool,
+}
+
+/// What rooms are furnished from.
+pub(crate) struct Furnisher<'a> {
+    pub(crate) plan: &'a FloorPlan,
+    pub(crate) holes: &'a [Vec<Hole>],
+    pub(crate) style: &'a Style,
+    pub(crate) spec: &'a HouseSpec,
+    pub(crate) key: Key,
+}
+
+impl Furnisher<'_> {
+    /// Furnishes every room, by storey.
+    pub(crate) fn furnish(&self) -> Vec<Vec<Furnished>> {
+        let storeys = self.plan.storeys.iter().enumerate();
+        storeys
+            .map(|(level, storey)| {
+                let cells = Cells::new(&storey.rooms);
+                (0..storey.rooms.len())
+                    .map(|room| self.room(level, storey, &cells, room))
+                    .collect()
+            })
+            .collect()
+    }
+
+    fn room(&self, level: usize, storey: &Storey, cells: &Cells, room: usize) -> Furnished {
+        let kind = storey.rooms[room].kind;
+        let stairs = self.plan.stairs.filter(|_| kind == RoomKind::Hallway);
+        let mut space = Space::new(
+            storey,
+            cells,
+            room,
+            &self.holes[level],
+            stairs.map(|stairs| stairs.area.map(metres)),
+            PATHS_M[0],
+        );
+        let mut path = 0;
+        while !space.is_joined() && path + 1 < PATHS_M.len() {
+            path += 1;
+            space.walk(room, storey, PATHS_M[path]);
+        }
+        let key = self.key.child(level as u64).child(room as u64);
+        let mut furnishing = Furnishing {
+            area_m2: space
+                .floor
+                .iter()
+                .map(|z| (z[2] - z[0]) * (z[3] - z[1]))
+                .sum(),
+            space,
+            style: self.style,
+            density: self.spec.furniture_density,
+        };
+        let mut missing = Vec::new();
+        let rules = rules();
+        for (k, run) in rules.run.iter().enumerate() {
+            if run.rooms.contains(&kind) && !furnishing.run(run, key.child("run").child(k as u64)) {
+                let name = kind.traits().name;
+                missing.push(format!("{name}: no wall for fitted units ({})", run.reason));
+            }
+        }
+        for (k, rule) in rules.rule.iter().enumerate() {
+            if !rule.rooms.contains(&kind) {
+                continue;
+            }
+            // Rules are told apart by what they ask for, so that a new rule reshuffles no other.
+            let key = key.child(rule.kinds[0].as_str()).child(k as u64);
+            let mut done = furnishing.follow(rule, key);
+            // What a room needs may narrow its paths.
+            while !done && rule.needed && path + 1 < PATHS_M.len() {
+                path += 1;
+                furnishing.space.walk(room, storey, PATHS_M[path]);
+                done = furnishing.follow(rule, key.child(path as u64));
+            }
+            if !done && rule.needed {
+                let (name, what) = (kind.traits().name, &rule.kinds[0]);
+                missing.push(format!("{name}: no {what} ({})", rule.reason));
+            }
+        }
+        for (k, rule) in rules.clutter.iter().enumerate() {
+            if rule.rooms.is_empty() || rule.rooms.contains(&kind) {
+                let key = key.child("clutter").child(k as u64);
+                let amount = self.spec.clutter / 0.6;
+                clutter::scatter(&mut furnishing.space, rule, amount, self.style, key);
+            }
+        }
+        Furnished {
+            pieces: furnishing.space.pieces,
+            missing,
+            narrow: path > 0,
+        }
+    }
+}
+
+/// A room while rules are followed.
+struct Furnishing<'a> {
+    area_m2: f32,
+    space: Space,
+    style: &'a Style,
+    density: f32,
+}
+
+impl Furnishing<'_> {
+    /// Follows a rule; false when nothing came of it that was wanted.
+    fn follow(&mut self, rule: &Rule, key: Key) -> bool {
+        let mut draw = key.stream();
+        let chance = rule.chance * (self.density / 0.8);
+        if self.area_m2 < rule.from_m2 || (!rule.needed && draw.uniform_f32() >= chance) {
+            return true;
+        }
+        let has = |piece: &Piece| rule.kinds.iter().any(|kind| kind == piece.stock.kind);
+        if rule.once && self.space.pieces.iter().any(has) {
+            return true;
+        }
+        if rule.place == Place::Window {
+            return self.at_windows(rule, key);
+        }
+        let mut anchors: Vec<Option<usize>> = (0..self.space.pieces.len())
+            .filter(|k| {
+                let kind = self.space.pieces[*k].stock.kind;
+                rule.of.iter().any(|of| of == kind)
+            })
+            .map(Some)
+            .collect();
+        if rule.of.is_empty() {
+            anchors.push(None);
+        }
+        let mut placed = 0;
+        for (k, anchor) in anchors.iter().enumerate() {
+            let count = rule.count[0] + draw.below(rule.count[1] - rule.count[0] + 1);
+            // What comes in numbers is alike.
+            let look = key.child("look").child(k as u64);
+            for _ in 0..count {
+                placed += usize::from(self.put(rule, *anchor, look, &mut draw));
+            }
+        }
+        placed > 0 || (anchors.is_empty() && !rule.needed)
+    }
+
+    /// Puts one thing of a rule: the first of its kinds for which there is a place.
+    fn put(&mut self, rule: &Rule, anchor: Option<usize>, look: Key, draw: &mut Stream) -> bool {
+        for kind in &rule.kinds {
+            for attempt in 0..VARIANTS {
+                let key = look.child(kind.as_str()).child(attempt);
+                let Some(stock) = stock(kind, self.style, key) else {
+                    break;
+                };
+                let host = anchor.map(|k| &self.space.pieces[k]);
+                let ideas = place::ideas(rule, &self.space, &stock, host, draw);
+                for pose in ideas.into_iter().take(TRIES) {
+                    let mut piece = Piece::new(&stock, pose).with_front(rule.front_m);
+                    piece.anchor = anchor;
+                    let fits = match (rule.place, anchor) {
+                        (Place::On, Some(host)) => self.space.rests(&piece, host, false),
+                        _ => self.space.fits(&piece),
+                    };
+                    if fits {
+                        self.space.add(piece);
+                        return true;
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    fn at_windows(&mut self, rule: &Rule, key: Key) -> bool {
+        let holes = self.space.holes.clone();
+        let windows = holes
+            .iter()
+            .filter(|hole| matches!(hole.filling, Filling::Window { .. }));
+        for hole in windows {
+            for kind in &rule.kinds {
+                let Some((stock, height_m)) = sized::sized(kind, hole, self.style, key) else {
+                    continue;
+                };
+                let Some(place) = self.space.inner_face(hole) else {
+                    continue;
+                };
+                let pose = Pose::new(place + Vec3::Y * height_m, yaw(hole.yaw_deg()));
+                let piece = Piece::new(&stock, pose).at_window();
+                if self.space.fits(&piece) {
+                    self.space.add(piece);
+                }
+            }
+        }
+        true
+    }
+
+    /// Fitted units along the wall that holds the first row; false without a place.
+    fn run(&mut self, run: &Run, key: Key) -> bool {
+        let mut draw = key.stream();
+        for row in &run.rows {
+            let units: Vec<Option<Arc<Stock>>> = row
+                .iter()
+                .map(|kind| stock(kind, self.style, key.child(kind.as_str())))
+                .collect();
+            let mut spans: Vec<usize> = (0..self.space.spans.len()).collect();
+            draw.shuffle(&mut spans);
+            for span in spans {
+                let span = self.space.spans[span];
+                let spare = span.to_m - span.from_m - place::row_length(&units);
+                // From either end, and in steps between.
+                let steps = (spare / 0.1).max(0.0) as usize;
+                let mut starts: Vec<f32> = (0..=steps).map(|k| 0.1 * k as f32).collect();
+                starts.push((spare - 0.01).max(0.0));
+                if draw.below(2) == 0 {
+                    starts.reverse();
+                }
+                for start in starts {
+                    if let Some(poses) = place::row(&span, &units, start)
+                        && self.row_fits(&units, &poses, run.front_m)
+                    {
+                        return true;
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    /// Adds the whole row, or nothing.
+    fn row_fits(&mut self, row: &[Option<Arc<Stock>>], poses: &[Pose], front_m: f32) -> bool {
+        let before = self.space.clone();
+        for (stock, pose) in row.iter().flatten().zip(poses) {
+            let piece = Piece::new(stock, *pose).with_front(front_m);
+            if !self.space.fits(&piece) {
+                self.space = before;
+                return false;
+            }
+            self.space.add(piece);
+        }
+        true
+    }
+}
+
+/// What rooms of a kind have that nobody could find a place for, and nothing of the kind at all.
+pub(crate) fn missing(rooms: &[Vec<Furnished>]) -> Vec<String> {
+    rooms
+        .iter()
+        .flatten()
+        .flat_map(|room| room.missing.iter().cloned())
+        .collect()
+}
+
+/// Whether some room's paths are narrower than they should be, so that a walker may not pass.
+pub(crate) fn is_narrow(rooms: &[Vec<Furnished>]) -> bool {
+    rooms.iter().flatten().any(|room| room.narrow)
+}

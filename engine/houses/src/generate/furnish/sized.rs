@@ -1,0 +1,42 @@
+//! Things that are made to measure for a window.
+
+use crate::furniture::finish::Finish;
+use crate::furniture::models::openings::radiator;
+use crate::furniture::models::textiles::Curtains;
+use crate::furniture::stock::Stock;
+use crate::furniture::style::Style;
+use crate::generate::openings::Hole;
+use dwell_scene::random::Key;
+use std::sync::Arc;
+
+/// What is made to measure.
+#[cfg(test)]
+pub(crate) const SIZED: [&str; 2] = ["curtains", "radiator"];
+
+/// A thing for a window, and the height of its origin; `None` when it is none of these or has no place there.
+pub(crate) fn sized(kind: &str, hole: &Hole, style: &Style, key: Key) -> Option<(Arc<Stock>, f32)> {
+    let mut draw = key.stream();
+    let width_m = hole.to_m - hole.from_m;
+    match kind {
+        "curtains" if width_m > 0.8 => {
+            // Down to below the sill.
+            let rod_m = hole.high_m + 0.1;
+            let curtains = Curtains {
+                width_m: width_m + 0.5,
+                height_m: rod_m - hole.low_m + 0.14,
+                drawn: draw.range(0.14, 0.2),
+                cloth: Finish {
+                    substance: "light_curtain",
+                    ..style.cloth(&mut draw).clone()
+                },
+            };
+            Some((Arc::new(Stock::new("curtains", curtains.build())), rod_m))
+        }
+        "radiator" if hole.low_m > 0.45 && width_m > 0.5 => {
+            let height_m = (hole.low_m - 0.3).min(0.5);
+            let model = radiator((0.8 * width_m).clamp(0.5, 1.4), height_m);
+            Some((Arc::new(Stock::new("radiator", model)), 0.12))
+        }
+        _ => None,
+    }
+}
