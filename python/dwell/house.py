@@ -37,9 +37,9 @@ class House:
         """Opens a HOUSE string.
 
         Args:
-            house: ``builtin:NAME``, ``seed:N``, or the path of a SUNCG ``house.json``, a ``.dwell`` folder, a
-                ``.glb``, ``.gltf`` or ``.obj`` file, a ``.scene_instance.json`` of Habitat, a
-                robot's ``.urdf`` or MuJoCo ``.xml``.
+            house: ``builtin:NAME``, ``seed:N``, or the path of a SUNCG ``house.json``, a ``.dwell``
+                folder, a ``.glb``, ``.gltf`` or ``.obj`` file, a ``.scene_instance.json`` of
+                Habitat, a robot's ``.urdf`` or MuJoCo ``.xml``.
 
         Returns:
             The house; what its reader had to say stands in ``info()["report"]``.
