@@ -174,11 +174,16 @@ pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<f32> {
         .collect()
 }
 
-/// What a body's densities are multiplied with when parts of it have another mass.
+/// What a body's densities are multiplied with when parts of it have another mass. Parts that state none share alike in what
+/// is left of the body's.
 fn part_factor(house: &House, body: &BodyPlan, state: &State) -> f32 {
-    let more = body.parts.iter().filter_map(|(id, _)| {
-        let now = state.part_mass_kg(*id)?;
-        Some(now - house.parts[*id].mass_kg?)
+    let stated = |id: PartId| house.parts[id].mass_kg;
+    let known: f32 = body.parts.iter().filter_map(|(id, _)| stated(*id)).sum();
+    let open = body.parts.iter().filter(|(id, _)| stated(*id).is_none());
+    let share = (body.mass_kg - known).max(0.0) / open.count().max(1) as f32;
+    let more = body.parts.iter().map(|(id, _)| {
+        let factor = state.part_mass_factor(house, *id);
+        stated(*id).unwrap_or(share) * (factor - 1.0)
     });
     let more: f32 = more.sum();
     if more == 0.0 || body.mass_kg <= 0.0 {

@@ -9,7 +9,7 @@ use crate::actions::Shove;
 use crate::agents::{self, Grip, Loose};
 use crate::body::Hold;
 use crate::config::PhysicsConfig;
-use crate::contact::{ContactTable, Dress, Excluded, Hooks, Ongoing};
+use crate::contact::{ContactTable, Dress, Excluded, Hooks, MergedEvents, Ongoing};
 use crate::engine::Engine;
 use crate::error::PhysicsError;
 use crate::joints::{self, Drives, Pull};
@@ -267,6 +267,7 @@ impl PhysicsWorld {
             joints::set_values(&mut self.engine, &model, joint, state);
         }
         self.ongoing = memory.ongoing;
+        self.merged_events = MergedEvents::default();
         self.notices.clear();
         Ok(())
     }

@@ -89,6 +89,19 @@ def test_a_snapshot_continues_with_the_same_bits(apartment: dwell.House) -> None
     assert world.state_hash() == first[0]
 
 
+def test_a_snapshot_of_other_agents_or_another_rate_is_refused(shoebox: dwell.House) -> None:
+    saved = dwell.World(shoebox, agents=1).snapshot()
+    for other, told in [
+        (dwell.World(shoebox, agents=2), "agents"),
+        (dwell.World(shoebox, agents=[{"height_m": 1.5}]), "agents"),
+        (dwell.World(shoebox, sound_rate_hz=8000), "8000"),
+    ]:
+        before = other.state_hash()
+        with pytest.raises(dwell.DwellError, match=told):
+            other.restore(saved)
+        assert other.state_hash() == before
+
+
 def test_parameters_change_one_world_and_no_other(apartment: dwell.House) -> None:
     world, other = dwell.World(apartment), dwell.World(apartment)
     world.set_parameter("world/gravity_m_s2", 1.62)

@@ -16,7 +16,7 @@ written by the test `laws_page` (`UPDATE_GOLDEN=1 cargo test -p dwell-tests --te
 What a target names: a law on an *object* takes an object's name, one on a *joint* a joint's name, `OBJECT/JOINT` or a number, one
 on an *agent* its number, one on *contacts* `NAME` (all contacts of it) or `NAME~NAME` (those between the two, in either order;
 the surface is the first), where a name is that of an object, of a piece of the structure or of a substance of the materials
-library. No target means everything. Laws on the *world* take none.
+library. No target means everything that they can act on. Laws on the *world* take none.
 
 What sleeps: laws that come, go or change wake everything once. After that laws of air and of contact act on what moves and leave
 asleep what sleeps; only wind wakes what it pushes by more than a thousandth of its weight, and keeps it awake as long as it does.

@@ -114,6 +114,9 @@ impl Ears {
 
 #[derive(Serialize, Deserialize)]
 struct Memory {
+    rate_hz: u32,
+    /// Samples a control step.
+    block: usize,
     blocks: u64,
     blows: Vec<Blow>,
     next_blow: u64,
@@ -314,6 +317,8 @@ impl Sound {
             .iter()
             .map(|ears| (ears.agent, ears.window.clone(), ears.stream.snapshot()));
         let memory = Memory {
+            rate_hz: self.rate_hz,
+            block: self.block,
             blocks: self.blocks,
             blows: self.blows.clone(),
             next_blow: self.next_blow,
@@ -332,6 +337,12 @@ impl Sound {
         let memory: Memory =
             postcard::from_bytes(bytes).map_err(|error| WorldError::Snapshot(error.to_string()))?;
         let mut sound = Self::new(config);
+        if (memory.rate_hz, memory.block) != (sound.rate_hz, sound.block) {
+            return Err(WorldError::Snapshot(format!(
+                "its sound has {} Hz in blocks of {} samples, that of the world {} Hz in blocks of {}",
+                memory.rate_hz, memory.block, sound.rate_hz, sound.block
+            )));
+        }
         if memory.blocks == 0 {
             return Err(WorldError::Snapshot("no block of sound is over".to_owned()));
         }

@@ -94,7 +94,7 @@ pub(crate) fn install(
     state: &State,
     before: &[Installed],
 ) -> Result<Vec<Installed>, PhysicsError> {
-    let mut installed = Vec::new();
+    let mut installed: Vec<Installed> = Vec::new();
     for spec in &state.laws {
         let Some(law) = LAWS.iter().find(|law| law.info.id == spec.id) else {
             continue;
@@ -104,8 +104,10 @@ pub(crate) fn install(
             continue;
         }
         let mut acts = (law.install)(spec, &law.info, model, state)?;
+        // Two laws of one kind on one target are told apart by their order.
         let same = |old: &&Installed| old.spec.id == spec.id && old.spec.target == spec.target;
-        if let Some(old) = before.iter().find(same) {
+        let earlier = installed.iter().filter(same).count();
+        if let Some(old) = before.iter().filter(same).nth(earlier) {
             acts.recall(&old.law.memory());
         }
         installed.push(Installed {

@@ -14,11 +14,13 @@ pub(super) fn free_bodies<'a>(
     model: &'a PhysicsModel,
 ) -> Result<Vec<(u32, &'a BodyPlan)>, PhysicsError> {
     let house = &model.house;
+    let free = || model.bodies.iter().filter(|plan| plan.joint.is_none());
+    let name = |plan: &BodyPlan| house.objects[plan.object].name.as_str();
     if let Some(target) = &spec.target
-        && house.object_named(target).is_none()
+        && !free().any(|plan| name(plan) == target)
     {
-        let names = house.objects.iter().map(|object| object.name.as_str());
-        return Err(no_target(info.id, "object", target, names));
+        let kind = "object that moves freely (neither fixed nor on a joint)";
+        return Err(no_target(info.id, kind, target, free().map(name)));
     }
     let wanted = |plan: &BodyPlan| {
         spec.target

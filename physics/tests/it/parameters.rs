@@ -93,6 +93,37 @@ fn an_overridden_mass_is_what_it_weighs() {
     assert!(outcome.success, "{}", outcome.sentence);
 }
 
+/// Half the density is half the mass; a part's own mass goes before its material's, and the whole object's before both.
+#[test]
+fn an_overridden_density_is_what_a_thing_weighs() {
+    let (mut run, sled) = sled();
+    let agent = run.agent(Vec3::new(1.0, 0.0, 3.0), 0.0);
+    let weighs = |run: &mut Run, words: &str| {
+        let told = run.act(agent, dwell_physics::Action::pick(sled));
+        assert!(told.sentence.contains(words), "{}", told.sentence);
+    };
+    let root = run.house.objects[sled].first_part;
+    let material = &run.house.materials[run.house.parts[root].materials[0]];
+    let (density, address) = (
+        material.density_kg_m3,
+        format!("material/{}/density_kg_m3", material.name),
+    );
+    let id = run.house.entity_of_object(sled).0;
+    let object = format!("object/{id}/mass_kg");
+    weighs(&mut run, "36.0 kg");
+    set(&mut run, &address, 0.75 * f64::from(density));
+    weighs(&mut run, "27.0 kg");
+    let read = run.state.parameter(&run.house, &object.parse().unwrap());
+    let stated = run.house.parts[root].mass_kg.unwrap_or(0.0);
+    assert!((read.unwrap().value - f64::from(0.75 * stated)).abs() < 1e-3);
+    if run.house.parts[root].mass_kg.is_some() {
+        set(&mut run, &format!("part/{}/mass_kg", root.0), 31.0);
+        weighs(&mut run, "31.0 kg");
+    }
+    set(&mut run, &object, 29.0);
+    weighs(&mut run, "29.0 kg");
+}
+
 #[test]
 fn applying_nothing_changes_nothing() {
     let (mut run, _) = sled();

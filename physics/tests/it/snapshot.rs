@@ -193,6 +193,25 @@ fn damaged_and_foreign_bytes_are_refused_and_nothing_changes() {
     assert!(before == run.hash());
 }
 
+/// Names and counts are the same; one has another size, one another mass.
+#[test]
+fn a_snapshot_of_a_house_with_other_bodies_is_foreign() {
+    let run = |half: f32, substance: &'static str| {
+        let mut build = Build::room([4.0, 3.0, 4.0]);
+        let piece = Piece::cuboid(Vec3::splat(half), Vec3::new(2.0, 1.0, 2.0));
+        build.movable("block", piece.of(substance));
+        build.run()
+    };
+    let bytes = run(0.1, "oak").world.snapshot();
+    let mut same = run(0.1, "oak");
+    same.world.restore(&mut same.state, &bytes).unwrap();
+    for mut other in [run(0.11, "oak"), run(0.1, "steel")] {
+        let refused = other.world.restore(&mut other.state, &bytes);
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains("another house"), "{message}");
+    }
+}
+
 /// The house has a mesh of 200,000 triangles; the snapshot stays far smaller than its vertices.
 #[test]
 fn a_snapshot_holds_no_mesh() {

@@ -2,6 +2,7 @@
 
 mod check;
 mod data;
+mod fingerprint;
 mod geometry;
 mod queries;
 mod shoebox;
@@ -25,6 +26,7 @@ use std::sync::OnceLock;
 pub struct House {
     data: HouseData,
     geometry: OnceLock<Geometry>,
+    fingerprint: OnceLock<u64>,
 }
 
 impl House {
@@ -37,12 +39,19 @@ impl House {
         Ok(Self {
             data,
             geometry: OnceLock::new(),
+            fingerprint: OnceLock::new(),
         })
     }
 
     /// The triangles of the house baked for rays; made at first use.
     pub fn geometry(&self) -> &Geometry {
         self.geometry.get_or_init(|| Geometry::bake(&self.data))
+    }
+
+    /// A number that tells this house from any other: its tables (names, places, masses, collision pieces, joints) and the
+    /// triangles of its meshes, not its images. Counted at first use.
+    pub fn fingerprint(&self) -> u64 {
+        *self.fingerprint.get_or_init(|| fingerprint::of(&self.data))
     }
 
     /// The plain data, for editing and writing.
@@ -56,6 +65,7 @@ impl Clone for House {
         Self {
             data: self.data.clone(),
             geometry: OnceLock::new(),
+            fingerprint: OnceLock::new(),
         }
     }
 }

@@ -9,7 +9,7 @@ use super::names::{find_joint, find_material, find_object, find_part};
 use super::{Locomotion, State};
 use crate::error::SceneError;
 use crate::house::House;
-use crate::ids::{AgentId, Id, JointId, MaterialId, ObjectId, PartId};
+use crate::ids::{AgentId, Id, JointId, MaterialId, PartId};
 use crate::material::{Bands, Material, PairContact, library};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use serde::{Deserialize, Serialize};
@@ -150,8 +150,8 @@ impl State {
         match known.words()[..] {
             ["object", object, "mass_kg"] => {
                 let object = find_object(house, address, object)?;
-                let root = &house.parts[house.objects[object].first_part];
-                make(self.object_mass_kg(house, object).or(root.mass_kg).unwrap_or(0.0), "kg", 1e-6, 1e6)
+                let of_parts = || self.mass_of_parts_kg(house, object);
+                make(self.object_mass_kg(house, object).unwrap_or_else(of_parts), "kg", 1e-6, 1e6)
             }
             ["material", material, field] => {
                 let material = &house.materials[find_material(house, address, material)?];
@@ -258,7 +258,7 @@ impl State {
             .map_or(base, |value| *value as f32)
     }
 
-    fn lookup(&self, text: String) -> Option<f32> {
+    pub(super) fn lookup(&self, text: String) -> Option<f32> {
         if self.overrides.is_empty() {
             None
         } else {
@@ -266,19 +266,6 @@ impl State {
                 .get(&Address(text))
                 .map(|value| *value as f32)
         }
-    }
-
-    /// The overridden mass of an object, kg; `None` when only the house's parts speak.
-    pub fn object_mass_kg(&self, house: &House, object: ObjectId) -> Option<f32> {
-        self.lookup(format!(
-            "object/{}/mass_kg",
-            house.entity_of_object(object).0
-        ))
-    }
-
-    /// The overridden mass of a part, kg.
-    pub fn part_mass_kg(&self, part: PartId) -> Option<f32> {
-        self.lookup(format!("part/{}/mass_kg", part.0))
     }
 
     /// Friction and restitution between two substances, with overrides.

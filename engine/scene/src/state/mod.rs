@@ -5,6 +5,7 @@ mod agent;
 mod canonical;
 mod joint;
 mod locomotion;
+mod mass;
 mod names;
 mod relations;
 mod snapshot;

@@ -9,24 +9,6 @@ const MAGIC: &[u8; 4] = b"dwst";
 const VERSION: u32 = 4;
 const HEADER: usize = 4 + 4 + 8 + 8;
 
-impl House {
-    /// A number that tells this house's tables from another's: names, counts and masses, not triangles.
-    pub fn fingerprint(&self) -> u64 {
-        let mut text = format!(
-            "{} {} {} {}",
-            self.name,
-            self.source,
-            self.parts.len(),
-            self.joints.len()
-        );
-        for object in &self.objects {
-            text.push('\n');
-            text.push_str(&object.name);
-        }
-        xxh3_64(text.as_bytes())
-    }
-}
-
 impl State {
     fn body_bytes(&self) -> Vec<u8> {
         postcard::to_stdvec(self)

@@ -242,3 +242,28 @@ fn laws_of_motors_continue_bit_for_bit_from_a_snapshot() {
     }
     assert!(run.hash() == other.hash());
 }
+
+/// Two laws of one kind on one motor each keep what they remember when parameters are applied anew.
+#[test]
+fn equal_laws_on_one_motor_keep_their_own_memory() {
+    let laws = || {
+        vec![
+            spec("latency", Some("elbow"), &[("delay_s", 0.08)]),
+            spec("latency", Some("elbow"), &[("delay_s", 0.03)]),
+            spec("first_order_lag", Some("elbow"), &[("tau_s", 0.05)]),
+            spec("first_order_lag", Some("elbow"), &[("tau_s", 0.2)]),
+        ]
+    };
+    let [mut plain, mut applied] = [elbow(laws()).0, elbow(laws()).0];
+    let joint = plain.house.joints.ids().next().unwrap();
+    for step in 0..40 {
+        let command = JointCommand::Position(if step < 15 { 0.7 } else { -0.4 });
+        for run in [&mut plain, &mut applied] {
+            run.state.joint_command[joint] = command;
+            run.steps(1);
+        }
+        applied.world.apply_parameters(&mut applied.state).unwrap();
+    }
+    assert!(plain.hash() == applied.hash());
+    assert!(plain.state.joint_position[joint].abs() > 0.05);
+}

@@ -1,0 +1,67 @@
+//! Masses under overrides: an object's own goes before its parts', a part's own before its materials' densities.
+
+use super::State;
+use crate::house::House;
+use crate::ids::{Id, ObjectId, PartId};
+
+impl State {
+    /// The overridden mass of an object, kg; `None` when only the house's parts speak.
+    pub fn object_mass_kg(&self, house: &House, object: ObjectId) -> Option<f32> {
+        self.lookup(format!(
+            "object/{}/mass_kg",
+            house.entity_of_object(object).0
+        ))
+    }
+
+    /// What the parts of an object weigh together, kg; parts that state no mass are left out.
+    pub fn mass_of_parts_kg(&self, house: &House, object: ObjectId) -> f32 {
+        let parts = house.objects[object].parts();
+        let masses = parts.filter_map(|id| {
+            let nominal = house.parts[id].mass_kg?;
+            Some(nominal * self.part_mass_factor(house, id))
+        });
+        masses.sum()
+    }
+
+    /// What a part's mass is multiplied with: 1 without overrides.
+    ///
+    /// A part whose mass is overridden has that mass. Else its mass follows the densities of its materials
+    /// (`material/NAME/density_kg_m3`), of which each has the share that its surface has: a house does not say how much of a
+    /// part's volume is of which material.
+    pub fn part_mass_factor(&self, house: &House, part: PartId) -> f32 {
+        let own = self.lookup(format!("part/{}/mass_kg", part.index()));
+        match (own, house.parts[part].mass_kg) {
+            (Some(now), Some(nominal)) if nominal > 0.0 => now / nominal,
+            _ => self.density_factor(house, part),
+        }
+    }
+
+    fn density_factor(&self, house: &House, part: PartId) -> f32 {
+        let part = &house.parts[part];
+        let factors: Vec<f32> = part
+            .materials
+            .iter()
+            .map(|id| {
+                let material = &house.materials[*id];
+                let now = self.lookup(format!("material/{}/density_kg_m3", material.name));
+                now.map_or(1.0, |now| now / material.density_kg_m3)
+            })
+            .collect();
+        if factors.iter().all(|factor| *factor == 1.0) {
+            return 1.0;
+        }
+        let mesh = &house.meshes[part.mesh];
+        let (mut sum, mut area) = (0.0_f64, 0.0_f64);
+        for k in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(k);
+            let own = f64::from((b - a).cross(c - a).length());
+            let factor = factors.get(usize::from(mesh.slot(k))).unwrap_or(&1.0);
+            (sum, area) = (sum + own * f64::from(*factor), area + own);
+        }
+        if area > 0.0 {
+            (sum / area) as f32
+        } else {
+            factors[0]
+        }
+    }
+}
