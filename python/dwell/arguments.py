@@ -51,6 +51,24 @@ def point(name: str, value: Sequence[float]) -> tuple[float, float, float]:
     return x, y, z
 
 
+def pair(name: str, value: object) -> tuple[float, float]:
+    """Two finite numbers."""
+    if isinstance(value, str | bytes) or not isinstance(value, Sequence) or len(value) != 2:
+        raise ConfigError(f"{name}: expected two numbers, found {value!r}")
+    first, second = (finite(f"{name}[{k}]", part) for k, part in enumerate(value))
+    return first, second
+
+
+def bodies(agents: object) -> list[dict[str, Any]]:
+    """A body for each agent, from a count or from mappings of what differs from the default."""
+    if isinstance(agents, str | bytes) or not isinstance(agents, Sequence):
+        return [{} for _ in range(whole("agents", agents, high=64))]
+    for k, body in enumerate(agents):
+        if not isinstance(body, Mapping):
+            raise ConfigError(f"agents[{k}] is {body!r}; expected a mapping")
+    return [dict(body) for body in agents]
+
+
 def _plain(at: str, value: object) -> Any:  # noqa: ANN401 - any JSON value
     """``value`` as JSON knows it; ``at``: its place, for the error."""
     if isinstance(value, np.ndarray | np.generic):

@@ -52,16 +52,17 @@ class House:
         return cls(_native.House.open(name), (House.open, (name,)))
 
     @classmethod
-    def generate(cls, seed: int, **spec: Any) -> House:
+    def generate(cls, seed: int, **spec: object) -> House:
         """Makes the furnished house of a seed; the same seed and spec give the same house.
 
         Args:
             seed: Any whole number from 0.
             **spec: What shall not be drawn from the seed: ``home`` (``"studio"``, ``"apartment"``,
-                ``"house"``, ``"office"``), ``storeys`` (1 to 3), ``area_m2``, ``rooms`` (names such as
-                ``"living_room"``), ``adjacency`` (pairs of them), ``style``, ``furniture_density`` and
-                ``clutter`` (0 to 1), ``doors`` (``"open"``, ``"closed"``, ``"ajar"``, ``"mixed"``),
-                ``split`` (``"train"``, ``"val"``, ``"test"``, ``"all"``: which looks it may have).
+                ``"house"``, ``"office"``), ``storeys`` (1 to 3), ``area_m2``, ``rooms`` (names such
+                as ``"living_room"``), ``adjacency`` (pairs of them), ``style``,
+                ``furniture_density`` and ``clutter`` (0 to 1), ``doors`` (``"open"``,
+                ``"closed"``, ``"ajar"``, ``"mixed"``), ``split`` (``"train"``, ``"val"``,
+                ``"test"``, ``"all"``: which looks it may have).
 
         Returns:
             The house; what was given up stands in ``info()["report"]``.

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import finite, point, to_json, whole
+from dwell.arguments import bodies, finite, pair, point, to_json, whole
 from dwell.house import House
 from dwell.navigation import Navigation, Walker
 from dwell.settings import Laws, world_settings
@@ -127,12 +127,7 @@ class World:
             **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``.
         """
         self.house = house if isinstance(house, House) else House.open(house)
-        bodies: list[dict[str, Any]]
-        if isinstance(agents, Sequence) and not isinstance(agents, str):
-            bodies = [dict(body) for body in agents]
-        else:
-            bodies = [{}] * whole("agents", agents, high=64)
-        settings = {"agents": bodies, **world_settings(laws, parameters, config)}
+        settings = {"agents": bodies(agents), **world_settings(laws, parameters, config)}
         self._config, self._seed = to_json(settings), whole("seed", seed)
         self._native = _native.World(self.house.native, self._config, self._seed)
 
@@ -377,10 +372,7 @@ class World:
         """
         rows = []
         for joint, stand in joints.items():
-            if not isinstance(stand, Sequence) or len(stand) != 2:
-                at = f"joint {joint!r}"
-                raise ConfigError(f"{at}: expected (position, velocity), found {stand!r}")
-            position, velocity = (finite(f"joint {joint!r}", number) for number in stand)
+            position, velocity = pair(f"joint {joint!r}: (position, velocity)", stand)
             rows.append((whole("joint", joint, high=_MOST_IDS), position, velocity))
         self._native.set_joints(rows)
 

@@ -2,7 +2,7 @@
 //!
 //! Whole episodes start where the bundle says ([`scores`]); windows ([`ends`]) start at any sample and look 1 to 40 samples
 //! ahead. A [`Subject`] is what can be rolled out: tosses of a box onto a board ([`Tracks`]), a robot on two wheels
-//! ([`drive`]), falling balls ([`drop`]). Models of tosses are compared by a [`study`], those of the others by [`series`].
+//! ([`drive`]), falling balls ([`mod@drop`]). Models of tosses are compared by a [`study`], those of the others by [`series`].
 
 pub mod drive;
 pub mod drop;

@@ -345,13 +345,8 @@ impl World {
         let parts: Parts =
             postcard::from_bytes(body).map_err(|error| WorldError::Snapshot(error.to_string()))?;
         let mut state = State::from_bytes(self.engines.house(), &parts.state)?;
-        let bodies = |state: &State| -> Vec<_> {
-            state
-                .agents
-                .iter()
-                .map(|agent| agent.body.clone())
-                .collect()
-        };
+        let bodies =
+            |state: &State| -> Vec<_> { state.agents.iter().map(|agent| agent.body).collect() };
         if bodies(&state) != bodies(&self.state) {
             let (found, allowed) = (state.agents.len(), self.state.agents.len());
             return Err(WorldError::Snapshot(format!(
