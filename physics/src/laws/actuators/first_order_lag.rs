@@ -1,12 +1,11 @@
 //! First-order lag: a motor takes up what it is told little by little.
 
-use super::{Motors, number, same_kind, with};
+use super::Outputs;
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law, MotorStep, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
-use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State, math};
-use std::collections::BTreeMap;
+use dwell_scene::{JointCommand, LawInfo, LawSpec, State, math};
 
 pub(in crate::laws) const LAW: Law = Law {
     info: LawInfo {
@@ -38,7 +37,7 @@ pub(in crate::laws) const LAW: Law = Law {
 #[derive(Clone, Debug)]
 struct Lag {
     tau_s: f32,
-    output: BTreeMap<JointId, JointCommand>,
+    outputs: Outputs,
 }
 
 fn install(
@@ -47,10 +46,9 @@ fn install(
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let motors = Motors::of(spec, info, model)?;
     Ok(Box::new(Lag {
         tau_s: value(spec, info, "tau_s"),
-        output: motors.each(JointCommand::default),
+        outputs: Outputs::of(spec, info, model)?,
     }))
 }
 
@@ -67,33 +65,17 @@ impl Acts for Lag {
     }
 
     fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
-        let Some(output) = self.output.get_mut(&motor.joint) else {
-            return;
-        };
-        let Some(told) = number(*command) else {
-            *output = *command;
-            return;
-        };
-        if !same_kind(*output, *command) {
-            *output = with(*command, motor.rest(*command));
-        }
-        let y = number(*output).unwrap_or(told);
-        let (end, mean) = relax(y, told, motor.dt_s / self.tau_s);
-        *output = with(*command, end);
-        *command = with(*command, mean);
+        let steps = motor.dt_s / self.tau_s;
+        self.outputs
+            .follow(motor, command, |y, told| relax(y, told, steps));
     }
 
     fn memory(&self) -> Vec<f32> {
-        self.output
-            .values()
-            .flat_map(|output| super::pack(*output))
-            .collect()
+        self.outputs.memory()
     }
 
     fn recall(&mut self, memory: &[f32]) {
-        for (output, packed) in self.output.values_mut().zip(memory.chunks_exact(2)) {
-            *output = super::unpack(packed[0], packed[1]);
-        }
+        self.outputs.recall(memory);
     }
 
     fn boxed(&self) -> Box<dyn Acts> {

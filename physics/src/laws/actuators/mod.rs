@@ -15,6 +15,7 @@ pub(super) mod rate_limit;
 pub(super) mod saturation;
 
 use crate::error::PhysicsError;
+use crate::laws::MotorStep;
 use crate::laws::target::no_target;
 use crate::model::PhysicsModel;
 use dwell_scene::{Articulation, Id, JointCommand, JointId, LawInfo, LawSpec};
@@ -83,6 +84,51 @@ impl Hinges {
 
     fn hold(&self, joint: JointId) -> bool {
         self.0.binary_search(&joint).is_ok()
+    }
+}
+
+/// What motors follow instead of what they are told: one command for each, which comes after the told one.
+#[derive(Clone, Debug)]
+struct Outputs(BTreeMap<JointId, JointCommand>);
+
+impl Outputs {
+    fn of(spec: &LawSpec, info: &LawInfo, model: &PhysicsModel) -> Result<Self, PhysicsError> {
+        Ok(Self(
+            Motors::of(spec, info, model)?.each(JointCommand::default),
+        ))
+    }
+
+    /// Moves a motor's output by `step` and tells the motor its mean. `step` gets the output and what is told, and gives the
+    /// output at the end of the step and its mean over it. An output begins where the joint stands.
+    fn follow(
+        &mut self,
+        motor: &MotorStep,
+        command: &mut JointCommand,
+        step: impl FnOnce(f32, f32) -> (f32, f32),
+    ) {
+        let Some(output) = self.0.get_mut(&motor.joint) else {
+            return;
+        };
+        let Some(told) = number(*command) else {
+            *output = *command;
+            return;
+        };
+        if !same_kind(*output, *command) {
+            *output = with(*command, motor.rest(*command));
+        }
+        let (end, mean) = step(number(*output).unwrap_or(told), told);
+        *output = with(*command, end);
+        *command = with(*command, mean);
+    }
+
+    fn memory(&self) -> Vec<f32> {
+        self.0.values().flat_map(|output| pack(*output)).collect()
+    }
+
+    fn recall(&mut self, memory: &[f32]) {
+        for (output, packed) in self.0.values_mut().zip(memory.chunks_exact(2)) {
+            *output = unpack(packed[0], packed[1]);
+        }
     }
 }
 

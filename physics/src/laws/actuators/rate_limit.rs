@@ -1,12 +1,11 @@
 //! Rate limit: what a motor follows changes no faster than it can.
 
-use super::{Motors, number, same_kind, with};
+use super::Outputs;
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law, MotorStep, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
-use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
-use std::collections::BTreeMap;
+use dwell_scene::{JointCommand, LawInfo, LawSpec, State};
 
 pub(in crate::laws) const LAW: Law = Law {
     info: LawInfo {
@@ -37,7 +36,7 @@ pub(in crate::laws) const LAW: Law = Law {
 #[derive(Clone, Debug)]
 struct RateLimit {
     max_rate: f32,
-    output: BTreeMap<JointId, JointCommand>,
+    outputs: Outputs,
 }
 
 fn install(
@@ -46,10 +45,9 @@ fn install(
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let motors = Motors::of(spec, info, model)?;
     Ok(Box::new(RateLimit {
         max_rate: value(spec, info, "max_rate"),
-        output: motors.each(JointCommand::default),
+        outputs: Outputs::of(spec, info, model)?,
     }))
 }
 
@@ -70,33 +68,17 @@ impl Acts for RateLimit {
     }
 
     fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
-        let Some(output) = self.output.get_mut(&motor.joint) else {
-            return;
-        };
-        let Some(told) = number(*command) else {
-            *output = *command;
-            return;
-        };
-        if !same_kind(*output, *command) {
-            *output = with(*command, motor.rest(*command));
-        }
-        let y = number(*output).unwrap_or(told);
-        let (end, mean) = approach(y, told, self.max_rate * motor.dt_s);
-        *output = with(*command, end);
-        *command = with(*command, mean);
+        let most = self.max_rate * motor.dt_s;
+        self.outputs
+            .follow(motor, command, |y, told| approach(y, told, most));
     }
 
     fn memory(&self) -> Vec<f32> {
-        self.output
-            .values()
-            .flat_map(|output| super::pack(*output))
-            .collect()
+        self.outputs.memory()
     }
 
     fn recall(&mut self, memory: &[f32]) {
-        for (output, packed) in self.output.values_mut().zip(memory.chunks_exact(2)) {
-            *output = super::unpack(packed[0], packed[1]);
-        }
+        self.outputs.recall(memory);
     }
 
     fn boxed(&self) -> Box<dyn Acts> {

@@ -1,8 +1,7 @@
 //! Quadratic air drag.
 
-use super::size::cross_section_m2;
+use super::air::{AIR_DENSITY, AREA, in_air};
 use crate::error::PhysicsError;
-use crate::laws::target::free_bodies;
 use crate::laws::{Acts, Law, Stage, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
@@ -28,22 +27,8 @@ pub(in crate::laws) const LAW: Law = Law {
                 high: 20.0,
                 plausible: [0.1, 2.0],
             },
-            ParamInfo {
-                name: "area_m2",
-                unit: "m2",
-                default: 0.0,
-                low: 0.0,
-                high: 100.0,
-                plausible: [0.0, 4.0],
-            },
-            ParamInfo {
-                name: "air_density_kg_m3",
-                unit: "kg/m3",
-                default: 1.204,
-                low: 0.0,
-                high: 1000.0,
-                plausible: [1.0, 1.4],
-            },
+            AREA,
+            AIR_DENSITY,
         ],
         rivals: &["gravity", "mass", "timestamp_offset", "viscous_damping"],
         separating_experiment: "drop the object from two heights that differ by a factor of four or more, or drop two \
@@ -65,19 +50,10 @@ fn install(
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let (c_d, area) = (value(spec, info, "c_d"), value(spec, info, "area_m2"));
-    let density = value(spec, info, "air_density_kg_m3");
-    let bodies = free_bodies(spec, info, model)?
-        .into_iter()
-        .map(|(index, plan)| {
-            let area = if area > 0.0 {
-                area
-            } else {
-                cross_section_m2(plan)
-            };
-            (index, 0.5 * density * c_d * area)
-        })
-        .collect();
+    let c_d = value(spec, info, "c_d");
+    let bodies = in_air(spec, info, model, |density, area| {
+        0.5 * density * c_d * area
+    })?;
     Ok(Box::new(Drag { bodies }))
 }
 

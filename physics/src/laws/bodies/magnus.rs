@@ -1,8 +1,7 @@
 //! Lift of a spinning body.
 
-use super::size::cross_section_m2;
+use super::air::{AIR_DENSITY, AREA, in_air};
 use crate::error::PhysicsError;
-use crate::laws::target::free_bodies;
 use crate::laws::{Acts, Law, Stage, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
@@ -32,22 +31,8 @@ pub(in crate::laws) const LAW: Law = Law {
                 high: 10.0,
                 plausible: [0.3, 1.5],
             },
-            ParamInfo {
-                name: "area_m2",
-                unit: "m2",
-                default: 0.0,
-                low: 0.0,
-                high: 100.0,
-                plausible: [0.0, 4.0],
-            },
-            ParamInfo {
-                name: "air_density_kg_m3",
-                unit: "kg/m3",
-                default: 1.204,
-                low: 0.0,
-                high: 1000.0,
-                plausible: [1.0, 1.4],
-            },
+            AREA,
+            AIR_DENSITY,
         ],
         rivals: &["frame_tilt", "wind", "gravity"],
         separating_experiment: "throw the object twice alike with the spin turned round, its spin measured: only lift \
@@ -68,19 +53,10 @@ fn install(
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let (c_l, area) = (value(spec, info, "c_l"), value(spec, info, "area_m2"));
-    let density = value(spec, info, "air_density_kg_m3");
-    let bodies = free_bodies(spec, info, model)?
-        .into_iter()
-        .map(|(index, plan)| {
-            let area = if area > 0.0 {
-                area
-            } else {
-                cross_section_m2(plan)
-            };
-            (index, 0.5 * density * area * (area / PI).sqrt() * c_l)
-        })
-        .collect();
+    let c_l = value(spec, info, "c_l");
+    let bodies = in_air(spec, info, model, |density, area| {
+        0.5 * density * area * (area / PI).sqrt() * c_l
+    })?;
     Ok(Box::new(Magnus { bodies }))
 }
 

@@ -1,5 +1,6 @@
 //! Laws that act on bodies: air, mass, inertia.
 
+mod air;
 pub(super) mod buoyancy;
 pub(super) mod center_of_mass;
 pub(super) mod drag;

@@ -1,0 +1,53 @@
+//! What laws of air have in common: the air's density, and the cross-section that a body turns to it.
+
+use super::size::cross_section_m2;
+use crate::error::PhysicsError;
+use crate::laws::target::free_bodies;
+use crate::laws::value;
+use crate::model::PhysicsModel;
+use dwell_scene::law::ParamInfo;
+use dwell_scene::{LawInfo, LawSpec};
+
+/// The cross-section; 0 takes the mean one of the body.
+pub(super) const AREA: ParamInfo = ParamInfo {
+    name: "area_m2",
+    unit: "m2",
+    default: 0.0,
+    low: 0.0,
+    high: 100.0,
+    plausible: [0.0, 4.0],
+};
+
+/// The density of air; the default is that at 20 degrees Celsius and 101,325 Pa.
+pub(super) const AIR_DENSITY: ParamInfo = ParamInfo {
+    name: "air_density_kg_m3",
+    unit: "kg/m3",
+    default: 1.204,
+    low: 0.0,
+    high: 1000.0,
+    plausible: [1.0, 1.4],
+};
+
+/// The free bodies that a spec acts on, each with what `gain` makes of the air's density (kg/m3) and its cross-section (m2).
+pub(super) fn in_air(
+    spec: &LawSpec,
+    info: &LawInfo,
+    model: &PhysicsModel,
+    gain: impl Fn(f32, f32) -> f32,
+) -> Result<Vec<(u32, f32)>, PhysicsError> {
+    let (density, stated) = (
+        value(spec, info, AIR_DENSITY.name),
+        value(spec, info, AREA.name),
+    );
+    let bodies = free_bodies(spec, info, model)?.into_iter();
+    Ok(bodies
+        .map(|(index, plan)| {
+            let area = if stated > 0.0 {
+                stated
+            } else {
+                cross_section_m2(plan)
+            };
+            (index, gain(density, area))
+        })
+        .collect())
+}
