@@ -7,7 +7,6 @@ pub mod builtin;
 mod damage;
 mod error;
 mod formats;
-mod furniture;
 pub mod generate;
 pub mod gltf;
 pub mod habitat;
@@ -20,8 +19,6 @@ mod report;
 mod robot;
 mod root;
 pub mod suncg;
-#[cfg(test)]
-mod testing;
 pub mod urdf;
 
 pub use damage::{Damage, Unmapped};

@@ -57,9 +57,15 @@ pub(crate) const CRATES: &[Rule] = &[
         tests_may_use: &[],
     },
     Rule {
+        name: "dwell-furniture",
+        folder: "engine/furniture",
+        may_use: SCENE,
+        tests_may_use: &[],
+    },
+    Rule {
         name: "dwell-houses",
         folder: "engine/houses",
-        may_use: SCENE,
+        may_use: &["dwell-furniture", "dwell-scene"],
         tests_may_use: &[],
     },
     Rule {

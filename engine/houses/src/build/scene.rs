@@ -12,7 +12,7 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Vec2};
 
-use super::tables::CategoryRow;
+use super::CategoryRow;
 use super::{LookTable, Names, category, convex_pieces};
 use crate::damage::Damage;
 use crate::error::HousesError;

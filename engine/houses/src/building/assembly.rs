@@ -1,9 +1,9 @@
 //! Puts models into the tables of a house.
 
 use crate::build::{Names, category};
-use crate::furniture::finish::Finish;
-use crate::furniture::model::Model;
-use crate::furniture::textures::{Pattern, painted};
+use dwell_furniture::finish::Finish;
+use dwell_furniture::model::Model;
+use dwell_furniture::textures::{Pattern, painted};
 use dwell_scene::{
     Aabb, Articulation, Category, HouseData, Id, JointKind, Level, LevelId, Light, MaterialId,
     Mesh, MeshId, Object, ObjectId, Part, PartId, Pose, Receptacle, RoomId, SoundEmitter,

@@ -1,8 +1,8 @@
 //! Rooms of a plan with their slabs.
 
 use super::assembly::Assembly;
-use crate::furniture::finish::Finish;
-use crate::furniture::shapes::extrude;
+use dwell_furniture::finish::Finish;
+use dwell_furniture::shapes::extrude;
 use dwell_scene::{Aabb, Room, RoomId, StructureKind};
 use glam::{Vec2, Vec3};
 

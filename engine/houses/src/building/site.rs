@@ -2,8 +2,8 @@
 
 use super::assembly::{Assembly, Kind, Placed};
 use super::plan::CEILING_M;
-use crate::furniture::model::Model;
-use crate::furniture::shapes::turn;
+use dwell_furniture::model::Model;
+use dwell_furniture::shapes::turn;
 use dwell_scene::{Aabb, Pose, RoomId};
 use glam::{Quat, Vec3};
 

@@ -2,7 +2,7 @@
 
 use super::assembly::Assembly;
 use super::plan::Rect;
-use crate::furniture::finish::Finish;
+use dwell_furniture::finish::Finish;
 #[cfg(test)]
 use dwell_scene::Aabb;
 use dwell_scene::{Mesh, RoomId, StructureKind};

@@ -2,9 +2,9 @@
 
 use super::rooms::RoomKind;
 use crate::building::wall::Bands;
-use crate::furniture::finish::Finish;
-use crate::furniture::style::Style;
-use crate::furniture::textures::Srgb;
+use dwell_furniture::finish::Finish;
+use dwell_furniture::style::Style;
+use dwell_furniture::textures::Srgb;
 use dwell_scene::random::{Key, Stream};
 
 /// Height of skirting boards, m.

@@ -2,7 +2,7 @@
 
 use super::rooms::RoomKind;
 use crate::error::HousesError;
-use crate::furniture::style::{STYLES, Split};
+use dwell_furniture::style::{STYLES, Split};
 use serde::{Deserialize, Serialize};
 
 /// What kind of home.

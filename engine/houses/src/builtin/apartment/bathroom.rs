@@ -1,20 +1,20 @@
 //! The bathroom.
 
 use crate::building::site::{Side, Site};
-use crate::furniture::finish::{Finish, beech, white_lacquer};
-use crate::furniture::finish::{lacquer, plastic, terry};
-use crate::furniture::models::appliances::washer;
-use crate::furniture::models::bath::{bathtub, shower_head, shower_screen, washbasin};
-use crate::furniture::models::bath_things::{
+use dwell_furniture::finish::{Finish, beech, white_lacquer};
+use dwell_furniture::finish::{lacquer, plastic, terry};
+use dwell_furniture::models::appliances::washer;
+use dwell_furniture::models::bath::{bathtub, shower_head, shower_screen, washbasin};
+use dwell_furniture::models::bath_things::{
     bath_mat, folded_towel, laundry_basket, paper_holder, pedal_bin, scale, soap_dispenser,
     toothbrushes, towel_rail, wall_mirror,
 };
-use crate::furniture::models::crockery::bottle;
-use crate::furniture::models::lamps::{ceiling_dome, mirror_lamp};
-use crate::furniture::models::openings::light_switch;
-use crate::furniture::models::seats::stool;
-use crate::furniture::models::taps::mixer_tap;
-use crate::furniture::models::toilet::toilet;
+use dwell_furniture::models::crockery::bottle;
+use dwell_furniture::models::lamps::{ceiling_dome, mirror_lamp};
+use dwell_furniture::models::openings::light_switch;
+use dwell_furniture::models::seats::stool;
+use dwell_furniture::models::taps::mixer_tap;
+use dwell_furniture::models::toilet::toilet;
 
 const NORTH: f32 = 0.0;
 const WEST: f32 = 4.1;

@@ -1,24 +1,24 @@
 //! The parents' bedroom.
 
 use crate::building::site::{Side, Site};
-use crate::furniture::finish::{
+use dwell_furniture::finish::{
     Finish, black, brass, cloth, grey_board, oak, porcelain, terry, upholstery, walnut,
     white_lacquer,
 };
-use crate::furniture::models::bath_things::{laundry_basket, wall_mirror};
-use crate::furniture::models::bed::Bed;
-use crate::furniture::models::bookshelf::book;
-use crate::furniture::models::cabinet::Front;
-use crate::furniture::models::decoration::{handbag, open_box, picture};
-use crate::furniture::models::dresser::Dresser;
-use crate::furniture::models::gadgets::alarm_clock;
-use crate::furniture::models::lamps::{drum, linen_shade, table_lamp};
-use crate::furniture::models::nightstand::nightstand;
-use crate::furniture::models::openings::{light_switch, radiator};
-use crate::furniture::models::plants::vase;
-use crate::furniture::models::seats::pouf;
-use crate::furniture::models::textiles::{Curtains, folded_blanket, pillow, round_rug};
-use crate::furniture::models::wardrobe::Wardrobe;
+use dwell_furniture::models::bath_things::{laundry_basket, wall_mirror};
+use dwell_furniture::models::bed::Bed;
+use dwell_furniture::models::bookshelf::book;
+use dwell_furniture::models::cabinet::Front;
+use dwell_furniture::models::decoration::{handbag, open_box, picture};
+use dwell_furniture::models::dresser::Dresser;
+use dwell_furniture::models::gadgets::alarm_clock;
+use dwell_furniture::models::lamps::{drum, linen_shade, table_lamp};
+use dwell_furniture::models::nightstand::nightstand;
+use dwell_furniture::models::openings::{light_switch, radiator};
+use dwell_furniture::models::plants::vase;
+use dwell_furniture::models::seats::pouf;
+use dwell_furniture::models::textiles::{Curtains, folded_blanket, pillow, round_rug};
+use dwell_furniture::models::wardrobe::Wardrobe;
 
 const NORTH: f32 = 0.0;
 const WEST: f32 = 0.0;

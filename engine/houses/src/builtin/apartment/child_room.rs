@@ -1,25 +1,25 @@
 //! The child's room.
 
 use crate::building::site::{Side, Site};
-use crate::furniture::finish::lampshade;
-use crate::furniture::finish::{
+use dwell_furniture::finish::lampshade;
+use dwell_furniture::finish::{
     Finish, beech, black, cloth, painted_steel, pine, plastic, terry, upholstery, white_lacquer,
 };
-use crate::furniture::models::bath_things::pedal_bin;
-use crate::furniture::models::bed::Bed;
-use crate::furniture::models::bookshelf::{Bookshelf, SHELVES, book, book_row};
-use crate::furniture::models::cabinet::Front;
-use crate::furniture::models::decoration::{
+use dwell_furniture::models::bath_things::pedal_bin;
+use dwell_furniture::models::bed::Bed;
+use dwell_furniture::models::bookshelf::{Bookshelf, SHELVES, book, book_row};
+use dwell_furniture::models::cabinet::Front;
+use dwell_furniture::models::decoration::{
     globe, open_box, pencil_cup, poster, teddy_bear, toy_ball, toy_block, toy_train,
 };
-use crate::furniture::models::desk::Desk;
-use crate::furniture::models::gadgets::laptop;
-use crate::furniture::models::lamps::{desk_lamp, drum, night_light};
-use crate::furniture::models::nightstand::nightstand;
-use crate::furniture::models::openings::{light_switch, radiator};
-use crate::furniture::models::seats::office_chair;
-use crate::furniture::models::textiles::{Curtains, pillow, round_rug};
-use crate::furniture::models::wardrobe::Wardrobe;
+use dwell_furniture::models::desk::Desk;
+use dwell_furniture::models::gadgets::laptop;
+use dwell_furniture::models::lamps::{desk_lamp, drum, night_light};
+use dwell_furniture::models::nightstand::nightstand;
+use dwell_furniture::models::openings::{light_switch, radiator};
+use dwell_furniture::models::seats::office_chair;
+use dwell_furniture::models::textiles::{Curtains, pillow, round_rug};
+use dwell_furniture::models::wardrobe::Wardrobe;
 use dwell_scene::random::Key;
 
 const NORTH: f32 = 5.3;

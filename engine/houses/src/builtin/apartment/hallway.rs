@@ -1,19 +1,19 @@
 //! The hallway.
 
 use crate::building::site::{Side, Site};
-use crate::furniture::finish::{
+use dwell_furniture::finish::{
     Finish, black, cloth, leather, oak, porcelain, upholstery, white_lacquer,
 };
-use crate::furniture::models::bath_things::wall_mirror;
-use crate::furniture::models::cabinet::Front;
-use crate::furniture::models::decoration::{picture, shoes};
-use crate::furniture::models::gadgets::telephone;
-use crate::furniture::models::lamps::ceiling_dome;
-use crate::furniture::models::openings::light_switch;
-use crate::furniture::models::plants::vase;
-use crate::furniture::models::seats::shoe_bench;
-use crate::furniture::models::textiles::{coat_rack, rug};
-use crate::furniture::models::wardrobe::Wardrobe;
+use dwell_furniture::models::bath_things::wall_mirror;
+use dwell_furniture::models::cabinet::Front;
+use dwell_furniture::models::decoration::{picture, shoes};
+use dwell_furniture::models::gadgets::telephone;
+use dwell_furniture::models::lamps::ceiling_dome;
+use dwell_furniture::models::openings::light_switch;
+use dwell_furniture::models::plants::vase;
+use dwell_furniture::models::seats::shoe_bench;
+use dwell_furniture::models::textiles::{coat_rack, rug};
+use dwell_furniture::models::wardrobe::Wardrobe;
 
 const NORTH: f32 = 3.8;
 const SOUTH: f32 = 5.2;

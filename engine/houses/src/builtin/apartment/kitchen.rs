@@ -1,32 +1,32 @@
 //! The kitchen.
 
 use crate::building::site::{Side, Site};
-use crate::furniture::finish::{Finish, granite, pine};
-use crate::furniture::finish::{
+use dwell_furniture::finish::{Finish, granite, pine};
+use dwell_furniture::finish::{
     black, cloth, glass, lacquer, oak, painted_steel, plastic, porcelain, steel, terracotta,
 };
-use crate::furniture::models::appliances::{coffee_machine, kettle, microwave, toaster};
-use crate::furniture::models::bath_things::{pedal_bin, soap_dispenser};
-use crate::furniture::models::bookshelf::wall_shelf;
-use crate::furniture::models::cabinet::Front;
-use crate::furniture::models::chair::Chair;
-use crate::furniture::models::cooker::{cooker, range_hood};
-use crate::furniture::models::crockery::{
+use dwell_furniture::models::appliances::{coffee_machine, kettle, microwave, toaster};
+use dwell_furniture::models::bath_things::{pedal_bin, soap_dispenser};
+use dwell_furniture::models::bookshelf::wall_shelf;
+use dwell_furniture::models::cabinet::Front;
+use dwell_furniture::models::chair::Chair;
+use dwell_furniture::models::cooker::{cooker, range_hood};
+use dwell_furniture::models::crockery::{
     bottle, bowl, jar, mug, pan, plate, pot, tumbler, utensils, white_glaze,
 };
-use crate::furniture::models::decoration::picture;
-use crate::furniture::models::food::{bread, cutting_board, fruit, knife_block, red_skin};
-use crate::furniture::models::fridge::refrigerator;
-use crate::furniture::models::gadgets::wall_clock;
-use crate::furniture::models::kitchen_unit::{Bay, KitchenUnit, WORKTOP_M, wall_cabinet};
-use crate::furniture::models::lamps::{ceiling_dome, pendant};
-use crate::furniture::models::openings::{light_switch, radiator};
-use crate::furniture::models::plants::{Plant, fresh_green};
-use crate::furniture::models::radio::radio;
-use crate::furniture::models::table::Table;
-use crate::furniture::models::taps::mixer_tap;
-use crate::furniture::models::textiles::rug;
-use crate::furniture::models::tv_stand::Lowboard;
+use dwell_furniture::models::decoration::picture;
+use dwell_furniture::models::food::{bread, cutting_board, fruit, knife_block, red_skin};
+use dwell_furniture::models::fridge::refrigerator;
+use dwell_furniture::models::gadgets::wall_clock;
+use dwell_furniture::models::kitchen_unit::{Bay, KitchenUnit, WORKTOP_M, wall_cabinet};
+use dwell_furniture::models::lamps::{ceiling_dome, pendant};
+use dwell_furniture::models::openings::{light_switch, radiator};
+use dwell_furniture::models::plants::{Plant, fresh_green};
+use dwell_furniture::models::radio::radio;
+use dwell_furniture::models::table::Table;
+use dwell_furniture::models::taps::mixer_tap;
+use dwell_furniture::models::textiles::rug;
+use dwell_furniture::models::tv_stand::Lowboard;
 use dwell_scene::random::Key;
 
 const NORTH: f32 = 0.0;

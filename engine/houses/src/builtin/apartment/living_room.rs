@@ -2,27 +2,27 @@
 
 use crate::building::assembly::Placed;
 use crate::building::site::{Side, Site};
-use crate::furniture::finish::{
+use dwell_furniture::finish::{
     Finish, black, cloth, lampshade, marble, oak, painted_steel, porcelain, terracotta, upholstery,
     walnut,
 };
-use crate::furniture::models::bookshelf::{Bookshelf, SHELVES, book, book_row, cover};
-use crate::furniture::models::cabinet::Front;
-use crate::furniture::models::chair::Chair;
-use crate::furniture::models::crockery::{bowl, plate, tumbler, white_glaze};
-use crate::furniture::models::decoration::{magazines, picture, sculpture};
-use crate::furniture::models::food::{cutlery, fruit, green_skin, orange_skin, red_skin};
-use crate::furniture::models::gadgets::remote_control;
-use crate::furniture::models::lamps::{candle, drum, floor_lamp, linen_shade, pendant, table_lamp};
-use crate::furniture::models::openings::{light_switch, radiator};
-use crate::furniture::models::plants::{Plant, deep_green, sansevieria, vase};
-use crate::furniture::models::radio::loudspeaker;
-use crate::furniture::models::seats::pouf;
-use crate::furniture::models::sofa::Sofa;
-use crate::furniture::models::table::{Table, side_table};
-use crate::furniture::models::television::television;
-use crate::furniture::models::textiles::{Curtains, folded_blanket, pillow, rug};
-use crate::furniture::models::tv_stand::Lowboard;
+use dwell_furniture::models::bookshelf::{Bookshelf, SHELVES, book, book_row, cover};
+use dwell_furniture::models::cabinet::Front;
+use dwell_furniture::models::chair::Chair;
+use dwell_furniture::models::crockery::{bowl, plate, tumbler, white_glaze};
+use dwell_furniture::models::decoration::{magazines, picture, sculpture};
+use dwell_furniture::models::food::{cutlery, fruit, green_skin, orange_skin, red_skin};
+use dwell_furniture::models::gadgets::remote_control;
+use dwell_furniture::models::lamps::{candle, drum, floor_lamp, linen_shade, pendant, table_lamp};
+use dwell_furniture::models::openings::{light_switch, radiator};
+use dwell_furniture::models::plants::{Plant, deep_green, sansevieria, vase};
+use dwell_furniture::models::radio::loudspeaker;
+use dwell_furniture::models::seats::pouf;
+use dwell_furniture::models::sofa::Sofa;
+use dwell_furniture::models::table::{Table, side_table};
+use dwell_furniture::models::television::television;
+use dwell_furniture::models::textiles::{Curtains, folded_blanket, pillow, rug};
+use dwell_furniture::models::tv_stand::Lowboard;
 use dwell_scene::random::Key;
 
 /// Faces of the room's walls, m.

@@ -5,8 +5,8 @@ use crate::building::assembly::Assembly;
 use crate::building::plan::Rect;
 use crate::building::site::{Site, yaw};
 use crate::building::wall::{Along, Opening};
-use crate::furniture::finish::Finish;
-use crate::furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
+use dwell_furniture::finish::Finish;
+use dwell_furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
 use dwell_scene::{Pose, RoomId};
 use glam::Vec3;
 

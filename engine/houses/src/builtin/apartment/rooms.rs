@@ -4,7 +4,7 @@ use super::openings::DOOR_WIDTH_M;
 use super::style;
 use crate::building::assembly::Assembly;
 use crate::building::plan::{Rect, RoomPlan, SLAB_M};
-use crate::furniture::finish::Finish;
+use dwell_furniture::finish::Finish;
 use dwell_scene::RoomId;
 
 /// Thickness of walls to the outside, m.

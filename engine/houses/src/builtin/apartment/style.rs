@@ -1,7 +1,7 @@
 //! The colours of the apartment.
 
 use crate::building::wall::Bands;
-use crate::furniture::finish::Finish;
+use dwell_furniture::finish::Finish;
 
 /// Height of skirting boards, m.
 const SKIRTING_M: f32 = 0.08;

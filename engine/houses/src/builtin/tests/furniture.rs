@@ -3,7 +3,7 @@
 use super::support::apartment;
 use crate::building::plan::CEILING_M;
 use crate::builtin::apartment::walls;
-use crate::testing::overlap::{Convex, deepest, depth, object_pieces, part_pieces};
+use dwell_furniture::testing::overlap::{Convex, deepest, depth, object_pieces, part_pieces};
 use dwell_scene::{Aabb, House, Mobility, ObjectId};
 use glam::Vec3;
 

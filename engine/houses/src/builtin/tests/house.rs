@@ -2,8 +2,8 @@
 
 use super::support::apartment;
 use crate::build::category;
-use crate::testing::meshes::assert_closed;
-use crate::testing::overlap::{Convex, depth, object_pieces};
+use dwell_furniture::testing::meshes::assert_closed;
+use dwell_furniture::testing::overlap::{Convex, depth, object_pieces};
 use dwell_scene::material::library;
 use dwell_scene::{Holding, Mobility, Room, StructureKind};
 use glam::{Vec2, Vec3};

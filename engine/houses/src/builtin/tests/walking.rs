@@ -2,7 +2,7 @@
 
 use super::support::apartment;
 use crate::builtin::apartment::walls;
-use crate::testing::overlap::{Convex, object_pieces};
+use dwell_furniture::testing::overlap::{Convex, object_pieces};
 use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
 use dwell_scene::{Aabb, State};
 use glam::Vec2;

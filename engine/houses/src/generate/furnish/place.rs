@@ -4,7 +4,7 @@ use super::rules::{Place, Rule};
 use super::space::{Piece, Space, Span};
 use crate::building::plan::CEILING_M;
 use crate::building::site::yaw;
-use crate::furniture::stock::Stock;
+use dwell_furniture::stock::Stock;
 use dwell_scene::random::Stream;
 use dwell_scene::{Aabb, Holding, Pose};
 use glam::{Vec2, Vec3};

@@ -151,8 +151,8 @@ pub(crate) fn rules() -> &'static Rules {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::furniture::catalogue::entries;
     use crate::generate::furnish::sized::SIZED;
+    use dwell_furniture::catalogue::entries;
 
     #[test]
     fn every_rule_names_known_things_and_its_reason() {

@@ -1,11 +1,11 @@
 //! Things that are made to measure for a window.
 
-use crate::furniture::finish::Finish;
-use crate::furniture::models::openings::radiator;
-use crate::furniture::models::textiles::Curtains;
-use crate::furniture::stock::Stock;
-use crate::furniture::style::Style;
 use crate::generate::openings::Hole;
+use dwell_furniture::finish::Finish;
+use dwell_furniture::models::openings::radiator;
+use dwell_furniture::models::textiles::Curtains;
+use dwell_furniture::stock::Stock;
+use dwell_furniture::style::Style;
 use dwell_scene::random::Key;
 use std::sync::Arc;
 

@@ -3,10 +3,10 @@
 //! World x and z, heights above the room's floor. All tests are on boxes around collision pieces: what they allow is free
 //! of overlap for sure.
 
-use crate::furniture::stock::Stock;
 use crate::generate::openings::{Filling, Hole, Zone, overlap};
 use crate::generate::plan::{Cells, Storey, metres};
 use crate::generate::shell::{free_floor, half_wall};
+use dwell_furniture::stock::Stock;
 use dwell_scene::{Aabb, Pose};
 use glam::Vec3;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! Plans and buildings.
 
 use crate::generate::{HomeKind, HouseSpec, generate};
-use crate::testing::meshes::assert_closed;
+use dwell_furniture::testing::meshes::assert_closed;
 use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
 use dwell_scene::{House, State};
 use std::collections::BTreeSet;

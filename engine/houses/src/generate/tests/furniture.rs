@@ -1,7 +1,7 @@
 //! Furniture, lamps and small things.
 
 use crate::generate::{Generated, HouseSpec, generate};
-use crate::testing::overlap::{Convex, deepest, object_pieces, part_pieces};
+use dwell_furniture::testing::overlap::{Convex, deepest, object_pieces, part_pieces};
 use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{Aabb, House, ObjectId, State};

@@ -1,0 +1,151 @@
+//! Beds.
+
+use crate::finish::{Finish, cloth, oak};
+use crate::model::{Model, Part};
+use crate::shapes::{Solid, blanket, block, rounded_block, tapered_leg};
+
+/// A bed with a mattress, made up with a blanket; pillows are things of their own. The head is at -Z.
+#[derive(Clone, Debug)]
+pub struct Bed {
+    /// Of the mattress: along x, along z, m.
+    pub mattress_m: [f32; 2],
+    /// Height of the headboard, m.
+    pub head_m: f32,
+    /// What the body is made of.
+    pub wood: Finish,
+    /// Headboard of posts and bars instead of a panel.
+    pub barred: bool,
+    /// Headboard, if not of wood.
+    pub headboard: Option<Finish>,
+    /// Cloth over the mattress.
+    pub sheet: Finish,
+    /// Cloth of the blanket.
+    pub blanket: Finish,
+}
+
+impl Default for Bed {
+    fn default() -> Self {
+        Self {
+            mattress_m: [1.6, 2.0],
+            head_m: 1.05,
+            wood: oak(),
+            barred: false,
+            headboard: None,
+            sheet: cloth("white_linen", [238, 236, 230]),
+            blanket: cloth("teal_linen", [86, 120, 124]),
+        }
+    }
+}
+
+/// Height of the mattress' upper face, m.
+pub const MATTRESS_TOP_M: f32 = 0.5;
+
+impl Bed {
+    /// The model of these sizes and finishes.
+    pub fn build(&self) -> Model {
+        let [width, length] = self.mattress_m;
+        let (x, z) = (0.5 * width + 0.035, 0.5 * length + 0.035);
+        let head = self.headboard.as_ref().unwrap_or(&self.wood);
+        let mut body = Part::new("body")
+            .with(&self.wood, block([-x, 0.2, -z], [x, 0.32, -z + 0.03]))
+            .with(
+                &self.wood,
+                rounded_block([-x, 0.18, z - 0.03], [x, 0.36, z], 0.008, 1),
+            )
+            .with(
+                &self.wood,
+                block([-x, 0.2, -z + 0.03], [-x + 0.03, 0.32, z - 0.03]),
+            )
+            .with(
+                &self.wood,
+                block([x - 0.03, 0.2, -z + 0.03], [x, 0.32, z - 0.03]),
+            )
+            .with(
+                &self.wood,
+                block([-x + 0.03, 0.25, -z + 0.03], [x - 0.03, 0.27, z - 0.03]),
+            );
+        body = body.with_all(head, self.head(x, z));
+        for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+            let (a, b) = (sx * (x - 0.06), sz * (z - 0.07));
+            body = body.with(
+                &self.wood,
+                tapered_leg([a, 0.0, b], [a, 0.2, b], 0.045, 0.06),
+            );
+        }
+        let (mx, mz) = (0.5 * width, 0.5 * length);
+        let foam = dwell_scene::material::library()
+            .get_or_default("foam")
+            .density_kg_m3;
+        let fill = foam / self.sheet.substance().density_kg_m3;
+        body = body.with_filled(
+            &self.sheet,
+            rounded_block([-mx, 0.27, -mz], [mx, MATTRESS_TOP_M, mz], 0.06, 2),
+            fill,
+        );
+        // The blanket leaves the upper third of the mattress to the pillows and is turned back there.
+        let cover = 0.68 * length;
+        body = body
+            .with_filled(
+                &self.blanket,
+                blanket(width + 0.03, cover, 0.26, 0.035).at(
+                    0.0,
+                    MATTRESS_TOP_M,
+                    mz + 0.02 - 0.5 * cover,
+                ),
+                0.5,
+            )
+            .with_filled(
+                &self.sheet,
+                rounded_block(
+                    [-mx, MATTRESS_TOP_M + 0.02, mz - cover - 0.02],
+                    [mx, MATTRESS_TOP_M + 0.05, mz - cover + 0.22],
+                    0.014,
+                    1,
+                ),
+                0.3,
+            );
+        let (name, category) = if width > 1.3 {
+            ("double_bed", "double_bed")
+        } else {
+            ("single_bed", "single_bed")
+        };
+        Model::fixed(name, category)
+            .part(body)
+            .top(
+                "pillow_end",
+                [-mx, MATTRESS_TOP_M, -mz],
+                [mx, 1.2, mz - cover - 0.03],
+            )
+            .top(
+                "blanket",
+                [-mx, MATTRESS_TOP_M + 0.035, mz - cover + 0.25],
+                [mx, 1.2, mz - 0.1],
+            )
+    }
+
+    /// The headboard behind the bed's end at (±`x`, -`z`).
+    fn head(&self, x: f32, z: f32) -> Vec<Solid> {
+        if !self.barred {
+            let panel = rounded_block([-x, 0.12, -z - 0.06], [x, self.head_m, -z], 0.02, 2);
+            return vec![panel];
+        }
+        let (back, front) = (-z - 0.05, -z);
+        let rail = |low: f32, high: f32| {
+            block(
+                [-x + 0.05, low, back + 0.01],
+                [x - 0.05, high, front - 0.01],
+            )
+        };
+        let post = |at: f32| block([at - 0.025, 0.0, back], [at + 0.025, self.head_m, front]);
+        let (low, top) = (0.42, self.head_m - 0.1);
+        let count = (2.0 * x / 0.13) as usize;
+        let bar = |k: usize| {
+            let at = -x + 0.05 + (2.0 * x - 0.1) * k as f32 / count as f32;
+            block([at - 0.012, low, -z - 0.033], [at + 0.012, top, -z - 0.017])
+        };
+        let mut solids = vec![post(-x + 0.025), post(x - 0.025)];
+        solids.extend([rail(low - 0.07, low), rail(top, self.head_m - 0.02)]);
+        solids.extend((1..count).map(bar));
+        solids
+    }
+}

@@ -1,0 +1,94 @@
+//! A chest of drawers.
+
+use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, drawer, drawer_space};
+use crate::finish::{Finish, brass, walnut};
+use crate::model::{Model, Part};
+use crate::shapes::{block, rounded_block, tapered_leg};
+use glam::Vec3;
+
+/// Two columns of drawers under one top, on legs.
+#[derive(Clone, Debug)]
+pub struct Dresser {
+    /// m.
+    pub width_m: f32,
+    /// m.
+    pub height_m: f32,
+    /// m.
+    pub depth_m: f32,
+    /// Drawers above each other.
+    pub rows: usize,
+    /// What the body is made of.
+    pub wood: Finish,
+    /// What doors and drawers look like.
+    pub front: Front,
+}
+
+impl Default for Dresser {
+    fn default() -> Self {
+        Self {
+            width_m: 1.1,
+            height_m: 0.82,
+            depth_m: 0.45,
+            rows: 3,
+            wood: walnut(),
+            front: Front::plain(walnut(), brass()),
+        }
+    }
+}
+
+const NAMES: [&str; 8] = [
+    "drawer_1", "drawer_2", "drawer_3", "drawer_4", "drawer_5", "drawer_6", "drawer_7", "drawer_8",
+];
+
+impl Dresser {
+    /// The model of these sizes and finishes.
+    pub fn build(&self) -> Model {
+        const LEG_M: f32 = 0.12;
+        let (x, top) = (0.5 * self.width_m, self.height_m - 0.022);
+        let carcass = Carcass::standing(self.width_m - 0.02, LEG_M, top, self.depth_m - BOARD_M);
+        let z = carcass.max[2];
+        let mut body = Part::new("body")
+            .with(
+                &self.wood,
+                rounded_block([-x, top, -z], [x, self.height_m, z + BOARD_M], 0.006, 1),
+            )
+            .with_all(&self.wood, carcass.boards(&[], &[0.5]));
+        for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+            let (a, b) = (sx * (x - 0.06), sz * (z - 0.04));
+            body = body.with(
+                &self.wood,
+                tapered_leg([a * 1.02, 0.0, b], [a, LEG_M, b], 0.026, 0.042),
+            );
+        }
+        // Runners between the rows.
+        let step = (top - LEG_M) / self.rows as f32;
+        for k in 1..self.rows {
+            let y = LEG_M + step * k as f32;
+            body = body.with(
+                &self.wood,
+                block([-x + 0.03, y - 0.006, z - 0.03], [x - 0.03, y + 0.006, z]),
+            );
+        }
+        let mut model = Model::articulated("dresser", "dresser").part(body).top(
+            "top",
+            [-x, self.height_m, -z],
+            [x, self.height_m + 0.6, z],
+        );
+        let front = self.front.clone();
+        let half = carcass.max[0];
+        for (k, name) in NAMES.into_iter().take(2 * self.rows).enumerate() {
+            let left = if k % 2 == 0 { -half } else { 0.0 };
+            let low = LEG_M + step * (k / 2) as f32;
+            let (low, high) = (
+                [left + GAP_M, low + GAP_M],
+                [left + half - GAP_M, low + step - GAP_M],
+            );
+            let (min, max) = drawer_space(low, high, z, self.depth_m - 0.1);
+            model = model
+                .part(drawer(name, low, high, z, self.depth_m - 0.1, &front))
+                .sliding(name, Vec3::Z, self.depth_m - 0.16)
+                .inside(name, min, max);
+        }
+        model
+    }
+}

@@ -1,0 +1,278 @@
+//! What fills holes in walls: doors and windows, and the radiators below them.
+
+use crate::finish::{Finish, chrome, glass, plastic, white_lacquer};
+use crate::model::{Model, Part};
+use crate::shapes::{block, cylinder, frame, rod};
+use glam::Vec3;
+use std::f32::consts::FRAC_PI_2;
+
+/// Width of a door's jambs and lintel, m.
+const JAMB_M: f32 = 0.04;
+/// Thickness of a door's leaf, m.
+const LEAF_M: f32 = 0.04;
+/// Gap between leaf and floor, m.
+const SILL_M: f32 = 0.012;
+/// Gap between leaf and jambs, m.
+const GAP_M: f32 = 0.003;
+
+/// A hinged door in an opening.
+///
+/// x = 0 is the middle of the opening, z = 0 the middle of the wall, y = 0 the floor. The leaf hangs on the left (-X) jamb
+/// or the right one and swings towards +Z.
+#[derive(Clone, Debug)]
+pub struct Door {
+    /// Of the opening, m.
+    pub width_m: f32,
+    /// Of the opening, m.
+    pub height_m: f32,
+    /// Thickness of the wall, m.
+    pub wall_m: f32,
+    /// What the leaf is made of.
+    pub leaf: Finish,
+    /// What the frame is made of.
+    pub frame: Finish,
+    /// Whether the leaf has a pane.
+    pub glazed: bool,
+    /// Whether the leaf hangs on the right (+X) jamb instead.
+    pub hinge_right: bool,
+}
+
+impl Default for Door {
+    fn default() -> Self {
+        let leaf = Finish::plain("white_door", "hollow_door", [236, 234, 228]);
+        Self {
+            width_m: 0.98,
+            height_m: 2.06,
+            wall_m: 0.1,
+            leaf,
+            frame: white_lacquer(),
+            glazed: false,
+            hinge_right: false,
+        }
+    }
+}
+
+impl Door {
+    /// Lower left and upper right corner of the leaf.
+    fn leaf_corners(&self) -> [[f32; 2]; 2] {
+        let half = 0.5 * self.width_m - JAMB_M - GAP_M;
+        [[-half, SILL_M], [half, self.height_m - JAMB_M - GAP_M]]
+    }
+
+    fn frame(&self) -> Part {
+        const TRIM_M: f32 = 0.012;
+        let (x, h, z) = (0.5 * self.width_m, self.height_m, 0.5 * self.wall_m);
+        let jambs = [
+            block([-x, 0.0, -z], [-x + JAMB_M, h, z]),
+            block([x - JAMB_M, 0.0, -z], [x, h, z]),
+            block([-x + JAMB_M, h - JAMB_M, -z], [x - JAMB_M, h, z]),
+        ];
+        // Architraves cover the joint between frame and wall on both faces.
+        let (inner, outer, top) = (x - 0.01, x + 0.05, h + 0.05);
+        let trims = [z, -z - TRIM_M].map(|back| {
+            let face = back + TRIM_M;
+            block([-outer, 0.0, back], [-inner, top, face])
+                .and(block([inner, 0.0, back], [outer, top, face]))
+                .and(block([-inner, h - 0.01, back], [inner, top, face]))
+                .untouchable()
+        });
+        Part::new("frame")
+            .with_all(&self.frame, jambs)
+            .with_all(&self.frame, trims)
+    }
+
+    fn panels(&self, leaf: Part) -> Part {
+        let [[left, bottom], [right, top]] = self.leaf_corners();
+        let face = 0.5 * self.wall_m;
+        let back = face - LEAF_M;
+        let mut leaf = leaf.with(&self.leaf, block([left, bottom, back], [right, top, face]));
+        // Raised mouldings around panels of a slightly darker paint, two on each side.
+        let shade = Finish {
+            srgb: self.leaf.srgb.map(|c| (f32::from(c) * 0.95) as u8),
+            ..self.leaf.clone()
+        };
+        for (low, high) in [(0.16, 0.86), (1.0, top - 0.14)] {
+            let (width, height) = (right - left - 0.26, high - low);
+            let moulding = frame(width, height, 0.018, 0.006).untouchable();
+            let middle = low + 0.5 * height;
+            let (x, y) = (0.5 * width - 0.018, 0.5 * height - 0.018);
+            let plate =
+                |z: f32| block([-x, middle - y, z], [x, middle + y, z + 0.002]).untouchable();
+            leaf = leaf
+                .with(&self.leaf, moulding.clone().at(0.0, middle, face))
+                .with(&self.leaf, moulding.at(0.0, middle, back - 0.006))
+                .with(&shade, plate(face))
+                .with(&shade, plate(back - 0.002));
+        }
+        leaf
+    }
+
+    fn pane(&self, leaf: Part) -> Part {
+        let [[left, bottom], [right, top]] = self.leaf_corners();
+        let face = 0.5 * self.wall_m;
+        let (back, middle) = (face - LEAF_M, face - 0.5 * LEAF_M);
+        let (a, b, low, high) = (left + 0.13, right - 0.13, bottom + 0.3, top - 0.14);
+        let rails = [
+            block([left, bottom, back], [a, top, face]),
+            block([b, bottom, back], [right, top, face]),
+            block([a, bottom, back], [b, low, face]),
+            block([a, high, back], [b, top, face]),
+        ];
+        let pane = block([a, low, middle - 0.004], [b, high, middle + 0.004]);
+        leaf.with_all(&self.leaf, rails).with(&glass(), pane)
+    }
+
+    /// A lever on either side.
+    fn handles(&self, mut leaf: Part) -> Part {
+        const HEIGHT_M: f32 = 1.02;
+        let [[left, _], [right, _]] = self.leaf_corners();
+        let (grip, inward) = if self.hinge_right {
+            (left + 0.06, -1.0)
+        } else {
+            (right - 0.06, 1.0)
+        };
+        let face = 0.5 * self.wall_m;
+        for (side, at) in [(1.0, face), (-1.0, face - LEAF_M)] {
+            let out = at + side * 0.045;
+            let point = |way: f32, z: f32| [grip - inward * way, HEIGHT_M, z];
+            let plate = cylinder(0.025, 0.006, 18).about_x(side * FRAC_PI_2);
+            leaf = leaf.with_all(
+                &chrome(),
+                [
+                    rod(point(0.0, at), point(0.0, out), 0.009),
+                    rod(point(-0.008, out), point(0.115, out), 0.009),
+                    plate.at(grip, HEIGHT_M, at).untouchable(),
+                ],
+            );
+        }
+        leaf
+    }
+
+    /// The model of these sizes and finishes.
+    pub fn build(&self) -> Model {
+        let leaf = Part::new("leaf");
+        let leaf = if self.glazed {
+            self.pane(leaf)
+        } else {
+            self.panels(leaf)
+        };
+        let [[left, _], [right, _]] = self.leaf_corners();
+        let face = 0.5 * self.wall_m;
+        let (hinge, axis) = if self.hinge_right {
+            (right, Vec3::Y)
+        } else {
+            (left, Vec3::NEG_Y)
+        };
+        Model::articulated("door", "door")
+            .part(self.frame())
+            .part(self.handles(leaf))
+            .hinged("hinge", [hinge, 0.0, face], axis, 1.65)
+    }
+}
+
+/// A window in an opening of a wall: x = 0, y = 0 its middle, z = 0 the wall's middle, the room at +Z.
+#[derive(Clone, Debug)]
+pub struct Window {
+    /// Of the opening, m.
+    pub width_m: f32,
+    /// Of the opening, m.
+    pub height_m: f32,
+    /// Thickness of the wall, m.
+    pub wall_m: f32,
+    /// Number of casements side by side.
+    pub lights: usize,
+    /// The glass.
+    pub pane: Finish,
+    /// How far the sill stands into the room, m.
+    pub sill_m: f32,
+}
+
+/// Clear double glazing.
+pub const fn clear_pane() -> Finish {
+    Finish::plain("window_glass", "double_glazing", [206, 226, 232]).clear(0.12)
+}
+
+/// Frosted double glazing.
+pub const fn frosted_pane() -> Finish {
+    Finish::plain("frosted_glass", "double_glazing", [224, 234, 236]).clear(0.85)
+}
+
+impl Window {
+    /// The model of these sizes and finishes.
+    pub fn build(&self) -> Model {
+        let (w, h, z) = (self.width_m, self.height_m, 0.5 * self.wall_m);
+        let white = plastic("window_white", [240, 240, 238]);
+        let (depth, back) = (0.07, -0.035);
+        let mut body = Part::new("frame")
+            .with(&white, frame(w, h, 0.05, depth).at(0.0, 0.0, back))
+            .with(
+                &white,
+                block(
+                    [-0.5 * w, -0.5 * h - 0.0, -back],
+                    [0.5 * w, -0.5 * h + 0.02, z + self.sill_m],
+                ),
+            )
+            .with(
+                &white,
+                block(
+                    [-0.5 * w, -0.5 * h, -z - 0.03],
+                    [0.5 * w, -0.5 * h + 0.02, back],
+                ),
+            );
+        let mut panes = Part::new("glass");
+        let (iw, ih) = (w - 0.1, h - 0.1);
+        let step = iw / self.lights as f32;
+        for k in 0..self.lights {
+            let x = -0.5 * iw + step * (k as f32 + 0.5);
+            body = body.with(
+                &white,
+                frame(step - 0.004, ih - 0.004, 0.045, 0.05).at(x, 0.0, -0.02),
+            );
+            let (px, py) = (0.5 * step - 0.047, 0.5 * ih - 0.047);
+            panes = panes.with(
+                &self.pane,
+                block([x - px, -py, -0.006], [x + px, py, 0.012]),
+            );
+            let lever = x + (0.5 * step - 0.025) * if k % 2 == 0 { 1.0 } else { -1.0 };
+            body = body.with(
+                &chrome(),
+                block([lever - 0.008, -0.06, 0.03], [lever + 0.008, 0.06, 0.05]).untouchable(),
+            );
+        }
+        Model::fixed("window", "window").part(body).part(panes)
+    }
+}
+
+/// A panel radiator on the wall; y = 0 is its lower edge.
+pub fn radiator(width_m: f32, height_m: f32) -> Model {
+    let white = Finish::plain("radiator_white", "steel", [238, 238, 236]);
+    let x = 0.5 * width_m;
+    let rib = |k: usize| {
+        let a = -x + 0.012 + 0.04 * k as f32;
+        block([a, 0.03, 0.09], [a + 0.022, height_m - 0.03, 0.098]).untouchable()
+    };
+    let body = Part::new("body")
+        .with_filled(&white, block([-x, 0.0, 0.04], [x, height_m, 0.09]), 0.12)
+        .with_all(&white, (0..(width_m / 0.04 - 0.5) as usize).map(rib))
+        .with_all(
+            &white,
+            [-x + 0.1, x - 0.12].map(|a| block([a, 0.1, 0.0], [a + 0.02, height_m - 0.1, 0.04])),
+        )
+        .with(
+            &chrome(),
+            rod([x, 0.05, 0.06], [x + 0.05, 0.05, 0.06], 0.011),
+        );
+    Model::fixed("radiator", "heater").part(body)
+}
+
+/// A light switch on the wall; y = 0 is its middle.
+pub fn light_switch() -> Model {
+    let white = plastic("white_plastic", [240, 240, 236]);
+    let body = Part::new("body")
+        .with(&white, block([-0.04, -0.04, 0.0], [0.04, 0.04, 0.008]))
+        .with(
+            &white,
+            block([-0.028, -0.028, 0.008], [0.028, 0.028, 0.012]),
+        );
+    Model::fixed("light_switch", "switch").part(body)
+}

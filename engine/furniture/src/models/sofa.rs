@@ -1,0 +1,166 @@
+//! Sofas and armchairs: the same build with more or fewer seats.
+
+use crate::finish::{Finish, oak, upholstery};
+use crate::model::{Model, Part};
+use crate::shapes::{Solid, block, cushion, cylinder, rounded_block, tapered_leg};
+
+/// How the arms of a seat are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arm {
+    /// An upholstered block.
+    Block,
+    /// An upholstered panel under a roll.
+    Rolled,
+    /// A frame of wood.
+    Wood,
+}
+
+/// An upholstered seat for one or more.
+#[derive(Clone, Debug)]
+pub struct Sofa {
+    /// Seats beside each other.
+    pub seats: usize,
+    /// Width of one seat, m.
+    pub seat_width_m: f32,
+    /// m.
+    pub depth_m: f32,
+    /// Height of the back, m.
+    pub back_m: f32,
+    /// The shape of the arm rests.
+    pub arm: Arm,
+    /// Width of an arm, m.
+    pub arm_m: f32,
+    /// Height of the arms, m.
+    pub arm_top_m: f32,
+    /// Height of the legs, m.
+    pub leg_m: f32,
+    /// What cushions are covered with.
+    pub cover: Finish,
+    /// What the body is made of.
+    pub wood: Finish,
+}
+
+impl Default for Sofa {
+    fn default() -> Self {
+        let cover = upholstery("slate_blue_cloth", [92, 112, 134]);
+        Self {
+            seats: 3,
+            seat_width_m: 0.62,
+            depth_m: 0.92,
+            back_m: 0.82,
+            arm: Arm::Block,
+            arm_m: 0.15,
+            arm_top_m: 0.6,
+            leg_m: 0.12,
+            cover,
+            wood: oak(),
+        }
+    }
+}
+
+impl Sofa {
+    /// An armchair of the same family.
+    pub fn armchair(cover: Finish) -> Self {
+        Self {
+            seats: 1,
+            seat_width_m: 0.56,
+            depth_m: 0.82,
+            back_m: 0.86,
+            cover,
+            ..Self::default()
+        }
+    }
+
+    /// The model of these sizes and finishes.
+    pub fn build(&self) -> Model {
+        let inner = 0.5 * self.seat_width_m * self.seats as f32;
+        let (x, z) = (inner + self.arm_m, 0.5 * self.depth_m);
+        let mut body = Part::new("body")
+            .with_padding(
+                &self.cover,
+                rounded_block([-x, self.leg_m, -z], [x, 0.28, z - 0.03], 0.03, 1),
+            )
+            .with_padding(
+                &self.cover,
+                rounded_block([-x, 0.28, -z], [x, self.back_m - 0.06, -z + 0.16], 0.06, 2),
+            );
+        for side in [-1.0_f32, 1.0] {
+            body = self.add_arm(body, side * x, side * inner, z);
+            for depth in [-z + 0.1, z - 0.12] {
+                let leg = side * (x - 0.1);
+                body = body.with(
+                    &self.wood,
+                    tapered_leg([leg, 0.0, depth], [leg, self.leg_m, depth], 0.03, 0.05),
+                );
+            }
+        }
+        for k in 0..self.seats {
+            let left = -inner + self.seat_width_m * k as f32 + 0.004;
+            let right = left + self.seat_width_m - 0.008;
+            body = body
+                .with_padding(
+                    &self.cover,
+                    cushion([left, 0.28, -z + 0.16], [right, 0.45, z]),
+                )
+                .with_padding(
+                    &self.cover,
+                    cushion([left, 0.44, -z + 0.15], [right, self.back_m, -z + 0.34]),
+                );
+        }
+        let (name, category) = if self.seats == 1 {
+            ("armchair", "armchair")
+        } else {
+            ("sofa", "sofa")
+        };
+        Model::movable(name, category).part(body).top(
+            "seat",
+            [-inner + 0.02, 0.45, -z + 0.34],
+            [inner - 0.02, 0.95, z - 0.04],
+        )
+    }
+
+    /// The arm between its outer face at x = `outer` and the seat at x = `inner`.
+    fn add_arm(&self, body: Part, outer: f32, inner: f32, z: f32) -> Part {
+        let (left, right) = (outer.min(inner), outer.max(inner));
+        let (back, front, top) = (-z + 0.16, z - 0.02, self.arm_top_m);
+        let padded = |low: f32, high: f32, radius: f32| {
+            rounded_block([left, low, back], [right, high, front], radius, 2)
+        };
+        match self.arm {
+            Arm::Block => body.with_padding(&self.cover, padded(0.28, top, 0.06)),
+            Arm::Rolled => {
+                let radius = 0.5 * self.arm_m;
+                let roll = cylinder(radius, front - back, 18)
+                    .about_x(std::f32::consts::FRAC_PI_2)
+                    .at(0.5 * (left + right), top - radius, back);
+                let panel = [
+                    [left + 0.02, 0.28, back],
+                    [right - 0.02, top - radius, front],
+                ];
+                body.with_padding(&self.cover, block(panel[0], panel[1]))
+                    .with_padding(&self.cover, roll)
+            }
+            Arm::Wood => {
+                let (low, middle) = (0.28, 0.5 * (left + right));
+                let post = |at: f32| {
+                    block(
+                        [middle - 0.02, low, at - 0.025],
+                        [middle + 0.02, top - 0.03, at + 0.025],
+                    )
+                };
+                let rest = rounded_block(
+                    [left, top - 0.03, back - 0.02],
+                    [right, top, front],
+                    0.012,
+                    1,
+                );
+                [post(front - 0.06), post(back + 0.06)]
+                    .into_iter()
+                    .fold(body, |body: Part, solid: Solid| {
+                        body.with(&self.wood, solid)
+                    })
+                    .with(&self.wood, rest)
+            }
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! Taps: a spout with a lever that turns the water on.
+
+use crate::finish::chrome;
+use crate::model::{Model, Part};
+use crate::shapes::{cylinder, rod, tube};
+use glam::Vec3;
+use std::f32::consts::FRAC_PI_2;
+
+/// How far the lever turns from off to full, rad.
+const TURN_RAD: f32 = 0.9;
+
+/// A mixer tap that stands on a rim, its spout towards +Z, its lever upright on the right; the lever comes forward.
+pub fn mixer_tap(height_m: f32, reach_m: f32) -> Model {
+    let (h, reach) = (height_m, reach_m);
+    let spout = [
+        [0.0, 0.0, 0.0],
+        [0.0, 0.8 * h, 0.0],
+        [0.0, 0.96 * h, 0.18 * reach],
+        [0.0, h, 0.47 * reach],
+        [0.0, 0.93 * h, 0.88 * reach],
+        [0.0, 0.72 * h, reach],
+    ];
+    let level = 0.36 * h;
+    let hub = cylinder(0.012, 0.036, 12)
+        .about_z(-FRAC_PI_2)
+        .at(0.0, level, 0.0);
+    let body = Part::new("body")
+        .with_filled(&chrome(), cylinder(0.025, 0.03, 16), 0.5)
+        .with_filled(&chrome(), tube(&spout, 0.012, 10), 0.4)
+        .with_filled(&chrome(), hub, 0.5);
+    let x = 0.042;
+    let lever = Part::new("lever").with(
+        &chrome(),
+        rod([x, level - 0.008, 0.0], [x, level + 0.07, 0.0], 0.005),
+    );
+    Model::articulated("mixer_tap", "tap")
+        .part(body)
+        .sounding([0.0, 0.72 * h - 0.01, reach], "tap", 58.0)
+        .part(lever)
+        .hinged("lever", [x, level, 0.0], Vec3::X, TURN_RAD)
+        .switching()
+}

@@ -1,0 +1,93 @@
+//! A low cabinet for a television.
+
+use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, door};
+use crate::finish::{Finish, black, oak, white_lacquer};
+use crate::model::{Model, Part};
+use crate::shapes::{block, rounded_block};
+use glam::Vec3;
+
+/// A sideboard or media cabinet: doors left and right, open shelves between.
+#[derive(Clone, Debug)]
+pub struct Lowboard {
+    /// What instances are called: `"dining_table"`.
+    pub name: &'static str,
+    /// A row of `assets/categories.csv`.
+    pub category: &'static str,
+    /// m.
+    pub width_m: f32,
+    /// m.
+    pub height_m: f32,
+    /// m.
+    pub depth_m: f32,
+    /// What the body is made of.
+    pub wood: Finish,
+    /// What doors and drawers look like.
+    pub front: Front,
+}
+
+impl Default for Lowboard {
+    fn default() -> Self {
+        Self {
+            name: "tv_stand",
+            category: "tv_stand",
+            width_m: 1.7,
+            height_m: 0.46,
+            depth_m: 0.42,
+            wood: oak(),
+            front: Front::plain(white_lacquer(), black()),
+        }
+    }
+}
+
+impl Lowboard {
+    /// The model of these sizes and finishes.
+    pub fn build(&self) -> Model {
+        let (x, top) = (0.5 * self.width_m, self.height_m - 0.02);
+        let carcass = Carcass::standing(self.width_m - 0.01, 0.07, top, self.depth_m - BOARD_M);
+        let z = carcass.max[2];
+        let body = Part::new("body")
+            .with(
+                &self.wood,
+                rounded_block([-x, top, -z], [x, self.height_m, z + BOARD_M], 0.006, 1),
+            )
+            .with(
+                &black(),
+                block([-x + 0.05, 0.0, -z + 0.02], [x - 0.05, 0.07, z - 0.05]),
+            )
+            .with_all(&self.wood, carcass.boards(&[0.5], &[1.0 / 3.0, 2.0 / 3.0]));
+        let third = (carcass.max[0] - carcass.min[0]) / 3.0;
+        let (_, upper) = carcass.space(0.5, 1.0);
+        let (lower, _) = carcass.space(0.5, 1.0);
+        let middle = 0.5 * third - 0.02;
+        let mut model = Model::articulated(self.name, self.category)
+            .part(body)
+            .top("top", [-x, self.height_m, -z], [x, self.height_m + 0.8, z])
+            .top(
+                "shelf",
+                [-middle, lower[1], lower[2]],
+                [middle, upper[1], upper[2]],
+            );
+        let front = self.front.clone();
+        for (name, left) in [("left_door", true), ("right_door", false)] {
+            let near = if left {
+                carcass.min[0]
+            } else {
+                carcass.max[0] - third
+            };
+            let part = door(
+                name,
+                [near + GAP_M, 0.075],
+                [near + third - GAP_M, top - GAP_M],
+                z,
+                left,
+                &front,
+            );
+            let hinge = if left { near } else { near + third };
+            let axis = if left { Vec3::NEG_Y } else { Vec3::Y };
+            model = model
+                .part(part)
+                .hinged(name, [hinge, 0.0, z + BOARD_M], axis, 1.7);
+        }
+        model
+    }
+}

@@ -1,0 +1,84 @@
+//! A wardrobe with hinged doors.
+
+use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, door};
+use crate::finish::{Finish, black, chrome, oak, white_lacquer};
+use crate::model::{Model, Part};
+use crate::shapes::{block, rod};
+use glam::Vec3;
+
+/// Doors in pairs over a carcass with a rail and a hat shelf.
+#[derive(Clone, Debug)]
+pub struct Wardrobe {
+    /// m.
+    pub width_m: f32,
+    /// m.
+    pub height_m: f32,
+    /// m.
+    pub depth_m: f32,
+    /// Doors beside each other.
+    pub doors: usize,
+    /// What the carcass is made of.
+    pub body: Finish,
+    /// What doors and drawers look like.
+    pub front: Front,
+}
+
+impl Default for Wardrobe {
+    fn default() -> Self {
+        Self {
+            width_m: 1.5,
+            height_m: 2.1,
+            depth_m: 0.58,
+            doors: 3,
+            body: white_lacquer(),
+            front: Front::plain(oak(), black()),
+        }
+    }
+}
+
+const NAMES: [&str; 4] = ["door_1", "door_2", "door_3", "door_4"];
+
+impl Wardrobe {
+    /// The model of these sizes and finishes.
+    pub fn build(&self) -> Model {
+        let carcass = Carcass::standing(self.width_m, 0.06, self.height_m, self.depth_m - BOARD_M);
+        let (x, z) = (0.5 * self.width_m, carcass.max[2]);
+        let rail = self.height_m - 0.42;
+        let body = Part::new("body")
+            .with(&self.body, block([-x, 0.0, -z], [x, 0.06, z - 0.03]))
+            .with_all(&self.body, carcass.boards(&[0.84], &[]))
+            .with(
+                &chrome(),
+                rod([-x + BOARD_M, rail, 0.0], [x - BOARD_M, rail, 0.0], 0.012),
+            );
+        let (low, high) = carcass.space(0.0, 0.84);
+        let (shelf_low, shelf_high) = carcass.space(0.84, 1.0);
+        let mut model = Model::articulated("wardrobe", "wardrobe_cabinet")
+            .part(body)
+            .inside("inside", low, [high[0], rail - 0.03, high[2]])
+            .inside("hat_shelf", shelf_low, shelf_high)
+            .top("top", [-x, self.height_m, -z], [x, self.height_m + 0.4, z]);
+        let front = self.front.clone();
+        let count = self.doors.min(NAMES.len());
+        let step = self.width_m / count as f32;
+        for (k, name) in NAMES.into_iter().take(count).enumerate() {
+            let (left, right) = (-x + step * k as f32, -x + step * (k + 1) as f32);
+            // Doors of a pair meet with their handles; an odd last one hangs on its right.
+            let hinge_left = k % 2 == 0 && k + 1 < count;
+            let part = door(
+                name,
+                [left + 0.5 * GAP_M, 0.065],
+                [right - 0.5 * GAP_M, self.height_m],
+                z,
+                hinge_left,
+                &front,
+            );
+            let hinge = if hinge_left { left } else { right };
+            let axis = if hinge_left { Vec3::NEG_Y } else { Vec3::Y };
+            model = model
+                .part(part)
+                .hinged(name, [hinge, 0.0, z + BOARD_M], axis, 1.7);
+        }
+        model
+    }
+}

@@ -1,0 +1,139 @@
+//! Models ready to be placed: each is built once in a process and shared by all houses.
+
+use super::catalogue::{Entry, entries_of};
+use super::model::Model;
+use super::style::Style;
+use dwell_scene::random::Key;
+use dwell_scene::{Aabb, Collider, JointKind, Pose};
+use glam::Vec3;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Looks of one entry in one style: sizes and colours drawn anew.
+pub const VARIANTS: u64 = 3;
+/// Positions of a joint at which its part is looked at.
+const STATIONS: usize = 6;
+/// Long pieces are cut into shorter ones before they turn, so that the boxes around them stay tight, m.
+const CUT_M: f32 = 0.15;
+
+/// A model with the boxes around its collision pieces.
+#[derive(Debug)]
+pub struct Stock {
+    /// What rules call it.
+    pub kind: &'static str,
+    /// The model, shared by all houses of the process.
+    pub model: Arc<Model>,
+    /// Around each collision piece at the start, model space.
+    pub boxes: Vec<Aabb>,
+    /// Where its doors and drawers pass, model space.
+    pub swings: Vec<Aabb>,
+    /// Around everything that is felt, model space.
+    pub felt: Aabb,
+}
+
+impl Stock {
+    /// A model that is not in the catalogue.
+    pub fn new(kind: &'static str, model: Model) -> Self {
+        let (mut boxes, mut swings) = (Vec::new(), Vec::new());
+        for (k, part) in model.parts.iter().enumerate() {
+            let pose = model.model_from_part(k);
+            boxes.extend(around(&part.colliders, &pose));
+        }
+        for joint in &model.joints {
+            let colliders = &model.parts[joint.child].colliders;
+            let parent = model.model_from_part(joint.parent);
+            let to_axis = Pose::from_position(joint.position);
+            let mut swept = Aabb::EMPTY;
+            for station in 0..=STATIONS {
+                let at = joint.open * station as f32 / STATIONS as f32;
+                let motion = match joint.kind {
+                    JointKind::Hinge => Pose::new(Vec3::ZERO, super::shapes::turn(joint.axis, at)),
+                    JointKind::Slide => Pose::from_position(joint.axis * at),
+                };
+                let pose = parent * to_axis * motion * to_axis.inverse();
+                if joint.kind == JointKind::Slide {
+                    let all = around(colliders, &pose);
+                    swept = all.iter().fold(swept, |all, one| all.union(one));
+                } else {
+                    let cut = colliders.iter().flat_map(cut);
+                    swings.extend(cut.map(|piece| piece.transformed(&pose.to_affine())));
+                }
+            }
+            if !swept.is_empty() {
+                swings.push(swept);
+            }
+        }
+        let felt = boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
+        Self {
+            kind,
+            boxes,
+            swings,
+            felt,
+            model: Arc::new(model),
+        }
+    }
+}
+
+fn around(colliders: &[Collider], pose: &Pose) -> Vec<Aabb> {
+    let bounds = |collider: &Collider| match collider {
+        Collider::Cuboid {
+            part_from_box,
+            half_extents,
+        } => {
+            let place = (*pose * *part_from_box).to_affine();
+            Some(Aabb::new(-*half_extents, *half_extents).transformed(&place))
+        }
+        Collider::Hull { points } => Some(Aabb::from_points(
+            points.iter().map(|point| pose.transform_point(*point)),
+        )),
+        other => other.bounds().map(|b| b.transformed(&pose.to_affine())),
+    };
+    colliders.iter().filter_map(bounds).collect()
+}
+
+/// The box around a collider, cut across its longer level edge.
+fn cut(collider: &Collider) -> Vec<Aabb> {
+    let Some(bounds) = collider.bounds() else {
+        return Vec::new();
+    };
+    let size = bounds.size();
+    let axis = if size.x > size.z { Vec3::X } else { Vec3::Z };
+    let long = size.dot(axis);
+    let count = (long / CUT_M).ceil().max(1.0);
+    let piece = |k: usize| {
+        let from = axis * (long * k as f32 / count);
+        let to = axis * (long * (count - k as f32 - 1.0) / count);
+        Aabb {
+            min: bounds.min + from,
+            max: bounds.max - to,
+        }
+    };
+    (0..count as usize).map(piece).collect()
+}
+
+/// One of the entries of a kind that suit a style, in one of its variants; `None` when there is no such kind.
+pub fn stock(kind: &str, style: &Style, key: Key) -> Option<Arc<Stock>> {
+    let mut draw = key.stream();
+    let (index, entry) = *draw.choose(&entries_of(kind, style))?;
+    let variant = draw.bits() % VARIANTS;
+    Some(variant_of(index, entry, style, variant))
+}
+
+/// A variant of an entry.
+fn variant_of(index: usize, entry: &'static Entry, style: &Style, variant: u64) -> Arc<Stock> {
+    type Shelf = BTreeMap<(usize, &'static str, u64), Arc<Stock>>;
+    static SHELF: Mutex<Shelf> = Mutex::new(BTreeMap::new());
+    let lock = || SHELF.lock().unwrap_or_else(PoisonError::into_inner);
+    let place = (index, style.name, variant);
+    if let Some(known) = lock().get(&place) {
+        return known.clone();
+    }
+    let key = Key::root(0)
+        .child("furniture")
+        .child(entry.kind)
+        .child(index as u64)
+        .child(style.name)
+        .child(variant);
+    let made = Arc::new(Stock::new(entry.kind, (entry.build)(style, key)));
+    lock().entry(place).or_insert(made).clone()
+}

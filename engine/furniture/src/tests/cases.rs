@@ -1,0 +1,129 @@
+//! The whole catalogue, drawn many times.
+
+use crate::catalogue::{Entry, entries};
+use crate::model::Model;
+use crate::style::{STYLES, Style};
+use crate::testing::meshes::collider_bounds;
+use dwell_scene::Aabb;
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use std::sync::OnceLock;
+
+/// Draws of each entry in each style.
+const KEYS: u64 = 20;
+
+/// One thing of the catalogue.
+pub(super) struct Case {
+    pub entry: &'static Entry,
+    pub style: &'static Style,
+    pub key: Key,
+    pub model: Model,
+}
+
+impl Case {
+    fn new(entry: &'static Entry, style: &'static Style, number: u64) -> Self {
+        let key = Key::root(number);
+        let model = (entry.build)(style, key);
+        Self {
+            entry,
+            style,
+            key,
+            model,
+        }
+    }
+}
+
+/// What is kept of one draw of an entry in a style.
+pub(super) struct Summary {
+    pub entry: &'static Entry,
+    style: &'static str,
+    pub name: &'static str,
+    pub bounds: Aabb,
+    pub mass_kg: f32,
+    pub triangles: usize,
+    /// Name, box around what is seen, box around what is felt.
+    pub parts: Vec<(&'static str, Aabb, Option<Aabb>)>,
+}
+
+impl Summary {
+    fn new(case: &Case) -> Self {
+        let model = &case.model;
+        let parts = model.parts.iter().map(|part| {
+            let felt = collider_bounds(&part.colliders);
+            (part.name, part.mesh.bounds(), felt)
+        });
+        Self {
+            entry: case.entry,
+            style: case.style.name,
+            name: model.name,
+            bounds: model.bounds(),
+            mass_kg: model.parts.iter().map(|part| part.mass_kg).sum(),
+            triangles: model
+                .parts
+                .iter()
+                .map(|part| part.mesh.triangles.len())
+                .sum(),
+            parts: parts.collect(),
+        }
+    }
+}
+
+/// 20 draws of each entry in each style, built once for all tests.
+fn summaries() -> &'static [Vec<Summary>] {
+    static ALL: OnceLock<Vec<Vec<Summary>>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let all = entries();
+        Threads::default().map(all.len(), |k| {
+            let styles = STYLES.iter().filter(|style| all[k].suits(style));
+            let cases = styles.flat_map(|style| (0..KEYS).map(move |number| (style, number)));
+            cases
+                .map(|(style, number)| Summary::new(&Case::new(&all[k], style, number)))
+                .collect()
+        })
+    })
+}
+
+/// Fails with what `check` finds at any of 20 draws of each entry in each style.
+pub(super) fn every_draw_in_every_style(check: impl Fn(&Summary) -> Vec<String>) {
+    let faults = summaries().iter().flat_map(|draws| {
+        let found = draws.iter().flat_map(|draw| {
+            let at = format!("{} ({})", draw.entry.kind, draw.style);
+            let faults = check(draw).into_iter();
+            faults.map(move |fault| format!("{at}: {fault}"))
+        });
+        shortened(found.collect())
+    });
+    judge(&faults.collect::<Vec<_>>());
+}
+
+/// The same for costly checks: 20 draws of each entry, the styles in turn.
+pub(super) fn every_draw(check: impl Fn(&Case) -> Vec<String> + Sync) {
+    let all = entries();
+    let found = Threads::default().map(all.len(), |k| {
+        let entry = &all[k];
+        let styles: Vec<&'static Style> =
+            STYLES.iter().filter(|style| entry.suits(style)).collect();
+        let found = (0..KEYS).flat_map(|number| {
+            let case = Case::new(entry, styles[number as usize % styles.len()], number);
+            let at = format!("{} ({})", entry.kind, case.style.name);
+            let faults = check(&case).into_iter();
+            faults.map(move |fault| format!("{at}: {fault}"))
+        });
+        shortened(found.collect())
+    });
+    judge(&found.concat());
+}
+
+/// The first three faults of one entry, and how many more there are.
+fn shortened(mut faults: Vec<String>) -> Vec<String> {
+    let count = faults.len();
+    faults.truncate(3);
+    if count > 3 {
+        faults.push(format!("  and {} more", count - 3));
+    }
+    faults
+}
+
+fn judge(faults: &[String]) {
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}

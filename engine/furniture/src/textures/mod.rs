@@ -1,0 +1,234 @@
+//! Procedural images. Each recipe is one function and one line in [`recipes`]; the same pattern gives the same bytes.
+
+mod boards;
+mod canvas;
+mod cloth;
+mod noise;
+mod papers;
+mod pictures;
+mod prints;
+mod screens;
+mod stones;
+mod tiles;
+
+use canvas::Canvas;
+use dwell_scene::Texture;
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use noise::Noise;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A colour, sRGB-encoded, each 0 to 255.
+pub type Srgb = [u8; 3];
+
+/// An image to be made: a recipe, its colours and its seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Pattern {
+    /// A name of [`recipes`].
+    pub recipe: &'static str,
+    /// Ground, second and third colour.
+    pub colors: [Srgb; 3],
+    /// Same seed, same image.
+    pub seed: u64,
+}
+
+/// What a recipe works with.
+struct Paint {
+    colors: [[f32; 3]; 3],
+    noise: Noise,
+    key: Key,
+}
+
+/// How one kind of image is made.
+struct Recipe {
+    name: &'static str,
+    /// Pixels across and down.
+    size_px: [u32; 2],
+    draw: fn(&mut Canvas, &Paint),
+}
+
+/// All kinds of images.
+fn recipes() -> &'static [Recipe] {
+    const fn recipe(
+        name: &'static str,
+        width_px: u32,
+        height_px: u32,
+        draw: fn(&mut Canvas, &Paint),
+    ) -> Recipe {
+        Recipe {
+            name,
+            size_px: [width_px, height_px],
+            draw,
+        }
+    }
+    const ALL: &[Recipe] = &[
+        recipe("wood", 256, 256, boards::wood),
+        recipe("planks", 384, 384, boards::planks),
+        recipe("herringbone", 384, 384, boards::herringbone),
+        recipe("tile", 256, 256, tiles::tile),
+        recipe("brick", 256, 256, tiles::brick),
+        recipe("metro", 128, 128, tiles::metro),
+        recipe("plaster", 128, 128, stones::plaster),
+        recipe("marble", 256, 256, stones::marble),
+        recipe("speckle", 128, 128, stones::speckle),
+        recipe("carpet", 128, 128, cloth::carpet),
+        recipe("weave", 64, 64, cloth::weave),
+        recipe("leather", 128, 128, cloth::leather),
+        recipe("stripes", 128, 128, cloth::stripes),
+        recipe("checks", 128, 128, cloth::checks),
+        recipe("wicker", 64, 64, cloth::wicker),
+        recipe("rug", 256, 256, cloth::rug),
+        recipe("leaves", 256, 256, papers::leaves),
+        recipe("stars", 256, 256, papers::stars),
+        recipe("pinstripe", 128, 128, papers::pinstripe),
+        recipe("landscape", 256, 192, pictures::landscape),
+        recipe("shapes", 192, 256, pictures::shapes),
+        recipe("branch", 192, 256, pictures::branch),
+        recipe("planets", 256, 192, pictures::planets),
+        recipe("television", 256, 144, screens::television),
+        recipe("desktop", 256, 160, screens::desktop),
+        recipe("keyboard", 256, 128, screens::keyboard),
+        recipe("dial", 128, 128, screens::dial),
+        recipe("clock", 128, 128, screens::clock),
+        recipe("grille", 64, 64, screens::grille),
+        recipe("cover", 96, 128, prints::cover),
+        recipe("pages", 32, 128, prints::pages),
+        recipe("foliage", 64, 64, prints::foliage),
+        recipe("peel", 64, 64, prints::peel),
+    ];
+    ALL
+}
+
+impl Pattern {
+    /// The image; mid-grey for a recipe that does not exist.
+    pub fn paint(&self) -> Texture {
+        let key = Key::root(self.seed).child("texture").child(self.recipe);
+        let colors = self.colors.map(|color| color.map(|c| f32::from(c) / 255.0));
+        let paint = Paint {
+            colors,
+            noise: Noise::new(key.child("noise")),
+            key,
+        };
+        let recipe = recipes().iter().find(|recipe| recipe.name == self.recipe);
+        let [width, height] = recipe.map_or([1, 1], |recipe| recipe.size_px);
+        let mut canvas = Canvas::new(width, height);
+        if let Some(recipe) = recipe {
+            (recipe.draw)(&mut canvas, &paint);
+        }
+        Texture {
+            name: self.recipe.to_owned(),
+            width,
+            height,
+            rgba: canvas.into_rgba(),
+        }
+    }
+}
+
+/// The images of patterns, in their order. Each is painted once in a process and then shared by all houses.
+pub fn painted(patterns: &[Pattern]) -> Vec<Arc<Texture>> {
+    static PAINTED: Mutex<BTreeMap<Pattern, Arc<Texture>>> = Mutex::new(BTreeMap::new());
+    let lock = || PAINTED.lock().unwrap_or_else(PoisonError::into_inner);
+    let known: Vec<Option<Arc<Texture>>> = {
+        let painted = lock();
+        patterns.iter().map(|p| painted.get(p).cloned()).collect()
+    };
+    let new: Vec<&Pattern> = patterns
+        .iter()
+        .zip(&known)
+        .filter_map(|(pattern, known)| known.is_none().then_some(pattern))
+        .collect();
+    let images = Threads::default().map(new.len(), |k| Arc::new(new[k].paint()));
+    let mut painted = lock();
+    for (pattern, image) in new.into_iter().zip(images) {
+        painted.entry(*pattern).or_insert(image);
+    }
+    patterns.iter().map(|p| painted[p].clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pattern(recipe: &'static str) -> Pattern {
+        Pattern {
+            recipe,
+            colors: [[200, 170, 120], [90, 60, 40], [60, 90, 150]],
+            seed: 5,
+        }
+    }
+
+    #[test]
+    fn every_recipe_gives_the_same_bytes_twice_and_is_no_plain_colour() {
+        for recipe in recipes() {
+            let texture = pattern(recipe.name).paint();
+            texture.check(recipe.name).unwrap();
+            assert_eq!(texture, pattern(recipe.name).paint(), "{}", recipe.name);
+            let first = &texture.rgba[..4];
+            assert!(
+                texture.rgba.chunks_exact(4).any(|pixel| pixel != first),
+                "{}",
+                recipe.name
+            );
+            assert!(
+                texture.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255),
+                "{}",
+                recipe.name
+            );
+        }
+    }
+
+    /// The step from the last column to the first (and rows alike) is no larger than the steps inside.
+    #[test]
+    fn surfaces_repeat_without_a_seam() {
+        for name in [
+            "wood",
+            "planks",
+            "herringbone",
+            "tile",
+            "brick",
+            "metro",
+            "plaster",
+            "marble",
+            "speckle",
+            "carpet",
+            "weave",
+            "leather",
+            "stripes",
+            "checks",
+            "wicker",
+            "leaves",
+            "stars",
+            "pinstripe",
+            "grille",
+        ] {
+            let texture = pattern(name).paint();
+            let (width, height) = (texture.width as usize, texture.height as usize);
+            let at = |x: usize, y: usize| {
+                f64::from(texture.rgba[((y % height) * width + x % width) * 4 + 1])
+            };
+            let step_x = |x: usize| {
+                (0..height)
+                    .map(|y| (at(x + 1, y) - at(x, y)).abs())
+                    .sum::<f64>()
+            };
+            let step_y = |y: usize| {
+                (0..width)
+                    .map(|x| (at(x, y + 1) - at(x, y)).abs())
+                    .sum::<f64>()
+            };
+            let inside_x = (0..width - 1).map(step_x).fold(0.0, f64::max);
+            let inside_y = (0..height - 1).map(step_y).fold(0.0, f64::max);
+            assert!(
+                step_x(width - 1) <= 1.1 * inside_x,
+                "{name}: seam {} across, inside {inside_x}",
+                step_x(width - 1)
+            );
+            assert!(
+                step_y(height - 1) <= 1.1 * inside_y,
+                "{name}: seam {} down, inside {inside_y}",
+                step_y(height - 1)
+            );
+        }
+    }
+}
