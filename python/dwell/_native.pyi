@@ -5,6 +5,7 @@ engines into ``EngineBug`` instead of taking the process down.
 """
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, final
 
 import numpy as np
@@ -83,6 +84,9 @@ class House:
     def semantic_classes(self) -> list[str]: ...
     def rooms_json(self) -> str:
         """For each room: name, kinds, area, centre of a good view: ``{name, kinds, area_m2, floor_y, eye, yaw_deg}``."""
+    def write_into(self, root: str, name: str, form: str) -> tuple[Path, list[str]]: ...
+    @staticmethod
+    def finish_folder(root: str, form: str) -> None: ...
     def write(self, path: str, form: str) -> list[str]:
         """Writes the house as ``dwell`` or ``suncg`` and returns what was lost, a sentence each."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import operator
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -57,6 +58,13 @@ def pair(name: str, value: object) -> tuple[float, float]:
         raise ConfigError(f"{name}: expected two numbers, found {value!r}")
     first, second = (finite(f"{name}[{k}]", part) for k, part in enumerate(value))
     return first, second
+
+
+def file_name(name: str, value: object) -> str:
+    """A name of a file or folder that leads nowhere else: letters, digits, ``_``, ``-``, ``.``."""
+    if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9_.-]{0,99}", value):
+        raise ConfigError(f"{name} is {value!r}; allowed are 1 to 100 letters, digits, _, - and .")
+    return value
 
 
 def bodies(agents: object) -> list[dict[str, Any]]:

@@ -6,13 +6,15 @@ import dataclasses
 import json
 import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Literal
 
 from dwell import UsageError, _native
-from dwell.arguments import finite, whole
+from dwell.arguments import file_name, finite, whole
 from dwell.navigation import Navigation, Walker
 
 Level = Literal["object", "room", "house", "graph", "instructions"]
+Form = Literal["dwell", "suncg", "glb"]
 
 
 class House:
@@ -157,9 +159,39 @@ class House:
         config = json.dumps(dataclasses.asdict(walker or Walker()))
         return Navigation(_native.Navigation(self._native, config))
 
-    def write(self, path: str | os.PathLike[str], form: Literal["dwell", "suncg"]) -> list[str]:
-        """Writes the house into a new folder; returns what the form cannot hold, in sentences."""
+    def write(self, path: str | os.PathLike[str], form: Form) -> list[str]:
+        """Writes the house as it starts.
+
+        Args:
+            path: What shall be there afterwards: a new folder, or for ``glb`` a file.
+            form: ``dwell`` (exact), ``suncg`` (a data root of that data set), ``glb`` (one glTF 2.0
+                file with lights, node names, and meaning in ``extras.dwell``).
+
+        Returns:
+            What the form cannot hold, in sentences.
+        """
         return self._native.write(os.fspath(path), form)
+
+    def write_into(
+        self, root: str | os.PathLike[str], name: str, form: Form
+    ) -> tuple[Path, list[str]]:
+        """Writes the house below ``root/house``, one of many that share meshes and textures.
+
+        Args:
+            root: The folder of all; :meth:`finish_folder` writes what it holds once.
+            name: The house's name, one that no other house of the folder has; an old one of this
+                name is replaced.
+            form: As in :meth:`write`; a ``glb`` shares nothing.
+
+        Returns:
+            Where the house is, as :meth:`open` takes it, and what the form cannot hold.
+        """
+        return self._native.write_into(os.fspath(root), file_name("name", name), form)
+
+    @staticmethod
+    def finish_folder(root: str | os.PathLike[str], form: Form) -> None:
+        """Writes what a folder of :meth:`write_into` holds once: after the last house, or again."""
+        _native.House.finish_folder(os.fspath(root), form)
 
     def __copy__(self) -> House:
         """The same: a house never changes."""
@@ -181,6 +213,11 @@ class House:
     def __repr__(self) -> str:
         """The name."""
         return f"House({self.name!r})"
+
+
+def split_of_seed(seed: int) -> Literal["train", "val", "test"]:
+    """Which split a seed belongs to: of ten in a row, the ninth is ``val``, the tenth ``test``."""
+    return {8: "val", 9: "test"}.get(whole("seed", seed) % 10, "train")  # type: ignore[return-value]
 
 
 def _shoebox(

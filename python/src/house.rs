@@ -3,6 +3,7 @@
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use dwell::Engines;
+use dwell_houses::Loss;
 use dwell_scene::material::library;
 use dwell_scene::random::Key;
 use dwell_scene::{Bands, House, Material, Pose, ShoeboxMaterials, State};
@@ -12,7 +13,7 @@ use dwell_semantics::{Semantics, describe};
 use glam::Vec3;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A checked, immutable house, shared by everything that is made from it.
@@ -144,22 +145,38 @@ impl PyHouse {
     }
 
     fn write(&self, py: Python<'_>, path: &str, form: &str) -> PyResult<Vec<String>> {
-        py.engine(|| -> Result<Vec<String>, Fault> {
-            let (house, path) = (self.house(), Path::new(path));
-            match form {
-                "dwell" => dwell_houses::native::write(house, path)
-                    .map(|()| Vec::new())
-                    .map_err(Fault::from),
-                "suncg" => {
-                    let losses = dwell_houses::suncg::write(house, path)?;
-                    Ok(losses.iter().map(ToString::to_string).collect())
-                }
-                other => Err(Fault::Config(format!(
-                    "form is {other:?}; allowed are \"dwell\" and \"suncg\""
-                ))),
-            }
+        py.engine(|| -> Result<_, Fault> {
+            let write = writer(form)?.write;
+            Ok(sentences(&write(self.house(), Path::new(path))?))
         })
     }
+
+    fn write_into(
+        &self,
+        py: Python<'_>,
+        root: &str,
+        name: &str,
+        form: &str,
+    ) -> PyResult<(PathBuf, Vec<String>)> {
+        py.engine(|| -> Result<_, Fault> {
+            let write = writer(form)?.write_into;
+            let (path, losses) = write(self.house(), Path::new(root), name)?;
+            Ok((path, sentences(&losses)))
+        })
+    }
+
+    #[staticmethod]
+    fn finish_folder(py: Python<'_>, root: &str, form: &str) -> PyResult<()> {
+        py.engine(|| -> Result<_, Fault> { Ok((writer(form)?.finish)(Path::new(root))?) })
+    }
+}
+
+fn writer(form: &str) -> Result<&'static dwell_houses::Writer, Fault> {
+    dwell_houses::writer(form).map_err(|error| Fault::Config(error.to_string()))
+}
+
+fn sentences(losses: &[Loss]) -> Vec<String> {
+    losses.iter().map(ToString::to_string).collect()
 }
 
 /// Sentences or JSON lines about a house as it stands in a state.

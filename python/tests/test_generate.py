@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -50,3 +55,83 @@ def test_an_agent_walks_through_a_generated_house() -> None:
     moved = [world.do("move_forward") for _ in range(3)]
     assert len(moved) == 3
     assert world.agents()[0]["position"][1] == pytest.approx(room["stand"][1], abs=0.1)
+
+
+def generate(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "dwell.cli", "generate", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+
+
+def rows(manifest: Path) -> list[dict[str, Any]]:
+    return [json.loads(line) for line in manifest.read_text("utf-8").splitlines()]
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+STUDIOS = ("--count", "12", "--spec", "home=studio")
+
+
+@pytest.mark.parametrize("form", ["dwell", "suncg", "glb"])
+def test_bulk_houses_open_again_and_the_manifest_tells_them(tmp_path: Path, form: str) -> None:
+    out = tmp_path / "many"
+    done = generate("--count", "2", "--out", out, "--format", form, "--spec", "home=studio")
+    assert done.returncode == 0, done.stderr
+    for row in rows(out / "manifest.jsonl"):
+        made = dwell.House.open(row["house"])
+        assert made.info()["fingerprint"] == row["hash"]
+        house = dwell.House.open(out / row["path"])
+        assert house.info()["triangles"] == row["triangles"]
+        if form == "dwell":
+            assert house.info()["fingerprint"] == row["hash"]
+        if form != "glb":
+            assert house.info()["objects"] == row["objects"]
+
+
+def test_a_run_that_was_killed_goes_on_and_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
+    whole, cut = tmp_path / "whole", tmp_path / "cut"
+    assert generate(*STUDIOS, "--out", whole).returncode == 0
+    command = [sys.executable, "-m", "dwell.cli", "generate", *STUDIOS, "--out", str(cut)]
+    journal = cut / ".manifest.jsonl.part"
+    running = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline and running.poll() is None:
+        if journal.exists() and journal.read_text("utf-8").count('"done"') >= 2:
+            break
+        time.sleep(0.002)
+    running.kill()
+    running.wait()
+    again = generate(*STUDIOS, "--out", cut, "--json", "--workers", "1")
+    assert again.returncode == 0, again.stderr
+    assert json.loads(again.stdout)["made_now"] <= 10
+    leftover = {name for name in content(cut) if ".partial-" in name}
+    assert {k: v for k, v in content(cut).items() if k not in leftover} == content(whole)
+    assert json.loads(generate(*STUDIOS, "--out", cut, "--json").stdout)["made_now"] == 0
+
+
+def test_splits_and_shards_part_the_seeds(tmp_path: Path) -> None:
+    out = tmp_path / "val"
+    for shard in ("0/2", "1/2"):
+        options = ("--split", "val", "--count", "3", "--spec", "home=studio", "--shard", shard)
+        assert generate(*options, "--out", out).returncode == 0
+    found = [rows(out / f"manifest-0000{k}-of-00002.jsonl") for k in range(2)]
+    assert [[row["seed"] for row in part] for part in found] == [[8, 28], [18]]
+    assert {row["split"] for part in found for row in part} == {"val"}
+
+
+def test_folders_of_other_jobs_and_bad_options_are_refused(tmp_path: Path) -> None:
+    out = tmp_path / "many"
+    one = ("--count", "1", "--spec", "home=studio")
+    assert generate(*one, "--out", out).returncode == 0
+    other = generate("--count", "2", "--spec", "home=studio", "--out", out)
+    assert other.returncode == 1
+    assert "was begun with count 1" in other.stderr
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "letter").write_text("dear")
+    assert "holds something else" in generate(*one, "--out", tmp_path / "mine").stderr
+    assert generate(*one, "--out", out, "--shard", "2/2").returncode == 2
+    bad = generate("--count", "1", "--spec", "turrets=1", "--out", tmp_path / "bad")
+    assert bad.returncode == 1
+    assert "turrets" in bad.stderr

@@ -2,13 +2,16 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::HousesError;
 
-/// A name beside `path` that no other process uses.
+/// A name beside `path` that nobody else uses: no other process, no other thread.
 fn beside(path: &Path, what: &str) -> PathBuf {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
     let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{what}-{}", std::process::id()));
+    name.push(format!(".{what}-{}-{count}", std::process::id()));
     path.with_file_name(name)
 }
 

@@ -26,6 +26,14 @@ pub enum HousesError {
         /// The names that exist.
         known: Vec<String>,
     },
+    /// A form of writing that does not exist.
+    #[error("form is {name:?}; allowed are {known:?}")]
+    UnknownForm {
+        /// The name as given.
+        name: String,
+        /// The names that exist.
+        known: Vec<&'static str>,
+    },
     /// A field of a spec for generated houses that cannot be.
     #[error("{field}: found {found}; possible: {possible}")]
     Spec {

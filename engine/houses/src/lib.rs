@@ -20,6 +20,7 @@ mod robot;
 mod root;
 pub mod suncg;
 pub mod urdf;
+mod writers;
 
 pub use damage::{Damage, Unmapped};
 pub use error::HousesError;
@@ -28,3 +29,4 @@ pub use loss::Loss;
 pub use report::{At, Report, Warning};
 pub use robot::{Robot, open_robot, with_robot};
 pub use root::DataRoot;
+pub use writers::{Writer, Written, WrittenInto, writer, writers};

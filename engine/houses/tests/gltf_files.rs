@@ -9,7 +9,7 @@ mod common;
 use common::base64;
 
 use dwell_houses::{Damage, HousesError, gltf, open};
-use dwell_scene::{House, Mobility, ShoeboxMaterials, State};
+use dwell_scene::{House, LightShape, Mobility, ShoeboxMaterials, State};
 use glam::{Vec2, Vec3};
 
 /// A tetrahedron as text: positions and byte indices in one base64 buffer made by hand (48 bytes of floats, 12 of indices).
@@ -223,4 +223,104 @@ fn images_of_basis_universal_are_reported_and_the_rest_is_read() {
     assert_eq!(house.objects.len(), 1);
     let unreadable = |damage: &Damage| matches!(damage, Damage::UnreadableTexture { .. });
     assert_eq!(report.count(unreadable), 1, "{report:?}");
+}
+
+/// What a foreign reader sees: the `gltf` crate's own document.
+fn foreign(house: &House) -> ::gltf::Gltf {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glb");
+    gltf::write(house, &path).unwrap();
+    ::gltf::Gltf::from_slice(&std::fs::read(&path).unwrap()).unwrap()
+}
+
+#[test]
+fn nodes_stand_in_their_rooms_and_say_what_they_are() {
+    let (house, _) = open("builtin:apartment").unwrap();
+    let file = foreign(&house);
+    let known = |node: &::gltf::Node<'_>| -> serde_json::Value {
+        let text = node.extras().as_ref().unwrap().get();
+        serde_json::from_str::<serde_json::Value>(text).unwrap()["dwell"].clone()
+    };
+    let level = file.default_scene().unwrap().nodes().next().unwrap();
+    let mut seen = 0;
+    for room in level.children().filter(|node| known_room(node, &house)) {
+        assert_eq!(known(&room)["room"], room.name().unwrap());
+        for node in room.children() {
+            let extras = known(&node);
+            let Some(name) = extras["object"].as_str() else {
+                assert!(extras["structure"].is_string());
+                continue;
+            };
+            let object = house.objects.iter().find(|o| o.name == name).unwrap();
+            let home = &house.rooms[object.room.unwrap()];
+            assert_eq!(home.name, room.name().unwrap());
+            assert_eq!(extras["category"]["fine"], object.category.fine);
+            let parts = node.children().filter(|child| child.light().is_none());
+            assert_eq!(parts.count(), object.part_count as usize);
+            seen += 1;
+        }
+    }
+    let housed = house.objects.iter().filter(|o| o.room.is_some()).count();
+    assert_eq!(seen, housed);
+    let fridge = file
+        .nodes()
+        .find(|node| {
+            node.name()
+                .is_some_and(|name| name.starts_with("refrigerator"))
+        })
+        .unwrap();
+    let joints = known(&fridge)["joints"].as_array().unwrap().clone();
+    assert!(joints.iter().all(|joint| joint["kind"] == "hinge") && !joints.is_empty());
+}
+
+fn known_room(node: &::gltf::Node<'_>, house: &House) -> bool {
+    house
+        .rooms
+        .iter()
+        .any(|room| Some(room.name.as_str()) == node.name())
+}
+
+/// 1 W counts as 100 lm; a point light spreads them over 4 pi sr, a spot over the solid angle of its cone.
+#[test]
+fn lamps_shine_as_bright_and_where_they_stand() {
+    let (house, _) = open("builtin:apartment").unwrap();
+    let file = foreign(&house);
+    let state = State::new(&house);
+    let lights: Vec<_> = file.nodes().filter(|node| node.light().is_some()).collect();
+    assert_eq!(lights.len(), house.lights.len());
+    for node in &lights {
+        let light = node.light().unwrap();
+        let lamp = house
+            .lights
+            .iter()
+            .find(|lamp| {
+                let pose = state.part_pose[lamp.part];
+                let [x, y, z] = node.transform().decomposed().0;
+                // A line shines from its middle.
+                let at = match lamp.shape {
+                    LightShape::Line { end } => (lamp.position + end) / 2.0,
+                    _ => lamp.position,
+                };
+                pose.transform_point(at)
+                    .abs_diff_eq(Vec3::new(x, y, z), 1e-4)
+                    && house.objects[lamp.object].name == light.name().unwrap()
+            })
+            .unwrap();
+        let lumens = 100.0 * lamp.power_w;
+        let shines = house.objects[lamp.object].switch != Some(false);
+        let solid_angle = match light.kind() {
+            ::gltf::khr_lights_punctual::Kind::Spot {
+                outer_cone_angle, ..
+            } => std::f32::consts::TAU * (1.0 - outer_cone_angle.cos()),
+            _ => 2.0 * std::f32::consts::TAU,
+        };
+        let told = light.intensity() * solid_angle;
+        let asked = if shines { lumens } else { 0.0 };
+        assert!((told - asked).abs() <= 1e-3 * lumens, "{told} of {asked}");
+    }
+    assert!(
+        lights
+            .iter()
+            .any(|node| node.light().unwrap().intensity() > 0.0)
+    );
 }

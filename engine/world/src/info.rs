@@ -33,6 +33,7 @@ pub fn info(engines: &Engines, report: &Value) -> Value {
     json!({
         "name": house.name,
         "source": house.source,
+        "fingerprint": format!("{:016x}", house.fingerprint()),
         "levels": house.levels.len(),
         "rooms": rooms,
         "structure": house.structure.len(),

@@ -16,6 +16,7 @@ COMMANDS = {
     "render": "pictures from a place in a house",
     "describe": "sentences about houses",
     "ir": "an impulse response between two points",
+    "generate": "houses from seeds, in bulk, written as files",
     "measure": "tables of measurements into a bundle that calibrate reads",
     "calibrate": "measured data against the simulation: what is missing, and what it gains",
     "bench": "throughput of a stage",

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use ::gltf::json::{Root, buffer::View};
 
+use super::glb::{TO_LIBRARY, content_name};
 use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::MAX_BUFFER_BYTES;
@@ -16,14 +17,16 @@ pub(super) struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    /// Buffers of which only the first exists: the GLB's own.
-    pub(super) fn of_blob(
+    /// The GLB's own buffer, and those in the files that `library` holds under their content's name.
+    pub(super) fn of_library(
         json: &Root,
         blob: &'a [u8],
+        library: &DataRoot,
         at: &At,
         report: &mut Report,
     ) -> Result<Self, HousesError> {
-        Self::read(json, blob, None, at, report)
+        let read = |uri: &str| read_shared(uri, library, MAX_BUFFER_BYTES);
+        Self::read(json, blob, read, at, report)
     }
 
     /// Reads all buffers; files beside the text are read from `root`.
@@ -34,13 +37,14 @@ impl<'a> Buffers<'a> {
         at: &At,
         report: &mut Report,
     ) -> Result<Self, HousesError> {
-        Self::read(json, blob, Some(root), at, report)
+        let read = |uri: &str| read_uri(uri, root, MAX_BUFFER_BYTES);
+        Self::read(json, blob, read, at, report)
     }
 
     fn read(
         json: &Root,
         blob: &'a [u8],
-        root: Option<&DataRoot>,
+        read: impl Fn(&str) -> Result<Vec<u8>, Damage>,
         at: &At,
         report: &mut Report,
     ) -> Result<Self, HousesError> {
@@ -61,16 +65,10 @@ impl<'a> Buffers<'a> {
             let at = at.field(format_args!("buffers[{k}]"));
             let bytes = match &buffer.uri {
                 None => Cow::Borrowed(if k == 0 { blob } else { &[] }),
-                Some(uri) => {
-                    let read = root.map(|root| read_uri(uri, root, MAX_BUFFER_BYTES));
-                    Cow::Owned(
-                        read.unwrap_or_else(|| Ok(Vec::new()))
-                            .unwrap_or_else(|damage| {
-                                report.warn(at.clone(), damage);
-                                Vec::new()
-                            }),
-                    )
-                }
+                Some(uri) => Cow::Owned(read(uri).unwrap_or_else(|damage| {
+                    report.warn(at.clone(), damage);
+                    Vec::new()
+                })),
             };
             if (bytes.len() as u64) < buffer.byte_length.0 {
                 let (found, expected) = (
@@ -115,6 +113,36 @@ pub(super) fn read_uri(uri: &str, root: &DataRoot, max_bytes: u64) -> Result<Vec
     }
     root.read(&inside, max_bytes)
         .map_err(|error| unreadable(error.reason()))
+}
+
+/// The bytes of a file of a library, which must be those that its name says.
+pub(super) fn read_shared(
+    uri: &str,
+    library: &DataRoot,
+    max_bytes: u64,
+) -> Result<Vec<u8>, Damage> {
+    let short = || uri.chars().take(60).collect::<String>();
+    let refused = || Damage::PathRefused { path: short() };
+    let path = uri.strip_prefix(TO_LIBRARY).ok_or_else(refused)?;
+    let (folder, file) = path.split_once('/').ok_or_else(refused)?;
+    let (name, _) = file.split_once('.').ok_or_else(refused)?;
+    let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
+    if !(is_name && matches!(folder, "object" | "texture") && !file.contains(['/', '\\'])) {
+        return Err(refused());
+    }
+    let unreadable = |reason: String| Damage::UnreadableMesh {
+        path: short(),
+        reason,
+    };
+    let bytes = library
+        .read(path, max_bytes)
+        .map_err(|error| unreadable(error.reason()))?;
+    if content_name(&bytes) != name {
+        return Err(unreadable(
+            "its content is not what its name says".to_owned(),
+        ));
+    }
+    Ok(bytes)
 }
 
 fn percent_decode(text: &str) -> String {

@@ -1,34 +1,52 @@
 //! Numbers and images of a GLB by position, for the native form.
 
+use std::borrow::Cow;
+
 use ::gltf::json::{Index, Root};
 use dwell_scene::Texture;
 
 use super::accessor;
-use super::buffers::Buffers;
+use super::buffers::{Buffers, read_shared};
 use crate::build::decode;
 use crate::error::HousesError;
+use crate::limits::MAX_IMAGE_BYTES;
 use crate::report::{At, Report};
+use crate::root::DataRoot;
 
 /// A parsed GLB whose numbers and images are asked for one by one.
 pub(crate) struct Geometry<'a> {
     json: Root,
     buffers: Buffers<'a>,
+    library: &'a DataRoot,
 }
 
 impl<'a> Geometry<'a> {
-    /// Parses the container; `bytes` hold everything, nothing beside them is read.
+    /// Parses the container; what `bytes` do not hold stands in `library`, in files named by their content.
     ///
     /// # Errors
-    /// [`HousesError::Syntax`] when the bytes are no GLB, [`HousesError::TooLarge`] beyond 2 GiB.
-    pub(crate) fn read(bytes: &'a [u8], name: &str) -> Result<Self, HousesError> {
+    /// [`HousesError::Syntax`] when the bytes are no GLB or a file of the library is not what its name says,
+    /// [`HousesError::TooLarge`] beyond 2 GiB.
+    pub(crate) fn read(
+        bytes: &'a [u8],
+        name: &str,
+        library: &'a DataRoot,
+    ) -> Result<Self, HousesError> {
         let at = At::file(name);
         let syntax = |message: String| HousesError::Syntax {
             at: at.clone(),
             message,
         };
         let (json, blob) = super::container::split(bytes).map_err(syntax)?;
-        let buffers = Buffers::of_blob(&json, blob, &at, &mut Report::new())?;
-        Ok(Self { json, buffers })
+        let mut report = Report::new();
+        let buffers = Buffers::of_library(&json, blob, library, &at, &mut report)?;
+        match report.warnings().first() {
+            Some(warning) => Err(syntax(warning.damage.to_string())),
+            None => Ok(Self {
+                json,
+                buffers,
+                library,
+            }),
+        }
     }
 
     /// The rows of an accessor.
@@ -53,15 +71,21 @@ impl<'a> Geometry<'a> {
     /// A sentence when there is no such image.
     pub(crate) fn texture(&self, image: usize, size: [u32; 2]) -> Result<Texture, String> {
         let image = self.json.images.get(image).ok_or("no such image")?;
-        let view = image
-            .buffer_view
-            .and_then(|view| self.json.buffer_views.get(view.value()))
-            .ok_or("it has no bytes")?;
-        let bytes = self
-            .buffers
-            .view(view)
-            .ok_or("its bytes lie beyond the buffer")?;
-        let texture = decode(image.name.as_deref().unwrap_or(""), bytes)?;
+        let bytes = match &image.uri {
+            Some(uri) => Cow::Owned(
+                read_shared(uri, self.library, MAX_IMAGE_BYTES)
+                    .map_err(|damage| damage.to_string())?,
+            ),
+            None => {
+                let view = image
+                    .buffer_view
+                    .and_then(|view| self.json.buffer_views.get(view.value()))
+                    .ok_or("it has no bytes")?;
+                let bytes = self.buffers.view(view);
+                Cow::Borrowed(bytes.ok_or("its bytes lie beyond the buffer")?)
+            }
+        };
+        let texture = decode(image.name.as_deref().unwrap_or(""), &bytes)?;
         if [texture.width, texture.height] != size {
             return Err(format!(
                 "{} by {} pixels, expected {} by {}",

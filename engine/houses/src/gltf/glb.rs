@@ -9,22 +9,91 @@ pub(crate) const UNSIGNED_INT: u32 = 5125;
 /// Accessor component type: 16-bit index.
 pub(crate) const UNSIGNED_SHORT: u32 = 5123;
 
-/// The binary chunk under construction, with its views and accessors.
+/// A file of bytes that a URI names.
+pub(crate) struct Beside {
+    /// Its folder and name: `object/<hash>.bin`.
+    pub(crate) path: String,
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// What URIs put before [`Beside::path`]: a native house stands in `house/NAME.dwell/`.
+pub(crate) const TO_LIBRARY: &str = "../../";
+
+/// The name of a shared file: 128 bits of its content.
+pub(crate) fn content_name(bytes: &[u8]) -> String {
+    format!("{:032x}", xxhash_rust::xxh3::xxh3_128(bytes))
+}
+
+/// Bytes of accessors.
 #[derive(Default)]
-pub(crate) struct Binary {
+struct Buffer {
     bytes: Vec<u8>,
+    /// The file that holds them; `None`: the binary chunk.
+    path: Option<String>,
+}
+
+/// The binary chunk, and buffers beside the file, under construction, with their views and accessors.
+pub(crate) struct Binary {
+    /// The chunk first.
+    buffers: Vec<Buffer>,
+    /// The buffer that is written to.
+    open: usize,
+    beside: Vec<Beside>,
     views: Vec<Value>,
     accessors: Vec<Value>,
 }
 
+impl Default for Binary {
+    fn default() -> Self {
+        Self {
+            buffers: vec![Buffer::default()],
+            open: 0,
+            beside: Vec::new(),
+            views: Vec::new(),
+            accessors: Vec::new(),
+        }
+    }
+}
+
 impl Binary {
+    /// What `write` appends goes into the chunk, or `apart` into a file of its own in `folder`, named by its content.
+    pub(crate) fn part<T>(
+        &mut self,
+        folder: &str,
+        apart: bool,
+        write: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        if !apart {
+            return write(self);
+        }
+        self.open = self.buffers.len();
+        self.buffers.push(Buffer::default());
+        let result = write(self);
+        self.open = 0;
+        if let Some(buffer) = self.buffers.pop_if(|buffer| buffer.bytes.is_empty()) {
+            debug_assert!(buffer.path.is_none());
+        } else if let Some(buffer) = self.buffers.last_mut() {
+            buffer.path = Some(format!("{folder}/{}.bin", content_name(&buffer.bytes)));
+        }
+        result
+    }
+
+    /// A file beside the GLB, named by its content; returns its URI.
+    pub(crate) fn beside(&mut self, folder: &str, ending: &str, bytes: Vec<u8>) -> String {
+        let path = format!("{folder}/{}.{ending}", content_name(&bytes));
+        let uri = format!("{TO_LIBRARY}{path}");
+        self.beside.push(Beside { path, bytes });
+        uri
+    }
+
     /// Appends bytes and returns their view.
     pub(crate) fn view(&mut self, bytes: &[u8]) -> usize {
+        let to = &mut self.buffers[self.open].bytes;
         // Every view starts at a multiple of four, which fits all component types.
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        to.resize(to.len().next_multiple_of(4), 0);
         self.views
-            .push(json!({"buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len()}));
-        self.bytes.extend_from_slice(bytes);
+            .push(json!({"buffer": self.open, "byteOffset": to.len(), "byteLength": bytes.len()}));
+        to.extend_from_slice(bytes);
         self.views.len() - 1
     }
 
@@ -69,19 +138,36 @@ impl Binary {
         accessor
     }
 
-    /// The whole file: `document` gets the buffer, views and accessors.
+    /// The whole file, and those beside it: `document` gets the buffers, views and accessors.
     ///
     /// # Errors
     /// A sentence when the file would exceed the format's 4 GiB.
-    pub(crate) fn into_glb(self, mut document: Value) -> Result<Vec<u8>, String> {
-        if !self.bytes.is_empty() {
-            document["buffers"] = json!([{"byteLength": self.bytes.len()}]);
+    pub(crate) fn into_glb(
+        mut self,
+        mut document: Value,
+    ) -> Result<(Vec<u8>, Vec<Beside>), String> {
+        if !self.views.is_empty() {
+            // The format forbids empty buffers, and the chunk is the first one.
+            let chunk = &mut self.buffers[0].bytes;
+            chunk.resize(chunk.len().max(4), 0);
+            let row = |buffer: &Buffer| match &buffer.path {
+                None => json!({"byteLength": buffer.bytes.len()}),
+                Some(path) => json!({
+                    "byteLength": buffer.bytes.len(), "uri": format!("{TO_LIBRARY}{path}")
+                }),
+            };
+            document["buffers"] = self.buffers.iter().map(row).collect();
             document["bufferViews"] = Value::Array(self.views);
             document["accessors"] = Value::Array(self.accessors);
         }
+        let mut buffers = self.buffers.into_iter();
+        let mut binary = buffers.next().unwrap_or_default().bytes;
+        let mut beside = self.beside;
+        beside.extend(
+            buffers.filter_map(|Buffer { bytes, path }| path.map(|path| Beside { path, bytes })),
+        );
         let mut text = document.to_string().into_bytes();
         text.resize(text.len().next_multiple_of(4), b' ');
-        let mut binary = self.bytes;
         binary.resize(binary.len().next_multiple_of(4), 0);
         let chunk = if binary.is_empty() {
             0
@@ -104,6 +190,6 @@ impl Binary {
             file.extend_from_slice(b"BIN\0");
             file.append(&mut binary);
         }
-        Ok(file)
+        Ok((file, beside))
     }
 }

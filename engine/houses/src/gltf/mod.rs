@@ -12,7 +12,7 @@ mod write;
 
 pub(crate) use geometry::Geometry;
 pub use write::write;
-pub(crate) use write::{MeshAccessors, encode};
+pub(crate) use write::{MeshAccessors, Storage, encode};
 
 use std::path::Path;
 

@@ -1,6 +1,7 @@
 //! The native form: `NAME.dwell/` holds a house exactly.
 //!
 //! `house.json` holds every table of the house, `house.glb` its meshes and textures in a form that any viewer opens.
+//! Houses that are written together (`write_into`) share meshes and textures in `object/` and `texture/` beside `house/`.
 //! Reading gives back the same bits that were written; `docs/decisions/0002-native-form.md` says why it is so.
 
 mod file;
@@ -9,7 +10,7 @@ mod write;
 
 pub use file::{FORMAT, VERSION};
 pub use read::open;
-pub use write::write;
+pub use write::{write, write_into};
 
 use std::path::Path;
 

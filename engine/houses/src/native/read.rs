@@ -19,7 +19,7 @@ use crate::root::DataRoot;
 ///
 /// # Errors
 /// [`HousesError::Io`] when a file is missing, [`HousesError::Version`] for another version, [`HousesError::Syntax`]
-/// with the line or field for content that is not of this form, [`HousesError::Scene`] when the tables break a rule of the
+/// with the line or field for content that is not of this form or not what its name says, [`HousesError::Scene`] when the tables break a rule of the
 /// scene. The form is exact, so nothing is survived and the report stays empty.
 pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
     let root = DataRoot::new(path)?;
@@ -49,7 +49,9 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
     }
     let file: NativeFile = serde_json::from_slice(&text).map_err(syntax)?;
     let bytes = root.read(GEOMETRY, MAX_BUFFER_BYTES)?;
-    let geometry = Geometry::read(&bytes, GEOMETRY)?;
+    // Houses that were written together share what stands beside them.
+    let library = DataRoot::new(path.join("../.."))?;
+    let geometry = Geometry::read(&bytes, GEOMETRY, &library)?;
     let mut data = file.house;
     let meshes = threads.map(file.mesh_accessors.len(), |k| {
         read_mesh(&geometry, &file.mesh_accessors[k])

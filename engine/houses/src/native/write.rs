@@ -1,7 +1,7 @@
 //! A house into `NAME.dwell/`.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use dwell_scene::{House, HouseData, IdVec};
 
@@ -9,7 +9,7 @@ use super::file::{FORMAT, NativeFile, VERSION};
 use super::{GEOMETRY, TABLES};
 use crate::atomic::write_folder;
 use crate::error::HousesError;
-use crate::gltf::encode;
+use crate::gltf::{Storage, encode};
 
 /// Writes a house so that [`open`](super::open) gives it back bit for bit. An old native house at `path` is replaced.
 ///
@@ -17,11 +17,30 @@ use crate::gltf::encode;
 /// [`HousesError::Unwritable`] when the house holds a number that is not finite outside of its meshes, when its geometry
 /// exceeds 4 GiB, or when something else stands at `path`; [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
+    write_as(house, path, Storage::Inside)
+}
+
+/// Writes a house as `root/house/NAME.dwell`; meshes of objects and images go into `root/object` and `root/texture`, where
+/// all houses of `root` share them. Returns the house's folder.
+///
+/// # Errors
+/// Those of [`write`].
+pub fn write_into(house: &House, root: &Path, name: &str) -> Result<PathBuf, HousesError> {
+    let path = root.join("house").join(format!("{name}.dwell"));
+    for folder in ["house", "object", "texture"] {
+        let folder = root.join(folder);
+        fs::create_dir_all(&folder).map_err(HousesError::io(&folder))?;
+    }
+    write_as(house, &path, Storage::Shared)?;
+    Ok(path)
+}
+
+fn write_as(house: &House, path: &Path, storage: Storage) -> Result<(), HousesError> {
     let unwritable = |message: String| HousesError::Unwritable {
         path: path.to_owned(),
         message,
     };
-    let written = encode(house).map_err(unwritable)?;
+    let written = encode(house, storage).map_err(unwritable)?;
     let file = NativeFile {
         format: FORMAT.to_owned(),
         version: VERSION,
@@ -43,6 +62,16 @@ pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
         return Err(unwritable(format!(
             "a table holds a number that is not finite ({error})"
         )));
+    }
+    // What is shared comes first: a house that is there is whole.
+    if let Some(root) = path.parent().and_then(Path::parent) {
+        for beside in &written.beside {
+            let path = root.join(&beside.path);
+            // The name is the content's, so what is there is the same.
+            if !path.exists() {
+                crate::atomic::write_file(&path, &beside.bytes)?;
+            }
+        }
     }
     let is_ours = |path: &Path| path.join(TABLES).is_file() && path.join(GEOMETRY).is_file();
     write_folder(path, is_ours, |folder| {

@@ -8,6 +8,7 @@ use glam::{Affine3A, Vec3};
 /// The text of an OBJ file under construction.
 ///
 /// Numbers are the shortest that read back as the same bits.
+#[derive(Default)]
 pub(crate) struct ObjWriter {
     text: String,
     /// Lines of each kind written so far: v, vt, vn.
@@ -15,14 +16,6 @@ pub(crate) struct ObjWriter {
 }
 
 impl ObjWriter {
-    /// A file whose materials stand in `mtl_file`.
-    pub(crate) fn new(mtl_file: &str) -> Self {
-        Self {
-            text: format!("mtllib {mtl_file}\n"),
-            counts: [0; 3],
-        }
-    }
-
     /// Appends a mesh after `map`, under the name `object` when it has one; `slot_name` names the material of a slot.
     pub(crate) fn mesh(
         &mut self,
@@ -85,9 +78,14 @@ impl ObjWriter {
         };
     }
 
-    /// The file's text.
-    pub(crate) fn into_text(self) -> String {
-        self.text
+    /// What was written so far.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The file's text; its materials stand in `mtl_file`.
+    pub(crate) fn into_text(self, mtl_file: &str) -> String {
+        format!("mtllib {mtl_file}\n{}", self.text)
     }
 }
 

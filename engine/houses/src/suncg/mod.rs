@@ -17,4 +17,4 @@ pub use open::open;
 pub(crate) use open::recognizes;
 pub use parse::parse;
 pub use read::{SuncgFiles, locate};
-pub use write::write;
+pub use write::{finish, write, write_into};

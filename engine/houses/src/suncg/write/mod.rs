@@ -20,6 +20,7 @@ use crate::build::{Names, encode_png};
 use crate::error::HousesError;
 use crate::loss::Loss;
 use crate::obj::mtl_material;
+use crate::root::DataRoot;
 
 /// Writes `house` as a new SUNCG data root at `path`, as it stands at the start, and returns what it does not hold.
 ///
@@ -32,23 +33,88 @@ pub fn write(house: &House, path: &Path) -> Result<Vec<Loss>, HousesError> {
         path,
         |_| false,
         |folder| {
-            let mut writer = Writer::new(house, folder);
-            writer.textures()?;
-            let mut levels: Vec<LevelFile> = Vec::new();
-            for (id, level) in house.levels.iter_ids() {
-                let nodes = writer.nodes(id, &mut losses)?;
-                let (id, bbox) = (Some(level.name.clone()), bounds(&level.bounds));
-                levels.push(LevelFile {
-                    id,
-                    valid: None,
-                    bbox,
-                    nodes,
-                });
-            }
-            writer.finish(levels)
+            let mut writer = Writer::new(house, folder, plain_name(&house.name), false);
+            writer.everything(&mut losses)?;
+            tables::write_tables(folder, &writer.models.rows)
         },
     )?;
     Ok(losses.into_vec())
+}
+
+/// Writes `house` into the data root at `root` as `house/NAME/house.json`; models and textures are named by their content,
+/// so that all houses of the root share them. [`finish`] then writes the tables. Returns the house's file.
+///
+/// # Errors
+/// [`HousesError::Unwritable`] when a texture cannot be written, [`HousesError::Io`] when the system refuses.
+pub fn write_into(
+    house: &House,
+    root: &Path,
+    name: &str,
+) -> Result<(PathBuf, Vec<Loss>), HousesError> {
+    let scene_id = plain_name(name);
+    let mut losses = losses::of_house(house);
+    fs::create_dir_all(root).map_err(HousesError::io(root))?;
+    let draft = root.join(format!(".draft-{scene_id}"));
+    write_folder(
+        &draft,
+        |_| true,
+        |folder| Writer::new(house, folder, scene_id.clone(), true).everything(&mut losses),
+    )?;
+    // What is shared comes first and the house last: a house that is there is whole.
+    for (folder, is_shared) in [
+        ("texture", true),
+        ("object", true),
+        ("room", false),
+        ("house", false),
+    ] {
+        move_all(&draft.join(folder), &root.join(folder), is_shared)?;
+    }
+    fs::remove_dir_all(&draft).map_err(HousesError::io(&draft))?;
+    let file = root.join("house").join(scene_id).join("house.json");
+    Ok((file, losses.into_vec()))
+}
+
+/// Moves everything in folder `from` into folder `to`; what is there already stays when it is shared, else it is replaced.
+fn move_all(from: &Path, to: &Path, is_shared: bool) -> Result<(), HousesError> {
+    if !from.exists() {
+        return Ok(());
+    }
+    fs::create_dir_all(to).map_err(HousesError::io(to))?;
+    for entry in fs::read_dir(from).map_err(HousesError::io(from))? {
+        let entry = entry.map_err(HousesError::io(from))?;
+        let target = to.join(entry.file_name());
+        if target.exists() {
+            if is_shared {
+                continue;
+            }
+            fs::remove_dir_all(&target).map_err(HousesError::io(&target))?;
+        }
+        let moved = fs::rename(entry.path(), &target);
+        // Somebody else may have brought the same model in between.
+        if !(is_shared && target.exists()) {
+            moved.map_err(HousesError::io(&target))?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes the tables of a data root that [`write_into`] filled: once, after the last house, or again at any time.
+///
+/// # Errors
+/// [`HousesError::Syntax`] when something stands beside a model that is no row of a table, [`HousesError::Io`] when the
+/// system refuses.
+pub fn finish(root: &Path) -> Result<(), HousesError> {
+    let root_of = DataRoot::new(root)?;
+    let mut rows = tables::read_rows(&root_of)?;
+    loop {
+        tables::write_tables(root, &rows)?;
+        // Who fills the same root at the same time may have finished in between.
+        let now = tables::read_rows(&root_of)?;
+        if now.len() == rows.len() {
+            return Ok(());
+        }
+        rows = now;
+    }
 }
 
 /// A data root under construction.
@@ -56,24 +122,43 @@ struct Writer<'a> {
     house: &'a House,
     folder: PathBuf,
     scene_id: String,
+    /// Whether models and textures are named by their content.
+    shared: bool,
     /// File name without ending of each texture.
     textures: BTreeMap<TextureId, String>,
-    models: models::Models<'a>,
+    models: models::Models,
     /// Where everything starts.
     start: State,
 }
 
 impl<'a> Writer<'a> {
-    fn new(house: &'a House, folder: &Path) -> Self {
-        let scene_id = plain_name(&house.name);
+    fn new(house: &'a House, folder: &Path, scene_id: String, shared: bool) -> Self {
         Self {
             house,
             folder: folder.to_owned(),
             scene_id,
+            shared,
             textures: BTreeMap::new(),
             models: models::Models::default(),
             start: State::new(house),
         }
+    }
+
+    /// Everything but the tables.
+    fn everything(&mut self, losses: &mut crate::loss::Losses) -> Result<(), HousesError> {
+        self.textures()?;
+        let mut levels: Vec<LevelFile> = Vec::new();
+        for (id, level) in self.house.levels.iter_ids() {
+            let nodes = self.nodes(id, losses)?;
+            let (id, bbox) = (Some(level.name.clone()), bounds(&level.bounds));
+            levels.push(LevelFile {
+                id,
+                valid: None,
+                bbox,
+                nodes,
+            });
+        }
+        self.house_file(levels)
     }
 
     /// Writes a file below the data root.
@@ -88,13 +173,17 @@ impl<'a> Writer<'a> {
     fn textures(&mut self) -> Result<(), HousesError> {
         let mut names = Names::default();
         for (id, texture) in self.house.textures.iter_ids() {
-            let name = names.unique(&plain_name(&texture.name));
-            let path = format!("texture/{name}.png");
+            let plain = plain_name(&texture.name);
             let bytes = encode_png(texture).map_err(|message| HousesError::Unwritable {
-                path: self.folder.join(&path),
+                path: self.folder.join(format!("texture/{plain}.png")),
                 message,
             })?;
-            self.file(&path, &bytes)?;
+            let name = if self.shared {
+                format!("{plain}-{}", short_name(&bytes))
+            } else {
+                names.unique(&plain)
+            };
+            self.file(&format!("texture/{name}.png"), &bytes)?;
             self.textures.insert(id, name);
         }
         Ok(())
@@ -161,7 +250,7 @@ impl<'a> Writer<'a> {
         Ok(nodes)
     }
 
-    fn finish(self, levels: Vec<LevelFile>) -> Result<(), HousesError> {
+    fn house_file(&self, levels: Vec<LevelFile>) -> Result<(), HousesError> {
         let all = self
             .house
             .levels
@@ -182,8 +271,7 @@ impl<'a> Writer<'a> {
             path: self.folder.join(&path),
             message: error.to_string(),
         })?;
-        self.file(&path, &text)?;
-        self.tables()
+        self.file(&path, &text)
     }
 }
 
@@ -196,7 +284,7 @@ fn bounds(bounds: &Aabb) -> Option<BoundsFile> {
     })
 }
 
-/// A name that can be a file's: letters, digits, `_`, `-`, and not the name of a variant (`..._0`).
+/// A name that can be a file's: letters, digits, `_`, `-`.
 fn plain_name(name: &str) -> String {
     let plain = |c: char| {
         if c.is_ascii_alphanumeric() || c == '_' || c == '-' {
@@ -209,10 +297,21 @@ fn plain_name(name: &str) -> String {
     if plain.is_empty() {
         "unnamed".clone_into(&mut plain);
     }
+    plain
+}
+
+/// A name that can be a model's: a file's, and not that of a variant (`..._0`).
+fn model_name(name: &str) -> String {
+    let mut plain = plain_name(name);
     if super::metadata::base_model(&plain) != plain {
         plain.push('-');
     }
     plain
+}
+
+/// What tells content from other content in names: 64 bits of its hash.
+fn short_name(bytes: &[u8]) -> String {
+    format!("{:016x}", xxhash_rust::xxh3::xxh3_64(bytes))
 }
 
 /// `#rrggbb` of a material's colour.

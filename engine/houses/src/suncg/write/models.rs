@@ -3,15 +3,14 @@
 use std::collections::BTreeMap;
 
 use dwell_scene::{
-    Articulation, Category, House, JointId, JointKind, MaterialId, Mobility, Object, ObjectId,
-    Part, PartId, Pose,
+    Articulation, House, JointId, JointKind, MaterialId, Mobility, Object, ObjectId, Part, PartId,
+    Pose,
 };
 use glam::{Affine3A, Mat4, Vec3};
 
 use super::super::file::{Flag, MaterialFile, NodeFile};
-use super::super::metadata::LightFile;
-use super::tables::model_lights;
-use super::{Writer, bounds, hex, plain_name};
+use super::tables::{ModelRow, model_lights};
+use super::{Writer, bounds, hex, model_name, short_name};
 use crate::build::Names;
 use crate::error::HousesError;
 use crate::loss::Losses;
@@ -19,23 +18,26 @@ use crate::obj::ObjWriter;
 
 /// Models written so far.
 #[derive(Default)]
-pub(super) struct Models<'a> {
+pub(super) struct Models {
     by_key: BTreeMap<String, String>,
     names: Names,
     /// What the tables say about each model.
-    pub(super) entries: Vec<ModelRow<'a>>,
+    pub(super) rows: Vec<ModelRow>,
+    /// The materials of the MTL file of each.
+    materials: Vec<Vec<MaterialId>>,
 }
 
-/// A model as the tables know it.
-pub(super) struct ModelRow<'a> {
-    pub(super) id: String,
-    pub(super) category: &'a Category,
-    pub(super) slots: usize,
-    pub(super) bounds: dwell_scene::Aabb,
-    pub(super) lights: Vec<LightFile>,
-    pub(super) signals: Vec<&'a str>,
-    /// The materials of its MTL file.
-    materials: Vec<MaterialId>,
+impl Models {
+    /// An id that no model has yet.
+    fn unused_name(&mut self, base: &str) -> String {
+        let id = self.names.unique(&model_name(base));
+        // The name may have become a variant's by its number.
+        if super::super::metadata::base_model(&id) == id {
+            id
+        } else {
+            self.names.unique(&format!("{id}-"))
+        }
+    }
 }
 
 /// The hinge that a model's two states can show: the positions of the joint in them.
@@ -85,15 +87,10 @@ impl<'a> Writer<'a> {
             .flat_map(|part| house.parts[part].materials.iter().copied())
             .collect();
         let row = self.model_row(object_id, &world_from_model, &materials);
-        let model = self.model(object_id, row, states.as_ref(), losses)?;
-        let written = self
-            .models
-            .entries
-            .iter()
-            .find(|row| row.id == model)
-            .map(|row| row.materials.clone())
-            .unwrap_or_default();
-        let overrides = (written != materials).then(|| self.overrides(&materials, losses));
+        let model = self.model(object_id, row, &materials, states.as_ref(), losses)?;
+        let known = self.models.rows.iter().position(|row| row.id == model);
+        let as_written = known.is_some_and(|k| self.models.materials[k] == materials);
+        let overrides = (!as_written).then(|| self.overrides(&materials, losses));
         let matrix = Mat4::from(world_from_model).to_cols_array().map(f64::from);
         let mirrored = world_from_model.matrix3.determinant() < 0.0;
         Ok(NodeFile {
@@ -116,7 +113,7 @@ impl<'a> Writer<'a> {
         id: ObjectId,
         world_from_model: &Affine3A,
         materials: &[MaterialId],
-    ) -> ModelRow<'a> {
+    ) -> ModelRow {
         let house = self.house;
         let lights = house.lights.iter().filter(|light| light.object == id);
         let model_from_part = |part: PartId| {
@@ -124,7 +121,7 @@ impl<'a> Writer<'a> {
         };
         ModelRow {
             id: String::new(),
-            category: &house.objects[id].category,
+            category: house.objects[id].category.clone(),
             slots: materials.len(),
             bounds: dwell_scene::Aabb::EMPTY,
             lights: lights
@@ -134,9 +131,8 @@ impl<'a> Writer<'a> {
                 .emitters
                 .iter()
                 .filter(|emitter| emitter.object == id)
-                .map(|e| e.signal.as_str())
+                .map(|e| e.signal.clone())
                 .collect(),
-            materials: materials.to_vec(),
         }
     }
 
@@ -144,13 +140,14 @@ impl<'a> Writer<'a> {
     fn model(
         &mut self,
         object_id: ObjectId,
-        mut row: ModelRow<'a>,
+        mut row: ModelRow,
+        materials: &[MaterialId],
         states: Option<&TwoStates>,
         losses: &mut Losses,
     ) -> Result<String, HousesError> {
         let house = self.house;
         let object = &house.objects[object_id];
-        let key = model_key(house, object_id, &row);
+        let key = model_key(house, object_id, &row, materials);
         if let Some(known) = self.models.by_key.get(&key) {
             return Ok(known.clone());
         }
@@ -159,26 +156,18 @@ impl<'a> Writer<'a> {
         } else {
             &object.model
         };
-        let id = self.models.names.unique(&plain_name(base));
-        // The name may have become a variant's by its number.
-        let id = if super::super::metadata::base_model(&id) == id {
-            id
-        } else {
-            self.models.names.unique(&format!("{id}-"))
-        };
-        let folder = format!("object/{id}");
         let positions = match states {
             Some(states) => vec![(Some(states.open), ""), (Some(states.closed), "_0")],
             None => vec![(None, "")],
         };
+        let mut shapes = Vec::new();
         for (position, suffix) in positions {
             let joint = states.map(|states| &house.joints[states.joint]);
-            let mut obj = ObjWriter::new(&format!("{id}.mtl"));
+            let mut obj = ObjWriter::default();
             for piece in pieces(house, object, joint.zip(position)) {
                 let mesh = &house.meshes[piece.part.mesh];
-                let slot_name = |slot: u16| {
-                    slot_name(house, &row.materials, piece.first_slot + usize::from(slot))
-                };
+                let slot_name =
+                    |slot: u16| slot_name(house, materials, piece.first_slot + usize::from(slot));
                 obj.mesh(None, mesh, &piece.model_from_mesh, slot_name);
                 let of_piece = mesh
                     .positions
@@ -186,18 +175,33 @@ impl<'a> Writer<'a> {
                     .map(|p| piece.model_from_mesh.transform_point3(*p));
                 row.bounds = row.bounds.union(&dwell_scene::Aabb::from_points(of_piece));
             }
-            self.file(
-                &format!("{folder}/{id}{suffix}.obj"),
-                obj.into_text().as_bytes(),
-            )?;
+            shapes.push((suffix, obj));
         }
-        let mtl = self.mtl(&row.materials, |k, _| slot_name(house, &row.materials, k));
+        let mtl = self.mtl(materials, |k, _| slot_name(house, materials, k));
+        let id = if self.shared {
+            let texts = shapes.iter().map(|(_, obj)| obj.text());
+            let content: String = texts.chain([mtl.as_str(), &key_of_row(&row)]).collect();
+            format!("{}-{}", model_name(base), short_name(content.as_bytes()))
+        } else {
+            self.models.unused_name(base)
+        };
+        let folder = format!("object/{id}");
+        for (suffix, obj) in shapes {
+            let text = obj.into_text(&format!("{id}.mtl"));
+            self.file(&format!("{folder}/{id}{suffix}.obj"), text.as_bytes())?;
+        }
         self.file(&format!("{folder}/{id}.mtl"), mtl.as_bytes())?;
         if row.category.fine.is_empty() && row.category.coarse.is_empty() {
             losses.add("objects without a category stay without one", 1);
         }
         row.id.clone_from(&id);
-        self.models.entries.push(row);
+        if self.shared {
+            self.row_file(&row)?;
+        }
+        if !self.models.rows.iter().any(|known| known.id == id) {
+            self.models.rows.push(row);
+            self.models.materials.push(materials.to_vec());
+        }
         self.models.by_key.insert(key, id.clone());
         Ok(id)
     }
@@ -232,7 +236,7 @@ fn slot_name(house: &House, materials: &[MaterialId], slot: usize) -> String {
 }
 
 /// Everything that two objects must share to be one model: shape, what the tables say, and what an override cannot change.
-fn model_key(house: &House, id: ObjectId, row: &ModelRow<'_>) -> String {
+fn model_key(house: &House, id: ObjectId, row: &ModelRow, materials: &[MaterialId]) -> String {
     let object = &house.objects[id];
     let root = house.parts[object.first_part].world_from_part;
     let shape: Vec<_> = object
@@ -261,8 +265,7 @@ fn model_key(house: &House, id: ObjectId, row: &ModelRow<'_>) -> String {
     let ends =
         |joint: JointId| [house.joints[joint].open, house.joints[joint].closed].map(f32::to_bits);
     let joints: Vec<_> = house.joints_of(id).map(ends).collect();
-    let fixed: Vec<_> = row
-        .materials
+    let fixed: Vec<_> = materials
         .iter()
         .map(|id| {
             let m = &house.materials[*id];
@@ -275,9 +278,15 @@ fn model_key(house: &House, id: ObjectId, row: &ModelRow<'_>) -> String {
         })
         .collect();
     format!(
-        "{shape:?}{joints:?}{fixed:?}{:?}{:?}{:?}{}",
-        row.category, row.lights, row.signals, object.model
+        "{shape:?}{joints:?}{fixed:?}{}{}",
+        key_of_row(row),
+        object.model
     )
+}
+
+/// What the tables say of a model, apart from what follows from its shape.
+fn key_of_row(row: &ModelRow) -> String {
+    format!("{:?}{:?}{:?}", row.category, row.lights, row.signals)
 }
 
 /// The parts of an object in the space of its model, with its joint at a position when one is given.

@@ -119,7 +119,7 @@ impl Writer<'_> {
                 materials.push(*id);
             }
         }
-        let mut obj = ObjWriter::new(&format!("{file}.mtl"));
+        let mut obj = ObjWriter::default();
         let position =
             |id: MaterialId| materials.iter().position(|known| *known == id).unwrap_or(0);
         let name = |k: usize, id: MaterialId| format!("{}_{k}", self.house.materials[id].substance);
@@ -136,7 +136,8 @@ impl Writer<'_> {
             );
         }
         let folder = format!("room/{}", self.scene_id);
-        self.file(&format!("{folder}/{file}.obj"), obj.into_text().as_bytes())?;
+        let text = obj.into_text(&format!("{file}.mtl"));
+        self.file(&format!("{folder}/{file}.obj"), text.as_bytes())?;
         let mtl = self.mtl(&materials, |k, _| name(k, materials[k]));
         self.file(&format!("{folder}/{file}.mtl"), mtl.as_bytes())
     }

@@ -1,120 +1,181 @@
 //! The metadata tables of a written data root.
 
 use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
 
-use dwell_scene::{Light, LightShape, units};
+use dwell_scene::{Aabb, Category, Light, LightShape, units};
 use glam::{Affine3A, Vec3};
+use serde::{Deserialize, Serialize};
 
 use super::super::metadata::{LightFile, OneOrMany, SoundEntry};
 use super::Writer;
+use crate::atomic::write_file;
 use crate::error::HousesError;
+use crate::limits::MAX_TEXT_BYTES;
+use crate::report::At;
+use crate::root::DataRoot;
+
+/// A model as the tables know it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct ModelRow {
+    pub(super) id: String,
+    pub(super) category: Category,
+    pub(super) slots: usize,
+    pub(super) bounds: Aabb,
+    pub(super) lights: Vec<LightFile>,
+    pub(super) signals: Vec<String>,
+}
+
+/// Beside a model that houses share: its [`ModelRow`].
+const ROW: &str = "row.json";
 
 impl Writer<'_> {
-    /// Writes the tables that the models need.
-    pub(super) fn tables(&self) -> Result<(), HousesError> {
-        let models = &self.models.entries;
-        let unwritable = |path: &str, message: String| HousesError::Unwritable {
-            path: self.folder.join(path),
-            message,
-        };
-        let path = "metadata/ModelCategoryMapping.csv";
-        let rows = models
-            .iter()
-            .filter(|row| !row.category.fine.is_empty() || !row.category.coarse.is_empty());
-        let rows = rows.enumerate().map(|(k, row)| {
-            let category = row.category;
-            let [index, structure] = [k.to_string(), "2".to_owned()];
-            let names = [
-                &category.fine,
-                &category.coarse,
-                &structure,
-                &category.nyu40,
-            ]
-            .map(Clone::clone);
-            [
-                vec![index, row.id.clone()],
-                names.to_vec(),
-                vec![String::new(); 2],
-            ]
-            .concat()
-        });
-        let header = [
-            "index",
-            "model_id",
-            "fine_grained_class",
-            "coarse_grained_class",
-            "empty_struct_obj",
-            "nyuv2_40class",
-            "wnsynsetid",
-            "wnsynsetkey",
-        ];
-        self.file(
-            path,
-            &csv_text(&header, rows).map_err(|message| unwritable(path, message))?,
-        )?;
-
-        let path = "metadata/models.csv";
-        let triple = |v: Vec3| format!("{}, {}, {}", v.x, v.y, v.z);
-        let rows = models
-            .iter()
-            .filter(|row| !row.bounds.is_empty())
-            .enumerate()
-            .map(|(k, row)| {
-                let dims = triple(row.bounds.size() * 100.0);
-                let (min, max) = (triple(row.bounds.min), triple(row.bounds.max));
-                vec![
-                    row.id.clone(),
-                    "0,0,1".to_owned(),
-                    row.slots.to_string(),
-                    min,
-                    max,
-                    dims,
-                    k.to_string(),
-                    String::new(),
-                ]
-            });
-        let header = [
-            "id",
-            "front",
-            "nmaterials",
-            "minPoint",
-            "maxPoint",
-            "aligned.dims",
-            "index",
-            "variantIds",
-        ];
-        self.file(
-            path,
-            &csv_text(&header, rows).map_err(|message| unwritable(path, message))?,
-        )?;
-
-        let lights: BTreeMap<&str, &[LightFile]> = models
-            .iter()
-            .filter(|row| !row.lights.is_empty())
-            .map(|row| (row.id.as_str(), row.lights.as_slice()))
-            .collect();
-        let sounds: Vec<SoundEntry> = models
-            .iter()
-            .filter(|row| !row.signals.is_empty())
-            .map(|row| SoundEntry {
-                category: OneOrMany::One(row.category.coarse.clone()),
-                model_ids: vec![row.id.clone()],
-                sounds: row
-                    .signals
-                    .iter()
-                    .enumerate()
-                    .map(|(k, signal)| (event(k), format!("{signal}.wav")))
-                    .collect(),
-            })
-            .collect();
-        let json = |path: &str, text: Result<Vec<u8>, serde_json::Error>| {
-            text.map_err(|error| unwritable(path, error.to_string()))
-        };
-        let path = "metadata/suncgModelLights.json";
-        self.file(path, &json(path, serde_json::to_vec(&lights))?)?;
-        let path = "metadata/sounds.json";
-        self.file(path, &json(path, serde_json::to_vec_pretty(&sounds))?)
+    /// Writes what the tables will say of a shared model beside it.
+    pub(super) fn row_file(&self, row: &ModelRow) -> Result<(), HousesError> {
+        let path = format!("object/{}/{ROW}", row.id);
+        let text = serde_json::to_vec(row).map_err(|error| HousesError::Unwritable {
+            path: self.folder.join(&path),
+            message: error.to_string(),
+        })?;
+        self.file(&path, &text)
     }
+}
+
+/// The rows beside all shared models of a data root, by id.
+///
+/// # Errors
+/// [`HousesError::Io`] when the system refuses, [`HousesError::Syntax`] when a row is none.
+pub(super) fn read_rows(root: &DataRoot) -> Result<Vec<ModelRow>, HousesError> {
+    let folder = root.folder().join("object");
+    let mut names: Vec<_> = fs::read_dir(&folder)
+        .map_err(HousesError::io(&folder))?
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .collect();
+    names.sort_unstable();
+    let rows = names
+        .iter()
+        .map(|name| format!("object/{name}/{ROW}"))
+        .filter(|path| root.has_file(path));
+    rows.map(|path| {
+        let text = root.read(&path, MAX_TEXT_BYTES)?;
+        serde_json::from_slice(&text).map_err(|error| HousesError::Syntax {
+            at: At::file(&path),
+            message: error.to_string(),
+        })
+    })
+    .collect()
+}
+
+/// Writes the tables of models into a data root.
+///
+/// # Errors
+/// [`HousesError::Io`] when the system refuses.
+pub(super) fn write_tables(folder: &Path, models: &[ModelRow]) -> Result<(), HousesError> {
+    let unwritable = |path: &str, message: String| HousesError::Unwritable {
+        path: folder.join(path),
+        message,
+    };
+    let file = |path: &str, bytes: &[u8]| write_file(&folder.join(path), bytes);
+    let metadata = folder.join("metadata");
+    fs::create_dir_all(&metadata).map_err(HousesError::io(&metadata))?;
+    let path = "metadata/ModelCategoryMapping.csv";
+    let rows = models
+        .iter()
+        .filter(|row| !row.category.fine.is_empty() || !row.category.coarse.is_empty());
+    let rows = rows.enumerate().map(|(k, row)| {
+        let category = &row.category;
+        let [index, structure] = [k.to_string(), "2".to_owned()];
+        let names = [
+            &category.fine,
+            &category.coarse,
+            &structure,
+            &category.nyu40,
+        ]
+        .map(Clone::clone);
+        [
+            vec![index, row.id.clone()],
+            names.to_vec(),
+            vec![String::new(); 2],
+        ]
+        .concat()
+    });
+    let header = [
+        "index",
+        "model_id",
+        "fine_grained_class",
+        "coarse_grained_class",
+        "empty_struct_obj",
+        "nyuv2_40class",
+        "wnsynsetid",
+        "wnsynsetkey",
+    ];
+    file(
+        path,
+        &csv_text(&header, rows).map_err(|message| unwritable(path, message))?,
+    )?;
+
+    let path = "metadata/models.csv";
+    let triple = |v: Vec3| format!("{}, {}, {}", v.x, v.y, v.z);
+    let rows = models
+        .iter()
+        .filter(|row| !row.bounds.is_empty())
+        .enumerate()
+        .map(|(k, row)| {
+            let dims = triple(row.bounds.size() * 100.0);
+            let (min, max) = (triple(row.bounds.min), triple(row.bounds.max));
+            vec![
+                row.id.clone(),
+                "0,0,1".to_owned(),
+                row.slots.to_string(),
+                min,
+                max,
+                dims,
+                k.to_string(),
+                String::new(),
+            ]
+        });
+    let header = [
+        "id",
+        "front",
+        "nmaterials",
+        "minPoint",
+        "maxPoint",
+        "aligned.dims",
+        "index",
+        "variantIds",
+    ];
+    file(
+        path,
+        &csv_text(&header, rows).map_err(|message| unwritable(path, message))?,
+    )?;
+
+    let lights: BTreeMap<&str, &[LightFile]> = models
+        .iter()
+        .filter(|row| !row.lights.is_empty())
+        .map(|row| (row.id.as_str(), row.lights.as_slice()))
+        .collect();
+    let sounds: Vec<SoundEntry> = models
+        .iter()
+        .filter(|row| !row.signals.is_empty())
+        .map(|row| SoundEntry {
+            category: OneOrMany::One(row.category.coarse.clone()),
+            model_ids: vec![row.id.clone()],
+            sounds: row
+                .signals
+                .iter()
+                .enumerate()
+                .map(|(k, signal)| (event(k), format!("{signal}.wav")))
+                .collect(),
+        })
+        .collect();
+    let json = |path: &str, text: Result<Vec<u8>, serde_json::Error>| {
+        text.map_err(|error| unwritable(path, error.to_string()))
+    };
+    let path = "metadata/suncgModelLights.json";
+    file(path, &json(path, serde_json::to_vec(&lights))?)?;
+    let path = "metadata/sounds.json";
+    file(path, &json(path, serde_json::to_vec_pretty(&sounds))?)
 }
 
 /// The name of the k-th event of a model.

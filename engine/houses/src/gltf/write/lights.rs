@@ -1,0 +1,84 @@
+//! Lamps as `KHR_lights_punctual`.
+//!
+//! # Source
+//! Khronos, `KHR_lights_punctual` (glTF 2.0 Vendor Extensions): intensity in cd, attenuation by the inverse square of the
+//! distance, light along -Z of its node. 1 W of a lamp counts as 100 lm, as [`Light::power_w`] says.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use dwell_scene::math::cos;
+use dwell_scene::{HouseData, Light, LightShape};
+use glam::{Quat, Vec3};
+use serde_json::{Value, json};
+
+use crate::loss::Losses;
+
+/// lm of a lamp of 1 W.
+const LUMENS_PER_WATT: f32 = 100.0;
+/// The name of the extension.
+pub(super) const EXTENSION: &str = "KHR_lights_punctual";
+
+/// The narrowest cone that the format's viewers draw, rad.
+const LEAST_CONE_RAD: f32 = 1e-3;
+
+/// A light of the file, and the node that carries it: in the world, as it stands at the start.
+pub(super) struct Lamp {
+    pub(super) light: Value,
+    pub(super) node: Value,
+}
+
+/// The `index`-th light of the file.
+pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> Lamp {
+    let object = &house.objects[light.object];
+    let part = &house.parts[light.part];
+    let lumens = light.power_w * LUMENS_PER_WATT;
+    let mut at = part.world_from_part.transform_point(light.position);
+    let mut turn = Quat::IDENTITY;
+    let mut value = json!({"name": object.name, "color": light.color, "type": "point"});
+    let candela = match light.shape {
+        LightShape::Point => lumens / (4.0 * PI),
+        LightShape::Line { end } => {
+            at = (at + part.world_from_part.transform_point(end)) / 2.0;
+            lumens / (4.0 * PI)
+        }
+        LightShape::Spot {
+            direction,
+            cutoff_rad,
+            ..
+        } => {
+            let outer = cutoff_rad.clamp(LEAST_CONE_RAD, FRAC_PI_2);
+            let along = part.world_from_part.transform_vector(direction);
+            turn = Quat::from_rotation_arc(Vec3::NEG_Z, along.normalize_or(Vec3::NEG_Z));
+            value["type"] = json!("spot");
+            value["spot"] = json!({"innerConeAngle": 0.0, "outerConeAngle": outer});
+            lumens / (2.0 * PI * (1.0 - cos(outer)))
+        }
+    };
+    let shines = object.switch != Some(false);
+    value["intensity"] = json!(if shines { candela } else { 0.0 });
+    let node = json!({
+        "name": format!("{}.light", object.name),
+        "translation": at.to_array(),
+        "rotation": turn.to_array(),
+        "extensions": {EXTENSION: {"light": index}},
+        "extras": {"dwell": {"light_of": object.name, "power_w": light.power_w, "on": shines}},
+    });
+    Lamp { light: value, node }
+}
+
+/// What the extension cannot say of lights.
+pub(super) fn losses(house: &HouseData, losses: &mut Losses) {
+    let count = |is: fn(&Light) -> bool| house.lights.iter().filter(|light| is(light)).count();
+    losses.add(
+        "glowing lines; they shine from their middles",
+        count(|light| matches!(light.shape, LightShape::Line { .. })),
+    );
+    losses.add(
+        "how spots fade towards the edge of their cones",
+        count(|light| matches!(light.shape, LightShape::Spot { .. })),
+    );
+    losses.add(
+        "attenuation of light other than by the square of the distance",
+        count(|light| light.attenuation != [0.0, 0.0, 1.0]),
+    );
+}

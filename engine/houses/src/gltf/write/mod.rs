@@ -1,0 +1,260 @@
+//! Any house as a GLB file that every viewer opens.
+//!
+//! Nodes: storeys, in them rooms, in them pieces of the building and objects, in those parts and lights. What a node means
+//! beyond its shape stands in its `extras.dwell`.
+
+mod extras;
+mod lights;
+mod materials;
+mod meshes;
+
+pub(crate) use meshes::MeshAccessors;
+
+use std::path::Path;
+
+use dwell_scene::{House, HouseData, Id, LevelId, Mobility, RoomId};
+use glam::Affine3A;
+use serde_json::{Value, json};
+
+use super::glb::{Beside, Binary};
+use crate::build::encode_png;
+use crate::error::HousesError;
+use crate::loss::{Loss, Losses};
+use meshes::Shapes;
+
+/// A written house: the file, and where its tables went.
+pub(crate) struct Written {
+    pub(crate) file: Vec<u8>,
+    /// Files beside it that its URIs name: what several houses share.
+    pub(crate) beside: Vec<Beside>,
+    pub(crate) meshes: Vec<MeshAccessors>,
+}
+
+/// Where meshes of objects, and images, stand.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Storage {
+    /// In the file: it needs nothing beside it.
+    Inside,
+    /// In files named by their content, in `object/` and `texture/` of the folder two above the file's, so that houses share
+    /// them.
+    Shared,
+}
+
+/// Writes a house as a GLB file, as it stands at the start, and returns what the file does not hold.
+///
+/// # Errors
+/// [`HousesError::Unwritable`] beyond the format's 4 GiB, [`HousesError::Io`] when the system refuses.
+pub fn write(house: &House, path: &Path) -> Result<Vec<Loss>, HousesError> {
+    let written = encode(house, Storage::Inside).map_err(|message| HousesError::Unwritable {
+        path: path.to_owned(),
+        message,
+    })?;
+    crate::atomic::write_file(path, &written.file)?;
+    Ok(losses(house))
+}
+
+/// What a viewer, or our own reader, does not get back. Much of it stands in the file as `extras`, which nobody must read.
+fn losses(house: &HouseData) -> Vec<Loss> {
+    let mut losses = Losses::default();
+    losses.add(
+        "rooms; named nodes, read back as one room over all floors",
+        house.rooms.len(),
+    );
+    losses.add(
+        "joints; parts stand as they start, joints are listed in extras",
+        house.joints.len(),
+    );
+    let moving = house
+        .objects
+        .iter()
+        .filter(|object| object.mobility != Mobility::Fixed)
+        .count();
+    losses.add("masses and colliders; listed in extras", moving);
+    losses.add(
+        "sound, friction and density of materials; listed in extras",
+        house.materials.len(),
+    );
+    lights::losses(house, &mut losses);
+    losses.add("sound emitters; listed in extras", house.emitters.len());
+    losses.add("receptacles; listed in extras", house.receptacles.len());
+    losses.into_vec()
+}
+
+/// The file's bytes.
+pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<Written, String> {
+    let mut binary = Binary::default();
+    let mut of_building = vec![false; house.meshes.len()];
+    for piece in &house.structure {
+        of_building[piece.mesh.index()] = true;
+    }
+    let stored: Vec<meshes::Stored> = house
+        .meshes
+        .iter_ids()
+        .map(|(id, mesh)| {
+            let apart = storage == Storage::Shared && !of_building[id.index()];
+            binary.part("object", apart, |binary| meshes::store(binary, mesh))
+        })
+        .collect();
+    let images: Vec<Value> = house
+        .textures
+        .iter()
+        .map(|texture| {
+            let bytes = encode_png(texture)?;
+            let mut image = json!({"mimeType": "image/png", "name": texture.name});
+            match storage {
+                Storage::Inside => image["bufferView"] = json!(binary.view(&bytes)),
+                Storage::Shared => image["uri"] = json!(binary.beside("texture", "png", bytes)),
+            }
+            Ok(image)
+        })
+        .collect::<Result<_, String>>()?;
+    let mut tree = Tree::new(house, Shapes::new(house, &stored));
+    tree.fill();
+    let Tree {
+        nodes,
+        roots,
+        shapes,
+        lights,
+        ..
+    } = tree;
+    let mut used = vec!["KHR_texture_transform"];
+    let mut document = json!({"asset": {"version": "2.0", "generator": "dwell"}});
+    if !lights.is_empty() {
+        used.push(lights::EXTENSION);
+        document["extensions"] = json!({lights::EXTENSION: {"lights": lights}});
+    }
+    document["extensionsUsed"] = json!(used);
+    // The format forbids empty tables, and scenes without nodes.
+    if !nodes.is_empty() {
+        document["scene"] = json!(0);
+        document["scenes"] = json!([{"name": house.name, "nodes": roots}]);
+    }
+    let tables = [
+        ("nodes", nodes),
+        ("meshes", shapes.meshes),
+        (
+            "materials",
+            house.materials.iter().map(materials::material).collect(),
+        ),
+        (
+            "textures",
+            (0..images.len()).map(|k| json!({"source": k})).collect(),
+        ),
+        ("images", images),
+    ];
+    for (name, table) in tables.into_iter().filter(|(_, table)| !table.is_empty()) {
+        document[name] = Value::Array(table);
+    }
+    let (file, beside) = binary.into_glb(document)?;
+    Ok(Written {
+        file,
+        beside,
+        meshes: stored.into_iter().map(|stored| stored.accessors).collect(),
+    })
+}
+
+/// The nodes under construction.
+struct Tree<'a> {
+    house: &'a HouseData,
+    shapes: Shapes<'a>,
+    nodes: Vec<Value>,
+    /// Nodes of storeys.
+    roots: Vec<usize>,
+    /// Lights of the extension.
+    lights: Vec<Value>,
+    of_level: Vec<usize>,
+    of_room: Vec<usize>,
+}
+
+impl<'a> Tree<'a> {
+    fn new(house: &'a HouseData, shapes: Shapes<'a>) -> Self {
+        Self {
+            house,
+            shapes,
+            nodes: Vec::new(),
+            roots: Vec::new(),
+            lights: Vec::new(),
+            of_level: Vec::new(),
+            of_room: Vec::new(),
+        }
+    }
+
+    fn fill(&mut self) {
+        let house = self.house;
+        for level in &house.levels {
+            let id = self.add(json!({"name": format!("level_{}", level.name)}), None);
+            self.roots.push(id);
+            self.of_level.push(id);
+        }
+        for room in &house.rooms {
+            let node = json!({"name": room.name, "extras": extras::room(room)});
+            let id = self.add(node, Some(self.of_level[room.level.index()]));
+            self.of_room.push(id);
+        }
+        for piece in &house.structure {
+            let mesh = self.shapes.mesh(piece.mesh, &piece.materials);
+            let node = shown(&piece.name, mesh, None, extras::structure(piece));
+            self.add(node, Some(self.home(piece.level, piece.room)));
+        }
+        for (id, object) in house.objects.iter_ids() {
+            let home = self.home(object.level, object.room);
+            let about = extras::object(house, id, object);
+            let node = self.add(json!({"name": object.name, "extras": about}), Some(home));
+            for part in object.parts().map(|part| &house.parts[part]) {
+                let name = if object.part_count == 1 {
+                    object.name.clone()
+                } else {
+                    format!("{}.{}", object.name, part.name)
+                };
+                let mesh = self.shapes.mesh(part.mesh, &part.materials);
+                let place = part.world_from_part.to_affine() * part.part_from_mesh;
+                self.add(
+                    shown(&name, mesh, Some(place), extras::part(part)),
+                    Some(node),
+                );
+            }
+            for light in house.lights.iter().filter(|light| light.object == id) {
+                let lamp = lights::lamp(house, light, self.lights.len());
+                self.lights.push(lamp.light);
+                self.add(lamp.node, Some(node));
+            }
+        }
+    }
+
+    /// The node of a room, or of a storey.
+    fn home(&self, level: LevelId, room: Option<RoomId>) -> usize {
+        room.map_or_else(
+            || self.of_level[level.index()],
+            |room| self.of_room[room.index()],
+        )
+    }
+
+    fn add(&mut self, node: Value, parent: Option<usize>) -> usize {
+        let id = self.nodes.len();
+        self.nodes.push(node);
+        if let Some(parent) = parent {
+            match &mut self.nodes[parent]["children"] {
+                Value::Array(children) => children.push(json!(id)),
+                none => *none = json!([id]),
+            }
+        }
+        id
+    }
+}
+
+/// A node that shows a mesh.
+fn shown(
+    name: &str,
+    mesh: Option<usize>,
+    world_from_mesh: Option<Affine3A>,
+    extras: Value,
+) -> Value {
+    let mut node = json!({"name": name, "extras": extras});
+    if let Some(mesh) = mesh {
+        node["mesh"] = json!(mesh);
+    }
+    if let Some(map) = world_from_mesh.filter(|map| *map != Affine3A::IDENTITY) {
+        node["matrix"] = json!(glam::Mat4::from(map).to_cols_array().to_vec());
+    }
+    node
+}

@@ -1,0 +1,72 @@
+//! Forms in which houses are written: the list of them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use dwell_scene::House;
+
+use crate::error::HousesError;
+use crate::loss::Loss;
+
+/// A form in which houses are written.
+pub struct Writer {
+    /// The form's name.
+    pub name: &'static str,
+    /// Writes a house at a path and says what the form does not hold.
+    pub write: fn(&House, &Path) -> Written,
+    /// Writes a house under a name below `house/` of a folder of many, which share what they can; returns where it is.
+    pub write_into: fn(&House, &Path, &str) -> WrittenInto,
+    /// Writes what stands once in a folder of many: after the last house, or again at any time.
+    pub finish: fn(&Path) -> Result<(), HousesError>,
+}
+
+/// What a form does not hold.
+pub type Written = Result<Vec<Loss>, HousesError>;
+
+/// Where a house is, and what the form does not hold.
+pub type WrittenInto = Result<(PathBuf, Vec<Loss>), HousesError>;
+
+/// All forms. A new one is one entry here.
+pub fn writers() -> &'static [Writer] {
+    &[
+        Writer {
+            name: "dwell",
+            write: |house, path| crate::native::write(house, path).map(|()| Vec::new()),
+            write_into: |house, root, name| {
+                crate::native::write_into(house, root, name).map(|path| (path, Vec::new()))
+            },
+            finish: |_| Ok(()),
+        },
+        Writer {
+            name: "suncg",
+            write: crate::suncg::write,
+            write_into: crate::suncg::write_into,
+            finish: crate::suncg::finish,
+        },
+        Writer {
+            name: "glb",
+            write: crate::gltf::write,
+            write_into: |house, root, name| {
+                let folder = root.join("house");
+                fs::create_dir_all(&folder).map_err(HousesError::io(&folder))?;
+                let path = folder.join(format!("{name}.glb"));
+                crate::gltf::write(house, &path).map(|losses| (path, losses))
+            },
+            finish: |_| Ok(()),
+        },
+    ]
+}
+
+/// The form of a name.
+///
+/// # Errors
+/// [`HousesError::UnknownForm`] lists what there is.
+pub fn writer(name: &str) -> Result<&'static Writer, HousesError> {
+    writers()
+        .iter()
+        .find(|writer| writer.name == name)
+        .ok_or_else(|| HousesError::UnknownForm {
+            name: name.to_owned(),
+            known: writers().iter().map(|writer| writer.name).collect(),
+        })
+}

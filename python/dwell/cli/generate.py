@@ -1,0 +1,204 @@
+"""``dwell generate``: houses in bulk."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import json
+import os
+import re
+import sys
+import time
+from collections import Counter, deque
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+from dwell.cli.common import Bar, atomic, count, print_json, read_json
+from dwell.cli.journal import Journal
+
+#: What is the same for the whole folder; it stands there from the beginning.
+_DATASET = "dataset.json"
+_FORMS = ("dwell", "suncg", "glb")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
+    parser.add_argument("--seed", type=count, default=0, help="the first seed (default 0)")
+    parser.add_argument("--count", type=count, required=True, help="how many houses")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--format", choices=_FORMS, default="dwell")
+    parser.add_argument(
+        "--split",
+        choices=("train", "val", "test", "all"),
+        default="all",
+        help="only seeds of this split: of ten, the ninth is val, the tenth test; each has the "
+        "looks of its own split",
+    )
+    parser.add_argument(
+        "--spec",
+        action="append",
+        default=[],
+        metavar="FIELD=VALUE",
+        help="what shall not be drawn, as in seed:N?FIELD=VALUE; several times",
+    )
+    parser.add_argument(
+        "--shard", type=_shard, default=(0, 1), metavar="K/N", help="the K-th of N parts, from 0"
+    )
+    parser.add_argument("--workers", type=count, help="threads (default: as many as processors)")
+    parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Makes and writes the houses; a run that was stopped goes on where it stopped.
+
+    Returns:
+        1 when a house could not be made; its row in the manifest says why.
+    """
+    dataset = {
+        "command": "generate",
+        "seed": args.seed,
+        "count": args.count,
+        "format": args.format,
+        "split": args.split,
+        "spec": [_field(field) for field in args.spec],
+    }
+    _claim(args.out, dataset)
+    shard, shards = args.shard
+    seeds = list(itertools.islice(_seeds(args.seed, args.split), args.count))[shard::shards]
+    name = "manifest" if shards == 1 else f"manifest-{shard:05}-of-{shards:05}"
+    manifest = args.out / f"{name}.jsonl"
+    start, made = time.perf_counter(), 0
+    if not manifest.exists():
+        made = _make(args, seeds, manifest, {**dataset, "shard": [shard, shards]})
+    seconds = time.perf_counter() - start
+    rows = [json.loads(line) for line in manifest.read_text("utf-8").splitlines()]
+    failed = [row for row in rows if "error" in row]
+    summary = {
+        "houses": len(rows) - len(failed),
+        "failed": len(failed),
+        "made_now": made,
+        "houses_per_s": made / seconds if made else None,
+        "manifest": str(manifest),
+    }
+    if args.json:
+        print_json(summary)
+    else:
+        rate = f", {summary['houses_per_s']:.1f} a second" if made else ""
+        print(f"{summary['houses']} houses ({made} made now{rate}); {manifest}")
+    for row in failed[:10]:
+        print(f"dwell generate: {row['house']}: {row['error']}", file=sys.stderr)
+    return 1 if failed else 0
+
+
+def _make(args: argparse.Namespace, seeds: list[int], manifest: Path, job: dict[str, Any]) -> int:
+    """Makes what is not there yet; returns how many."""
+    from dwell.house import House
+
+    journal = Journal(manifest, job)
+    done = {int(seed) for seed in journal.done}
+    wanted = [seed for seed in seeds if seed not in done]
+    workers = args.workers or os.cpu_count() or 1
+    bar = Bar()
+    pool = ThreadPoolExecutor(workers)
+    # A few houses ahead, in order: the manifest is the same for any number of workers.
+    ahead: deque[tuple[int, Future[dict[str, Any]]]] = deque()
+    left = iter(wanted)
+    try:
+        while True:
+            for seed in itertools.islice(left, 2 * workers - len(ahead)):
+                ahead.append((seed, pool.submit(_house, args, seed)))
+            if not ahead:
+                break
+            seed, future = ahead.popleft()
+            journal.add(str(seed), [future.result()])
+            bar(len(journal.done) / len(seeds), f"seed {seed}")
+    except BaseException:
+        journal.close()
+        kept = f"{len(journal.done)} of {len(seeds)} are kept; run again"
+        print(f"dwell generate: {kept}", file=sys.stderr)
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+    House.finish_folder(args.out, args.format)
+    journal.finish()
+    return len(wanted)
+
+
+def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
+    """Makes and writes one house; returns its row of the manifest."""
+    from dwell import HouseError
+    from dwell.house import House, split_of_seed
+
+    split = split_of_seed(seed)
+    fields = [f"split={split}", *args.spec]
+    name = f"seed:{seed}?{'&'.join(fields)}"
+    try:
+        house = House.open(name)
+        path, _ = house.write_into(args.out, f"seed_{seed}", args.format)
+    except HouseError as error:
+        return {"seed": seed, "split": split, "house": name, "error": str(error)}
+    return {
+        "seed": seed,
+        "split": split,
+        "house": name,
+        "path": Path(path).relative_to(args.out).as_posix(),
+        **_statistics(house.info()),
+    }
+
+
+def _statistics(info: dict[str, Any]) -> dict[str, Any]:
+    """What the manifest says of a house."""
+    rooms = info["rooms"]
+    kinds = Counter(kind for room in rooms for kind in room["kinds"][:1])
+    given_up = [row["sentence"] for row in info["report"].get("warnings", [])]
+    return {
+        "hash": info["fingerprint"],
+        "storeys": info["levels"],
+        "rooms": dict(sorted(kinds.items())),
+        "area_m2": round(sum(room["area_m2"] for room in rooms), 2),
+        "objects": info["objects"],
+        "categories": info["categories"],
+        "triangles": info["triangles"],
+        "given_up": given_up,
+    }
+
+
+def _seeds(first: int, split: str) -> Iterator[int]:
+    """Seeds of a split, from ``first`` upwards."""
+    from dwell.house import split_of_seed
+
+    return (seed for seed in itertools.count(first) if split in ("all", split_of_seed(seed)))
+
+
+def _claim(out: Path, dataset: dict[str, Any]) -> None:
+    """Says what the folder holds; another job's folder is refused."""
+    path = out / _DATASET
+    if path.exists():
+        found = read_json(path)
+        other = [key for key in dataset if found.get(key) != dataset[key]]
+        if other:
+            said = ", ".join(f"{key} {found.get(key)!r}" for key in other)
+            raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
+        return
+    if out.exists() and any(out.iterdir()):
+        raise ValueError(f"{out} holds something else; expected an empty or a new folder")
+    with atomic(path) as draft:
+        draft.write_text(json.dumps(dataset, indent=2) + "\n", "utf-8")
+
+
+def _field(text: str) -> str:
+    """A field of the spec as it stands in a HOUSE string."""
+    if not re.fullmatch(r"[a-z0-9_]+=[^&]*", text):
+        raise ValueError(f"--spec: expected FIELD=VALUE, found {text!r}")
+    return text
+
+
+def _shard(text: str) -> tuple[int, int]:
+    """Reads ``K/N``."""
+    match = re.fullmatch(r"([0-9]{1,5})/([0-9]{1,5})", text)
+    shard, shards = map(int, match.groups()) if match else (0, 0)
+    if not shard < shards:
+        raise argparse.ArgumentTypeError(f"expected K/N with K below N, found {text!r}")
+    return shard, shards
