@@ -50,7 +50,7 @@ fn seen(house: &House, material: &Material) -> Look {
     };
     let texture = material
         .texture
-        .map(|id| (house.textures[id].width, image(&house.textures[id].rgba)));
+        .map(|id| (house.textures[id].width, image(house.textures[id].rgba())));
     let color = material
         .base_color
         .map(|c| (units::srgb_from_linear(c) * 255.0).round() as u8);

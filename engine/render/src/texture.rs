@@ -1,6 +1,7 @@
 //! Textures as cameras sample them: sRGB bytes with alpha, smaller and smaller copies, bilinear.
 
 use crate::color::Srgb;
+use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Id, Texture, TextureId};
 use glam::{Vec2, Vec4};
 
@@ -42,7 +43,10 @@ impl Textures {
             levels: Vec::new(),
             images: Vec::new(),
         };
-        for texture in &house.textures {
+        // What is not painted yet is painted now, on all threads.
+        let painted: Vec<&Texture> = house.textures.iter().map(|texture| &**texture).collect();
+        Threads::default().map(painted.len(), |k| painted[k].rgba().len());
+        for texture in painted {
             all.add(texture);
         }
         all
@@ -50,7 +54,7 @@ impl Textures {
 
     fn add(&mut self, texture: &Texture) {
         let first_level = self.levels.len() as u32;
-        let texels: Vec<[u8; 4]> = texture.rgba.as_chunks::<4>().0.to_vec();
+        let texels: Vec<[u8; 4]> = texture.rgba().as_chunks::<4>().0.to_vec();
         let first = texels.first().copied().unwrap_or([255; 4]);
         let uniform = texels.iter().all(|texel| *texel == first).then_some(first);
         let clear = texels.iter().any(|texel| texel[3] < 255);
@@ -244,12 +248,7 @@ mod tests {
             levels: Vec::new(),
             images: Vec::new(),
         };
-        all.add(&Texture {
-            name: "t".into(),
-            width,
-            height,
-            rgba,
-        });
+        all.add(&Texture::new("t".into(), width, height, rgba));
         all
     }
 
@@ -283,14 +282,9 @@ mod tests {
         let rgba: Vec<u8> = (0..35_u32)
             .flat_map(|k| [(k * 7) as u8, 255 - (k * 5) as u8, 40, 255])
             .collect();
-        let texture = Texture {
-            name: "t".into(),
-            width: 7,
-            height: 5,
-            rgba,
-        };
+        let texture = Texture::new("t".into(), 7, 5, rgba);
         let mean = texture.mean_linear();
-        let all = single(7, 5, texture.rgba);
+        let all = single(7, 5, texture.rgba().to_vec());
         let found = bytes(&all, Vec2::new(0.3, 0.9), 1e9);
         let expected = Srgb::tables().encode3(mean);
         for k in 0..3 {

@@ -24,12 +24,8 @@ fn furnished() -> World {
     let rgba: Vec<u8> = (0..40 * 30)
         .flat_map(|_| (stream.bits() as u32 | 0xff00_0000).to_le_bytes())
         .collect();
-    let image = builder.data.textures.push(Arc::new(Texture {
-        name: "noise".into(),
-        width: 40,
-        height: 30,
-        rgba,
-    }));
+    let noise = Texture::new("noise".into(), 40, 30, rgba);
+    let image = builder.data.textures.push(Arc::new(noise));
     for k in 0..12 {
         let size = Vec3::new(
             stream.range(0.1, 0.8),

@@ -20,12 +20,8 @@ fn texture(
     height: u32,
     rgba: Vec<u8>,
 ) -> dwell_scene::TextureId {
-    builder.data.textures.push(Arc::new(Texture {
-        name: "t".into(),
-        width,
-        height,
-        rgba,
-    }))
+    let texture = Texture::new("t".into(), width, height, rgba);
+    builder.data.textures.push(Arc::new(texture))
 }
 
 fn wall(builder: &mut Builder, name: &str, material: Material, z: f32) {

@@ -142,8 +142,8 @@ fn textures_lie_where_the_scene_says() {
                         ((place.y - 0.5).floor() as i64 + dy).rem_euclid(i64::from(texture.height));
                     let first = (y as usize * texture.width as usize + x as usize) * 4;
                     for c in 0..3 {
-                        low[c] = low[c].min(texture.rgba[first + c]);
-                        high[c] = high[c].max(texture.rgba[first + c]);
+                        low[c] = low[c].min(texture.rgba()[first + c]);
+                        high[c] = high[c].max(texture.rgba()[first + c]);
                     }
                 }
                 compared += 1;

@@ -2,9 +2,17 @@
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
+/// Makes the pixels of a texture.
+type Painter = Arc<dyn Fn() -> Vec<u8> + Send + Sync>;
 
 /// An image that materials show, sRGB-encoded with straight alpha.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+///
+/// Its pixels are there from the start, or painted when someone first asks for them.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(from = "Stored", into = "Stored")]
 pub struct Texture {
     /// The name in the source, without folder and ending.
     pub name: String,
@@ -12,28 +20,121 @@ pub struct Texture {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Rows from the top, four bytes a pixel (R, G, B, A). Shape (height, width, 4).
-    pub rgba: Vec<u8>,
+    pixels: OnceLock<Vec<u8>>,
+    painter: Option<Painter>,
+}
+
+/// A texture as data.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "Texture")]
+struct Stored {
+    name: String,
+    width: u32,
+    height: u32,
+    rgba: Vec<u8>,
+}
+
+impl From<Stored> for Texture {
+    fn from(stored: Stored) -> Self {
+        Self::new(stored.name, stored.width, stored.height, stored.rgba)
+    }
+}
+
+impl From<Texture> for Stored {
+    fn from(texture: Texture) -> Self {
+        Self {
+            rgba: texture.rgba().to_vec(),
+            name: texture.name,
+            width: texture.width,
+            height: texture.height,
+        }
+    }
+}
+
+impl PartialEq for Texture {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.name, self.width, self.height) == (&other.name, other.width, other.height)
+            && self.rgba() == other.rgba()
+    }
+}
+
+impl Eq for Texture {}
+
+impl fmt::Debug for Texture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Texture")
+            .field("name", &self.name)
+            .field("width", &self.width)
+            .field("height", &self.height)
+            .field("painted", &self.is_painted())
+            .finish()
+    }
 }
 
 impl Texture {
+    /// A texture of these pixels: rows from the top, four bytes a pixel (R, G, B, A). Shape (height, width, 4).
+    pub fn new(name: String, width: u32, height: u32, rgba: Vec<u8>) -> Self {
+        Self {
+            name,
+            width,
+            height,
+            pixels: OnceLock::from(rgba),
+            painter: None,
+        }
+    }
+
+    /// A texture whose pixels `painter` makes when they are first asked for; it must always make the same. What it makes
+    /// too little is transparent black, what it makes too much is left out.
+    pub fn painted_later(
+        name: String,
+        width: u32,
+        height: u32,
+        painter: impl Fn() -> Vec<u8> + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            name,
+            width,
+            height,
+            pixels: OnceLock::new(),
+            painter: Some(Arc::new(painter)),
+        }
+    }
+
+    /// Rows from the top, four bytes a pixel (R, G, B, A). Shape (height, width, 4).
+    pub fn rgba(&self) -> &[u8] {
+        self.pixels.get_or_init(|| {
+            let mut rgba = self.painter.as_ref().map_or_else(Vec::new, |paint| paint());
+            rgba.resize(self.size_bytes(), 0);
+            rgba
+        })
+    }
+
+    /// Whether the pixels are in memory.
+    pub fn is_painted(&self) -> bool {
+        self.pixels.get().is_some()
+    }
+
+    fn size_bytes(&self) -> usize {
+        self.width as usize * self.height as usize * 4
+    }
+
     /// Checks that the size fits the data and is at most 16,384 a side.
     ///
     /// # Errors
     /// [`SceneError::Texture`] with what was found.
     pub fn check(&self, at: &str) -> Result<(), SceneError> {
-        let expected = self.width as usize * self.height as usize * 4;
+        let expected = self.size_bytes();
+        // What is painted later has the right size.
+        let found = self.pixels.get().map_or(expected, Vec::len);
         if self.width == 0
             || self.height == 0
             || self.width > 16_384
             || self.height > 16_384
-            || self.rgba.len() != expected
+            || found != expected
         {
             let what = format!(
-                "{} by {} pixels with {} bytes",
-                self.width,
-                self.height,
-                self.rgba.len()
+                "{} by {} pixels with {found} bytes",
+                self.width, self.height,
             );
             return Err(SceneError::Texture {
                 at: at.to_owned(),
@@ -46,12 +147,12 @@ impl Texture {
     /// The plain mean of all pixels' sRGB-encoded values, each 0 to 255. Shape (3,).
     pub fn mean_srgb(&self) -> [f64; 3] {
         let mut sum = [0_u64; 3];
-        for pixel in self.rgba.chunks_exact(4) {
+        for pixel in self.rgba().chunks_exact(4) {
             for (total, value) in sum.iter_mut().zip(pixel) {
                 *total += u64::from(*value);
             }
         }
-        let count = (self.rgba.len() / 4).max(1) as f64;
+        let count = (self.rgba().len() / 4).max(1) as f64;
         sum.map(|total| total as f64 / count)
     }
 
@@ -61,12 +162,47 @@ impl Texture {
             .map(|b| f64::from(crate::units::linear_from_srgb(f32::from(b) / 255.0)))
             .collect();
         let (mut sum, mut count) = ([0.0_f64; 3], 0_u64);
-        for pixel in self.rgba.chunks_exact(4).filter(|p| p[3] > 0) {
+        for pixel in self.rgba().chunks_exact(4).filter(|p| p[3] > 0) {
             for (total, value) in sum.iter_mut().zip(pixel) {
                 *total += decode[usize::from(*value)];
             }
             count += 1;
         }
         sum.map(|total| (total / count.max(1) as f64) as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    #[test]
+    fn pixels_are_painted_once_and_only_when_asked_for() {
+        let painted = Arc::new(AtomicUsize::new(0));
+        let count = painted.clone();
+        let later = Texture::painted_later("later".to_owned(), 2, 1, move || {
+            count.fetch_add(1, Ordering::SeqCst);
+            vec![9; 8]
+        });
+        later.check("later").unwrap();
+        assert!(!later.is_painted() && painted.load(Ordering::SeqCst) == 0);
+        assert_eq!(later.rgba(), [9; 8]);
+        assert_eq!(later.mean_srgb(), [9.0; 3]);
+        assert_eq!(painted.load(Ordering::SeqCst), 1);
+        assert_eq!(later, Texture::new("later".to_owned(), 2, 1, vec![9; 8]));
+    }
+
+    #[test]
+    fn a_painter_of_another_size_is_cut_or_filled_up() {
+        let short = Texture::painted_later("short".to_owned(), 2, 1, || vec![9; 5]);
+        assert_eq!(short.rgba(), [9, 9, 9, 9, 9, 0, 0, 0]);
+        let long = Texture::painted_later("long".to_owned(), 1, 1, || vec![9; 5]);
+        assert_eq!(long.rgba(), [9; 4]);
+        assert!(
+            Texture::new("bad".to_owned(), 1, 1, vec![9; 5])
+                .check("bad")
+                .is_err()
+        );
     }
 }

@@ -13,7 +13,6 @@ mod tiles;
 
 use canvas::Canvas;
 use dwell_scene::Texture;
-use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use noise::Noise;
 use std::collections::BTreeMap;
@@ -101,8 +100,8 @@ fn recipes() -> &'static [Recipe] {
 }
 
 impl Pattern {
-    /// The image; mid-grey for a recipe that does not exist.
-    pub fn paint(&self) -> Texture {
+    /// The pixels of the image.
+    fn paint(&self) -> Vec<u8> {
         let key = Key::root(self.seed).child("texture").child(self.recipe);
         let colors = self.colors.map(|color| color.map(|c| f32::from(c) / 255.0));
         let paint = Paint {
@@ -110,40 +109,38 @@ impl Pattern {
             noise: Noise::new(key.child("noise")),
             key,
         };
-        let recipe = recipes().iter().find(|recipe| recipe.name == self.recipe);
+        let recipe = self.recipe();
         let [width, height] = recipe.map_or([1, 1], |recipe| recipe.size_px);
         let mut canvas = Canvas::new(width, height);
         if let Some(recipe) = recipe {
             (recipe.draw)(&mut canvas, &paint);
         }
-        Texture {
-            name: self.recipe.to_owned(),
-            width,
-            height,
-            rgba: canvas.into_rgba(),
-        }
+        canvas.into_rgba()
+    }
+
+    /// The image as a texture that is painted when someone first looks at it; mid-grey for a recipe that does not exist.
+    pub fn texture(self) -> Texture {
+        let [width, height] = self.recipe().map_or([1, 1], |recipe| recipe.size_px);
+        Texture::painted_later(self.recipe.to_owned(), width, height, move || self.paint())
+    }
+
+    fn recipe(&self) -> Option<&'static Recipe> {
+        recipes().iter().find(|recipe| recipe.name == self.recipe)
     }
 }
 
-/// The images of patterns, in their order. Each is painted once in a process and then shared by all houses.
-pub fn painted(patterns: &[Pattern]) -> Vec<Arc<Texture>> {
-    static PAINTED: Mutex<BTreeMap<Pattern, Arc<Texture>>> = Mutex::new(BTreeMap::new());
-    let lock = || PAINTED.lock().unwrap_or_else(PoisonError::into_inner);
-    let known: Vec<Option<Arc<Texture>>> = {
-        let painted = lock();
-        patterns.iter().map(|p| painted.get(p).cloned()).collect()
+/// The images of patterns, in their order. Each exists once in a process, shared by all houses, and is painted when someone
+/// first looks at it.
+pub fn textures(patterns: &[Pattern]) -> Vec<Arc<Texture>> {
+    static KNOWN: Mutex<BTreeMap<Pattern, Arc<Texture>>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let texture = |pattern: &Pattern| {
+        let texture = known.entry(*pattern);
+        texture
+            .or_insert_with(|| Arc::new(pattern.texture()))
+            .clone()
     };
-    let new: Vec<&Pattern> = patterns
-        .iter()
-        .zip(&known)
-        .filter_map(|(pattern, known)| known.is_none().then_some(pattern))
-        .collect();
-    let images = Threads::default().map(new.len(), |k| Arc::new(new[k].paint()));
-    let mut painted = lock();
-    for (pattern, image) in new.into_iter().zip(images) {
-        painted.entry(*pattern).or_insert(image);
-    }
-    patterns.iter().map(|p| painted[p].clone()).collect()
+    patterns.iter().map(texture).collect()
 }
 
 #[cfg(test)]
@@ -161,17 +158,17 @@ mod tests {
     #[test]
     fn every_recipe_gives_the_same_bytes_twice_and_is_no_plain_colour() {
         for recipe in recipes() {
-            let texture = pattern(recipe.name).paint();
+            let texture = pattern(recipe.name).texture();
             texture.check(recipe.name).unwrap();
-            assert_eq!(texture, pattern(recipe.name).paint(), "{}", recipe.name);
-            let first = &texture.rgba[..4];
+            assert_eq!(texture, pattern(recipe.name).texture(), "{}", recipe.name);
+            let first = &texture.rgba()[..4];
             assert!(
-                texture.rgba.chunks_exact(4).any(|pixel| pixel != first),
+                texture.rgba().chunks_exact(4).any(|pixel| pixel != first),
                 "{}",
                 recipe.name
             );
             assert!(
-                texture.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255),
+                texture.rgba().chunks_exact(4).all(|pixel| pixel[3] == 255),
                 "{}",
                 recipe.name
             );
@@ -202,10 +199,10 @@ mod tests {
             "pinstripe",
             "grille",
         ] {
-            let texture = pattern(name).paint();
+            let texture = pattern(name).texture();
             let (width, height) = (texture.width as usize, texture.height as usize);
             let at = |x: usize, y: usize| {
-                f64::from(texture.rgba[((y % height) * width + x % width) * 4 + 1])
+                f64::from(texture.rgba()[((y % height) * width + x % width) * 4 + 1])
             };
             let step_x = |x: usize| {
                 (0..height)

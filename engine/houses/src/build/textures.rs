@@ -44,12 +44,12 @@ pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
             "{width} by {height} pixels; allowed are 1 to {MAX_IMAGE_PIXELS} in all"
         ));
     }
-    Ok(Texture {
-        name: name.to_owned(),
+    Ok(Texture::new(
+        name.to_owned(),
         width,
         height,
-        rgba: image.into_raw(),
-    })
+        image.into_raw(),
+    ))
 }
 
 /// Reads and decodes images of `root`; those that do not exist or cannot be read are reported and absent.
@@ -105,7 +105,7 @@ pub(crate) fn encode_png(texture: &Texture) -> Result<Vec<u8>, String> {
         PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive);
     encoder
         .write_image(
-            &texture.rgba,
+            texture.rgba(),
             texture.width,
             texture.height,
             image::ExtendedColorType::Rgba8,

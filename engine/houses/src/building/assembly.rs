@@ -3,7 +3,7 @@
 use crate::build::{Names, category};
 use dwell_furniture::finish::Finish;
 use dwell_furniture::model::Model;
-use dwell_furniture::textures::{Pattern, painted};
+use dwell_furniture::textures::{Pattern, textures};
 use dwell_scene::{
     Aabb, Articulation, Category, HouseData, Id, JointKind, Level, LevelId, Light, MaterialId,
     Mesh, MeshId, Object, ObjectId, Part, PartId, Pose, Receptacle, RoomId, SoundEmitter,
@@ -250,9 +250,9 @@ impl Assembly {
             }));
     }
 
-    /// The finished tables: textures painted, bounds taken.
+    /// The finished tables: textures and bounds taken.
     pub(crate) fn finish(mut self) -> HouseData {
-        for texture in painted(&self.patterns) {
+        for texture in textures(&self.patterns) {
             self.data.textures.push(texture);
         }
         let mut bounds = vec![Aabb::EMPTY; self.data.levels.len()];

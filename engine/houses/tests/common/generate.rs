@@ -152,12 +152,8 @@ fn mesh(n: &mut Numbers<'_>, slots: usize) -> Mesh {
 
 fn texture(n: &mut Numbers<'_>, k: usize) -> Texture {
     let (width, height) = (1 + n.below(5) as u32, 1 + n.below(5) as u32);
-    Texture {
-        name: n.name(k),
-        width,
-        height,
-        rgba: (0..width * height * 4).map(|_| n.bits() as u8).collect(),
-    }
+    let rgba = (0..width * height * 4).map(|_| n.bits() as u8).collect();
+    Texture::new(n.name(k), width, height, rgba)
 }
 
 fn material(n: &mut Numbers<'_>, k: usize, textures: usize) -> Material {

@@ -286,7 +286,7 @@ fn fact_17_textures() {
     }
     let white = &real.files.textures["texture/wallp_0.jpg"];
     assert_eq!((white.width, white.height), (16, 16));
-    assert!(white.rgba.iter().all(|value| *value == 255));
+    assert!(white.rgba().iter().all(|value| *value == 255));
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn overrides_count_positions_in_the_material_file() {
         (Some("wood_3"), [163; 3])
     );
     assert_eq!(
-        &traps().0.textures[second.texture.unwrap()].rgba[..3],
+        &traps().0.textures[second.texture.unwrap()].rgba()[..3],
         [10, 20, 30]
     );
     // Neither: the model's own, half transparent.
