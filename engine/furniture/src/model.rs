@@ -492,7 +492,10 @@ impl Part {
             .fold(self, |part, solid| part.with(finish, solid))
     }
 
-    fn finish(self) -> ModelPart {
+    fn finish(mut self) -> ModelPart {
+        // Models stay for as long as the process.
+        self.mesh.shrink_to_fit();
+        self.colliders.shrink_to_fit();
         let mass_kg = self.mass_kg.max(1e-3);
         let density_kg_m3 = (mass_kg / self.collider_volume_m3.max(1e-6)).clamp(1.0, 20_000.0);
         ModelPart {

@@ -11,6 +11,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Looks of one entry in one style: sizes and colours drawn anew.
 pub const VARIANTS: u64 = 3;
+/// What reaches higher is as high as a person, m.
+const HIGH_M: f32 = 1.4;
 /// Positions of a joint at which its part is looked at.
 const STATIONS: usize = 6;
 /// Long pieces are cut into shorter ones before they turn, so that the boxes around them stay tight, m.
@@ -27,14 +29,17 @@ pub struct Stock {
     pub boxes: Vec<Aabb>,
     /// Where its doors and drawers pass, model space.
     pub swings: Vec<Aabb>,
+    /// Where the leaves of those of its doors stand, wide open, that are as high as a person, model space.
+    pub open_leaves: Vec<Aabb>,
     /// Around everything that is felt, model space.
     pub felt: Aabb,
 }
 
 impl Stock {
     /// A model that is not in the catalogue.
-    pub fn new(kind: &'static str, model: Model) -> Self {
-        let (mut boxes, mut swings) = (Vec::new(), Vec::new());
+    pub fn new(kind: &'static str, model: impl Into<Arc<Model>>) -> Self {
+        let model = model.into();
+        let (mut boxes, mut swings, mut open_leaves) = (Vec::new(), Vec::new(), Vec::new());
         for (k, part) in model.parts.iter().enumerate() {
             let pose = model.model_from_part(k);
             boxes.extend(around(&part.colliders, &pose));
@@ -55,6 +60,10 @@ impl Stock {
                     let all = around(colliders, &pose);
                     swept = all.iter().fold(swept, |all, one| all.union(one));
                 } else {
+                    if station == STATIONS {
+                        let open = around(colliders, &pose).into_iter();
+                        open_leaves.extend(open.filter(|leaf| leaf.max.y > HIGH_M));
+                    }
                     let cut = colliders.iter().flat_map(cut);
                     swings.extend(cut.map(|piece| piece.transformed(&pose.to_affine())));
                 }
@@ -63,13 +72,17 @@ impl Stock {
                 swings.push(swept);
             }
         }
+        // Thousands of these stay for as long as the process.
+        boxes.shrink_to_fit();
+        swings.shrink_to_fit();
         let felt = boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
         Self {
             kind,
+            model,
             boxes,
             swings,
+            open_leaves,
             felt,
-            model: Arc::new(model),
         }
     }
 }
@@ -109,6 +122,18 @@ fn cut(collider: &Collider) -> Vec<Aabb> {
         }
     };
     (0..count as usize).map(piece).collect()
+}
+
+/// What is made to measure: equal settings are built once in a process and shared by all houses. `settings` names the thing and
+/// says all that `build` depends on.
+pub fn made_to_measure(settings: String, build: impl FnOnce() -> Model) -> Arc<Model> {
+    static SHELF: Mutex<BTreeMap<String, Arc<Model>>> = Mutex::new(BTreeMap::new());
+    let lock = || SHELF.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = lock().get(&settings) {
+        return known.clone();
+    }
+    let made = Arc::new(build());
+    lock().entry(settings).or_insert(made).clone()
 }
 
 /// One of the entries of a kind that suit a style, in one of its variants; `None` when there is no such kind.

@@ -21,6 +21,15 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Gives back memory that was set aside for more.
+    pub fn shrink_to_fit(&mut self) {
+        self.positions.shrink_to_fit();
+        self.normals.shrink_to_fit();
+        self.uvs.shrink_to_fit();
+        self.triangles.shrink_to_fit();
+        self.slots.shrink_to_fit();
+    }
+
     /// Checks lengths, index ranges and finiteness.
     ///
     /// # Errors

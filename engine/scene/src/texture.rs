@@ -67,7 +67,7 @@ impl fmt::Debug for Texture {
             .field("width", &self.width)
             .field("height", &self.height)
             .field("painted", &self.is_painted())
-            .finish()
+            .finish_non_exhaustive()
     }
 }
 

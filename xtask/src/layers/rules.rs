@@ -41,6 +41,7 @@ const ALL: &[&str] = &[
     "dwell",
     "dwell-acoustics",
     "dwell-calibration",
+    "dwell-furniture",
     "dwell-houses",
     "dwell-physics",
     "dwell-render",

@@ -10,6 +10,7 @@ use dwell_scene::{
     Structure, StructureKind, TextureId,
 };
 use glam::Affine3A;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Colour of lamps, linear: about 3,000 K.
@@ -46,6 +47,8 @@ pub(crate) struct Assembly {
     pub(crate) level: LevelId,
     patterns: Vec<Pattern>,
     finishes: Vec<(Finish, MaterialId)>,
+    /// By the address of their models, which they keep alive.
+    kinds: BTreeMap<usize, Kind>,
     material_names: Names,
     object_names: Names,
 }
@@ -88,9 +91,13 @@ impl Assembly {
         id
     }
 
-    /// Makes a model known.
+    /// Makes a model known; a shared model is one kind.
     pub(crate) fn kind(&mut self, model: impl Into<Arc<Model>>) -> Kind {
         let model = model.into();
+        let address = Arc::as_ptr(&model) as usize;
+        if let Some(known) = self.kinds.get(&address) {
+            return known.clone();
+        }
         let meshes = model
             .parts
             .iter()
@@ -106,11 +113,13 @@ impl Assembly {
                     .collect()
             })
             .collect();
-        Kind {
+        let kind = Kind {
             model,
             meshes,
             materials,
-        }
+        };
+        self.kinds.insert(address, kind.clone());
+        kind
     }
 
     /// A piece of the building, its mesh in world space.
@@ -119,9 +128,10 @@ impl Assembly {
         name: &str,
         kind: StructureKind,
         room: Option<RoomId>,
-        mesh: Mesh,
+        mut mesh: Mesh,
         finishes: &[Finish],
     ) {
+        mesh.shrink_to_fit();
         let materials = finishes
             .iter()
             .map(|finish| self.material(finish))

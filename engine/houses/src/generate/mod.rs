@@ -31,12 +31,12 @@ use dwell_furniture::style::{STYLES, Style};
 use dwell_scene::House;
 use dwell_scene::random::Key;
 use openings::Hole;
-use plan::FloorPlan;
+use plan::{Cells, FloorPlan};
 use programme::Programme;
 use serde::Serialize;
 
 /// The version of the generator: another one may make other houses of the same seed.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// A generated house.
 #[derive(Debug)]
@@ -69,22 +69,42 @@ pub fn generate(seed: u64, spec: &HouseSpec) -> Result<Generated, HousesError> {
     spec.check()?;
     let key = Key::root(seed).child("house");
     let style = style(spec, key.child("style"));
-    let mut last = None;
+    let mut best: Option<Paper> = None;
     // Where a room cannot be reached whatever is left out, another plan is drawn.
     for round in 0..HOUSES {
-        let made = furnished_house(seed, spec, style, key.child("house").child(round))?;
-        let done = made.unreached.is_empty();
-        last = Some(made);
-        if done {
+        let paper = furnished_paper(spec, style, key.child("house").child(round))?;
+        let lost = |paper: &Paper| paper.unreached.len();
+        if best.as_ref().is_none_or(|best| lost(&paper) < lost(best)) {
+            best = Some(paper);
+        }
+        if best.as_ref().is_some_and(|best| lost(best) == 0) {
             break;
         }
     }
-    let made = last.ok_or_else(|| no_plan(spec, None))?;
-    let mut given_up = made.given_up;
-    given_up.extend(made.unreached.iter().map(|room| format!("a way to {room}")));
-    let house = made.house;
+    let paper = best.ok_or_else(|| no_plan(spec, None))?;
+    let Paper {
+        draft, furnished, ..
+    } = &paper;
+    let mut assembly = Assembly::new(&format!("seed_{seed}"), &format!("generate@{VERSION}"));
+    let builder = shell::Builder {
+        plan: &draft.plan,
+        holes: &draft.holes,
+        style,
+        doors: spec.doors,
+        key: paper.key.child("shell"),
+    };
+    let shell = builder.build(&mut assembly);
+    shell.furnish(furnished, &mut assembly);
+    let at = At::file(format!("seed:{seed}"));
+    let house = House::new(assembly.finish()).map_err(HousesError::scene(&at))?;
+    let mut given_up = draft.given_up();
+    given_up.extend(furnish::missing(furnished));
+    given_up.extend(paper.unreached.iter().map(|(level, room)| {
+        let id = shell.rooms[*level][*room];
+        format!("a way to {}", house.rooms[id].name)
+    }));
     let report = GenerateReport {
-        home: made.home,
+        home: draft.programme.home,
         style: style.name.to_owned(),
         given_up,
     };
@@ -94,80 +114,52 @@ pub fn generate(seed: u64, spec: &HouseSpec) -> Result<Generated, HousesError> {
 /// Houses that are drawn at most until every room is reached.
 const HOUSES: u64 = 4;
 
-/// A house and what became of the wishes for it.
-struct Made {
-    home: HomeKind,
-    house: House,
-    given_up: Vec<String>,
+/// A furnished house on paper.
+struct Paper {
+    key: Key,
+    draft: Draft,
+    furnished: Vec<Vec<furnish::Furnished>>,
     /// Rooms that nobody can enter.
-    unreached: Vec<String>,
+    unreached: Vec<reach::RoomAt>,
 }
 
-fn furnished_house(
-    seed: u64,
-    spec: &HouseSpec,
-    style: &Style,
-    key: Key,
-) -> Result<Made, HousesError> {
-    let mut given_up = Vec::new();
-    let Draft {
-        programme,
-        plan,
-        holes,
-        ..
-    } = draft(spec, key, &mut given_up)?;
-    for [a, b] in &plan.unmet {
-        let [a, b] = [a, b].map(|kind| kind.traits().words[0]);
-        given_up.push(format!("no door between {a} and {b}"));
-    }
-    if programme.outside.is_some() && !has_outside(&plan) {
-        given_up.push("no place for a balcony or terrace".to_owned());
-    }
-    let mut built = None;
-    // Where someone cannot reach a room for furniture, the house is furnished again with less.
-    for (round, share) in DENSITIES.into_iter().enumerate() {
-        let spec = HouseSpec {
-            furniture_density: spec.furniture_density * share,
-            ..spec.clone()
-        };
-        let furnisher = furnish::Furnisher {
-            plan: &plan,
-            holes: &holes,
-            style,
-            spec: &spec,
-            key: key.child("furnish").child(round as u64),
-        };
-        let furnished = furnisher.furnish();
-        let mut assembly = Assembly::new(&format!("seed_{seed}"), &format!("generate@{VERSION}"));
-        let builder = shell::Builder {
-            plan: &plan,
-            holes: &holes,
-            style,
-            doors: spec.doors,
-            key: key.child("shell"),
-        };
-        let shell = builder.build(&mut assembly);
-        shell.furnish(&furnished, &mut assembly);
-        let at = At::file(format!("seed:{seed}"));
-        let house = House::new(assembly.finish()).map_err(HousesError::scene(&at))?;
-        // Where all paths are wide and all ways are doors, everything is reached.
-        let unreached = if furnish::is_narrow(&furnished) || has_opening(&plan) {
-            reach::unreached(&house).map_err(HousesError::scene(&at))?
-        } else {
-            Vec::new()
-        };
-        let done = unreached.is_empty();
-        built = Some((house, furnish::missing(&furnished), unreached));
-        if done {
+/// Furnishes a plan. Rooms that cannot be reached for furniture, and those beside them, are furnished again with less.
+fn furnished_paper(spec: &HouseSpec, style: &Style, key: Key) -> Result<Paper, HousesError> {
+    let draft = draft(spec, key)?;
+    let furnish_key = key.child("furnish");
+    let furnisher = furnish::Furnisher {
+        plan: &draft.plan,
+        holes: &draft.holes,
+        style,
+        spec,
+        key: furnish_key.child(0_u64),
+    };
+    let mut furnished = furnisher.furnish();
+    let mut unreached = reach::unreached(&draft.plan, &draft.holes, &furnished);
+    for (round, share) in SHARES.into_iter().enumerate() {
+        if unreached.is_empty() {
             break;
         }
+        for (level, storey) in draft.plan.storeys.iter().enumerate() {
+            let cells = Cells::new(&storey.rooms);
+            let lost = |room: usize| unreached.contains(&(level, room));
+            for room in 0..storey.rooms.len() {
+                let beside = storey.links.iter().any(|link| {
+                    link.into == room && link.from.is_some_and(lost)
+                        || link.from == Some(room) && lost(link.into)
+                });
+                if lost(room) || beside {
+                    let key = furnish_key.child(1 + round as u64);
+                    furnished[level][room] = furnisher.room(level, &cells, room, share, key);
+                }
+            }
+        }
+        unreached = reach::unreached(&draft.plan, &draft.holes, &furnished);
     }
-    let (house, missing, unreached) = built.ok_or_else(|| no_plan(spec, Some(&programme)))?;
-    given_up.extend(missing);
-    Ok(Made {
-        home: programme.home,
-        house,
-        given_up,
+    Ok(Paper {
+        key,
+        draft,
+        furnished,
         unreached,
     })
 }
@@ -200,8 +192,8 @@ pub(crate) fn open(house: &str) -> Opened {
     Ok((generated.house, report))
 }
 
-/// Shares of the furniture that a home can do without, one after the other until every room is reached.
-const DENSITIES: [f32; 4] = [1.0, 0.6, 0.3, 0.0];
+/// Shares of the furniture that a room can do without, one after the other until it is reached.
+const SHARES: [f32; 3] = [0.6, 0.3, 0.0];
 
 /// Programmes that are drawn at most until one has a plan.
 const PROGRAMMES: u64 = 8;
@@ -215,8 +207,26 @@ struct Draft {
     tight: usize,
 }
 
+impl Draft {
+    /// What was wanted and could not be had, in sentences.
+    fn given_up(&self) -> Vec<String> {
+        let unmet = self.plan.unmet.iter().map(|pair| {
+            let [a, b] = pair.map(|kind| kind.traits().words[0]);
+            format!("no door between {a} and {b}")
+        });
+        let mut given_up: Vec<String> = unmet.collect();
+        if self.tight > 0 {
+            given_up.push(format!("{} doors stand in the way of others", self.tight));
+        }
+        if self.programme.outside.is_some() && !has_outside(&self.plan) {
+            given_up.push("no place for a balcony or terrace".to_owned());
+        }
+        given_up
+    }
+}
+
 /// The first draft in which no door stands in the way of another, or the best of a few.
-fn draft(spec: &HouseSpec, key: Key, given_up: &mut Vec<String>) -> Result<Draft, HousesError> {
+fn draft(spec: &HouseSpec, key: Key) -> Result<Draft, HousesError> {
     let mut best: Option<Draft> = None;
     let mut last = None;
     for round in 0..PROGRAMMES {
@@ -240,11 +250,7 @@ fn draft(spec: &HouseSpec, key: Key, given_up: &mut Vec<String>) -> Result<Draft
             break;
         }
     }
-    let best = best.ok_or_else(|| no_plan(spec, last.as_ref()))?;
-    if best.tight > 0 {
-        given_up.push(format!("{} doors stand in the way of others", best.tight));
-    }
-    Ok(best)
+    best.ok_or_else(|| no_plan(spec, last.as_ref()))
 }
 
 fn style(spec: &HouseSpec, key: Key) -> &'static Style {
@@ -254,12 +260,6 @@ fn style(spec: &HouseSpec, key: Key) -> &'static Style {
         .filter(|style| spec.style.as_ref().is_none_or(|name| style.name == name))
         .collect();
     fitting[key.stream().below(fitting.len())]
-}
-
-/// Whether rooms open into each other without a door.
-fn has_opening(plan: &FloorPlan) -> bool {
-    let mut links = plan.storeys.iter().flat_map(|storey| &storey.links);
-    links.any(|link| link.kind == plan::LinkKind::Open)
 }
 
 fn has_outside(plan: &FloorPlan) -> bool {

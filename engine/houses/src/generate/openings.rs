@@ -3,7 +3,8 @@
 //! A door stands beside a corner of the room into which it swings, its hinges at that corner, so that the open leaf lies
 //! against the wall. No two leaves meet, and no open leaf stands before another door.
 
-use super::plan::{Area, Cells, FloorPlan, LinkKind, Run, Steps, Storey, metres, steps};
+use super::plan::{Area, Cells, FloorPlan, LinkKind, Run, Stairs, Steps, Storey, metres, steps};
+use super::reach::unreached_when_empty;
 use super::rooms::{RoomKind, Windows};
 use dwell_scene::random::{Key, Stream};
 
@@ -15,6 +16,8 @@ pub(crate) const OUTER_M: f32 = 0.2;
 const DOOR: Steps = 19;
 /// From the middle of the wall at a corner to the opening.
 const CORNER: Steps = 3;
+/// Depth before a door that no open leaf may reach into, from the middle of its wall, m: one passes between the two.
+const PASS_M: f32 = 0.85;
 /// Upper edge of doors, m.
 pub(crate) const DOOR_M: f32 = 2.06;
 /// Upper edge of openings without a leaf, m.
@@ -146,7 +149,8 @@ pub(crate) fn openings(plan: &FloorPlan, key: Key) -> (Vec<Vec<Hole>>, usize) {
         let key = key.child(k as u64);
         let runs = Cells::new(&storey.rooms).runs();
         let stairs = plan.stairs.map(|stairs| stairs.area);
-        let (mut holes, faults) = doors(storey, &runs, stairs, &mut key.child("doors").stream());
+        let (mut holes, faults) =
+            doors(storey, &runs, plan.stairs, &mut key.child("doors").stream());
         tight += faults;
         windows(
             storey,
@@ -167,12 +171,16 @@ const DEALS: usize = 24;
 fn doors(
     storey: &Storey,
     runs: &[Run],
-    stairs: Option<Area>,
+    stairs: Option<Stairs>,
     stream: &mut Stream,
 ) -> (Vec<Hole>, usize) {
     let mut best: Option<(Vec<Hole>, usize)> = None;
     for _ in 0..DEALS {
-        let dealt = deal(storey, runs, stairs, stream);
+        let mut dealt = deal(storey, runs, stairs.map(|stairs| stairs.area), stream);
+        // Where no two doors meet, an open leaf may still shut the way to a room.
+        if dealt.1 == 0 {
+            dealt.1 = unreached_when_empty(storey, &dealt.0, stairs);
+        }
         if best.as_ref().is_none_or(|(_, least)| dealt.1 < *least) {
             best = Some(dealt);
         }
@@ -264,7 +272,7 @@ fn apart(a: &Hole, b: &Hole) -> bool {
         leaf.open_leaf().is_some_and(|leaf| {
             [1.0, -1.0]
                 .iter()
-                .any(|side| overlap(&leaf, &door.front(*side, 0.6, 0.0)))
+                .any(|side| overlap(&leaf, &door.front(*side, PASS_M, 0.0)))
         })
     };
     let beside = |p: f32, q: f32| overlap(&a.front(p, 0.1, 0.1), &b.front(q, 0.1, 0.1));
@@ -350,7 +358,8 @@ fn windows(
         let (wide_m, low_m, high_m, most, each_m) = match traits.windows {
             Windows::Wide => (
                 stream.range(1.4, 2.0),
-                stream.range(0.5, 0.85),
+                // In steps, so that windows of many houses are alike.
+                0.05 * stream.range(10.0, 17.0).round(),
                 2.25,
                 4,
                 3.2,

@@ -8,18 +8,19 @@ use super::plan::{Cells, FloorPlan, PlanRoom, Run, Storey, metres};
 use super::rooms::RoomKind;
 use super::spec::DoorStates;
 use crate::build::Names;
-use crate::building::assembly::{Assembly, Kind};
+use crate::building::assembly::Assembly;
 use crate::building::plan::{CEILING_M, RoomPlan};
 use crate::building::site::yaw;
 use crate::building::wall::{Along, Bands, Opening, Wall};
 use dwell_furniture::finish::Finish;
+use dwell_furniture::model::Model;
 use dwell_furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
 use dwell_furniture::models::stairs::{Stairs, railing};
+use dwell_furniture::stock::made_to_measure;
 use dwell_furniture::style::Style;
 use dwell_scene::random::Key;
 use dwell_scene::{LevelId, Pose, RoomId};
 use glam::Vec3;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Thickness of the ceiling below another storey, m.
@@ -40,18 +41,14 @@ pub(crate) struct Shell {
 impl Shell {
     /// Puts furniture into the rooms.
     pub(crate) fn furnish(&self, storeys: &[Vec<Furnished>], assembly: &mut Assembly) {
-        // The same stock is one kind in the house.
-        let mut kinds: BTreeMap<usize, Kind> = BTreeMap::new();
         for (level, rooms) in storeys.iter().enumerate() {
             assembly.level = LevelId(level as u32);
             let up = Pose::from_position(Vec3::Y * Builder::floor_m(level));
             for (room, furnished) in rooms.iter().enumerate() {
                 for piece in &furnished.pieces {
                     let model = &piece.stock.model;
-                    let kind = kinds
-                        .entry(Arc::as_ptr(model) as usize)
-                        .or_insert_with(|| assembly.kind(model.clone()));
-                    assembly.place(kind, up * piece.pose, self.rooms[level][room], 0.0);
+                    let kind = assembly.kind(model.clone());
+                    assembly.place(&kind, up * piece.pose, self.rooms[level][room], 0.0);
                 }
             }
         }
@@ -321,7 +318,7 @@ impl Builder<'_> {
                     if entrance {
                         door.leaf = entrance_leaf(self.style);
                     }
-                    let kind = assembly.kind(door.build());
+                    let kind = assembly.kind(made_to_measure(format!("{door:?}"), || door.build()));
                     let openness = self.openness(hole, key.child(k as u64));
                     let pose = Pose::new(Vec3::new(x, floor, z), turn);
                     assembly.place(&kind, pose, ids[hole.room], openness);
@@ -340,7 +337,8 @@ impl Builder<'_> {
                         pane,
                         sill_m: 0.03,
                     };
-                    let kind = assembly.kind(window.build());
+                    let kind =
+                        assembly.kind(made_to_measure(format!("{window:?}"), || window.build()));
                     let y = floor + 0.5 * (hole.low_m + hole.high_m);
                     assembly.place(
                         &kind,
@@ -406,8 +404,7 @@ impl Builder<'_> {
         if last {
             // The first flight would start here: a railing instead.
             let side = -across * 0.25 * width_m;
-            let rail = railing(0.5 * width_m, &self.style.metal);
-            let kind = assembly.kind(rail);
+            let kind = assembly.kind(self.railing(0.5 * width_m));
             let back = climb * (RAILING_INSET_M - 0.1);
             assembly.place(
                 &kind,
@@ -426,8 +423,15 @@ impl Builder<'_> {
             wood: self.style.wood.clone(),
             paint: Finish::plain("stair_white", "wood", [238, 236, 230]),
         };
-        let kind = assembly.kind(model.build());
+        let kind = assembly.kind(made_to_measure(format!("{model:?}"), || model.build()));
         assembly.place(&kind, Pose::new(front + up, yaw(turn)), room, 0.0);
+    }
+
+    fn railing(&self, length_m: f32) -> Arc<Model> {
+        let metal = &self.style.metal;
+        made_to_measure(format!("railing {length_m} {metal:?}"), || {
+            railing(length_m, metal)
+        })
     }
 
     fn railings(&self, level: usize, cells: &Cells, ids: &[RoomId], assembly: &mut Assembly) {
@@ -468,7 +472,7 @@ impl Builder<'_> {
             } else {
                 (at, middle, 90.0)
             };
-            let kind = assembly.kind(railing(to - from, &self.style.metal));
+            let kind = assembly.kind(self.railing(to - from));
             let pose = Pose::new(Vec3::new(x, Self::floor_m(level), z), yaw(turn));
             assembly.place(&kind, pose, ids[*room], 0.0);
         }

@@ -6,10 +6,10 @@ mod rules;
 mod sized;
 mod space;
 
-pub(crate) use space::Piece;
+pub(crate) use space::{Piece, stands_in_the_way, zone};
 
 use super::openings::{Filling, Hole};
-use super::plan::{Cells, FloorPlan, Storey, metres};
+use super::plan::{Cells, FloorPlan, metres};
 use super::rooms::RoomKind;
 use super::spec::HouseSpec;
 use crate::building::site::yaw;
@@ -32,8 +32,6 @@ pub(crate) struct Furnished {
     pub(crate) pieces: Vec<Piece>,
     /// What a room of its kind has and this one has not.
     pub(crate) missing: Vec<String>,
-    /// Whether its paths are narrower than they should be.
-    narrow: bool,
 }
 
 /// What rooms are furnished from.
@@ -53,13 +51,22 @@ impl Furnisher<'_> {
             .map(|(level, storey)| {
                 let cells = Cells::new(&storey.rooms);
                 (0..storey.rooms.len())
-                    .map(|room| self.room(level, storey, &cells, room))
+                    .map(|room| self.room(level, &cells, room, 1.0, self.key))
                     .collect()
             })
             .collect()
     }
 
-    fn room(&self, level: usize, storey: &Storey, cells: &Cells, room: usize) -> Furnished {
+    /// Furnishes a room of a storey with a share of the furniture that it can do without.
+    pub(crate) fn room(
+        &self,
+        level: usize,
+        cells: &Cells,
+        room: usize,
+        share: f32,
+        key: Key,
+    ) -> Furnished {
+        let storey = &self.plan.storeys[level];
         let kind = storey.rooms[room].kind;
         let stairs = self.plan.stairs.filter(|_| kind == RoomKind::Hallway);
         let mut space = Space::new(
@@ -75,7 +82,7 @@ impl Furnisher<'_> {
             path += 1;
             space.walk(room, storey, PATHS_M[path]);
         }
-        let key = self.key.child(level as u64).child(room as u64);
+        let key = key.child(level as u64).child(room as u64);
         let mut furnishing = Furnishing {
             area_m2: space
                 .floor
@@ -84,7 +91,7 @@ impl Furnisher<'_> {
                 .sum(),
             space,
             style: self.style,
-            density: self.spec.furniture_density,
+            density: self.spec.furniture_density * share,
         };
         let mut missing = Vec::new();
         let rules = rules();
@@ -122,7 +129,6 @@ impl Furnisher<'_> {
         Furnished {
             pieces: furnishing.space.pieces,
             missing,
-            narrow: path > 0,
         }
     }
 }
@@ -276,9 +282,4 @@ pub(crate) fn missing(rooms: &[Vec<Furnished>]) -> Vec<String> {
         .flatten()
         .flat_map(|room| room.missing.iter().cloned())
         .collect()
-}
-
-/// Whether some room's paths are narrower than they should be, so that a walker may not pass.
-pub(crate) fn is_narrow(rooms: &[Vec<Furnished>]) -> bool {
-    rooms.iter().flatten().any(|room| room.narrow)
 }

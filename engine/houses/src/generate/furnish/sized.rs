@@ -2,9 +2,10 @@
 
 use crate::generate::openings::Hole;
 use dwell_furniture::finish::Finish;
+use dwell_furniture::model::Model;
 use dwell_furniture::models::openings::radiator;
 use dwell_furniture::models::textiles::Curtains;
-use dwell_furniture::stock::Stock;
+use dwell_furniture::stock::{Stock, made_to_measure};
 use dwell_furniture::style::Style;
 use dwell_scene::random::Key;
 use std::sync::Arc;
@@ -21,20 +22,31 @@ pub(crate) fn sized(kind: &str, hole: &Hole, style: &Style, key: Key) -> Option<
         "curtains" if width_m > 0.8 => {
             // Down to below the sill.
             let rod_m = hole.high_m + 0.1;
+            let cloth = Finish {
+                substance: "light_curtain",
+                ..style.cloth(&mut draw).clone()
+            };
+            let plain = Finish::plain("curtain_cloth", "light_curtain", [240; 3]);
             let curtains = Curtains {
                 width_m: width_m + 0.5,
                 height_m: rod_m - hole.low_m + 0.14,
-                drawn: draw.range(0.14, 0.2),
+                drawn: [0.14, 0.17, 0.2][draw.below(3)],
                 cloth: Finish {
-                    substance: "light_curtain",
-                    ..style.cloth(&mut draw).clone()
+                    tile_m: cloth.tile_m,
+                    ..plain
                 },
             };
-            Some((Arc::new(Stock::new("curtains", curtains.build())), rod_m))
+            // One cut for all cloths.
+            let cut = made_to_measure(format!("{curtains:?}"), || curtains.build());
+            let sewn = Model::clone(&cut).repainted("curtain_cloth", &cloth);
+            Some((Arc::new(Stock::new("curtains", sewn)), rod_m))
         }
         "radiator" if hole.low_m > 0.45 && width_m > 0.5 => {
             let height_m = (hole.low_m - 0.3).min(0.5);
-            let model = radiator((0.8 * width_m).clamp(0.5, 1.4), height_m);
+            let width_m = (0.8 * width_m).clamp(0.5, 1.4);
+            let model = made_to_measure(format!("radiator {width_m} {height_m}"), || {
+                radiator(width_m, height_m)
+            });
             Some((Arc::new(Stock::new("radiator", model)), 0.12))
         }
         _ => None,

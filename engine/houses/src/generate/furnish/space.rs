@@ -130,7 +130,7 @@ impl Piece {
 }
 
 /// The floor under a box.
-fn zone(bounds: &Aabb) -> Zone {
+pub(crate) fn zone(bounds: &Aabb) -> Zone {
     [bounds.min.x, bounds.min.z, bounds.max.x, bounds.max.z]
 }
 
@@ -138,7 +138,7 @@ fn meets(a: &Aabb, b: &Aabb) -> bool {
     a.min.cmplt(b.max - TOUCH_M).all() && b.min.cmplt(a.max - TOUCH_M).all()
 }
 
-fn stands_in_the_way(bounds: &Aabb) -> bool {
+pub(crate) fn stands_in_the_way(bounds: &Aabb) -> bool {
     bounds.max.y > STEP_M && bounds.min.y < HEAD_M
 }
 

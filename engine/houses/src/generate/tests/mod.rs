@@ -1,5 +1,4 @@
 //! What must hold for every generated house.
 
 mod building;
-mod furniture;
 mod specs;

@@ -1,0 +1,82 @@
+//! What must hold for every generated house, by rule. Tests look at hundreds of seeds, the bench `validity` at thousands.
+
+mod geometric;
+mod settled;
+
+use dwell_houses::generate::{Generated, HouseSpec, generate};
+use dwell_scene::parallel::Threads;
+use std::sync::Arc;
+
+/// How far the rules are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// As the house stands.
+    Geometric,
+    /// After two seconds of physics, too.
+    Settled,
+}
+
+/// Something that breaks a rule.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// `overlap` (more than 5 mm), `joint` (meets something in its range), `place` (out of its room), `light`, `name`,
+    /// `reach` (a room that nobody can enter), `bytes` (not the same beside other houses), `start` (physics had to move
+    /// it), `settle` (a pickable thing moved more than 2 cm in 2 s), `physics`, `generate`.
+    pub rule: &'static str,
+    /// What, in words.
+    pub what: String,
+}
+
+/// What was looked at.
+#[derive(Clone, Debug)]
+pub struct Looked {
+    /// The seed.
+    pub seed: u64,
+    /// How many rooms and objects it has.
+    pub counts: [usize; 2],
+    /// What was wanted and given up.
+    pub given_up: Vec<String>,
+    /// What breaks a rule.
+    pub faults: Vec<Fault>,
+}
+
+/// Looks at the house of a seed.
+pub fn look(seed: u64, depth: Depth) -> Looked {
+    let mut looked = Looked {
+        seed,
+        counts: [0; 2],
+        given_up: Vec::new(),
+        faults: Vec::new(),
+    };
+    let Generated { house, report } = match generate(seed, &HouseSpec::default()) {
+        Ok(generated) => generated,
+        Err(error) => {
+            let (rule, what) = ("generate", error.to_string());
+            looked.faults.push(Fault { rule, what });
+            return looked;
+        }
+    };
+    looked.counts = [house.rooms.len(), house.objects.len()];
+    looked.given_up = report.given_up;
+    looked.faults = geometric::faults(&house);
+    if depth == Depth::Settled {
+        looked.faults.extend(settled::faults(&Arc::new(house)));
+    }
+    looked
+}
+
+/// Seeds whose houses differ when they are made at the same time on two threads instead of one after the other.
+pub fn of_other_bytes(seeds: &[u64]) -> Vec<u64> {
+    let number = |seed: u64| {
+        let made = generate(seed, &HouseSpec::default());
+        made.map(|generated| (generated.house.fingerprint(), generated.report))
+            .ok()
+    };
+    let alone: Vec<_> = seeds.iter().map(|seed| number(*seed)).collect();
+    let beside = Threads::exactly(2).map(seeds.len(), |k| number(seeds[k]));
+    let differ = seeds
+        .iter()
+        .zip(alone.iter().zip(&beside))
+        .filter(|(_, (a, b))| a.is_none() || a != b);
+    differ.map(|(seed, _)| *seed).collect()
+}

@@ -1,0 +1,52 @@
+//! Generated houses are valid: as they stand, and when physics begins. The bench `validity` looks at thousands of seeds.
+
+use dwell_scene::parallel::Threads;
+use dwell_tests::validity::{Depth, Looked, look, of_other_bytes};
+use std::collections::BTreeMap;
+
+/// Seeds that are looked at in every run.
+const SEEDS: u64 = 300;
+/// Of these, seeds whose houses settle for two seconds.
+const SETTLED: u64 = 30;
+
+fn assert_valid(all: &[Looked]) {
+    let mut faults = Vec::new();
+    let mut given_up = BTreeMap::<&str, usize>::new();
+    for looked in all {
+        for fault in &looked.faults {
+            faults.push(format!(
+                "seed {}: {}: {}",
+                looked.seed, fault.rule, fault.what
+            ));
+        }
+        for sentence in &looked.given_up {
+            *given_up.entry(sentence).or_default() += 1;
+        }
+    }
+    println!("given up in {} houses: {given_up:#?}", all.len());
+    let told = &faults[..faults.len().min(60)];
+    assert!(
+        faults.is_empty(),
+        "{} faults\n{}",
+        faults.len(),
+        told.join("\n")
+    );
+}
+
+#[test]
+fn houses_of_seeds_are_valid_as_they_stand() {
+    let look = |seed: usize| look(seed as u64, Depth::Geometric);
+    assert_valid(&Threads::default().map(SEEDS as usize, look));
+}
+
+#[test]
+fn houses_of_seeds_stay_as_they_are_when_physics_begins() {
+    let look = |seed: usize| look(seed as u64, Depth::Settled);
+    assert_valid(&Threads::default().map(SETTLED as usize, look));
+}
+
+#[test]
+fn houses_of_seeds_are_the_same_alone_and_beside_others() {
+    let seeds: Vec<u64> = (0..20).collect();
+    assert_eq!(of_other_bytes(&seeds), Vec::<u64>::new());
+}
