@@ -23,7 +23,7 @@ fn assert_valid(all: &[Looked]) {
             *given_up.entry(sentence).or_default() += 1;
         }
     }
-    println!("given up in {} houses: {given_up:#?}", all.len());
+    eprintln!("given up in {} houses: {given_up:#?}", all.len());
     let told = &faults[..faults.len().min(60)];
     assert!(
         faults.is_empty(),

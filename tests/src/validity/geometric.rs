@@ -157,7 +157,10 @@ fn unreached(house: &House) -> Vec<String> {
         doors: Doors::Open,
         ..NavConfig::default()
     };
-    let grid = NavGrid::build(house, &State::new(house), &config).unwrap();
+    let grid = match NavGrid::build(house, &State::new(house), &config) {
+        Ok(grid) => grid,
+        Err(error) => return vec![error.to_string()],
+    };
     let largest = grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
     let reached: BTreeSet<&str> = largest
         .filter_map(|cell| house.room_at(grid.position(cell)))

@@ -42,8 +42,8 @@ pub(super) fn faults(house: &Arc<House>) -> Vec<Fault> {
     }
     for (id, object) in house.objects.iter_ids() {
         let far_m = (place(&state, id) - before[id.index()]).length();
-        // No number counts as far.
-        if object.pickable && !(far_m <= FARTHEST_M) {
+        let stayed = far_m <= FARTHEST_M;
+        if object.pickable && !stayed {
             let name = &object.name;
             faults.push(fault("settle", format!("{name} moved {far_m:.3} m")));
         }

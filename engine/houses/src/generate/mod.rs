@@ -143,14 +143,14 @@ fn furnished_paper(spec: &HouseSpec, style: &Style, key: Key) -> Result<Paper, H
         for (level, storey) in draft.plan.storeys.iter().enumerate() {
             let cells = Cells::new(&storey.rooms);
             let lost = |room: usize| unreached.contains(&(level, room));
-            for room in 0..storey.rooms.len() {
+            for (room, place) in furnished[level].iter_mut().enumerate() {
                 let beside = storey.links.iter().any(|link| {
                     link.into == room && link.from.is_some_and(lost)
                         || link.from == Some(room) && lost(link.into)
                 });
                 if lost(room) || beside {
                     let key = furnish_key.child(1 + round as u64);
-                    furnished[level][room] = furnisher.room(level, &cells, room, share, key);
+                    *place = furnisher.room(level, &cells, room, share, key);
                 }
             }
         }
@@ -171,7 +171,8 @@ pub(crate) fn open(house: &str) -> Opened {
     let seed = number.parse().map_err(|_| HousesError::Spec {
         field: "seed".to_owned(),
         found: number.to_owned(),
-        possible: "a whole number from 0 to 18446744073709551615".to_owned(),
+        possible: "a whole number from 0 to 18446744073709551615; A..B only where several houses are taken"
+            .to_owned(),
     })?;
     let mut spec = serde_json::Map::new();
     for field in fields.split('&').filter(|field| !field.is_empty()) {
