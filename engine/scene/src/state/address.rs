@@ -37,6 +37,22 @@ impl Address {
         Self(format!("joint/{}/{field}", joint.0))
     }
 
+    /// Refuses a value out of bounds.
+    pub(super) fn check_range(
+        &self,
+        value: f64,
+        low: f64,
+        high: f64,
+        unit: &str,
+    ) -> Result<(), SceneError> {
+        if (low..=high).contains(&value) {
+            return Ok(());
+        }
+        Err(self.fault(format!(
+            "{value} is out of range; allowed are {low} to {high} {unit}"
+        )))
+    }
+
     /// The address of a part's field.
     pub(super) fn of_part(part: PartId, field: &str) -> Self {
         Self(format!("part/{}/{field}", part.0))
@@ -194,7 +210,8 @@ impl State {
                 }
             }
             ["joint", joint, field] => {
-                let joint = &house.joints[find_joint(house, address, joint)?];
+                let id = find_joint(house, address, joint)?;
+                let joint = &house.joints[id];
                 let here: Vec<_> = FIELDS.iter().filter(|field| (field.get)(joint).is_some()).collect();
                 let found = here.iter().find(|here| here.name == field);
                 let found = found.ok_or_else(|| {
@@ -202,7 +219,8 @@ impl State {
                     address.fault(format!("no field {field:?}; this joint has {names:?}"))
                 })?;
                 let base = (found.get)(joint).unwrap_or(0.0);
-                make(self.scalar(&known, base), found.unit, found.range[0], found.range[1])
+                let [low, high] = self.joint_range(house, id, found);
+                make(self.scalar(&known, base), found.unit, low, high)
             }
             ["part", part, "mass_kg"] => {
                 let part = &house.parts[find_part(house, address, part)?];
@@ -210,6 +228,10 @@ impl State {
                     address.fault("the part has no mass of its own: it follows from its material's density")
                 })?;
                 make(self.scalar(&known, base), "kg", 1e-6, 1e6)
+            }
+            ["part", part, field] => {
+                let part = find_part(house, address, part)?;
+                self.inertial_parameter(house, address, part, field)
             }
             ["agent", agent, "base", field] => {
                 let id = self.find_agent(address, agent)?;
@@ -222,8 +244,11 @@ impl State {
                 })
             }
             ["world", "gravity_m_s2"] => make(self.gravity_m_s2(), "m/s2", 0.0, 100.0),
+            ["law", ..] => Err(address.fault(
+                "parameters of laws are read and set through the world, which knows the laws of all engines",
+            )),
             _ => Err(address.fault(
-                "known are object/ID/mass_kg, part/N/mass_kg, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/base/FIELD, world/gravity_m_s2",
+                "known are law/ID/PARAM, object/ID/mass_kg, part/N/FIELD, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/base/FIELD, world/gravity_m_s2",
             )),
         }
     }
@@ -239,14 +264,7 @@ impl State {
         value: f64,
     ) -> Result<(), SceneError> {
         let parameter = self.parameter(house, address)?;
-        if !(parameter.low..=parameter.high).contains(&value) {
-            let Parameter {
-                low, high, unit, ..
-            } = parameter;
-            return Err(address.fault(format!(
-                "{value} is out of range; allowed are {low} to {high} {unit}"
-            )));
-        }
+        address.check_range(value, parameter.low, parameter.high, parameter.unit)?;
         self.overrides
             .insert(self.canonical(house, address)?, value);
         Ok(())

@@ -19,6 +19,17 @@ pub struct JointValues {
     pub armature: f32,
     /// The motor.
     pub servo: Option<Servo>,
+    /// Lowest and highest position, rad or m; `None`: it turns or slides without end.
+    pub limits: Option<[f32; 2]>,
+}
+
+impl JointValues {
+    /// `position` within the limits.
+    pub fn clamp(&self, position: f32) -> f32 {
+        // Limits are only set in order.
+        self.limits
+            .map_or(position, |[low, high]| position.max(low).min(high))
+    }
 }
 
 /// A field with its unit and range. `None` in the house means that the joint has no such thing.
@@ -30,7 +41,7 @@ pub(super) struct Field {
 }
 
 /// The fields of a joint that have an address.
-pub(super) const FIELDS: [Field; 10] = [
+pub(super) const FIELDS: [Field; 12] = [
     Field {
         name: "friction",
         unit: "N m or N",
@@ -57,6 +68,18 @@ pub(super) const FIELDS: [Field; 10] = [
             let length = joint.parent_from_joint.position.length();
             (joint.parent.is_some() && length > 0.0).then_some(length)
         },
+    },
+    Field {
+        name: "lower",
+        unit: "rad or m",
+        range: [-1e4, 1e4],
+        get: |joint| joint.limits.map(|[low, _]| low),
+    },
+    Field {
+        name: "upper",
+        unit: "rad or m",
+        range: [-1e4, 1e4],
+        get: |joint| joint.limits.map(|[_, high]| high),
     },
     Field {
         name: "stiffness",
@@ -97,6 +120,16 @@ pub(super) const FIELDS: [Field; 10] = [
 ];
 
 impl State {
+    /// The range of a joint's field: a limit stays on its side of the other one.
+    pub(super) fn joint_range(&self, house: &House, id: JointId, field: &Field) -> [f64; 2] {
+        let [low, high] = field.range;
+        match (field.name, self.joint_values(house, id).limits) {
+            ("lower", Some([_, upper])) => [low, upper.into()],
+            ("upper", Some([lower, _])) => [lower.into(), high],
+            _ => [low, high],
+        }
+    }
+
     /// What is in force at a joint.
     pub fn joint_values(&self, house: &House, id: JointId) -> JointValues {
         let joint = &house.joints[id];
@@ -106,6 +139,7 @@ impl State {
             damping: joint.damping,
             armature: joint.armature,
             servo: joint.servo,
+            limits: joint.limits,
         };
         if self.overrides.is_empty() {
             return values;
@@ -116,6 +150,11 @@ impl State {
                 continue;
             };
             match (field.name, &mut values.servo) {
+                ("lower" | "upper", _) => {
+                    if let Some(limits) = &mut values.limits {
+                        limits[usize::from(field.name == "upper")] = value;
+                    }
+                }
                 ("friction", _) => values.friction = value,
                 ("damping", _) => values.damping = value,
                 ("armature", _) => values.armature = value,

@@ -4,9 +4,12 @@ mod address;
 mod agent;
 mod canonical;
 mod joint;
+mod law_address;
+mod listing;
 mod locomotion;
 mod mass;
 mod names;
+mod part;
 mod relations;
 mod snapshot;
 

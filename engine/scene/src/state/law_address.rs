@@ -1,0 +1,285 @@
+//! Laws under addresses: `law/ID/PARAM`, `law/ID@TARGET/PARAM`, `law/N/PARAM`.
+//!
+//! `ID` alone is the law without a target, `ID@TARGET` the one on that target; neither need be installed: the first number
+//! that differs from its default installs it behind the others, and a law whose numbers are all default acts no more. `N`
+//! counts [`State::laws`] from 0, for laws that are installed twice on one target. Values stand in [`State::laws`] and
+//! nowhere else, so that they are in snapshot and hash.
+
+use super::{Address, Parameter, State};
+use crate::error::SceneError;
+use crate::law::{LawInfo, LawSpec, ParamInfo};
+use std::collections::BTreeMap;
+
+/// What an address names.
+struct Named<'a> {
+    info: &'a LawInfo,
+    param: &'a ParamInfo,
+    target: Option<&'a str>,
+    /// Its place in [`State::laws`]; `None` for a law that is not installed.
+    place: Option<usize>,
+}
+
+impl Address {
+    /// Whether it names a law's parameter: then [`State::law_parameter`] reads it.
+    pub fn is_law(&self) -> bool {
+        self.as_str().starts_with("law/")
+    }
+
+    /// The law's name and its parameter's.
+    fn law_words(&self) -> Result<(&str, &str), SceneError> {
+        let inner = self.as_str().strip_prefix("law/");
+        inner.and_then(|inner| inner.rsplit_once('/')).ok_or_else(|| {
+            self.fault("a law's parameter is law/ID/PARAM, law/ID@TARGET/PARAM or law/N/PARAM")
+        })
+    }
+}
+
+impl State {
+    fn find_law<'a>(
+        &self,
+        known: &[&'a LawInfo],
+        address: &'a Address,
+    ) -> Result<Named<'a>, SceneError> {
+        let (name, param) = address.law_words()?;
+        let info_of = |id: &str| {
+            known.iter().find(|info| info.id == id).copied().ok_or_else(|| {
+                let ids: Vec<_> = known.iter().map(|info| info.id).collect();
+                address.fault(format!("no law {id:?}; there are {ids:?}"))
+            })
+        };
+        let (info, target, place) = if let Ok(place) = name.parse::<usize>() {
+            let spec = self.laws.get(place).ok_or_else(|| {
+                let count = self.laws.len();
+                address.fault(format!("no law {place}; {count} are installed, counted from 0"))
+            })?;
+            (info_of(&spec.id)?, None, Some(place))
+        } else {
+            let (id, target) = match name.split_once('@') {
+                Some((id, target)) => (id, Some(target)),
+                None => (name, None),
+            };
+            let info = info_of(id)?;
+            let is = |spec: &LawSpec| spec.id == id && spec.target.as_deref() == target;
+            let mut places = (0..self.laws.len()).filter(|place| is(&self.laws[*place]));
+            let place = places.next();
+            if let (Some(first), Some(second)) = (place, places.next()) {
+                return Err(address.fault(format!(
+                    "this law is installed more than once; say which by its number: law/{first}/{param}, law/{second}/{param}"
+                )));
+            }
+            (info, target, place)
+        };
+        let found = info.params.iter().find(|known| known.name == param);
+        let param = found.ok_or_else(|| {
+            let names: Vec<_> = info.params.iter().map(|known| known.name).collect();
+            address.fault(format!("no parameter {param:?}; law {} has {names:?}", info.id))
+        })?;
+        Ok(Named {
+            info,
+            param,
+            target,
+            place,
+        })
+    }
+
+    /// What stands at the address of a law's parameter; its default where the law is not installed. `known`: the laws of
+    /// all engines.
+    ///
+    /// # Errors
+    /// [`SceneError::Address`] says which word is wrong and what is allowed there.
+    pub fn law_parameter(
+        &self,
+        known: &[&LawInfo],
+        address: &Address,
+    ) -> Result<Parameter, SceneError> {
+        let named = self.find_law(known, address)?;
+        let value = named
+            .place
+            .and_then(|place| self.laws[place].params.get(named.param.name).copied());
+        Ok(Parameter {
+            value: value.unwrap_or(named.param.default),
+            unit: named.param.unit,
+            low: named.param.low,
+            high: named.param.high,
+        })
+    }
+
+    /// Sets a law's parameter. A default is not kept as a number, and laws at the end of the list whose numbers are all
+    /// default are taken off it, so that what was set and set back is as it was before.
+    ///
+    /// # Errors
+    /// [`SceneError::Address`] for an address that names nothing or a value out of bounds.
+    pub fn set_law_parameter(
+        &mut self,
+        known: &[&LawInfo],
+        address: &Address,
+        value: f64,
+    ) -> Result<(), SceneError> {
+        let named = self.find_law(known, address)?;
+        let param = named.param;
+        address.check_range(value, param.low, param.high, param.unit)?;
+        let place = named.place.unwrap_or(self.laws.len());
+        if named.place.is_none() {
+            self.laws.push(LawSpec {
+                id: named.info.id.to_owned(),
+                version: named.info.version,
+                target: named.target.map(str::to_owned),
+                params: BTreeMap::new(),
+            });
+        }
+        let params = &mut self.laws[place].params;
+        if value == param.default {
+            params.remove(param.name);
+        } else {
+            params.insert(param.name.to_owned(), value);
+        }
+        let idle = |spec: &LawSpec| {
+            let info = known.iter().find(|info| info.id == spec.id);
+            info.is_some_and(|info| spec.is_default(info))
+        };
+        while self.laws.last().is_some_and(idle) {
+            self.laws.pop();
+        }
+        Ok(())
+    }
+
+    /// The addresses of all parameters of laws: of those that are installed, in order, then of the others without target.
+    pub fn law_addresses(&self, known: &[&LawInfo]) -> Vec<Address> {
+        let mut addresses = Vec::new();
+        let mut list = |name: &str, info: &LawInfo| {
+            let of = |param: &ParamInfo| format!("law/{name}/{}", param.name).parse().ok();
+            addresses.extend(info.params.iter().filter_map(of));
+        };
+        let same = |a: &LawSpec, b: &LawSpec| a.id == b.id && a.target == b.target;
+        for (place, spec) in self.laws.iter().enumerate() {
+            let Some(info) = known.iter().find(|info| info.id == spec.id) else {
+                continue;
+            };
+            let twice = self.laws.iter().filter(|other| same(other, spec)).count() > 1;
+            match &spec.target {
+                _ if twice => list(&place.to_string(), info),
+                Some(target) => list(&format!("{}@{target}", spec.id), info),
+                None => list(&spec.id, info),
+            }
+        }
+        for info in known {
+            let plain = |spec: &LawSpec| spec.id == info.id && spec.target.is_none();
+            if !self.laws.iter().any(plain) {
+                list(info.id, info);
+            }
+        }
+        addresses
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Engine;
+    use crate::{House, ShoeboxMaterials};
+
+    const fn param(name: &'static str, default: f64) -> ParamInfo {
+        ParamInfo {
+            name,
+            unit: "1",
+            default,
+            low: 0.0,
+            high: 20.0,
+            plausible: [0.0, 1.0],
+        }
+    }
+
+    const DRAG: LawInfo = LawInfo {
+        id: "drag",
+        version: 3,
+        name: "drag",
+        equation: "",
+        source: "",
+        engine: Engine::Physics,
+        acts_on: "object",
+        params: &[param("c_d", 0.0), param("density", 1.2)],
+        rivals: &[],
+        separating_experiment: "",
+    };
+    const LAG: LawInfo = LawInfo {
+        id: "lag",
+        params: &[param("tau_s", 0.0)],
+        ..DRAG
+    };
+
+    fn empty() -> State {
+        State::new(&House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap())
+    }
+
+    fn set(state: &mut State, address: &str, value: f64) -> Result<(), String> {
+        let address = address.parse().unwrap();
+        let set = state.set_law_parameter(&[&DRAG, &LAG], &address, value);
+        set.map_err(|error| error.to_string())
+    }
+
+    fn get(state: &State, address: &str) -> f64 {
+        let address = address.parse().unwrap();
+        state.law_parameter(&[&DRAG, &LAG], &address).unwrap().value
+    }
+
+    #[test]
+    fn the_first_number_installs_a_law_and_the_last_default_takes_it_off() {
+        let mut state = empty();
+        let before = state.hash();
+        assert_eq!(get(&state, "law/drag@a/b/density"), 1.2);
+        set(&mut state, "law/drag@a/b/c_d", 0.4).unwrap();
+        assert_eq!(state.laws[0].target.as_deref(), Some("a/b"));
+        assert_eq!((state.laws[0].version, state.laws[0].params.len()), (3, 1));
+        assert_eq!(get(&state, "law/drag@a/b/c_d"), 0.4);
+        assert_eq!(get(&state, "law/0/c_d"), 0.4);
+        assert_eq!(get(&state, "law/drag/c_d"), 0.0);
+        set(&mut state, "law/lag/tau_s", 0.1).unwrap();
+        let both = state.hash();
+        // In the middle of the list a law keeps its place, so that the order is the same when it comes back.
+        set(&mut state, "law/drag@a/b/c_d", 0.0).unwrap();
+        assert_eq!(state.laws.len(), 2);
+        set(&mut state, "law/0/c_d", 0.4).unwrap();
+        assert_eq!(state.hash(), both);
+        set(&mut state, "law/drag@a/b/c_d", 0.0).unwrap();
+        set(&mut state, "law/lag/tau_s", 0.0).unwrap();
+        assert_eq!(state.hash(), before);
+    }
+
+    #[test]
+    fn wrong_words_and_numbers_say_what_is_allowed() {
+        let mut state = empty();
+        for (address, value, part) in [
+            ("law/lift/c_l", 0.1, "\"drag\""),
+            ("law/drag/c_l", 0.1, "\"density\""),
+            ("law/drag/c_d", 21.0, "0 to 20"),
+            ("law/drag/c_d", f64::NAN, "0 to 20"),
+            ("law/0/c_d", 1.0, "0 are installed"),
+            ("law/drag", 1.0, "law/ID/PARAM"),
+        ] {
+            let message = set(&mut state, address, value).unwrap_err();
+            assert!(message.contains(part), "{message}");
+            assert!(state.laws.is_empty());
+        }
+        let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
+        let address = "law/drag/c_d".parse().unwrap();
+        let message = state.parameter(&house, &address).unwrap_err().to_string();
+        assert!(message.contains("world"), "{message}");
+    }
+
+    #[test]
+    fn laws_that_are_installed_twice_are_told_apart_by_number() {
+        let mut state = empty();
+        set(&mut state, "law/lag/tau_s", 0.1).unwrap();
+        let again = state.laws[0].clone();
+        state.laws.push(again);
+        let message = set(&mut state, "law/lag/tau_s", 0.2).unwrap_err();
+        assert!(message.contains("law/0/tau_s, law/1/tau_s"), "{message}");
+        set(&mut state, "law/1/tau_s", 0.2).unwrap();
+        assert_eq!((get(&state, "law/0/tau_s"), get(&state, "law/1/tau_s")), (0.1, 0.2));
+        let known: &[&LawInfo] = &[&DRAG, &LAG];
+        for address in state.law_addresses(known) {
+            state.law_parameter(known, &address).unwrap();
+        }
+        assert_eq!(state.law_addresses(known).len(), 4);
+    }
+}
