@@ -151,7 +151,12 @@ pub(crate) fn redress(collider: &mut Collider, (own, special): (PairContact, boo
     collider.set_friction(own.friction);
     collider.set_restitution(own.restitution);
     collider.set_active_hooks(hooks);
-    // rapier keeps the values of contacts that hardly move; it looks anew where a collider's groups changed.
+    look_anew(collider);
+}
+
+/// Makes rapier compute a collider's contacts anew: it keeps the values, and the arms to the centres of mass, of contacts that
+/// hardly move, but not where a collider's groups changed.
+pub(crate) fn look_anew(collider: &mut Collider) {
     let groups = collider.solver_groups();
     collider.set_solver_groups(InteractionGroups::none());
     collider.set_solver_groups(groups);

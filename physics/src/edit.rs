@@ -7,7 +7,7 @@ use crate::convert::to_rapier;
 use crate::error::PhysicsError;
 use crate::joints::{self, Stand};
 use crate::world::PhysicsWorld;
-use dwell_scene::{AgentId, AgentState, BaseState, Id, JointId, State};
+use dwell_scene::{AgentId, AgentState, BaseState, Id, JointId, State, Velocity};
 use glam::Vec3;
 
 impl PhysicsWorld {
@@ -163,6 +163,7 @@ impl PhysicsWorld {
                 });
             }
         }
+        let (mut disturbed_roots, mut set) = (Vec::new(), Vec::new());
         // What is not moved by a joint comes first: joints hang on it.
         for (index, plan) in model.bodies.iter().enumerate() {
             if plan.joint.is_some() {
@@ -174,23 +175,32 @@ impl PhysicsWorld {
                 continue;
             };
             let moved = *rigid.position() != pose;
+            let mut disturbed = moved;
             if moved {
                 self.holds[index] = Hold::Free;
                 rigid.set_body_type(body::body_type(Hold::Free), true);
                 rigid.set_position(pose, true);
             }
             let origin = rigid.position().translation;
-            let now = (rigid.velocity_at_point(origin), rigid.angvel());
-            if now != (velocity.linear, velocity.angular) {
-                let arm = rigid.center_of_mass() - origin;
+            let arm = rigid.center_of_mass() - origin;
+            let there = Velocity {
+                linear: rigid.velocity_at_point(origin),
+                angular: rigid.angvel(),
+            };
+            if !same_velocity(&there, &velocity, arm) {
                 rigid.set_linvel(velocity.linear + velocity.angular.cross(arm), true);
                 rigid.set_angvel(velocity.angular, true);
+                disturbed = true;
+            }
+            if disturbed {
+                disturbed_roots.push(self.bodies[index].handle);
+                set.push((plan.root(), velocity));
             }
         }
         let mut stands = Vec::with_capacity(self.joints.len());
         for joint in &self.joints {
             let articulation = &model.house.joints[joint.id];
-            let position = articulation.clamp(state.joint_position[joint.id]);
+            let position = joint.values.clamp(state.joint_position[joint.id]);
             let child = joint.child as usize;
             let shut = joints::stands_shut(joint, articulation, position);
             if self.holds[child] == Hold::Latched && !shut {
@@ -205,10 +215,26 @@ impl PhysicsWorld {
             });
         }
         for tree in &self.trees {
+            if disturbed_roots.contains(&tree.root_body()) {
+                for joint in &tree.joints {
+                    stands[*joint].anew = true;
+                }
+            }
             joints::place(&mut self.engine, &self.joints, tree, &stands);
         }
         self.flush();
         self.write_bodies(state);
+        for (root, velocity) in set {
+            let found = state.part_velocity[root];
+            let body = self.model.body_of_part[root].map(|body| self.bodies[body as usize]);
+            let rigid = body.and_then(|body| self.engine.bodies.get(body.handle));
+            let arm = rigid.map_or(Vec3::ZERO, |rigid| {
+                rigid.center_of_mass() - rigid.position().translation
+            });
+            if same_velocity(&found, &velocity, arm) {
+                state.part_velocity[root] = velocity;
+            }
+        }
         // The state keeps the numbers it was given: what physics reads off its bodies differs by rounding.
         for (joint, stand) in self.joints.iter().zip(&stands) {
             let read = (
@@ -234,6 +260,14 @@ impl PhysicsWorld {
             *state.joint_position.get(joint)?,
         ))
     }
+}
+
+/// Whether two velocities of a body's origin are the same up to the rounding of moving them to its centre of mass, `arm`
+/// away, m.
+fn same_velocity(a: &Velocity, b: &Velocity, arm: Vec3) -> bool {
+    let most = |v: Vec3| v.abs().max_element();
+    let rounding = 4.0 * f32::EPSILON * (most(b.linear) + most(b.angular.cross(arm)));
+    a.angular == b.angular && most(a.linear - b.linear) <= rounding
 }
 
 fn finite_place(position: Vec3, yaw_rad: f32) -> Result<(), PhysicsError> {

@@ -46,6 +46,24 @@ pub enum PhysicsError {
         /// The first names that exist.
         known: Vec<String>,
     },
+    /// A law that what it was told to act on cannot follow.
+    #[error("law {law} cannot act on {what}: {why}")]
+    LawUnfit {
+        /// The law's id.
+        law: &'static str,
+        /// What it was told to act on.
+        what: String,
+        /// Why it cannot, and what it could.
+        why: String,
+    },
+    /// Something that cannot be put anywhere.
+    #[error("{what} cannot be set: {why}")]
+    Unmovable {
+        /// What was to be put somewhere.
+        what: String,
+        /// Why it cannot be.
+        why: String,
+    },
     /// Bytes that are no snapshot of this world.
     #[error("physics snapshot refused: {0}")]
     Snapshot(String),

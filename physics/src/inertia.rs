@@ -2,6 +2,7 @@
 
 use crate::laws::Installed;
 use crate::model::{BodyPlan, PhysicsModel};
+use dwell_scene::{House, State};
 use glam::{Mat3, Vec3};
 use rapier3d::dynamics::MassProperties;
 
@@ -18,9 +19,9 @@ pub(crate) struct Inertia {
 }
 
 impl Inertia {
-    /// What a body's pieces have and its parts state, with densities multiplied by `factor`.
-    pub(crate) fn of(plan: &BodyPlan, factor: f32) -> Self {
-        let mut all = plan.given_mass(factor).unwrap_or_default();
+    /// What a body's pieces have and its parts state in a world, with densities multiplied by `factor`.
+    pub(crate) fn of(house: &House, plan: &BodyPlan, state: &State, factor: f32) -> Self {
+        let mut all = plan.given_mass(house, state, factor).unwrap_or_default();
         for piece in &plan.pieces {
             let own = piece.shape.mass_properties(piece.density_kg_m3 * factor);
             all += own.transform_by(&piece.place);
@@ -49,6 +50,7 @@ impl Inertia {
 /// The inertia of each body whose parts state it or some law changes it; the colliders of such a body have no density. Shape (body,).
 pub(crate) fn altered(
     model: &PhysicsModel,
+    state: &State,
     factors: &[f32],
     laws: &[Installed],
 ) -> Vec<Option<Inertia>> {
@@ -58,7 +60,7 @@ pub(crate) fn altered(
             if laws.is_empty() && plan.given.is_none() {
                 return None;
             }
-            let own = Inertia::of(plan, *factor);
+            let own = Inertia::of(&model.house, plan, state, *factor);
             let mut changed = own;
             for installed in laws {
                 installed.law.weigh(index as u32, &mut changed);

@@ -38,6 +38,7 @@ mod model;
 mod motors;
 mod parameters;
 mod report;
+mod reset;
 mod snapshot;
 mod softness;
 mod start;
@@ -51,4 +52,5 @@ pub use contact::{ContactEvent, ContactKind, ContactPhase, MergedEvents, Toucher
 pub use error::PhysicsError;
 pub use model::PhysicsModel;
 pub use report::{FrozenObject, MovedObject, PassingJoint, StartReport};
+pub use reset::{BodyState, JointState};
 pub use world::PhysicsWorld;

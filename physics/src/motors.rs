@@ -49,10 +49,8 @@ impl PhysicsWorld {
                 installed.law.drive(&motor, &mut command);
             }
             let now = (position, velocity);
-            let servo = joint.values.servo.as_ref();
-            let kind = joint.kind;
             let (mut pull, _) =
-                joints::advance(kind, articulation, servo, command, None, now, (0.0, 0.0));
+                joints::advance(joint.kind, &joint.values, command, None, now, (0.0, 0.0));
             if let Some(pull) = &mut pull {
                 for installed in &self.laws {
                     installed.law.strengthen(joint.id, pull);

@@ -9,12 +9,12 @@ use crate::laws;
 use crate::world::{PhysicsWorld, Weights};
 use dwell_scene::State;
 use glam::Vec3;
-use rapier3d::dynamics::MassProperties;
+use rapier3d::dynamics::{MassProperties, RigidBody};
 
 impl PhysicsWorld {
     /// Takes over the state's overrides and laws: masses, friction and restitution of pairs and materials, gravity,
     /// all that [`State::joint_values`] gives of joints. Everything that sleeps is woken if something changed. Where a link's
-    /// length changed, what hangs on it moves there, in `state` too.
+    /// length changed, what hangs on it moves there, in `state` too; a joint beyond a new limit stands at it, at rest.
     ///
     /// # Errors
     /// [`PhysicsError::Scene`] or [`PhysicsError::LawTarget`] for a law that cannot be installed; nothing has changed
@@ -26,14 +26,15 @@ impl PhysicsWorld {
         let table = ContactTable::new(&model.house, state);
         let weights = Weights::new(&model, state, &laws);
         let gravity = Vec3::new(0.0, -state.gravity_m_s2(), 0.0);
-        let mut changed =
-            gravity != self.engine.gravity || weights != self.weights || table.differs(&self.table);
+        // What changes shapes, masses or joints is taken over by a step of no length, which looks at all contacts anew; what only
+        // changes how things act from the next step on is not, so that a number set and set back leaves no trace.
+        let mut changed = weights != self.weights || table.differs(&self.table);
         let values = Dress {
             house: &model.house,
             table: &table,
             laws: &laws,
         };
-        let mut longer = false;
+        let (mut longer, mut shifted) = (false, Vec::new());
         let statics = model.statics.iter().map(|piece| (piece, None));
         let moving = model
             .bodies
@@ -61,6 +62,7 @@ impl PhysicsWorld {
                 rigid.set_additional_mass_properties(properties, false);
                 let scale = inertia.map_or(1.0, |i| i.gravity_scale);
                 rigid.set_gravity_scale(if held { 0.0 } else { scale }, false);
+                shifted.push(index);
             }
         }
         for agent in 0..self.agents.len() {
@@ -72,11 +74,26 @@ impl PhysicsWorld {
             let before = joint.values.parent_from_joint;
             changed |= joints::set_values(&mut self.engine, &model, joint, state);
             longer |= joint.values.parent_from_joint != before;
+            let position = state.joint_position[joint.id];
+            let within = joint.values.clamp(position);
+            if within != position {
+                state.joint_position[joint.id] = within;
+                state.joint_velocity[joint.id] = 0.0;
+                let child = joint.child as usize;
+                joints::release(
+                    &mut self.engine,
+                    &self.bodies[child],
+                    &mut self.holds[child],
+                );
+                longer = true;
+            }
         }
+        longer |= self.keep_motion(state, &shifted);
         if longer {
             self.follow_lengths(state);
         }
-        changed |= laws.len() != self.laws.len()
+        let acts_anew = gravity != self.engine.gravity
+            || laws.len() != self.laws.len()
             || laws
                 .iter()
                 .zip(&self.laws)
@@ -89,13 +106,51 @@ impl PhysicsWorld {
         self.laws = laws;
         if changed {
             self.flush();
-            for body in &self.bodies {
+        }
+        if changed || acts_anew {
+            self.wake_sleepers(changed);
+        }
+        Ok(())
+    }
+
+    /// Wakes what sleeps; with `all`, what is about to sleep waits anew too.
+    fn wake_sleepers(&mut self, all: bool) {
+        for body in &self.bodies {
+            let rigid = self.engine.bodies.get(body.handle);
+            // rapier sorts its islands anew when it wakes what is awake, and solves in another order.
+            if all || rigid.is_some_and(RigidBody::is_sleeping) {
                 self.engine
                     .islands
                     .wake_up(&mut self.engine.bodies, body.handle, true);
             }
         }
-        Ok(())
+    }
+
+    /// Bodies whose centre of mass has moved go on as their parts did. Returns whether joints move some of them.
+    fn keep_motion(&mut self, state: &State, shifted: &[usize]) -> bool {
+        let mut on_joints = false;
+        for index in shifted {
+            let plan = &self.model.bodies[*index];
+            on_joints |= plan.joint.is_some();
+            let handle = self.bodies[*index].handle;
+            if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+                rigid.recompute_mass_properties_from_colliders(&self.engine.colliders);
+                for collider in rigid.colliders() {
+                    if let Some(collider) = self.engine.colliders.get_mut(*collider) {
+                        body::look_anew(collider);
+                    }
+                }
+            }
+            if let Some(rigid) = self.engine.bodies.get_mut(handle)
+                && plan.joint.is_none()
+                && self.holds[*index] == Hold::Free
+            {
+                let velocity = state.part_velocity[plan.root()];
+                let arm = rigid.center_of_mass() - rigid.position().translation;
+                rigid.set_linvel(velocity.linear + velocity.angular.cross(arm), false);
+            }
+        }
+        on_joints
     }
 
     /// Moves what hangs on joints whose frames have changed; joints keep their positions and velocities.

@@ -174,7 +174,7 @@ impl PhysicsWorld {
                     }
                 }
             } else if let JointCommand::Position(goal) = command {
-                let goal = articulation.clamp(goal);
+                let goal = joint.values.clamp(goal);
                 let drive = self.drives.get(&joint.id);
                 if drive.is_none_or(|drive| drive.goal != goal) {
                     self.drives.insert(joint.id, Drive::new(goal, now.0, None));
@@ -188,15 +188,8 @@ impl PhysicsWorld {
             }
             let hand = self.drives.get_mut(&joint.id);
             let limits = (step_s, effort);
-            let (pull, progress) = joints::advance(
-                joint.kind,
-                articulation,
-                joint.values.servo.as_ref(),
-                command,
-                hand,
-                now,
-                limits,
-            );
+            let (pull, progress) =
+                joints::advance(joint.kind, &joint.values, command, hand, now, limits);
             if pull.is_some() && self.pulls[index] != pull {
                 joints::wake(&mut self.engine, &joint);
             }

@@ -78,7 +78,7 @@ pub(crate) struct Weights {
 impl Weights {
     pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &[Installed]) -> Self {
         let factors = body::mass_factors(model, state);
-        let altered = inertia::altered(model, &factors, laws);
+        let altered = inertia::altered(model, state, &factors, laws);
         Self { factors, altered }
     }
 }

@@ -5,15 +5,18 @@ use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::sound::Sound;
 use dwell_physics::{
-    Action, ActionOutcome, AgentControl, ContactEvent, PhysicsConfig, PhysicsWorld, StartReport,
+    Action, ActionOutcome, AgentControl, BodyState, ContactEvent, JointState, PhysicsConfig,
+    PhysicsWorld, StartReport,
 };
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Address, AgentId, AgentState, Entity, House, Id, JointCommand, JointId, ObjectId, State,
+    Address, AgentId, AgentState, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId,
+    Parameter, State,
 };
 use glam::Vec3;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -47,21 +50,19 @@ impl World {
         for body in &config.agents {
             state.agents.push(AgentState::new(*body, spot, 0.0));
         }
+        state.laws = crate::laws::install(&config.laws)?;
+        let mut set = BTreeSet::new();
         for (text, value) in &config.parameters {
             let address: Address = text.parse()?;
-            if state
-                .overrides
-                .contains_key(&state.canonical(&house, &address)?)
-            {
+            if !set.insert(state.canonical(&house, &address)?) {
                 return Err(WorldError::Config {
                     field: "parameters",
                     found: format!("{text} twice, in two spellings"),
                     allowed: "each parameter once".to_owned(),
                 });
             }
-            state.set_parameter(&house, &address, *value)?;
+            crate::laws::set_parameter(&mut state, &house, &address, *value)?;
         }
-        state.laws = crate::laws::install(&config.laws)?;
         let physics_config = PhysicsConfig {
             control_rate_hz: config.control_rate_hz as f32,
             physics_rate_hz: config.physics_rate_hz as f32,
@@ -226,14 +227,38 @@ impl World {
         &self.start_report
     }
 
-    /// Overrides a parameter from now on.
+    /// What stands at an address now.
     ///
     /// # Errors
-    /// [`WorldError::Scene`] for an unknown address or a value out of range.
+    /// [`WorldError::Scene`] for an unknown address.
+    pub fn parameter(&self, address: &Address) -> Result<Parameter, WorldError> {
+        Ok(crate::laws::parameter(&self.state, self.house(), address)?)
+    }
+
+    /// Every parameter with an address, and what stands there now: those of the scene, then those of laws, installed or not.
+    pub fn parameters(&self) -> Vec<(Address, Parameter)> {
+        let known: Vec<&LawInfo> = crate::laws::all().collect();
+        let mut addresses = self.state.addresses(self.house());
+        addresses.extend(self.state.law_addresses(&known));
+        let read = |address: Address| Some((address.clone(), self.parameter(&address).ok()?));
+        addresses.into_iter().filter_map(read).collect()
+    }
+
+    /// Sets a parameter from now on: of the scene, or of a law (`law/ID/PARAM`, `law/ID@TARGET/PARAM`), which is installed by
+    /// the first number that differs from its default. What a law remembers (commands on their way, play) stays as long as
+    /// one of its numbers differs from its default.
+    ///
+    /// # Errors
+    /// [`WorldError::Scene`] for an unknown address or a value out of range, [`WorldError::Physics`] for a law that cannot
+    /// act on its target. Nothing has changed then.
     pub fn set_parameter(&mut self, address: &Address, value: f64) -> Result<(), WorldError> {
         let house = self.house().clone();
-        self.state.set_parameter(&house, address, value)?;
-        self.physics.apply_parameters(&mut self.state)?;
+        let before = (self.state.overrides.clone(), self.state.laws.clone());
+        crate::laws::set_parameter(&mut self.state, &house, address, value)?;
+        if let Err(error) = self.physics.apply_parameters(&mut self.state) {
+            (self.state.overrides, self.state.laws) = before;
+            return Err(error.into());
+        }
         self.rays.update(&self.state);
         Ok(())
     }
@@ -280,21 +305,35 @@ impl World {
     /// Puts joints to positions and velocities, rad or m and per second, at once; what hangs on them moves along.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for a joint that does not exist; [`WorldError::Physics`] for numbers that are not finite;
-    /// nothing has changed then.
+    /// [`WorldError::Usage`] for a joint that does not exist; [`WorldError::Physics`] for numbers that are not finite, a position
+    /// beyond the joint's limits or a speed beyond 1000 rad/s or m/s; nothing has changed then.
     pub fn set_joints(&mut self, joints: &[(JointId, f32, f32)]) -> Result<(), WorldError> {
         let count = self.state.joint_position.len();
         if let Some((joint, ..)) = joints.iter().find(|(joint, ..)| joint.index() >= count) {
             let what = format!("no joint {}; there are {count}, counted from 0", joint.0);
             return Err(WorldError::Usage(what));
         }
-        let mut state = self.state.clone();
-        for (joint, position, velocity) in joints {
-            state.joint_position[*joint] = *position;
-            state.joint_velocity[*joint] = *velocity;
-        }
-        self.physics.adopt(&mut state)?;
-        self.state = state;
+        let joints: Vec<JointState> = joints
+            .iter()
+            .map(|(joint, position, velocity)| JointState {
+                joint: *joint,
+                position: *position,
+                velocity: *velocity,
+            })
+            .collect();
+        self.physics.set_joints(&mut self.state, &joints)?;
+        self.rays.update(&self.state);
+        Ok(())
+    }
+
+    /// Puts things that move freely, and the bases of robots that stand free, to poses and velocities, at once. What hangs on
+    /// them by joints moves along; agents are put by [`World::place_agent`].
+    ///
+    /// # Errors
+    /// [`WorldError::Physics`] for a part that is fixed, frozen, held or moved by a joint, for numbers that are not finite, and
+    /// for places and speeds that physics cannot keep; nothing has changed then.
+    pub fn set_bodies(&mut self, bodies: &[BodyState]) -> Result<(), WorldError> {
+        self.physics.set_bodies(&mut self.state, bodies)?;
         self.rays.update(&self.state);
         Ok(())
     }

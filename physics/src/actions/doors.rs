@@ -78,6 +78,7 @@ impl PhysicsWorld {
             } else {
                 joint.position_at(fraction)
             };
+            let goal = state.joint_values(&self.model.house, *id).clamp(goal);
             state.joint_command[*id] = JointCommand::Position(goal);
             let drive = Drive::new(goal, state.joint_position[*id], Some(actor.id));
             self.drives.insert(*id, drive);

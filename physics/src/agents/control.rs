@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 /// Furthest an agent looks up or down, rad.
 const STEEPEST_LOOK_RAD: f32 = 1.5;
 
+/// The highest speed that a body can be told, m/s and rad/s: beyond it squares of speeds are no numbers any more. Bodies go
+/// no faster than their own limits, whatever they are told.
+const FASTEST: f32 = 1e6;
+
 /// What an agent's body does during one control step: constant velocities in its own frame.
 ///
 /// A displacement of `d` metres in a control step is a velocity of `d * control_rate_hz`. An agent on legs has these
@@ -57,6 +61,21 @@ impl AgentControl {
         };
         if !self.is_finite() {
             return refuse("velocities", format!("{self:?}"), "finite numbers");
+        }
+        let wheels = self.wheel_rad_s.unwrap_or_default();
+        let fastest = [
+            self.forward_m_s,
+            self.right_m_s,
+            self.yaw_rate_rad_s,
+            self.pitch_rate_rad_s,
+            wheels[0],
+            wheels[1],
+        ]
+        .iter()
+        .fold(0.0, |most: f32, speed| most.max(speed.abs()));
+        if fastest > FASTEST {
+            let allowed = "at most 1e6 m/s or rad/s either way";
+            return refuse("velocities", format!("{self:?}"), allowed);
         }
         let drive = matches!(locomotion, Locomotion::DifferentialDrive(_));
         if let Some(rates) = self.wheel_rad_s {

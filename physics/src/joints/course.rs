@@ -262,7 +262,7 @@ impl Freedoms<'_> {
             if let Some(pull) = &self.drivers.pulls[self.tree.joints[*place]] {
                 elements.push(freedom.pull(pull));
             }
-            if let Some([low, high]) = joint.limits {
+            if let Some([low, high]) = joint.values.limits {
                 elements.push(freedom.stop(low.into(), 1.0));
                 elements.push(freedom.stop(high.into(), -1.0));
             }

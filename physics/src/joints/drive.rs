@@ -2,7 +2,7 @@
 
 use super::element::{Gain, Pull};
 use super::latch::tolerance;
-use dwell_scene::{AgentId, Articulation, JointCommand, JointId, JointKind, Servo};
+use dwell_scene::{AgentId, JointCommand, JointId, JointKind, JointValues};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -105,27 +105,23 @@ impl Drive {
     }
 }
 
-/// What pulls at a joint during the next control step, and how its hand stands. `servo`: the motor
-/// in force; `command`: what it is told;
+/// What pulls at a joint during the next control step, and how its hand stands. `values`: what is in force at the joint;
+/// `command`: what it is told;
 /// `hand`: the hand that moves a joint without a servo.
 pub(crate) fn advance(
     kind: JointKind,
-    articulation: &Articulation,
-    servo: Option<&Servo>,
+    values: &JointValues,
     command: JointCommand,
     hand: Option<&mut Drive>,
     (position, velocity): (f32, f32),
     (step_s, hand_effort): (f32, f32),
 ) -> (Option<Pull>, Option<Progress>) {
-    if let Some(servo) = servo {
+    if let Some(servo) = &values.servo {
         let (target, gain) = match command {
             JointCommand::Off => return (None, None),
             JointCommand::Position(target) => {
                 let (stiffness, damping) = (servo.stiffness, servo.damping);
-                (
-                    articulation.clamp(target),
-                    Gain::Servo { stiffness, damping },
-                )
+                (values.clamp(target), Gain::Servo { stiffness, damping })
             }
             JointCommand::Velocity(target) => (target, Gain::Velocity(servo.velocity_gain)),
             JointCommand::Effort(target) => (target, Gain::Effort),
@@ -147,7 +143,7 @@ pub(crate) fn advance(
     let Some(hand) = hand else {
         return (None, None);
     };
-    let progress = hand.follow(kind, articulation.limits, (position, velocity), step_s);
+    let progress = hand.follow(kind, values.limits, (position, velocity), step_s);
     let pull = (progress == Progress::Moving).then_some(Pull {
         target: hand.ramp,
         max_effort: hand_effort,

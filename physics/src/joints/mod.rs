@@ -50,10 +50,8 @@ pub(crate) struct Joint {
     child_from_joint: RapierPose,
     /// Whether it hangs on what never moves and opens by hand: then it can be shut for good.
     pub(crate) latchable: bool,
-    /// What is in force.
+    /// What is in force. Stops that rapier can keep it keeps too: it feels what presses against them.
     pub(crate) values: JointValues,
-    /// Stops, rad or m. Those that rapier can keep it keeps too: it feels what presses against them.
-    limits: Option<[f32; 2]>,
 }
 
 /// Inserts the joints of a house. `anchor` is a fixed body at the origin that carries no collider.
@@ -75,16 +73,16 @@ pub(crate) fn insert(
         let parent_from_joint = to_rapier(&(body_from_parent * values.parent_from_joint));
         let child_from_joint = to_rapier(&(child_from_part * joint.child_from_joint));
         let to_x = to_x(joint.axis);
-        let (locked, axis) = match joint.kind {
-            JointKind::Hinge => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
-            JointKind::Slide => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
+        let locked = match joint.kind {
+            JointKind::Hinge => JointAxesMask::LOCKED_REVOLUTE_AXES,
+            JointKind::Slide => JointAxesMask::LOCKED_PRISMATIC_AXES,
         };
+        let axis = free_axis(joint.kind);
         let mut builder = GenericJointBuilder::new(locked)
             .local_frame1(parent_from_joint * to_x)
             .local_frame2(child_from_joint * to_x)
             .contacts_enabled(false);
-        let held = |limits: &[f32; 2]| element::rapier_holds(joint.kind, *limits);
-        if let Some(limits) = joint.limits.filter(held) {
+        if let Some(limits) = held_by_rapier(joint.kind, &values) {
             builder = builder.limits(axis, limits);
         }
         let child_handle = bodies[child as usize].handle;
@@ -103,10 +101,24 @@ pub(crate) fn insert(
             child_from_joint,
             latchable: standing && joint.opens(),
             values,
-            limits: joint.limits,
         });
     }
     joints
+}
+
+/// The axis that rapier leaves free.
+fn free_axis(kind: JointKind) -> JointAxis {
+    match kind {
+        JointKind::Hinge => JointAxis::AngX,
+        JointKind::Slide => JointAxis::LinX,
+    }
+}
+
+/// The limits that rapier keeps too.
+fn held_by_rapier(kind: JointKind, values: &JointValues) -> Option<[f32; 2]> {
+    values
+        .limits
+        .filter(|limits| element::rapier_holds(kind, *limits))
 }
 
 /// rapier turns about and slides along the frames' X axes.
@@ -152,6 +164,17 @@ pub(crate) fn set_values(
     let values = state.joint_values(&model.house, joint.id);
     if values == joint.values {
         return false;
+    }
+    if values.limits != joint.values.limits
+        && let Some(held) = engine.joints.get_mut(joint.handle, false)
+    {
+        let axis = free_axis(joint.kind);
+        match held_by_rapier(joint.kind, &values) {
+            Some(limits) => {
+                held.data.set_limits(axis, limits);
+            }
+            None => held.data.limit_axes.remove(axis.into()),
+        }
     }
     joint.values = values;
     let parent_from_joint = to_rapier(&(joint.body_from_parent * values.parent_from_joint));

@@ -62,7 +62,7 @@ mod tests {
     use super::*;
     use crate::inertia::Inertia;
     use dwell_scene::{
-        Category, Collider, LevelId, Mesh, Mobility, Object, Part, Pose, ShoeboxMaterials,
+        Category, Collider, LevelId, Mesh, Mobility, Object, Part, Pose, ShoeboxMaterials, State,
     };
     use glam::{Affine3A, DMat3, DVec3, Mat3, Quat, Vec3};
 
@@ -137,7 +137,12 @@ mod tests {
             half_extents: half,
         });
         let model = thing(Mesh::cuboid(Vec3::ZERO, Vec3::ONE), pieces.to_vec(), 640.0);
-        let found = Inertia::of(&model.bodies[0], 1.0);
+        let found = Inertia::of(
+            &model.house,
+            &model.bodies[0],
+            &State::new(&model.house),
+            1.0,
+        );
         let boxes = bars.map(|(at, half)| (at.as_dvec3(), half.as_dvec3()));
         let (mass, center, inertia) = by_hand(&boxes, 640.0);
         assert!((f64::from(found.mass_kg) / mass - 1.0).abs() < 1e-5);
@@ -158,7 +163,12 @@ mod tests {
             half_extents: half,
         };
         let model = thing(Mesh::cuboid(Vec3::ZERO, Vec3::ONE), vec![piece], 500.0);
-        let found = Inertia::of(&model.bodies[0], 1.0);
+        let found = Inertia::of(
+            &model.house,
+            &model.bodies[0],
+            &State::new(&model.house),
+            1.0,
+        );
         let (_, _, straight) = by_hand(&[(DVec3::ZERO, half.as_dvec3())], 500.0);
         let turn = DMat3::from_quat(turn.as_dquat());
         let expected = turn * straight * turn.transpose();
@@ -176,7 +186,12 @@ mod tests {
         let model = thing(mesh, Vec::new(), 640.0);
         assert_eq!(model.stand_ins, [ObjectId(0)]);
         assert!(model.bodies[0].pieces.len() >= 2);
-        let found = Inertia::of(&model.bodies[0], 1.0);
+        let found = Inertia::of(
+            &model.house,
+            &model.bodies[0],
+            &State::new(&model.house),
+            1.0,
+        );
         let boxes = [
             (DVec3::new(0.2, 0.05, 0.04), DVec3::new(0.2, 0.05, 0.04)),
             (DVec3::new(0.05, 0.25, 0.04), DVec3::new(0.05, 0.15, 0.04)),

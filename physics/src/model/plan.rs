@@ -5,8 +5,8 @@ use super::decompose;
 use super::shapes::{self, Shaped};
 use crate::convert::to_rapier;
 use dwell_scene::{
-    Aabb, Collider, House, Id, IdVec, JointId, MaterialId, MeshId, Mobility, ObjectId, Part,
-    PartId, Pose, StructureId,
+    Aabb, Collider, House, Id, IdVec, Inertial, JointId, MaterialId, MeshId, Mobility, ObjectId,
+    Part, PartId, Pose, State, StructureId,
 };
 use glam::Affine3A;
 use rapier3d::dynamics::MassProperties;
@@ -202,11 +202,14 @@ fn weigh_part(pieces: &mut [Piece], part: &Part) {
     }
 }
 
-/// What the parts of a body state of their mass, in the body's frame.
-fn given(house: &House, parts: &[(PartId, Pose)]) -> Option<MassProperties> {
+/// What the parts of a body state of their mass, in the body's frame. `inertial`: where each part's mass sits.
+fn given(
+    house: &House,
+    parts: &[(PartId, Pose)],
+    inertial: impl Fn(PartId) -> Option<Inertial>,
+) -> Option<MassProperties> {
     let stated = parts.iter().filter_map(|(id, body_from_part)| {
-        let part = &house.parts[*id];
-        let (inertial, mass_kg) = (part.inertial?, part.mass_kg?);
+        let (inertial, mass_kg) = (inertial(*id)?, house.parts[*id].mass_kg?);
         let frame = *body_from_part * inertial.part_from_principal;
         Some(MassProperties::with_principal_inertia_frame(
             frame.position,
@@ -291,7 +294,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
                 stand_ins.push(object_id);
             }
             let mass = |piece: &Piece| piece.shape.mass_properties(piece.density_kg_m3).mass();
-            body.given = given(&house, &body.parts);
+            body.given = given(&house, &body.parts, |part| house.parts[part].inertial);
             body.mass_kg = body.pieces.iter().map(mass).sum::<f32>()
                 + body.given.map_or(0.0, |given| given.mass());
         }
@@ -424,9 +427,20 @@ impl BodyPlan {
         })
     }
 
-    /// What its parts state of their mass, times a factor.
-    pub(crate) fn given_mass(&self, factor: f32) -> Option<MassProperties> {
-        self.given.map(|given| {
+    /// What its parts state of their mass in a world, times a factor.
+    pub(crate) fn given_mass(
+        &self,
+        house: &House,
+        state: &State,
+        factor: f32,
+    ) -> Option<MassProperties> {
+        let stated = if state.overrides.is_empty() {
+            self.given
+        } else {
+            self.given
+                .and_then(|_| given(house, &self.parts, |part| state.part_inertial(house, part)))
+        };
+        stated.map(|given| {
             MassProperties::with_principal_inertia_frame(
                 given.local_com,
                 given.mass() * factor,

@@ -27,6 +27,7 @@ mod motion;
 mod parameters;
 mod placing;
 mod refusals;
+mod reset;
 mod snapshot;
 mod standing;
 mod start;

@@ -28,9 +28,11 @@ impl Address {
     /// The law's name and its parameter's.
     fn law_words(&self) -> Result<(&str, &str), SceneError> {
         let inner = self.as_str().strip_prefix("law/");
-        inner.and_then(|inner| inner.rsplit_once('/')).ok_or_else(|| {
-            self.fault("a law's parameter is law/ID/PARAM, law/ID@TARGET/PARAM or law/N/PARAM")
-        })
+        inner
+            .and_then(|inner| inner.rsplit_once('/'))
+            .ok_or_else(|| {
+                self.fault("a law's parameter is law/ID/PARAM, law/ID@TARGET/PARAM or law/N/PARAM")
+            })
     }
 }
 
@@ -42,15 +44,21 @@ impl State {
     ) -> Result<Named<'a>, SceneError> {
         let (name, param) = address.law_words()?;
         let info_of = |id: &str| {
-            known.iter().find(|info| info.id == id).copied().ok_or_else(|| {
-                let ids: Vec<_> = known.iter().map(|info| info.id).collect();
-                address.fault(format!("no law {id:?}; there are {ids:?}"))
-            })
+            known
+                .iter()
+                .find(|info| info.id == id)
+                .copied()
+                .ok_or_else(|| {
+                    let ids: Vec<_> = known.iter().map(|info| info.id).collect();
+                    address.fault(format!("no law {id:?}; there are {ids:?}"))
+                })
         };
         let (info, target, place) = if let Ok(place) = name.parse::<usize>() {
             let spec = self.laws.get(place).ok_or_else(|| {
                 let count = self.laws.len();
-                address.fault(format!("no law {place}; {count} are installed, counted from 0"))
+                address.fault(format!(
+                    "no law {place}; {count} are installed, counted from 0"
+                ))
             })?;
             (info_of(&spec.id)?, None, Some(place))
         } else {
@@ -72,7 +80,10 @@ impl State {
         let found = info.params.iter().find(|known| known.name == param);
         let param = found.ok_or_else(|| {
             let names: Vec<_> = info.params.iter().map(|known| known.name).collect();
-            address.fault(format!("no parameter {param:?}; law {} has {names:?}", info.id))
+            address.fault(format!(
+                "no parameter {param:?}; law {} has {names:?}",
+                info.id
+            ))
         })?;
         Ok(Named {
             info,
@@ -275,7 +286,10 @@ mod tests {
         let message = set(&mut state, "law/lag/tau_s", 0.2).unwrap_err();
         assert!(message.contains("law/0/tau_s, law/1/tau_s"), "{message}");
         set(&mut state, "law/1/tau_s", 0.2).unwrap();
-        assert_eq!((get(&state, "law/0/tau_s"), get(&state, "law/1/tau_s")), (0.1, 0.2));
+        assert_eq!(
+            (get(&state, "law/0/tau_s"), get(&state, "law/1/tau_s")),
+            (0.1, 0.2)
+        );
         let known: &[&LawInfo] = &[&DRAG, &LAG];
         for address in state.law_addresses(known) {
             state.law_parameter(known, &address).unwrap();

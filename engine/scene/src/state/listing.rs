@@ -78,7 +78,9 @@ mod tests {
         let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
         let mut state = State::new(&house);
         let body = AgentBody::default();
-        state.agents.push(AgentState::new(body, glam::Vec3::ZERO, 0.0));
+        state
+            .agents
+            .push(AgentState::new(body, glam::Vec3::ZERO, 0.0));
         let addresses = state.addresses(&house);
         assert!(addresses.len() > 20, "{addresses:?}");
         for wanted in [

@@ -34,7 +34,8 @@ pub(in crate::laws) const LAW: Law = Law {
     install,
 };
 
-/// What a joint was told in past physics steps, the newest first.
+/// What a joint was told in past physics steps, the newest first: as many as the delay reaches back. When the delay grows
+/// at run time, the oldest command that is known stays until newer ones arrive; when it shrinks, those between are lost.
 #[derive(Clone, Debug, Default)]
 struct Past(VecDeque<JointCommand>);
 
@@ -62,8 +63,9 @@ impl Past {
     fn shift(&mut self, command: JointCommand, delay_steps: f32) -> JointCommand {
         let whole = delay_steps as usize;
         let part = delay_steps - whole as f32;
+        let oldest = self.0.back().copied().unwrap_or_default();
         self.0.push_front(command);
-        self.0.truncate(whole + 2);
+        self.0.resize(whole + 2, oldest);
         let told = |steps: usize| self.0.get(steps).copied().unwrap_or_default();
         let (late, early) = (told(whole), told(whole + 1));
         match (number(early), number(late)) {
@@ -135,6 +137,24 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A delay that grows holds the oldest command until newer ones come that late; one that shrinks skips some.
+    #[test]
+    fn a_delay_that_changes_leaves_no_gap() {
+        let mut past = Past::default();
+        let mut told = 0.0;
+        let mut run = |delay: f32, steps: usize| {
+            let arrived = (0..steps).map(|_| {
+                told += 1.0;
+                number(past.shift(JointCommand::Effort(told), delay)).unwrap_or(0.0)
+            });
+            arrived.collect::<Vec<f32>>()
+        };
+        assert_eq!(run(2.0, 6), [0.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
+        // Known are what is told now and the three before it.
+        assert_eq!(run(5.0, 6), [3.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        assert_eq!(run(1.0, 3), [12.0, 13.0, 14.0]);
     }
 
     #[test]

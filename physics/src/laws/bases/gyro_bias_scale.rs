@@ -1,6 +1,6 @@
 //! A gyro that reads something at rest, and too much or too little in a turn.
 
-use super::Riders;
+use super::{Needs, Riders};
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law, value};
 use crate::model::PhysicsModel;
@@ -56,7 +56,7 @@ fn install(
     state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
     Ok(Box::new(Gyro {
-        riders: Riders::of(spec, info, state)?,
+        riders: Riders::of(spec, info, state, Needs::Wheels)?,
         bias_rad_s: value(spec, info, "bias_rad_s"),
         scale: value(spec, info, "scale"),
     }))

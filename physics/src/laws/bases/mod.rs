@@ -1,5 +1,5 @@
 //! Laws of wheeled bases and of agents' gyros. Their target is an agent's number, counted from 0; without one they act on
-//! every agent.
+//! every agent that has what they need; agents on legs have none of it.
 
 pub(super) mod gyro_bias_scale;
 pub(super) mod unequal_wheels;
@@ -7,16 +7,61 @@ pub(super) mod wheel_slip;
 
 use crate::error::PhysicsError;
 use crate::laws::target::no_target;
-use dwell_scene::{AgentId, Id, LawInfo, LawSpec, State};
+use dwell_scene::{AgentId, Id, LawInfo, LawSpec, Locomotion, State};
 
-/// The agents that a spec acts on.
+/// How an agent must get about so that a law can act on it.
 #[derive(Clone, Copy, Debug)]
-struct Riders(Option<AgentId>);
+enum Needs {
+    /// A left and a right wheel.
+    DrivenWheels,
+    /// Wheels of any kind, with a gyro between them.
+    Wheels,
+}
+
+impl Needs {
+    fn are_met_by(self, locomotion: &Locomotion) -> bool {
+        match self {
+            Self::DrivenWheels => matches!(locomotion, Locomotion::DifferentialDrive(_)),
+            Self::Wheels => !matches!(locomotion, Locomotion::Walking(_)),
+        }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::DrivenWheels => "the law needs the two wheels of a differential drive",
+            Self::Wheels => "the law needs a base on wheels",
+        }
+    }
+}
+
+/// The agents that a spec acts on; `None`: all, in a world that has none yet.
+#[derive(Clone, Debug)]
+struct Riders(Option<Vec<AgentId>>);
 
 impl Riders {
-    fn of(spec: &LawSpec, info: &LawInfo, state: &State) -> Result<Self, PhysicsError> {
+    fn of(
+        spec: &LawSpec,
+        info: &LawInfo,
+        state: &State,
+        needs: Needs,
+    ) -> Result<Self, PhysicsError> {
+        let unfit = |what: String, agent: AgentId| PhysicsError::LawUnfit {
+            law: info.id,
+            what,
+            why: format!(
+                "its body is of the kind {:?}; {}",
+                state.agents[agent].body.locomotion.name(),
+                needs.words()
+            ),
+        };
+        let fits = |agent: &AgentId| needs.are_met_by(&state.agents[*agent].body.locomotion);
         let Some(target) = &spec.target else {
-            return Ok(Self(None));
+            let able: Vec<AgentId> = state.agents.ids().filter(fits).collect();
+            return match state.agents.ids().next() {
+                None => Ok(Self(None)),
+                Some(first) if able.is_empty() => Err(unfit("any agent".to_owned(), first)),
+                Some(_) => Ok(Self(Some(able))),
+            };
         };
         let found = target
             .parse()
@@ -27,10 +72,15 @@ impl Riders {
             let names = numbers.iter().map(String::as_str);
             return Err(no_target(info.id, "agent", target, names));
         };
-        Ok(Self(Some(AgentId::from_index(index))))
+        let agent = AgentId::from_index(index);
+        if !fits(&agent) {
+            return Err(unfit(format!("agent {index}"), agent));
+        }
+        Ok(Self(Some(vec![agent])))
     }
 
-    fn holds(self, agent: AgentId) -> bool {
-        self.0.is_none_or(|one| one == agent)
+    fn holds(&self, agent: AgentId) -> bool {
+        let named = self.0.as_ref();
+        named.is_none_or(|named| named.contains(&agent))
     }
 }

@@ -1,6 +1,6 @@
 //! Wheels of unequal size, and a wheel base that is not as measured.
 
-use super::Riders;
+use super::{Needs, Riders};
 use crate::bases::Rolling;
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law};
@@ -60,7 +60,7 @@ fn install(
     let value = |name: &str| spec.value(info, name).unwrap_or(1.0);
     let (ratio, scale) = (value("radius_ratio"), value("radius_scale"));
     Ok(Box::new(Unequal {
-        riders: Riders::of(spec, info, state)?,
+        riders: Riders::of(spec, info, state, Needs::DrivenWheels)?,
         radius_factors: [
             scale * 2.0 / (1.0 + ratio),
             scale * 2.0 * ratio / (1.0 + ratio),

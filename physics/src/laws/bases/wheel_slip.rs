@@ -1,6 +1,6 @@
 //! Wheels that slip while they push.
 
-use super::Riders;
+use super::{Needs, Riders};
 use crate::bases::Rolling;
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law};
@@ -48,7 +48,7 @@ fn install(
     state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
     Ok(Box::new(Slip {
-        riders: Riders::of(spec, info, state)?,
+        riders: Riders::of(spec, info, state, Needs::DrivenWheels)?,
         slip_per_m_s2: spec.value(info, "slip_per_m_s2").unwrap_or(0.0),
     }))
 }

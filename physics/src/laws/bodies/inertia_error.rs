@@ -72,7 +72,7 @@ fn install(
     spec: &LawSpec,
     info: &LawInfo,
     model: &PhysicsModel,
-    _state: &State,
+    state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
     let of = |names: [&str; 3]| Vec3::from_array(names.map(|name| value(spec, info, name)));
     let all = 1.0 + value(spec, info, "scale");
@@ -83,7 +83,7 @@ fn install(
         products: of(["xy", "yz", "zx"]),
     };
     for (index, plan) in plans {
-        let mut inertia = Inertia::of(plan, 1.0);
+        let mut inertia = Inertia::of(&model.house, plan, state, 1.0);
         law.weigh(index, &mut inertia);
         if !inertia.is_positive() {
             return Err(PhysicsError::Range {

@@ -172,3 +172,35 @@ fn laws_of_bases_name_agents_that_exist() {
         }
     }
 }
+
+/// Legs have neither wheels nor a gyro between them: a law that needs them says so, and one without a target takes those
+/// agents that have them.
+#[test]
+fn laws_of_bases_are_refused_by_who_walks() {
+    let house = Build::room([20.0, 3.0, 20.0]).house();
+    for (id, name) in [
+        ("unequal_wheels", "radius_ratio"),
+        ("wheel_slip", "slip_per_m_s2"),
+        ("gyro_bias_scale", "bias_rad_s"),
+    ] {
+        for target in [None, Some("0")] {
+            let mut state = State::new(&house);
+            let walker = AgentState::new(AgentBody::default(), Vec3::new(10.0, 0.0, 10.0), 0.0);
+            state.agents.push(walker);
+            state.laws = vec![spec(id, target, &[(name, 0.9)])];
+            let config = dwell_physics::PhysicsConfig::default();
+            let refused = dwell_physics::PhysicsWorld::new(house.clone(), config, &mut state);
+            let message = refused.unwrap_err().to_string();
+            assert!(
+                message.contains("walking") && message.contains(id),
+                "{message}"
+            );
+        }
+        let mut both = robot(Vec::new(), 40.0);
+        both.agent(Vec3::new(5.0, 0.0, 10.0), 0.0);
+        both.state.laws = vec![spec(id, None, &[(name, 0.9)])];
+        both.world.apply_parameters(&mut both.state).unwrap();
+        both.steps(1);
+        assert_eq!(both.state.agents[AgentId(2)].gyro_rad_s, 0.0, "{id}");
+    }
+}

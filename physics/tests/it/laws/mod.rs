@@ -1,6 +1,7 @@
 //! Laws against their closed forms, and unchanged bits without them.
 
 mod actuators;
+mod addresses;
 mod bases;
 mod bodies;
 mod contacts;
