@@ -52,6 +52,30 @@ def point(name: str, value: Sequence[float]) -> tuple[float, float, float]:
     return x, y, z
 
 
+def triple(name: str, value: Sequence[float]) -> tuple[float, float, float]:
+    """Three finite numbers, from any sequence or array."""
+    try:
+        parts = list(value)
+    except TypeError:
+        parts = []
+    if len(parts) != 3:
+        raise ConfigError(f"{name}: expected three numbers (x, y, z), found {value!r}")
+    x, y, z = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts))
+    return x, y, z
+
+
+def unit_quaternion(name: str, value: Sequence[float]) -> tuple[float, ...]:
+    """A rotation (x, y, z, w), from four finite numbers that are not all 0, made of unit length."""
+    try:
+        parts = [finite(f"{name}[{k}]", part) for k, part in enumerate(value)]
+    except TypeError:
+        parts = []
+    length = math.hypot(*parts)
+    if len(parts) != 4 or length == 0.0 or not math.isfinite(length):
+        raise ConfigError(f"{name}: expected a rotation (x, y, z, w), found {value!r}")
+    return tuple(part / length for part in parts)
+
+
 def pair(name: str, value: object) -> tuple[float, float]:
     """Two finite numbers."""
     if isinstance(value, str | bytes) or not isinstance(value, Sequence) or len(value) != 2:

@@ -11,7 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import bodies, finite, pair, point, to_json, whole
+from dwell.arguments import (
+    bodies,
+    finite,
+    pair,
+    point,
+    to_json,
+    triple,
+    unit_quaternion,
+    whole,
+)
 from dwell.house import House
 from dwell.navigation import Navigation, Walker
 from dwell.settings import Laws, world_settings
@@ -368,7 +377,9 @@ class World:
 
         Raises:
             ConfigError: For what is no pair of finite numbers.
-            UsageError: There is no such joint. Nothing has changed then.
+            UsageError: There is no such joint.
+            DwellError: A position is beyond the joint's limits, or a speed beyond 1000 rad/s or m/s.
+                Nothing has changed then.
         """
         rows = []
         for joint, stand in joints.items():
@@ -376,13 +387,89 @@ class World:
             rows.append((whole("joint", joint, high=_MOST_IDS), position, velocity))
         self._native.set_joints(rows)
 
+    def body(self, object: str, *, part: str | None = None) -> dict[str, tuple[float, ...]]:
+        """Where a thing is and how it moves.
+
+        Args:
+            object: Its name.
+            part: One of its parts, by name; without it the first that moves.
+
+        Returns:
+            ``position`` (m) and ``rotation`` (x, y, z, w) of the part's origin, ``linear_m_s`` and
+            ``angular_rad_s``.
+        """
+        body: dict[str, list[float]] = json.loads(self._native.body_json(object, part))
+        return {name: tuple(values) for name, values in body.items()}
+
+    def set_body(
+        self,
+        object: str,
+        *,
+        part: str | None = None,
+        position: Sequence[float] | None = None,
+        rotation: Sequence[float] | None = None,
+        linear_m_s: Sequence[float] = (0.0, 0.0, 0.0),
+        angular_rad_s: Sequence[float] = (0.0, 0.0, 0.0),
+    ) -> None:
+        """Puts a thing that moves freely, or the base of a robot that stands free, anywhere.
+
+        It is awake afterwards, what hangs on it by joints moves along, and :meth:`body` reads back
+        what was set. Joints are set by :meth:`set_joints`, agents by :meth:`place_agent`.
+
+        Args:
+            object: Its name.
+            part: One of its parts, by name; without it the first that moves.
+            position: Of the part's origin, m; where it is, if left out.
+            rotation: (x, y, z, w) of any length but 0; as it is, if left out.
+            linear_m_s: Velocity of the part's origin; at rest, if left out.
+            angular_rad_s: Rotation about the world's axes.
+
+        Raises:
+            ConfigError: For a thing that does not exist or what is no finite number.
+            DwellError: It is fixed, held, frozen at the start or moved by a joint, or physics cannot
+                keep the numbers. Nothing has changed then.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment")
+            >>> world.set_body("apple_1", position=(1.0, 1.5, 1.0), linear_m_s=(0.0, 2.0, 0.0))
+            >>> world.body("apple_1")["linear_m_s"]
+            (0.0, 2.0, 0.0)
+        """
+        now = self.body(object, part=part)
+        turn = now["rotation"] if rotation is None else unit_quaternion("rotation", rotation)
+        row = {
+            "object": object,
+            "part": part,
+            "position": now["position"] if position is None else point("position", position),
+            "rotation": turn,
+            "linear_m_s": triple("linear_m_s", linear_m_s),
+            "angular_rad_s": triple("angular_rad_s", angular_rad_s),
+        }
+        self._native.set_bodies(to_json([row]))
+
     def parameter(self, address: str) -> dict[str, Any]:
         """What stands at an address: value, unit, low, high."""
         parameter: dict[str, Any] = json.loads(self._native.parameter_json(address))
         return parameter
 
+    def parameters(self, prefix: str = "") -> dict[str, dict[str, Any]]:
+        """Every parameter by its address: value, unit, low, high.
+
+        Args:
+            prefix: What the addresses begin with, such as ``"law/"`` or ``"joint/"``.
+        """
+        rows: list[tuple[str, dict[str, Any]]] = json.loads(self._native.parameters_json())
+        return {address: row for address, row in rows if address.startswith(prefix)}
+
     def set_parameter(self, address: str, value: float) -> None:
-        """Overrides a parameter from now on."""
+        """Sets a parameter from now on; it goes into snapshots and the hash.
+
+        ``law/ID/PARAM`` is a number of a law that acts on all it can, ``law/ID@TARGET/PARAM`` of
+        one on a target, ``law/N/PARAM`` of the law that was installed as number N. The first number
+        that differs from its default installs a law; one whose numbers are all default acts no
+        more.
+        """
         self._native.set_parameter(address, finite(address, value))
 
     def snapshot(self) -> bytes:

@@ -6,12 +6,14 @@ use crate::house::{PyHouse, describe_level};
 use crate::navigation::PyNavigation;
 use crate::picture;
 use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
-use dwell_physics::{ActionOutcome, AgentControl};
+use dwell_physics::{ActionOutcome, AgentControl, BodyState};
 use dwell_render::{Channels, Frame, Map};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
-use dwell_scene::{Address, AgentId, Entity, Id, JointCommand, JointId, LevelId, ObjectId};
-use glam::Vec3;
+use dwell_scene::{
+    Address, AgentId, Entity, Id, JointCommand, JointId, LevelId, ObjectId, PartId, Pose, Velocity,
+};
+use glam::{Quat, Vec3};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -51,6 +53,24 @@ impl Running {
                 house.objects.len()
             ))
         })
+    }
+
+    /// A part by its object's name and its own; without one the object's first part that moves.
+    fn part(&self, object: &str, part: Option<&str>) -> Result<PartId, Fault> {
+        let house = self.world.house();
+        let id = self.object(&json!(object))?;
+        let mut parts = house.objects[id].parts();
+        let Some(name) = part else {
+            let moving = parts.find(|id| !house.parts[*id].fixed);
+            return Ok(moving.unwrap_or(house.objects[id].first_part));
+        };
+        parts
+            .find(|id| house.parts[*id].name == name)
+            .ok_or_else(|| {
+                let parts = house.objects[id].parts();
+                let known: Vec<_> = parts.map(|id| &house.parts[id].name).collect();
+                Fault::Config(format!("no part {name:?}; {object:?} has {known:?}"))
+            })
     }
 
     fn agent(&self, agent: usize) -> Result<AgentId, Fault> {
@@ -100,6 +120,18 @@ impl PyWorld {
     ) -> PyResult<T> {
         py.engine(|| work(&mut *self.world.lock().map_err(|_| stopped())?))
     }
+}
+
+/// A thing that is put somewhere, as Python says it.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BodyRow {
+    object: String,
+    part: Option<String>,
+    position: [f32; 3],
+    rotation: [f32; 4],
+    linear_m_s: [f32; 3],
+    angular_rad_s: [f32; 3],
 }
 
 fn stopped() -> Fault {
@@ -448,7 +480,7 @@ impl PyWorld {
                         "name": joint.name,
                         "object": house.objects[joint.object].name,
                         "kind": joint.kind,
-                        "limits": joint.limits,
+                        "limits": state.joint_values(house, id).limits,
                         "motor": state.joint_values(house, id).servo,
                         "position": state.joint_position[id],
                         "velocity": state.joint_velocity[id],
@@ -487,15 +519,52 @@ impl PyWorld {
         })
     }
 
+    fn body_json(&self, py: Python<'_>, object: &str, part: Option<&str>) -> PyResult<String> {
+        self.with(py, |running| {
+            let id = running.part(object, part)?;
+            let state = running.world.state();
+            let (pose, velocity) = (state.part_pose[id], state.part_velocity[id]);
+            Ok(json!({
+                "position": pose.position.to_array(),
+                "rotation": pose.rotation.to_array(),
+                "linear_m_s": velocity.linear.to_array(),
+                "angular_rad_s": velocity.angular.to_array(),
+            })
+            .to_string())
+        })
+    }
+
+    fn set_bodies(&self, py: Python<'_>, bodies_json: &str) -> PyResult<()> {
+        self.with(py, |running| {
+            let rows: Vec<BodyRow> = serde_json::from_str(bodies_json)?;
+            let bodies: Vec<BodyState> = rows
+                .iter()
+                .map(|row| {
+                    Ok(BodyState {
+                        part: running.part(&row.object, row.part.as_deref())?,
+                        pose: Pose::new(row.position.into(), Quat::from_array(row.rotation)),
+                        velocity: Velocity {
+                            linear: row.linear_m_s.into(),
+                            angular: row.angular_rad_s.into(),
+                        },
+                    })
+                })
+                .collect::<Result<_, Fault>>()?;
+            Ok(running.world.set_bodies(&bodies)?)
+        })
+    }
+
     fn parameter_json(&self, py: Python<'_>, address: &str) -> PyResult<String> {
         self.with(py, |running| {
             let address: Address = address.parse()?;
-            Ok(serde_json::to_string(
-                &running
-                    .world
-                    .state()
-                    .parameter(running.world.house(), &address)?,
-            )?)
+            Ok(serde_json::to_string(&running.world.parameter(&address)?)?)
+        })
+    }
+
+    fn parameters_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            let rows = running.world.parameters();
+            Ok(serde_json::to_string(&rows)?)
         })
     }
 

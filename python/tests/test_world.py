@@ -111,6 +111,65 @@ def test_parameters_change_one_world_and_no_other(apartment: dwell.House) -> Non
         world.set_parameter("world/gravity", 1.0)
 
 
+def test_laws_have_addresses(apartment: dwell.House) -> None:
+    world, plain = dwell.World(apartment), dwell.World(apartment)
+    before = world.state_hash()
+    assert world.parameter("law/drag/c_d")["value"] == 0.0
+    world.set_parameter("law/drag/c_d", 0.5)
+    assert world.parameters("law/drag/")["law/drag/c_d"]["value"] == 0.5
+    assert world.state_hash() != before
+    snapshot = world.snapshot()
+    world.step()
+    after = world.state_hash()
+    plain.restore(snapshot)
+    assert plain.parameter("law/drag/c_d")["value"] == 0.5
+    plain.step()
+    assert plain.state_hash() == after
+    for address, value, match in [
+        ("law/drag/c_d", 1e9, "0 to 20"),
+        ("law/drog/c_d", 1.0, "drag"),
+        ("law/wheel_slip/slip_per_m_s2", 0.1, "walking"),
+    ]:
+        with pytest.raises(dwell.DwellError, match=match):
+            world.set_parameter(address, value)
+    everything = world.parameters()
+    assert {"world/gravity_m_s2", "joint/0/friction", "agent/0/camera/fov_deg"} <= set(everything)
+
+
+def test_things_are_set_to_any_pose_and_velocity(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    rng = np.random.default_rng(1)
+    name = next(thing["name"] for thing in world.objects() if thing["pickable"])
+    for _ in range(100):
+        turn = rng.normal(size=4)
+        turn /= np.linalg.norm(turn)
+        told = {
+            "position": rng.uniform(0.5, 2.0, 3),
+            "rotation": turn,
+            "linear_m_s": rng.uniform(-5.0, 5.0, 3),
+            "angular_rad_s": rng.uniform(-10.0, 10.0, 3),
+        }
+        world.set_body(name, **told)
+        found = world.body(name)
+        for key, value in told.items():
+            np.testing.assert_allclose(found[key], value, rtol=0.0, atol=1e-6)
+    before = world.state_hash()
+    for wrong, error, match in [
+        ({"linear_m_s": (1e12, 0.0, 0.0)}, dwell.DwellError, "1000 m/s"),
+        ({"position": (float("nan"), 0.0, 0.0)}, dwell.ConfigError, "finite"),
+        ({"rotation": (0.0, 0.0, 0.0, 0.0)}, dwell.ConfigError, "rotation"),
+        ({"part": "wing"}, dwell.ConfigError, "wing"),
+    ]:
+        with pytest.raises(error, match=match):
+            world.set_body(name, **wrong)
+    with pytest.raises(dwell.ConfigError, match="no object"):
+        world.set_body("unicorn")
+    fixed = next(joint["object"] for joint in world.joints())
+    with pytest.raises(dwell.DwellError, match="moves it"):
+        world.set_body(fixed)
+    assert world.state_hash() == before
+
+
 def test_houses_survive_their_own_form(apartment: dwell.House, tmp_path: os.PathLike[str]) -> None:
     path = os.path.join(tmp_path, "copy.dwell")
     assert apartment.write(path, "dwell") == []

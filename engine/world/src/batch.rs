@@ -246,7 +246,7 @@ impl Batch {
                     view: View {
                         preset: request.eye.preset,
                         hide: Some(world.house().entity_of_agent(request.eye.agent)),
-                        ..View::new(request.eye.camera, agent.world_from_eye())
+                        ..View::new(request.eye.camera_in(world.state()), agent.world_from_eye())
                     },
                     frame: FrameMut {
                         rgb: wanted(Channel::Rgb).then_some(&mut picture.rgb),

@@ -149,6 +149,15 @@ impl State {
         nominal.with(|field| self.lookup(format!("agent/{}/base/{field}", agent.index())))
     }
 
+    /// The horizontal field of view of a camera that states none, degrees.
+    pub const CAMERA_FOV_DEG: f32 = 90.0;
+
+    /// The overridden horizontal field of view of the cameras at an agent's eyes, degrees; `None`: each has its own, which is
+    /// [`State::CAMERA_FOV_DEG`] unless its settings say otherwise.
+    pub fn camera_fov_deg(&self, agent: AgentId) -> Option<f32> {
+        self.lookup(format!("agent/{}/camera/fov_deg", agent.index()))
+    }
+
     /// What stands at `address`.
     ///
     /// # Errors
@@ -243,12 +252,17 @@ impl State {
                     address.fault(format!("no field {field:?}; agent {agent} ({kind}) has {names:?}"))
                 })
             }
+            ["agent", agent, "camera", "fov_deg"] => {
+                let agent = self.find_agent(address, agent)?;
+                let value = self.camera_fov_deg(agent).unwrap_or(Self::CAMERA_FOV_DEG);
+                make(value, "deg", 1.0, 170.0)
+            }
             ["world", "gravity_m_s2"] => make(self.gravity_m_s2(), "m/s2", 0.0, 100.0),
             ["law", ..] => Err(address.fault(
                 "parameters of laws are read and set through the world, which knows the laws of all engines",
             )),
             _ => Err(address.fault(
-                "known are law/ID/PARAM, object/ID/mass_kg, part/N/FIELD, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/base/FIELD, world/gravity_m_s2",
+                "known are law/ID/PARAM, object/ID/mass_kg, part/N/FIELD, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/base/FIELD, agent/N/camera/fov_deg, world/gravity_m_s2",
             )),
         }
     }

@@ -35,6 +35,7 @@ impl State {
             let fields = agent.body.locomotion.parameters();
             let fields = fields.iter();
             texts.extend(fields.map(|(field, _)| format!("agent/{}/base/{field}", id.index())));
+            texts.push(format!("agent/{}/camera/fov_deg", id.index()));
         }
         let mut substances = BTreeSet::new();
         for material in &house.materials {

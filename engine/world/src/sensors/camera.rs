@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use dwell_render::{Camera, Preset};
-use dwell_scene::AgentId;
+use dwell_scene::{AgentId, State};
 use serde::{Deserialize, Serialize};
 
 /// A camera at an agent's eyes.
@@ -31,7 +31,7 @@ impl Default for CameraConfig {
             agent: 0,
             width: 128,
             height: 128,
-            fov_deg: 90.0,
+            fov_deg: State::CAMERA_FOV_DEG,
             near_m: 0.05,
             far_m: 50.0,
             preset: "lit".to_owned(),
@@ -48,6 +48,19 @@ pub struct EyeCamera {
     pub camera: Camera,
     /// Flat or lit.
     pub preset: Preset,
+}
+
+impl EyeCamera {
+    /// The camera as a world's parameters have it: `agent/N/camera/fov_deg` goes before its own field of view.
+    pub fn camera_in(&self, state: &State) -> Camera {
+        let Some(fov_deg) = state.camera_fov_deg(self.agent) else {
+            return self.camera;
+        };
+        let own = &self.camera;
+        Camera::from_fov(own.width(), own.height(), fov_deg)
+            .and_then(|camera| camera.with_range(own.near_m(), own.far_m()))
+            .unwrap_or(self.camera)
+    }
 }
 
 impl CameraConfig {

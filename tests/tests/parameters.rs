@@ -1,0 +1,194 @@
+//! Parameters of laws, bodies and cameras by their addresses, in worlds that join all engines.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use dwell::sensors::Out;
+use dwell::{Batch, Env, EnvConfig, SensorConfig, World, WorldConfig};
+use dwell_physics::BodyState;
+use dwell_scene::parallel::Threads;
+use dwell_scene::{LawSpec, Mobility, PartId, Pose, Velocity};
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+fn world_with(config: &WorldConfig) -> World {
+    World::new(dwell_tests::apartment(), config).unwrap()
+}
+
+fn world() -> World {
+    world_with(&WorldConfig::default())
+}
+
+fn set(world: &mut World, address: &str, value: f64) -> Result<(), String> {
+    let set = world.set_parameter(&address.parse().unwrap(), value);
+    set.map_err(|error| error.to_string())
+}
+
+fn get(world: &World, address: &str) -> f64 {
+    world.parameter(&address.parse().unwrap()).unwrap().value
+}
+
+/// A light thing that flies through the room.
+fn throw(world: &mut World) -> PartId {
+    let house = world.house().clone();
+    let movable = |id: &dwell_scene::ObjectId| house.objects[*id].mobility == Mobility::Movable;
+    let object = house.objects.ids().find(movable).unwrap();
+    let part = house.objects[object].first_part;
+    let room = house.rooms.iter().next().unwrap();
+    let middle = (room.footprint[0][0] + room.footprint[0][1] + room.footprint[0][2]) / 3.0;
+    let at = Vec3::new(middle.x, room.floor_y + 1.5, middle.y);
+    let body = BodyState {
+        part,
+        pose: Pose::from_position(at),
+        velocity: Velocity {
+            linear: Vec3::new(0.5, 3.0, 0.0),
+            angular: Vec3::Y,
+        },
+    };
+    world.set_bodies(&[body]).unwrap();
+    let state = world.state();
+    assert_eq!(state.part_pose[part], body.pose);
+    assert_eq!(state.part_velocity[part], body.velocity);
+    part
+}
+
+fn steps(world: &mut World, count: usize) -> u64 {
+    for _ in 0..count {
+        world.step(&[]).unwrap();
+    }
+    world.hash()
+}
+
+/// A law's number that is set while the world runs is in the hash, in the snapshot and in whoever goes on from it.
+#[test]
+fn laws_by_address_live_in_the_state() {
+    let mut world = world();
+    let part = throw(&mut world);
+    steps(&mut world, 2);
+    let (plain, before) = (world.hash(), world.snapshot());
+    let without = {
+        steps(&mut world, 6);
+        world.state().part_pose[part]
+    };
+    world.restore(&before).unwrap();
+    assert_eq!(world.hash(), plain);
+    set(&mut world, "law/drag/c_d", 1.5).unwrap();
+    set(&mut world, "law/drag/area_m2", 0.5).unwrap();
+    assert_eq!(get(&world, "law/drag/c_d"), 1.5);
+    assert_ne!(world.hash(), plain);
+    let saved = world.snapshot();
+    let end = steps(&mut world, 6);
+    assert_ne!(world.state().part_pose[part], without);
+    let mut fork = self::world();
+    fork.restore(&saved).unwrap();
+    assert_eq!(get(&fork, "law/drag/area_m2"), 0.5);
+    assert_eq!(steps(&mut fork, 6), end);
+    // Set back to its defaults the law is gone, from the list as well.
+    set(&mut fork, "law/drag/c_d", 0.0).unwrap();
+    set(&mut fork, "law/drag/area_m2", 0.0).unwrap();
+    assert!(fork.state().laws.is_empty());
+}
+
+/// Settings install a law by its address as by its specification, and a law's defaults need no words.
+#[test]
+fn parameters_of_laws_are_settings_too() {
+    let spec = LawSpec {
+        id: "drag".to_owned(),
+        version: 1,
+        target: None,
+        params: BTreeMap::from([("c_d".to_owned(), 1.5), ("area_m2".to_owned(), 0.0)]),
+    };
+    let mut by_spec = world_with(&WorldConfig {
+        laws: vec![spec],
+        ..WorldConfig::default()
+    });
+    let mut by_address = world_with(&WorldConfig {
+        parameters: BTreeMap::from([("law/drag/c_d".to_owned(), 1.5)]),
+        ..WorldConfig::default()
+    });
+    assert_eq!(by_spec.hash(), by_address.hash());
+    throw(&mut by_spec);
+    throw(&mut by_address);
+    assert_eq!(steps(&mut by_spec, 5), steps(&mut by_address, 5));
+}
+
+#[test]
+fn laws_that_cannot_act_are_refused_and_change_nothing() {
+    let mut world = world();
+    let before = world.hash();
+    for (address, value, part) in [
+        ("law/drag/c_d", 1e6, "0 to 20"),
+        ("law/drag@nothing/c_d", 1.0, "nothing"),
+        ("law/nothing/c_d", 1.0, "\"drag\""),
+        ("law/wheel_slip/slip_per_m_s2", 0.1, "walking"),
+        ("law/gyro_bias_scale@0/bias_rad_s", 0.1, "walking"),
+        ("agent/0/camera/fov_deg", 0.0, "1 to 170"),
+        ("agent/7/camera/fov_deg", 60.0, "there are 1"),
+    ] {
+        let message = set(&mut world, address, value).unwrap_err();
+        assert!(message.contains(part), "{message}");
+        assert_eq!(world.hash(), before, "{address}");
+    }
+}
+
+/// Every address that is listed can be read; laws of all engines are among them.
+#[test]
+fn all_parameters_are_listed() {
+    let world = world();
+    let all = world.parameters();
+    for wanted in [
+        "world/gravity_m_s2",
+        "law/latency/delay_s",
+        "law/microphone_noise/sigma_pa",
+        "agent/0/camera/fov_deg",
+        "joint/0/friction",
+    ] {
+        assert!(all.iter().any(|(a, _)| a.as_str() == wanted), "{wanted}");
+    }
+    for (address, row) in &all {
+        assert!(
+            (row.low..=row.high).contains(&row.value),
+            "{address}: {row:?}"
+        );
+        assert_eq!(&world.parameter(address).unwrap(), row, "{address}");
+    }
+}
+
+/// The picture of a narrower view is the middle of the wider one: where half the angle's tangent is half as large, a picture
+/// of half the size has the same rays.
+#[test]
+fn a_field_of_view_set_at_run_time_is_what_the_camera_sees() {
+    let depth = |width: usize, height: usize, fov_deg: Option<f64>| {
+        let parameters = fov_deg.map(|fov| ("agent/0/camera/fov_deg".to_owned(), fov));
+        let settings = serde_json::json!({"width": width, "height": height});
+        let config = EnvConfig {
+            world: WorldConfig {
+                parameters: parameters.into_iter().collect(),
+                ..WorldConfig::default()
+            },
+            sensors: Some(vec![SensorConfig {
+                kind: "depth".to_owned(),
+                settings,
+            }]),
+            ..EnvConfig::default()
+        };
+        let env = Env::new(dwell_tests::apartment(), &config).unwrap();
+        let mut batch = Batch::new(vec![env], Threads::ONE).unwrap();
+        batch.reset(&[Some(3)]).unwrap();
+        let mut seen = vec![0.0_f32; width * height];
+        batch
+            .observe(&[true], &mut [Out::Float32(&mut seen)])
+            .unwrap();
+        seen
+    };
+    let wide = depth(64, 48, None);
+    let narrow = depth(32, 24, Some(2.0 * 0.5_f64.atan().to_degrees()));
+    let mut off: Vec<f32> = (0..32 * 24)
+        .map(|k| {
+            let (column, row) = (16 + k % 32, 12 + k / 32);
+            (narrow[k] - wide[row * 64 + column]).abs()
+        })
+        .collect();
+    off.sort_by(f32::total_cmp);
+    // Rays that differ by rounding may pass an edge on either side.
+    assert!(off[off.len() * 98 / 100] < 1e-4, "{:?}", off.last());
+}
