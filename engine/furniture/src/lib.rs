@@ -3,6 +3,7 @@
 //! - `shapes`: closed primitives with convex collision pieces,
 //! - `textures`, `finish`: procedural images, and what surfaces are made of,
 //! - `model`: a thing with parts, joints, lights, sounds, and places that hold other things,
+//! - `stretch`: models in other sizes,
 //! - `models`: the things, one file a family,
 //! - `style`: the taste of one house, which gives things that stand together colours that go together,
 //! - `draw`, `entries`: sizes and variants drawn by a key,
@@ -19,6 +20,7 @@ pub mod model;
 pub mod models;
 pub mod shapes;
 pub mod stock;
+mod stretch;
 pub mod style;
 pub mod tables;
 pub mod testing;

@@ -314,42 +314,6 @@ impl Model {
         self
     }
 
-    /// The same model, every length `factor` times as long, of the same densities; images keep their scale.
-    #[must_use]
-    pub fn resized(mut self, factor: f32) -> Self {
-        for part in &mut self.parts {
-            let mut mesh = Mesh::clone(&part.mesh);
-            for position in &mut mesh.positions {
-                *position *= factor;
-            }
-            part.mesh = Arc::new(mesh);
-            part.mass_kg *= factor * factor * factor;
-            for collider in &mut part.colliders {
-                resize(collider, factor);
-            }
-        }
-        for joint in &mut self.joints {
-            joint.position *= factor;
-            if joint.kind == JointKind::Slide {
-                joint.open *= factor;
-                joint.initial *= factor;
-            }
-        }
-        for light in &mut self.lights {
-            light.position *= factor;
-            if let LightShape::Line { end } = &mut light.shape {
-                *end *= factor;
-            }
-        }
-        for sound in &mut self.sounds {
-            sound.position *= factor;
-        }
-        for space in &mut self.spaces {
-            space.space = Aabb::new(space.space.min * factor, space.space.max * factor);
-        }
-        self
-    }
-
     /// The same model with `paint` on every surface whose finish is called `name`; masses stay.
     #[must_use]
     pub fn repainted(mut self, name: &str, paint: &Finish) -> Self {
@@ -380,33 +344,6 @@ impl Model {
             JointKind::Slide => Pose::from_position(joint.axis * joint.initial),
         };
         self.model_from_part(joint.parent) * to_axis * motion * to_axis.inverse()
-    }
-}
-
-fn resize(collider: &mut Collider, factor: f32) {
-    match collider {
-        Collider::Cuboid {
-            part_from_box,
-            half_extents,
-        } => {
-            part_from_box.position *= factor;
-            *half_extents *= factor;
-        }
-        Collider::Cylinder {
-            part_from_cylinder,
-            half_height,
-            radius,
-        } => {
-            part_from_cylinder.position *= factor;
-            *half_height *= factor;
-            *radius *= factor;
-        }
-        Collider::Ball { center, radius } => {
-            *center *= factor;
-            *radius *= factor;
-        }
-        Collider::Hull { points } => points.iter_mut().for_each(|point| *point *= factor),
-        Collider::ExactMesh => {}
     }
 }
 

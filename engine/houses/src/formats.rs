@@ -51,6 +51,12 @@ pub fn formats() -> &'static [Format] {
             open: |house, threads| crate::habitat::open(Path::new(house), threads),
         },
         Format {
+            name: "procthor",
+            spelling: "a path to a house's .json of ProcTHOR",
+            recognizes: |house| crate::procthor::recognizes(Path::new(house)),
+            open: |house, _| crate::procthor::open(Path::new(house)),
+        },
+        Format {
             name: "suncg",
             spelling: "a path to a house.json, its folder, or a data root with one house",
             recognizes: |house| crate::suncg::recognizes(Path::new(house)),

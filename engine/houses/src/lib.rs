@@ -15,6 +15,7 @@ mod loss;
 pub mod mjcf;
 pub mod native;
 pub mod obj;
+pub mod procthor;
 mod report;
 mod robot;
 mod root;

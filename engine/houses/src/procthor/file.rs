@@ -1,0 +1,150 @@
+//! A house as ProcTHOR writes it, and the table of assets that may stand beside it.
+//!
+//! # Source
+//! Deitke et al., "ProcTHOR", NeurIPS 2022; field names as in `procthor/utils/types.py` and in the data set ProcTHOR-10K.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+
+/// What is read of a house. `null` counts as absent.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct HouseFile {
+    #[serde(deserialize_with = "nullable")]
+    pub(super) rooms: Vec<RoomFile>,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) walls: Vec<WallFile>,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) doors: Vec<HoleFile>,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) windows: Vec<HoleFile>,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) objects: Vec<ObjectFile>,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) procedural_parameters: ParametersFile,
+}
+
+/// A point, m, or Euler angles, degrees; in Unity's left-handed axes: x right, y up, z forward.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Triple {
+    pub(super) x: f32,
+    pub(super) y: f32,
+    pub(super) z: f32,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct RoomFile {
+    #[serde(deserialize_with = "nullable")]
+    pub(super) id: String,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) room_type: String,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) floor_polygon: Vec<Triple>,
+    pub(super) floor_material: Value,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct WallFile {
+    #[serde(deserialize_with = "nullable")]
+    pub(super) id: String,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) room_id: String,
+    /// Its corners; the two lowest are its foot.
+    #[serde(deserialize_with = "nullable")]
+    pub(super) polygon: Vec<Triple>,
+    pub(super) material: Value,
+    /// Whether there is no wall at all: rooms flow into each other.
+    #[serde(deserialize_with = "nullable")]
+    pub(super) empty: bool,
+}
+
+/// A door or a window.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct HoleFile {
+    #[serde(deserialize_with = "nullable")]
+    pub(super) id: String,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) asset_id: String,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) wall0: String,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) wall1: String,
+    /// Two corners: along `wall0` from the first point of its foot, and up from it, m.
+    #[serde(deserialize_with = "nullable")]
+    pub(super) hole_polygon: Vec<Triple>,
+    /// The same in older files.
+    pub(super) bounding_box: Option<BoxFile>,
+    /// 0 shut, 1 open.
+    #[serde(deserialize_with = "nullable")]
+    pub(super) openness: f32,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct BoxFile {
+    pub(super) min: Triple,
+    pub(super) max: Triple,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct ObjectFile {
+    /// Begins with its type: `Chair|2|0`.
+    #[serde(deserialize_with = "nullable")]
+    pub(super) id: String,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) asset_id: String,
+    /// The middle of its box.
+    #[serde(deserialize_with = "nullable")]
+    pub(super) position: Triple,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) rotation: Triple,
+    /// Whether it stays where it is.
+    #[serde(deserialize_with = "nullable")]
+    pub(super) kinematic: bool,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) children: Vec<ObjectFile>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct ParametersFile {
+    pub(super) ceiling_material: Value,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) lights: Vec<LightFile>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct LightFile {
+    #[serde(rename = "type", deserialize_with = "nullable")]
+    pub(super) kind: String,
+    #[serde(deserialize_with = "nullable")]
+    pub(super) position: Triple,
+}
+
+/// A row of `asset-database.json`: for each type its assets.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct AssetFile {
+    #[serde(deserialize_with = "nullable")]
+    pub(super) asset_id: String,
+    /// Width, height and depth, m.
+    #[serde(deserialize_with = "nullable")]
+    pub(super) bounding_box: Triple,
+}
+
+/// `asset-database.json`.
+pub(super) type AssetsFile = BTreeMap<String, Vec<AssetFile>>;
+
+fn nullable<'de, T: Default + Deserialize<'de>, D: Deserializer<'de>>(
+    from: D,
+) -> Result<T, D::Error> {
+    Option::<T>::deserialize(from).map(Option::unwrap_or_default)
+}

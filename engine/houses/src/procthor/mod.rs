@@ -1,0 +1,178 @@
+//! Houses of ProcTHOR: walls, doors and windows as the file has them, and our models for its assets.
+//!
+//! `docs/formats/procthor.md` lists the fields that are read, where they come from, and what is left out.
+
+mod covers;
+mod file;
+mod objects;
+mod shell;
+mod sizes;
+
+use std::path::Path;
+
+use dwell_scene::{Aabb, House, RoomId};
+use glam::{DVec2, Quat, Vec3};
+
+use crate::building::assembly::Assembly;
+use crate::damage::Damage;
+use crate::error::HousesError;
+use crate::limits::{MAX_NODES, MAX_TEXT_BYTES};
+use crate::report::{At, Report};
+use crate::root::DataRoot;
+use file::{HouseFile, ObjectFile, Triple};
+use sizes::Sizes;
+
+/// Whether `path` is a house of ProcTHOR: a JSON file that speaks of its parameters and of walls.
+pub(crate) fn recognizes(path: &Path) -> bool {
+    let is_json = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    if !is_json {
+        return false;
+    }
+    let Ok(bytes) = crate::root::read_capped(path, "", MAX_TEXT_BYTES) else {
+        return false;
+    };
+    let speaks = |word: &[u8]| bytes.windows(word.len()).any(|window| window == word);
+    speaks(b"\"proceduralParameters\"") && speaks(b"\"walls\"")
+}
+
+/// Opens a house. Sizes of assets come from an `asset-database.json` beside it, or up to two folders above, where there is
+/// one.
+///
+/// # Errors
+/// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no JSON of that form,
+/// [`HousesError::TooLarge`] for more objects than are read, [`HousesError::Empty`] without a room,
+/// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
+pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    std::fs::metadata(path).map_err(HousesError::io(path))?;
+    let root = DataRoot::new(folder)?;
+    let bytes = root.read_named(&name, MAX_TEXT_BYTES)?;
+    let mut report = Report::new();
+    let sizes = Sizes::around(folder, &mut report);
+    convert(&bytes, &name, &sizes, report)
+}
+
+fn convert(
+    bytes: &[u8],
+    name: &str,
+    sizes: &Sizes,
+    mut report: Report,
+) -> Result<(House, Report), HousesError> {
+    let at = At::file(name);
+    let file: HouseFile = serde_json::from_slice(bytes).map_err(|error| HousesError::Syntax {
+        at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
+        message: error.to_string(),
+    })?;
+    let count = file.walls.len() + file.rooms.len() + count(&file.objects);
+    if count > MAX_NODES {
+        return Err(HousesError::TooLarge {
+            at: at.field("objects"),
+            what: "count of rooms, walls and objects",
+            found: count as u64,
+            allowed: MAX_NODES as u64,
+        });
+    }
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let mut reader = Reader {
+        at: at.clone(),
+        assembly: Assembly::new(stem, "procthor"),
+        report: &mut report,
+        sizes,
+        rooms: Vec::new(),
+        floor_y: 0.0,
+    };
+    reader.assembly.storey();
+    reader.shell(&file);
+    if reader.rooms.is_empty() {
+        let damage = report.len();
+        return Err(HousesError::Empty { at, damage });
+    }
+    reader.objects(&file.objects);
+    reader.lamps(&file.procedural_parameters.lights);
+    let house = House::new(reader.assembly.finish()).map_err(HousesError::scene(&at))?;
+    Ok((house, report))
+}
+
+fn count(objects: &[ObjectFile]) -> usize {
+    objects
+        .iter()
+        .map(|object| 1 + count(&object.children))
+        .sum()
+}
+
+/// A room that was read.
+struct ReadRoom {
+    id: RoomId,
+    file_id: String,
+    /// Its floor, (x, z) in our axes, m.
+    outline: Vec<DVec2>,
+    ceiling_y: f32,
+}
+
+impl ReadRoom {
+    /// Whether a place lies over the floor (even-odd rule).
+    fn contains(&self, place: DVec2) -> bool {
+        let mut inside = false;
+        for (k, a) in self.outline.iter().enumerate() {
+            let b = self.outline[(k + 1) % self.outline.len()];
+            if (a.y > place.y) != (b.y > place.y)
+                && place.x < a.x + (place.y - a.y) / (b.y - a.y) * (b.x - a.x)
+            {
+                inside = !inside;
+            }
+        }
+        inside
+    }
+}
+
+/// A house on its way.
+struct Reader<'a> {
+    at: At,
+    assembly: Assembly,
+    report: &'a mut Report,
+    sizes: &'a Sizes,
+    rooms: Vec<ReadRoom>,
+    /// Height of the floors, m.
+    floor_y: f32,
+}
+
+impl Reader<'_> {
+    /// The room over whose floor a place lies, else the one whose middle is nearest.
+    fn room_at(&self, place: Vec3) -> Option<&ReadRoom> {
+        let place = DVec2::new(f64::from(place.x), f64::from(place.z));
+        let over = self.rooms.iter().find(|room| room.contains(place));
+        over.or_else(|| {
+            let distance = |room: &ReadRoom| {
+                let sum: DVec2 = room.outline.iter().sum();
+                (sum / room.outline.len() as f64).distance_squared(place)
+            };
+            self.rooms
+                .iter()
+                .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        })
+    }
+
+    fn warn(&mut self, field: &str, damage: Damage) {
+        self.report.warn(self.at.field(field), damage);
+    }
+}
+
+/// A point of the file in our axes: +Z is backwards here, forwards there.
+fn point(p: Triple) -> Vec3 {
+    Vec3::new(p.x, p.y, -p.z)
+}
+
+/// Euler angles of the file (about Z, then X, then Y, in left-handed axes) as a rotation in ours.
+fn rotation(degrees: Triple) -> Quat {
+    let turn = |axis: Vec3, angle: f32| dwell_furniture::shapes::turn(axis, angle.to_radians());
+    // Seen in a mirror across z = 0, turns about X and Y run the other way.
+    turn(Vec3::Y, -degrees.y) * turn(Vec3::X, -degrees.x) * turn(Vec3::Z, degrees.z)
+}
+
+/// Whether numbers can be a place in a house.
+fn is_place(p: Vec3) -> bool {
+    p.is_finite() && Aabb::new(Vec3::splat(-1e4), Vec3::splat(1e4)).contains(p)
+}

@@ -1,0 +1,253 @@
+//! Our models in the places of the file's assets.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+use dwell_furniture::finish::Finish;
+use dwell_furniture::model::{Model, Part};
+use dwell_furniture::shapes::{block, turn};
+use dwell_furniture::stock::stock;
+use dwell_furniture::style::STYLES;
+use dwell_scene::random::Key;
+use dwell_scene::{Mobility, Pose};
+use glam::Vec3;
+use serde::Deserialize;
+
+use super::file::{LightFile, ObjectFile};
+use super::shell::words;
+use super::{Reader, is_place, point, rotation};
+use crate::build::{category, category_of};
+use crate::building::assembly::Kind;
+use crate::damage::{Damage, Unmapped};
+
+/// Between the file's forward (+Z, our -Z) and the front of our models (+Z).
+const HALF_TURN: f32 = std::f32::consts::PI;
+/// Stretching beyond this, or beyond one over it, is said.
+const ODD_STRETCH: f32 = 3.0;
+
+/// A row of `assets/ai2thor_types.csv`.
+#[derive(Deserialize)]
+struct TypeRow {
+    #[serde(rename = "type")]
+    name: String,
+    kind: String,
+}
+
+/// The kind of the catalogue for a type; `Some("")`: a block of its size.
+fn kind_of(type_name: &str) -> Option<&'static str> {
+    static TABLE: OnceLock<BTreeMap<String, String>> = OnceLock::new();
+    let table = TABLE.get_or_init(|| {
+        let text = include_str!("../../../../assets/ai2thor_types.csv");
+        csv::Reader::from_reader(text.as_bytes())
+            .deserialize::<TypeRow>()
+            .map(|row| {
+                let row = row.expect("the tables of assets/ are checked by this file's tests");
+                (row.name, row.kind)
+            })
+            .collect()
+    });
+    table.get(type_name).map(String::as_str)
+}
+
+/// The kinds of one house by asset, height and whether they stay.
+type Kinds = BTreeMap<(String, u32, bool), Option<Kind>>;
+
+impl Reader<'_> {
+    /// All objects, those in and on others too.
+    pub(super) fn objects(&mut self, objects: &[ObjectFile]) {
+        let mut kinds = Kinds::new();
+        let mut unsized_count = 0;
+        let mut open: Vec<(&ObjectFile, String, bool)> = objects
+            .iter()
+            .enumerate()
+            .rev()
+            .map(|(k, object)| (object, format!("objects[{k}]"), false))
+            .collect();
+        while let Some((object, at, inside)) = open.pop() {
+            self.object(object, &at, inside, &mut kinds, &mut unsized_count);
+            let children = object.children.iter().enumerate().rev();
+            open.extend(children.map(|(k, child)| (child, format!("{at}.children[{k}]"), true)));
+        }
+        if unsized_count > 0 {
+            let what = format!(
+                "{unsized_count} things have the usual size of their kind: \
+                 no asset-database.json says how large their assets are"
+            );
+            self.warn("objects", Damage::Simplified { what });
+        }
+    }
+
+    fn object(
+        &mut self,
+        object: &ObjectFile,
+        at: &str,
+        inside: bool,
+        kinds: &mut Kinds,
+        unsized_count: &mut usize,
+    ) {
+        let known = self.sizes.get(&object.asset_id);
+        let size = known.map(|(_, size)| size);
+        let named = object.id.split('|').next().unwrap_or_default();
+        let type_name = known.map_or(named, |(kind, _)| kind).to_owned();
+        let (middle, turned) = (point(object.position), rotation(object.rotation));
+        if !is_place(middle) || !turned.is_finite() {
+            let reason = "it is no place in a house".to_owned();
+            return self.warn(at, Damage::BadTransform { reason });
+        }
+        let Some(room) = self.room_at(middle).map(|room| room.id) else {
+            return;
+        };
+        *unsized_count += usize::from(size.is_none());
+        // What stands on the floor is twice as high as its middle.
+        let upright = turned.mul_vec3(Vec3::Y).y > 0.99;
+        let stands = 2.0 * (middle.y - self.floor_y);
+        let height = (size.is_none() && !inside && upright && stands > 0.0).then_some(stands);
+        let key = (
+            if object.asset_id.is_empty() {
+                type_name.clone()
+            } else {
+                object.asset_id.clone()
+            },
+            height.map_or(0, f32::to_bits),
+            object.kinematic,
+        );
+        if !kinds.contains_key(&key) {
+            let model = self.model(&type_name, &key.0, size, height, object.kinematic, at);
+            let kind = model.map(|model| self.assembly.kind(model));
+            kinds.insert(key.clone(), kind);
+        }
+        let Some(Some(kind)) = kinds.get(&key) else {
+            return;
+        };
+        let center = kind.model.bounds().center();
+        let facing = turned * turn(Vec3::Y, HALF_TURN);
+        let pose = Pose::new(middle, facing) * Pose::from_position(-center);
+        self.assembly.place(kind, pose, room, 0.0);
+        self.name_last(&object.id, &object.asset_id);
+    }
+
+    /// The model of an asset; `None` when nothing is known of it.
+    fn model(
+        &mut self,
+        type_name: &str,
+        asset: &str,
+        size: Option<Vec3>,
+        height: Option<f32>,
+        stays: bool,
+        at: &str,
+    ) -> Option<Model> {
+        let style = STYLES.first()?;
+        let kind = kind_of(type_name);
+        if kind.is_none() {
+            let (what, name) = (Unmapped::Category, type_name.to_owned());
+            self.warn(at, Damage::Unmapped { what, name });
+        }
+        let key = Key::root(0).child("procthor").child(asset);
+        let ours = kind
+            .filter(|kind| !kind.is_empty())
+            .and_then(|kind| stock(kind, style, key));
+        let mut model = match (ours, size) {
+            (Some(ours), _) => Model::clone(&ours.model),
+            (None, Some(size)) => plain_block(type_name, size),
+            (None, None) => return None,
+        };
+        let now = model.bounds().size();
+        let mounted = category([model.category]).is_some_and(|row| row.is_mounted());
+        let by = match (size, height) {
+            (Some(size), _) => size / now,
+            (None, Some(height)) if !mounted => Vec3::new(1.0, height / now.y, 1.0),
+            _ => Vec3::ONE,
+        };
+        if !by.is_finite() || by.max_element() > ODD_STRETCH || by.min_element() < 1.0 / ODD_STRETCH
+        {
+            // Without a table a middle may be that of a thing on a shelf.
+            if size.is_none() {
+                return Some(staying(model, stays));
+            }
+            let what = format!("{type_name} is our {} stretched by {by:.2}", model.name);
+            self.warn(at, Damage::Simplified { what });
+        }
+        if by != Vec3::ONE {
+            model = model.stretched(by);
+        }
+        Some(staying(model, stays))
+    }
+
+    /// A ceiling lamp below the ceiling wherever the file has a point of light.
+    pub(super) fn lamps(&mut self, lights: &[LightFile]) {
+        let Some(style) = STYLES.first() else { return };
+        let Some(lamp) = stock("ceiling_lamp", style, Key::root(0).child("procthor")) else {
+            return;
+        };
+        let kind = self.assembly.kind(Arc::clone(&lamp.model));
+        let top = lamp.model.bounds().max.y;
+        for light in lights.iter().filter(|light| light.kind == "point") {
+            let at = point(light.position);
+            if !is_place(at) {
+                continue;
+            }
+            if let Some(room) = self.room_at(at) {
+                let (id, up) = (room.id, room.ceiling_y - top);
+                let pose = Pose::from_position(at.with_y(up));
+                self.assembly.place(&kind, pose, id, 0.0);
+            }
+        }
+    }
+}
+
+/// A model that nothing moves, where `stays`; its doors and drawers still do.
+fn staying(mut model: Model, stays: bool) -> Model {
+    if stays && model.mobility == Mobility::Movable {
+        model.mobility = if model.joints.is_empty() {
+            Mobility::Fixed
+        } else {
+            Mobility::Articulated
+        };
+        model.pickable = false;
+    }
+    model
+}
+
+/// Something of which only size and name are known.
+fn plain_block(type_name: &str, size: Vec3) -> Model {
+    let wood = Finish::plain("unknown", "wood", [170, 150, 124]);
+    let half = size * 0.5;
+    let shape = block([-half.x, 0.0, -half.z], [half.x, size.y, half.z]);
+    let row = category_of(&words(type_name));
+    let category = row.map_or("object", |row| row.name.as_str());
+    let model = if size.max_element() < 0.4 {
+        Model::pickable("block", category)
+    } else {
+        Model::movable("block", category)
+    };
+    // Most of a thing's box is air.
+    model.part(Part::new("body").with_filled(&wood, shape, 0.3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_furniture::catalogue::entries;
+
+    #[test]
+    fn every_type_has_a_kind_of_the_catalogue_or_is_a_block() {
+        let text = include_str!("../../../../assets/ai2thor_types.csv");
+        let rows = csv::Reader::from_reader(text.as_bytes())
+            .deserialize::<TypeRow>()
+            .collect::<Result<Vec<_>, _>>()
+            .unwrap();
+        assert!(rows.len() > 100);
+        for row in rows {
+            let known = entries().iter().any(|entry| entry.kind == row.kind);
+            assert!(row.kind.is_empty() || known, "{}: {}", row.name, row.kind);
+            let style = &STYLES[0];
+            assert!(
+                row.kind.is_empty() || stock(&row.kind, style, Key::root(1)).is_some(),
+                "{}: {} does not suit {}",
+                row.name,
+                row.kind,
+                style.name
+            );
+        }
+    }
+}

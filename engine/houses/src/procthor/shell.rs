@@ -1,0 +1,411 @@
+//! Rooms, walls with their holes, doors and windows.
+
+use std::collections::BTreeMap;
+
+use dwell_furniture::finish::Finish;
+use dwell_furniture::models::openings::{Door, Window, clear_pane};
+use dwell_furniture::shapes::extrude;
+use dwell_scene::{Aabb, Mesh, Pose, Room, StructureKind};
+use glam::{DVec2, Vec2, Vec3};
+use serde_json::Value;
+
+use super::covers::cover;
+use super::file::{HoleFile, HouseFile, RoomFile, Triple, WallFile};
+use super::{ReadRoom, Reader, is_place, point};
+use crate::build::{Names, room_kind, triangulate};
+use crate::damage::{Damage, Unmapped};
+
+/// Thickness of slabs, m; the file has none.
+const SLAB_M: f32 = 0.1;
+/// How deep frames of doors and windows are, m; the file's walls have no thickness.
+const FRAME_M: f32 = 0.1;
+/// Height of rooms without walls, m.
+const CEILING_M: f32 = 2.5;
+/// How far from a wall is looked for the room on that side, m.
+const BESIDE_M: f64 = 0.05;
+/// The smallest hole that holds a door or a window, m.
+const LEAST_M: f32 = 0.3;
+/// The widest casement, m.
+const CASEMENT_M: f32 = 0.8;
+/// How far window sills stand into the room, m.
+const SILL_M: f32 = 0.02;
+
+/// A wall's face: it runs from `foot` along `along`, `height_m` high, and looks along `normal`.
+struct Face {
+    foot: Vec3,
+    /// Unit length.
+    along: Vec3,
+    width_m: f32,
+    height_m: f32,
+    /// Unit length.
+    normal: Vec3,
+}
+
+/// A hole on a face: from and to along it, from and to above its foot, m.
+#[derive(Clone, Copy)]
+struct Hole {
+    along: [f32; 2],
+    up: [f32; 2],
+}
+
+impl Face {
+    fn at(&self, along: f32, up: f32) -> Vec3 {
+        self.foot + self.along * along + Vec3::Y * up
+    }
+
+    /// The face with its holes, each cell between the lines of their edges a rectangle.
+    fn mesh(&self, holes: &[Hole]) -> Mesh {
+        let (mut along, mut up) = (vec![0.0, self.width_m], vec![0.0, self.height_m]);
+        for hole in holes {
+            along.extend(hole.along.map(|a| a.clamp(0.0, self.width_m)));
+            up.extend(hole.up.map(|u| u.clamp(0.0, self.height_m)));
+        }
+        for lines in [&mut along, &mut up] {
+            lines.sort_by(f32::total_cmp);
+            lines.dedup();
+        }
+        let in_hole = |a: f32, u: f32| {
+            let within = |x: f32, [low, high]: [f32; 2]| low < x && x < high;
+            holes
+                .iter()
+                .any(|hole| within(a, hole.along) && within(u, hole.up))
+        };
+        let mut mesh = Mesh::default();
+        for a in along.windows(2) {
+            for u in up.windows(2) {
+                if in_hole(0.5 * (a[0] + a[1]), 0.5 * (u[0] + u[1])) {
+                    continue;
+                }
+                let mut corners = [(a[0], u[0]), (a[1], u[0]), (a[1], u[1]), (a[0], u[1])];
+                // Counter-clockwise as the room sees it.
+                if self.along.cross(Vec3::Y).dot(self.normal) < 0.0 {
+                    corners.reverse();
+                }
+                let base = mesh.positions.len() as u32;
+                for (along, up) in corners {
+                    mesh.positions.push(self.at(along, up));
+                    mesh.normals.push(self.normal);
+                    mesh.uvs.push(Vec2::new(along, up));
+                }
+                mesh.triangles
+                    .extend([[base, base + 1, base + 2], [base, base + 2, base + 3]]);
+            }
+        }
+        mesh
+    }
+}
+
+impl Reader<'_> {
+    /// Rooms with floors and ceilings, walls, doors and windows.
+    pub(super) fn shell(&mut self, file: &HouseFile) {
+        let mut names = Names::default();
+        let lowest = file
+            .rooms
+            .iter()
+            .flat_map(|room| room.floor_polygon.iter().map(|p| p.y));
+        self.floor_y = lowest.fold(f32::INFINITY, f32::min);
+        if !self.floor_y.is_finite() {
+            self.floor_y = 0.0;
+        }
+        for (k, room) in file.rooms.iter().enumerate() {
+            self.room(k, room, file, &mut names);
+        }
+        let mut holes: BTreeMap<&str, Vec<Hole>> = BTreeMap::new();
+        let mut faces: BTreeMap<&str, Face> = BTreeMap::new();
+        for (k, wall) in file.walls.iter().enumerate() {
+            let at = format!("walls[{k}]");
+            match self.face(wall) {
+                Ok(Some(face)) => {
+                    faces.insert(&wall.id, face);
+                }
+                Ok(None) => {}
+                Err(reason) => self.warn(&at, Damage::BadFace { reason }),
+            }
+        }
+        let kinds = [("doors", &file.doors), ("windows", &file.windows)];
+        for (field, rows) in kinds {
+            for (k, row) in rows.iter().enumerate() {
+                let at = format!("{field}[{k}]");
+                let Some(hole) = rectangle(row) else {
+                    let reason = "its hole is no rectangle".to_owned();
+                    self.warn(&at, Damage::BadFace { reason });
+                    continue;
+                };
+                let Some(face) = faces.get(row.wall0.as_str()) else {
+                    let reason = format!("there is no wall {:?}", row.wall0);
+                    self.warn(&at, Damage::BadFace { reason });
+                    continue;
+                };
+                self.filling(row, face, hole, field == "windows");
+                holes.entry(&row.wall0).or_default().push(hole);
+                if let Some(other) = faces.get(row.wall1.as_str()) {
+                    // The wall behind runs the other way.
+                    let [from, to] = hole.along.map(|a| other.width_m - a);
+                    let along = [to, from];
+                    holes
+                        .entry(&row.wall1)
+                        .or_default()
+                        .push(Hole { along, ..hole });
+                }
+            }
+        }
+        let mut wall_names = Names::default();
+        for (k, wall) in file.walls.iter().enumerate() {
+            let Some(face) = faces.get(wall.id.as_str()).filter(|_| !wall.empty) else {
+                continue;
+            };
+            let finish = self.finish(&wall.material, &format!("walls[{k}].material"));
+            let room = self.rooms.iter().find(|room| room.file_id == wall.room_id);
+            let name = wall_names.unique(&format!("wall_{}", wall.id));
+            let room = room.map(|room| room.id);
+            let mesh = face.mesh(holes.get(wall.id.as_str()).map_or(&[], Vec::as_slice));
+            if !mesh.triangles.is_empty() {
+                self.assembly
+                    .structure(&name, StructureKind::Wall, room, mesh, &[finish]);
+            }
+        }
+    }
+
+    fn finish(&mut self, material: &Value, field: &str) -> Finish {
+        cover(material).unwrap_or_else(|(name, finish)| {
+            let what = Unmapped::Substance;
+            self.warn(field, Damage::Unmapped { what, name });
+            finish
+        })
+    }
+
+    fn room(&mut self, k: usize, room: &RoomFile, file: &HouseFile, names: &mut Names) {
+        let at = format!("rooms[{k}]");
+        let corners: Vec<Vec3> = room.floor_polygon.iter().copied().map(point).collect();
+        let mut outline: Vec<DVec2> = corners
+            .iter()
+            .map(|p| DVec2::new(f64::from(p.x), f64::from(p.z)))
+            .collect();
+        outline.dedup();
+        if outline.first() == outline.last() {
+            outline.pop();
+        }
+        let area: f64 = (0..outline.len())
+            .map(|k| outline[k].perp_dot(outline[(k + 1) % outline.len()]))
+            .sum();
+        if outline.len() < 3 || !corners.iter().all(|p| is_place(*p)) || area.abs() < 1e-3 {
+            let reason = "its floor is no polygon".to_owned();
+            return self.warn(&at, Damage::BadFace { reason });
+        }
+        // Seen from above with z downwards: what turns clockwise there is counter-clockwise in (x, z).
+        if area < 0.0 {
+            outline.reverse();
+        }
+        let top = file
+            .walls
+            .iter()
+            .filter(|wall| wall.room_id == room.id)
+            .flat_map(|wall| wall.polygon.iter().map(|p| p.y))
+            .filter(|y| y.is_finite() && y.abs() < 1e4)
+            .fold(f32::NEG_INFINITY, f32::max);
+        let floor_y = corners[0].y;
+        let ceiling_y = if top > floor_y + 0.5 {
+            top
+        } else {
+            floor_y + CEILING_M
+        };
+        let plan: Vec<[f32; 2]> = outline.iter().map(|p| [p.x as f32, p.y as f32]).collect();
+        let flat = |p: DVec2| Vec2::new(p.x as f32, p.y as f32);
+        let footprint = triangulate(&outline)
+            .into_iter()
+            .map(|t| t.map(|k| flat(outline[k])))
+            .collect();
+        let kind = words(&room.room_type);
+        let kind = room_kind(&kind).unwrap_or_else(|name| {
+            if !name.is_empty() {
+                let what = Unmapped::RoomType;
+                let damage = Damage::Unmapped {
+                    what,
+                    name: name.clone(),
+                };
+                self.warn(&format!("{at}.roomType"), damage);
+            }
+            name
+        });
+        let mut bounds = Aabb::EMPTY;
+        for [x, z] in &plan {
+            bounds.add_point(Vec3::new(*x, floor_y, *z));
+            bounds.add_point(Vec3::new(*x, ceiling_y, *z));
+        }
+        let name = names.counted(&kind.replace(' ', "_"));
+        let id = self.assembly.data.rooms.push(Room {
+            name: name.clone(),
+            level: self.assembly.level,
+            kinds: if kind.is_empty() {
+                Vec::new()
+            } else {
+                vec![kind]
+            },
+            footprint,
+            floor_y,
+            ceiling_y,
+            bounds,
+        });
+        let floor = self.finish(&room.floor_material, &format!("{at}.floorMaterial"));
+        let above = &file.procedural_parameters.ceiling_material;
+        let ceiling = self.finish(above, "proceduralParameters.ceilingMaterial");
+        let slabs = [
+            (StructureKind::Floor, "floor", floor_y, floor),
+            (
+                StructureKind::Ceiling,
+                "ceiling",
+                ceiling_y + SLAB_M,
+                ceiling,
+            ),
+        ];
+        for (kind, word, top, finish) in slabs {
+            // The prism's (x, y) plane becomes the world's (x, z), its depth runs down.
+            let slab = extrude(&plan, SLAB_M)
+                .about_x(std::f32::consts::FRAC_PI_2)
+                .at(0.0, top, 0.0);
+            let name = format!("{word}_{name}");
+            self.assembly
+                .structure(&name, kind, Some(id), slab.mesh, &[finish]);
+        }
+        self.rooms.push(ReadRoom {
+            id,
+            file_id: room.id.clone(),
+            outline,
+            ceiling_y,
+        });
+    }
+
+    /// The face of a wall; `None` for a wall of no size.
+    fn face(&self, wall: &WallFile) -> Result<Option<Face>, String> {
+        let mut corners: Vec<Vec3> = wall.polygon.iter().copied().map(point).collect();
+        if !corners.iter().all(|p| is_place(*p)) {
+            return Err("a corner is no place".to_owned());
+        }
+        // As AI2-THOR does: of the corners by height, the first two are the wall's foot, in the order of the file.
+        corners.sort_by(|a, b| a.y.total_cmp(&b.y));
+        let [foot, end, .., top] = corners.as_slice() else {
+            return Err(format!("{} corners", corners.len()));
+        };
+        let run = (*end - *foot).with_y(0.0);
+        let height_m = top.y - foot.y;
+        if run.length() < 1e-3 || height_m < 1e-3 {
+            return Ok(None);
+        }
+        let along = run.normalize();
+        let side = along.cross(Vec3::Y);
+        let middle = *foot + run * 0.5;
+        let middle = DVec2::new(f64::from(middle.x), f64::from(middle.z));
+        let step = DVec2::new(f64::from(side.x), f64::from(side.z)) * BESIDE_M;
+        let on = |sign: f64| {
+            let place = middle + step * sign;
+            self.rooms.iter().find(|room| room.contains(place))
+        };
+        let faces_front = match (on(1.0), on(-1.0)) {
+            (Some(front), Some(back)) => {
+                front.file_id == wall.room_id || back.file_id != wall.room_id
+            }
+            // The faces of outer walls look away from the room.
+            (Some(front), None) => front.file_id == wall.room_id,
+            (None, Some(back)) => back.file_id != wall.room_id,
+            (None, None) => true,
+        };
+        Ok(Some(Face {
+            foot: *foot,
+            along,
+            width_m: run.length(),
+            height_m,
+            normal: if faces_front { side } else { -side },
+        }))
+    }
+
+    /// A door or window of the hole's size; a frame without a leaf stays a hole.
+    fn filling(&mut self, row: &HoleFile, face: &Face, hole: Hole, is_window: bool) {
+        let [width_m, height_m] = [hole.along, hole.up].map(|[low, high]| high - low);
+        if width_m < LEAST_M || height_m < LEAST_M {
+            return;
+        }
+        if !is_window && row.asset_id.starts_with("Doorframe") {
+            return;
+        }
+        let middle = 0.5 * (hole.along[0] + hole.along[1]);
+        let up = if is_window {
+            0.5 * (hole.up[0] + hole.up[1])
+        } else {
+            hole.up[0]
+        };
+        let at = face.at(middle, up);
+        let Some(room) = self.room_at(at + face.normal * 0.1).map(|room| room.id) else {
+            return;
+        };
+        let model = if is_window {
+            let lights = (width_m / CASEMENT_M).ceil().clamp(1.0, 12.0) as usize;
+            let (wall_m, pane, sill_m) = (FRAME_M, clear_pane(), SILL_M);
+            Window {
+                width_m,
+                height_m,
+                wall_m,
+                lights,
+                pane,
+                sill_m,
+            }
+            .build()
+        } else {
+            let wall_m = FRAME_M;
+            Door {
+                width_m,
+                height_m,
+                wall_m,
+                ..Door::default()
+            }
+            .build()
+        };
+        let kind = self.assembly.kind(model);
+        let turn = glam::Quat::from_rotation_arc(Vec3::Z, face.normal);
+        let openness = if is_window {
+            0.0
+        } else {
+            row.openness.clamp(0.0, 1.0)
+        };
+        self.assembly
+            .place(&kind, Pose::new(at, turn), room, openness);
+        self.name_last(&row.id, &row.asset_id);
+    }
+
+    /// Calls the newest object what the file calls it.
+    pub(super) fn name_last(&mut self, id: &str, asset: &str) {
+        if let Some(object) = self.assembly.data.objects.as_mut_slice().last_mut() {
+            id.clone_into(&mut object.source_id);
+            asset.clone_into(&mut object.model);
+        }
+    }
+}
+
+/// The rectangle of a hole on its first wall.
+fn rectangle(row: &HoleFile) -> Option<Hole> {
+    let corners: Vec<Triple> = match row.bounding_box {
+        Some(bounds) if row.hole_polygon.len() < 2 => vec![bounds.min, bounds.max],
+        _ => row.hole_polygon.clone(),
+    };
+    let range = |of: fn(&Triple) -> f32| {
+        let values = corners.iter().map(of);
+        values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| {
+            [low.min(value), high.max(value)]
+        })
+    };
+    let (along, up) = (range(|p| p.x), range(|p| p.y));
+    let is_range = |[low, high]: [f32; 2]| low > -1e4 && high < 1e4 && low < high;
+    let finite = corners.iter().all(|p| p.x.is_finite() && p.y.is_finite());
+    (finite && is_range(along) && is_range(up)).then_some(Hole { along, up })
+}
+
+/// `LivingRoom` as words: `living room`.
+pub(super) fn words(name: &str) -> String {
+    let mut words = String::new();
+    for c in name.chars() {
+        if c.is_ascii_uppercase() && !words.is_empty() {
+            words.push(' ');
+        }
+        words.push(c.to_ascii_lowercase());
+    }
+    words
+}

@@ -1,0 +1,65 @@
+//! How large assets are: `asset-database.json`, as the package `procthor` ships it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::Vec3;
+
+use super::file::AssetsFile;
+use crate::damage::Damage;
+use crate::limits::MAX_TEXT_BYTES;
+use crate::report::{At, Report};
+use crate::root::read_capped;
+
+/// The file's name.
+const FILE: &str = "asset-database.json";
+/// Folders that are looked into: the house's own, and so many above.
+const FOLDERS: usize = 3;
+
+/// Type and size of each asset.
+#[derive(Debug, Default)]
+pub(super) struct Sizes {
+    known: BTreeMap<String, (String, Vec3)>,
+}
+
+impl Sizes {
+    /// Reads the nearest file at or above `folder`; none is no fault, one that cannot be read is reported.
+    pub(super) fn around(folder: &Path, report: &mut Report) -> Self {
+        let folder = folder.canonicalize().unwrap_or_default();
+        let mut paths = folder.ancestors().take(FOLDERS).map(|f| f.join(FILE));
+        let Some(path) = paths.find(|path| path.is_file()) else {
+            return Self::default();
+        };
+        let text = read_capped(&path, FILE, MAX_TEXT_BYTES).map_err(|error| error.reason());
+        match text.and_then(|text| Self::read(&text)) {
+            Ok(sizes) => sizes,
+            Err(reason) => {
+                let what = format!("the table of assets is not read: {reason}");
+                report.warn(At::file(FILE), Damage::Simplified { what });
+                Self::default()
+            }
+        }
+    }
+
+    /// Reads the table; sizes that no thing can have are left out.
+    fn read(text: &[u8]) -> Result<Self, String> {
+        let file: AssetsFile = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        let mut known = BTreeMap::new();
+        for (kind, assets) in file {
+            for asset in assets {
+                let size = asset.bounding_box;
+                let size = Vec3::new(size.x, size.y, size.z);
+                if size.is_finite() && size.min_element() > 1e-3 && size.max_element() < 20.0 {
+                    known.insert(asset.asset_id, (kind.clone(), size));
+                }
+            }
+        }
+        Ok(Self { known })
+    }
+
+    /// Type, and width, height and depth in m, of an asset.
+    pub(super) fn get(&self, asset: &str) -> Option<(&str, Vec3)> {
+        let (kind, size) = self.known.get(asset)?;
+        Some((kind, *size))
+    }
+}
