@@ -71,19 +71,16 @@ impl<'a> Geometry<'a> {
     /// A sentence when there is no such image.
     pub(crate) fn texture(&self, image: usize, size: [u32; 2]) -> Result<Texture, String> {
         let image = self.json.images.get(image).ok_or("no such image")?;
-        let bytes = match &image.uri {
-            Some(uri) => Cow::Owned(
-                read_shared(uri, self.library, MAX_IMAGE_BYTES)
-                    .map_err(|damage| damage.to_string())?,
-            ),
-            None => {
-                let view = image
-                    .buffer_view
-                    .and_then(|view| self.json.buffer_views.get(view.value()))
-                    .ok_or("it has no bytes")?;
-                let bytes = self.buffers.view(view);
-                Cow::Borrowed(bytes.ok_or("its bytes lie beyond the buffer")?)
-            }
+        let bytes = if let Some(uri) = &image.uri {
+            let read = read_shared(uri, self.library, MAX_IMAGE_BYTES);
+            Cow::Owned(read.map_err(|damage| damage.to_string())?)
+        } else {
+            let view = image
+                .buffer_view
+                .and_then(|view| self.json.buffer_views.get(view.value()))
+                .ok_or("it has no bytes")?;
+            let bytes = self.buffers.view(view);
+            Cow::Borrowed(bytes.ok_or("its bytes lie beyond the buffer")?)
         };
         let texture = decode(image.name.as_deref().unwrap_or(""), &bytes)?;
         if [texture.width, texture.height] != size {

@@ -36,9 +36,9 @@ const COVERS: &[(&str, &str, &str, Srgb)] = &[
 /// Of a name that says nothing, or none.
 const PLAIN: Finish = Finish::plain("paint", "painted_plaster", [226, 222, 212]);
 
-/// What a material of the file is: a name, or an object with a `name` and a `color`. `Err` holds a name that says nothing,
-/// with what it is shown as.
-pub(super) fn cover(material: &Value) -> Result<Finish, (String, Finish)> {
+/// What a material of the file is: a name, or an object with a `name` and a `color`. The name is returned beside it
+/// where it says nothing.
+pub(super) fn cover(material: &Value) -> (Finish, Option<String>) {
     let name = material
         .as_str()
         .or_else(|| material["name"].as_str())
@@ -50,11 +50,11 @@ pub(super) fn cover(material: &Value) -> Result<Finish, (String, Finish)> {
     };
     let lower = name.to_ascii_lowercase();
     let known = COVERS.iter().find(|(word, ..)| lower.contains(word));
-    match known {
-        Some((_, called, substance, srgb)) => Ok(painted(Finish::plain(called, substance, *srgb))),
-        None if name.is_empty() => Ok(painted(PLAIN)),
-        None => Err((name.to_owned(), painted(PLAIN))),
+    if let Some((_, called, substance, srgb)) = known {
+        return (painted(Finish::plain(called, substance, *srgb)), None);
     }
+    let unknown = Some(name.to_owned()).filter(|name| !name.is_empty());
+    (painted(PLAIN), unknown)
 }
 
 /// Red, green and blue of the file, each 0 to 1.
@@ -79,11 +79,15 @@ mod tests {
 
     #[test]
     fn names_and_colours_of_files_are_understood() {
-        let seen = |value| cover(&value).map(|finish| (finish.substance, finish.srgb));
-        assert_eq!(seen(json!("DarkWoodFloors")).unwrap().0, "parquet");
+        let seen = |value| {
+            let (finish, unknown) = cover(&value);
+            assert_eq!(unknown, None);
+            (finish.substance, finish.srgb)
+        };
+        assert_eq!(seen(json!("DarkWoodFloors")).0, "parquet");
         let red = json!({"name": "PureWhite", "color": {"r": 1.0, "g": 0.5, "b": 0.0}});
-        assert_eq!(seen(red).unwrap(), ("painted_plaster", [255, 128, 0]));
-        assert_eq!(seen(json!(null)).unwrap().0, "painted_plaster");
-        assert_eq!(cover(&json!("Xyz 4")).unwrap_err().0, "Xyz 4");
+        assert_eq!(seen(red), ("painted_plaster", [255, 128, 0]));
+        assert_eq!(seen(json!(null)).0, "painted_plaster");
+        assert_eq!(cover(&json!("Xyz 4")).1.as_deref(), Some("Xyz 4"));
     }
 }

@@ -1,7 +1,7 @@
 //! A house as ProcTHOR writes it, and the table of assets that may stand beside it.
 //!
 //! # Source
-//! Deitke et al., "ProcTHOR", NeurIPS 2022; field names as in `procthor/utils/types.py` and in the data set ProcTHOR-10K.
+//! Deitke et al., "`ProcTHOR`", `NeurIPS` 2022; field names as in `procthor/utils/types.py` and in the data set `ProcTHOR-10K`.
 
 use std::collections::BTreeMap;
 

@@ -16,7 +16,7 @@ use serde::Deserialize;
 use super::file::{LightFile, ObjectFile};
 use super::shell::words;
 use super::{Reader, is_place, point, rotation};
-use crate::build::{category, category_of};
+use crate::build::{CategoryRow, category, category_of};
 use crate::building::assembly::Kind;
 use crate::damage::{Damage, Unmapped};
 
@@ -152,7 +152,7 @@ impl Reader<'_> {
             (None, None) => return None,
         };
         let now = model.bounds().size();
-        let mounted = category([model.category]).is_some_and(|row| row.is_mounted());
+        let mounted = category([model.category]).is_some_and(CategoryRow::is_mounted);
         let by = match (size, height) {
             (Some(size), _) => size / now,
             (None, Some(height)) if !mounted => Vec3::new(1.0, height / now.y, 1.0),

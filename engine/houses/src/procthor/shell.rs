@@ -167,11 +167,12 @@ impl Reader<'_> {
     }
 
     fn finish(&mut self, material: &Value, field: &str) -> Finish {
-        cover(material).unwrap_or_else(|(name, finish)| {
+        let (finish, unknown) = cover(material);
+        if let Some(name) = unknown {
             let what = Unmapped::Substance;
             self.warn(field, Damage::Unmapped { what, name });
-            finish
-        })
+        }
+        finish
     }
 
     fn room(&mut self, k: usize, room: &RoomFile, file: &HouseFile, names: &mut Names) {

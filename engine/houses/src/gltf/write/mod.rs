@@ -193,7 +193,7 @@ impl<'a> Tree<'a> {
         }
         for piece in &house.structure {
             let mesh = self.shapes.mesh(piece.mesh, &piece.materials);
-            let node = shown(&piece.name, mesh, None, extras::structure(piece));
+            let node = shown(&piece.name, mesh, None, &extras::structure(piece));
             self.add(node, Some(self.home(piece.level, piece.room)));
         }
         for (id, object) in house.objects.iter_ids() {
@@ -209,7 +209,7 @@ impl<'a> Tree<'a> {
                 let mesh = self.shapes.mesh(part.mesh, &part.materials);
                 let place = part.world_from_part.to_affine() * part.part_from_mesh;
                 self.add(
-                    shown(&name, mesh, Some(place), extras::part(part)),
+                    shown(&name, mesh, Some(place), &extras::part(part)),
                     Some(node),
                 );
             }
@@ -247,7 +247,7 @@ fn shown(
     name: &str,
     mesh: Option<usize>,
     world_from_mesh: Option<Affine3A>,
-    extras: Value,
+    extras: &Value,
 ) -> Value {
     let mut node = json!({"name": name, "extras": extras});
     if let Some(mesh) = mesh {

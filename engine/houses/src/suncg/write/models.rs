@@ -56,7 +56,7 @@ struct Piece<'a> {
     first_slot: usize,
 }
 
-impl<'a> Writer<'a> {
+impl Writer<'_> {
     /// The node of an object, its model written when it is new.
     pub(super) fn object_node(
         &mut self,
