@@ -89,9 +89,6 @@ impl PhysicsWorld {
             }
         }
         longer |= self.keep_motion(state, &shifted);
-        if longer {
-            self.follow_lengths(state);
-        }
         let acts_anew = gravity != self.engine.gravity
             || laws.len() != self.laws.len()
             || laws
@@ -106,6 +103,10 @@ impl PhysicsWorld {
         self.laws = laws;
         if changed {
             self.flush();
+        }
+        // Only now, that contacts are looked at under the new laws.
+        if longer {
+            self.follow_lengths(state);
         }
         if changed || acts_anew {
             self.wake_sleepers(changed);

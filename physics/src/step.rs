@@ -6,7 +6,7 @@ use crate::body::Hold;
 use crate::contact::{Collector, ContactEvent, Dress, Hooks, bound, note_motion};
 use crate::error::PhysicsError;
 use crate::joints::{self, Drive, Drivers, Going, Progress};
-use crate::laws::{Acts, JointLoad, Resistance, Stage};
+use crate::laws::{Acts, JointLoad, LinkStep, Push, Resistance, Stage};
 use crate::motors;
 use crate::world::PhysicsWorld;
 use dwell_scene::{Aabb, AgentState, JointCommand, JointId, State};
@@ -86,12 +86,20 @@ impl PhysicsWorld {
                 installed.law.resist(joint, load, resistance);
             }
         };
+        let time_s = self.tick as f64 * f64::from(self.settings.dt_s);
+        let push = |link: LinkStep| {
+            let link = LinkStep { time_s, ..link };
+            let pushes = laws.iter().map(|installed| installed.law.push(&link));
+            pushes.fold(Push::default(), Push::and)
+        };
+        let pushing = laws.iter().any(|installed| installed.law.pushes());
         let resisting = laws.iter().any(|installed| installed.law.resists());
         let drivers = Drivers {
             joints: &self.joints,
             pulls: &self.pulls,
             near: &|joint| state.joint_position[joint],
             resist: if resisting { Some(&resist) } else { None },
+            push: if pushing { Some(&push) } else { None },
             dt_s: self.settings.dt_s,
         };
         let trees = self.trees.iter();
@@ -135,6 +143,7 @@ impl PhysicsWorld {
         let mut stage = Stage {
             engine: &mut self.engine,
             bodies: &self.bodies,
+            plans: &self.model.bodies,
             entries: &self.entries,
             house: &self.model.house,
             table: &self.table,

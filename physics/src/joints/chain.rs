@@ -1,11 +1,13 @@
 //! A tree as numbers: what moves with each joint, and where all of it is for given positions.
 
+use super::exert::Pushing;
 use super::frame::Frame;
 use super::motion::{Axis, Lump, Motion, Moving};
 use super::support::{self, Support};
 use super::tree::Tree;
 use super::{Drivers, Joint};
 use crate::engine::Engine;
+use crate::laws::{LinkStep, Push};
 use dwell_scene::JointKind;
 use glam::{DMat3, DQuat, DVec3};
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
@@ -13,6 +15,8 @@ use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 /// A body and the joint that moves it.
 #[derive(Clone, Copy, Debug)]
 struct Link {
+    /// The number of the body's plan in the model.
+    body: u32,
     kind: JointKind,
     /// In the joint's frame, unit length.
     axis: DVec3,
@@ -26,9 +30,18 @@ struct Link {
     lump: Lump,
 }
 
+/// When within a step a tree is looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct When {
+    /// Length of the step, s.
+    pub(super) dt_s: f64,
+    /// Whether it is its middle, else its beginning.
+    pub(super) middle: bool,
+}
+
 /// The free joints of a tree, parents first. Shape (freedom,).
-#[derive(Clone, Debug)]
-pub(super) struct Chain {
+#[derive(Clone)]
+pub(super) struct Chain<'a> {
     links: Vec<Link>,
     root: Moving,
     root_velocity: DVec3,
@@ -37,16 +50,18 @@ pub(super) struct Chain {
     /// Whether what it hangs on stands.
     stands: bool,
     gravity: DVec3,
+    push: Option<&'a Pushing<'a>>,
 }
 
-impl Chain {
+impl<'a> Chain<'a> {
     /// `free`: which of the tree's joints may move.
-    pub(super) fn of(engine: &Engine, tree: &Tree, free: &[usize], drivers: &Drivers<'_>) -> Self {
+    pub(super) fn of(engine: &Engine, tree: &Tree, free: &[usize], drivers: &Drivers<'a>) -> Self {
         let body = |handle| engine.bodies.get(handle);
         let link = |k: &usize| {
             let joint: &Joint = &drivers.joints[tree.joints[*k]];
             let parent = body(joint.parent_handle);
             Link {
+                body: joint.child,
                 kind: joint.kind,
                 axis: joint.axis.as_dvec3().normalize_or(DVec3::Y),
                 parent: tree.parents[*k].and_then(|parent| free.iter().position(|f| *f == parent)),
@@ -85,6 +100,7 @@ impl Chain {
             supports,
             stands: root.is_none_or(still),
             gravity: engine.gravity.as_dvec3(),
+            push: drivers.push,
         }
     }
 
@@ -94,7 +110,7 @@ impl Chain {
     }
 
     /// The tree with its joints at these positions, rad or m, and velocities. Shape (freedom,) each.
-    pub(super) fn at(&self, positions: &[f64], velocities: &[f64]) -> Motion {
+    pub(super) fn at(&self, positions: &[f64], velocities: &[f64], when: When) -> Motion {
         let count = self.links.len();
         let mut frames: Vec<Frame> = Vec::with_capacity(count);
         let mut axes = Vec::with_capacity(count);
@@ -129,7 +145,12 @@ impl Chain {
             });
             frames.push(frame);
         }
+        let pushes = match self.push {
+            Some(push) => self.pushes(push, (&axes, &masses, &angular), when),
+            None => Vec::new(),
+        };
         Motion {
+            pushes,
             axes,
             masses,
             angular,
@@ -139,6 +160,39 @@ impl Chain {
             supports: self.supports.clone(),
             gravity: self.gravity,
         }
+    }
+}
+
+impl Chain<'_> {
+    /// How laws push at each joint's body. Shape (freedom,).
+    fn pushes(
+        &self,
+        push: &Pushing<'_>,
+        (axes, masses, angular): (&[Axis], &[Lump], &[DVec3]),
+        when: When,
+    ) -> Vec<Push> {
+        let mut linear: Vec<DVec3> = Vec::with_capacity(axes.len());
+        let mut pushes = Vec::with_capacity(axes.len());
+        for (k, axis) in axes.iter().enumerate() {
+            let (velocity, spin, from) = match axis.parent {
+                Some(parent) => (linear[parent], angular[parent], masses[parent].center),
+                None => (self.root_velocity, self.root.angular, self.root.center),
+            };
+            let center = masses[k].center;
+            let (along, _) = axis.moves(center);
+            linear.push(velocity + spin.cross(center - from) + along * axis.velocity);
+            pushes.push(push(LinkStep {
+                body: self.links[k].body,
+                mass_kg: masses[k].mass,
+                inertia: masses[k].inertia,
+                velocity: linear[k],
+                spin: angular[k],
+                dt_s: when.dt_s,
+                middle: when.middle,
+                time_s: 0.0,
+            }));
+        }
+        pushes
     }
 }
 

@@ -8,7 +8,7 @@
 //! E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), II.1.1 and XI.3: the midpoint rule, and the
 //! energy of symmetric methods.
 
-use super::chain::Chain;
+use super::chain::{Chain, When};
 use super::convex::{Element, Inertia, Problem};
 use super::element::Freedom;
 use super::footing::{self, Answer, Hold, Reduced};
@@ -84,7 +84,12 @@ fn rate(before: &[f64], after: &[f64], time_s: f64) -> Vec<f64> {
 
 impl Freedoms<'_> {
     /// Where the tree goes from here.
-    pub(super) fn course(&self, chain: &Chain, positions: &[f64], velocities: &[f64]) -> Course {
+    pub(super) fn course(
+        &self,
+        chain: &Chain<'_>,
+        positions: &[f64],
+        velocities: &[f64],
+    ) -> Course {
         let dt_s = f64::from(self.drivers.dt_s);
         let fastest = velocities
             .iter()
@@ -96,6 +101,10 @@ impl Freedoms<'_> {
             1.0
         };
         let part_s = dt_s / parts;
+        let at = |middle: bool| When {
+            dt_s: part_s,
+            middle,
+        };
         let (mut q, mut v) = (positions.to_vec(), velocities.to_vec());
         let mut answer = None;
         let mut left = parts;
@@ -103,11 +112,11 @@ impl Freedoms<'_> {
             let Part {
                 mut gained,
                 answer: of_root,
-            } = self.part(&chain.at(&q, &v), &q, &v, part_s);
+            } = self.part(&chain.at(&q, &v, at(false)), &q, &v, part_s);
             answer = of_root;
             for _ in 0..if moves { SWEEPS } else { 0 } {
                 let between = plus(&v, &gained, 0.5 * part_s);
-                let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between);
+                let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between, at(true));
                 gained = self.part(&middle, &q, &v, part_s).gained;
             }
             q = plus(&q, &plus(&v, &gained, 0.5 * part_s), part_s);
@@ -121,9 +130,9 @@ impl Freedoms<'_> {
                     .map(|(a, b)| 0.5 * (a + b))
                     .collect::<Vec<_>>()
             };
-            chain.at(&half(positions, &q), &half(velocities, &v))
+            chain.at(&half(positions, &q), &half(velocities, &v), at(true))
         } else {
-            chain.at(positions, velocities)
+            chain.at(positions, velocities, at(false))
         };
         Course {
             moves,

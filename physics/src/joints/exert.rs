@@ -12,7 +12,7 @@ use super::element::Pull;
 use super::place;
 use super::tree::Tree;
 use crate::engine::Engine;
-use crate::laws::{JointLoad, Resistance};
+use crate::laws::{JointLoad, LinkStep, Push, Resistance};
 use dwell_scene::JointId;
 use glam::Vec3;
 
@@ -29,8 +29,13 @@ pub(crate) struct Drivers<'a> {
     pub(crate) near: &'a dyn Fn(JointId) -> f32,
     /// How laws change what a joint resists with; `None`: no law does.
     pub(crate) resist: Option<&'a Resist<'a>>,
+    /// How laws push at the bodies that joints move; `None`: no law does.
+    pub(crate) push: Option<&'a Pushing<'a>>,
     pub(crate) dt_s: f32,
 }
+
+/// How laws push at a body.
+pub(crate) type Pushing<'a> = dyn Fn(LinkStep) -> Push + 'a;
 
 /// Changes what a joint resists with under a load.
 pub(crate) type Resist<'a> = dyn Fn(JointId, &JointLoad, &mut Resistance) + 'a;

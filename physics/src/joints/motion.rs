@@ -8,6 +8,7 @@ use super::convex::Inertia;
 use super::floating::Floating;
 use super::footing::Answer;
 use super::support::{self, Support};
+use crate::laws::Push;
 use dwell_scene::JointKind;
 use glam::{DMat3, DVec3};
 use rapier3d::dynamics::RigidBody;
@@ -124,6 +125,8 @@ impl Moving {
 
 /// A tree at one moment. Shape (freedom,) each.
 pub(super) struct Motion {
+    /// How laws push at the joints' bodies; empty where none does.
+    pub(super) pushes: Vec<Push>,
     pub(super) axes: Vec<Axis>,
     pub(super) masses: Vec<Lump>,
     pub(super) angular: Vec<DVec3>,
@@ -274,6 +277,13 @@ impl Motion {
         let moving = self.moving(&vec![0.0; n]);
         let pairs = moving.iter().zip(&self.masses);
         let mut links: Vec<[Wrench; 2]> = pairs.map(|(body, lump)| own(body, lump)).collect();
+        for ((link, push), lump) in links.iter_mut().zip(&self.pushes).zip(&self.masses) {
+            let push = Wrench {
+                force: push.force,
+                moment: push.moment + lump.center.cross(push.force),
+            };
+            link[0] = link[0].plus(&push, -1.0);
+        }
         let mut root = match &self.free_root {
             Some(lump) => own(&self.root, lump),
             None => [Wrench::default(); 2],

@@ -7,6 +7,8 @@ use crate::engine::Engine;
 use crate::inertia::Inertia;
 use crate::joints::Pull;
 use crate::laws::target::Scope;
+use crate::laws::{LinkStep, Push};
+use crate::model::BodyPlan;
 use dwell_scene::{AgentId, House, JointCommand, JointId};
 use glam::{Quat, Vec3};
 use rapier3d::dynamics::RigidBody;
@@ -19,6 +21,17 @@ pub(crate) trait Acts: Debug + Send + Sync {
 
     /// Acts on bodies once before each physics step, with what the contacts of the last step carried.
     fn before_step(&mut self, _stage: &mut Stage<'_>) {}
+
+    /// Whether it pushes at bodies that joints move: [`Acts::push`].
+    fn pushes(&self) -> bool {
+        false
+    }
+
+    /// How it pushes at a body that a joint moves. It is asked several times in a step, until the tree's course and what
+    /// pushes at it fit.
+    fn push(&self, _link: &LinkStep) -> Push {
+        Push::default()
+    }
 
     /// The contacts whose values it changes in [`Acts::shape_contact`]; `None`: none.
     fn scope(&self) -> Option<&Scope> {
@@ -134,6 +147,7 @@ pub(crate) struct Stage<'a> {
     pub(crate) engine: &'a mut Engine,
     /// By the number of the body's plan in the model.
     pub(crate) bodies: &'a [Body],
+    pub(crate) plans: &'a [BodyPlan],
     /// What each collider stands for, by its user data.
     pub(crate) entries: &'a [Entry],
     pub(crate) house: &'a House,
@@ -150,16 +164,17 @@ impl Stage<'_> {
         self.tick as f64 * f64::from(self.dt_s)
     }
 
-    /// A body that moves freely; `None` for one that is held, frozen or has no mass.
-    pub(crate) fn free(&mut self, body: u32) -> Option<&RigidBody> {
+    /// A body that moves, freely or with a joint; `None` for one that is shut, frozen or has no mass.
+    pub(crate) fn movable(&mut self, body: u32) -> Option<&RigidBody> {
         let rigid = self.engine.bodies.get(self.bodies[body as usize].handle)?;
         (rigid.is_dynamic() && rigid.mass() > 0.0).then_some(rigid)
     }
 
-    /// A body that moves freely and is awake.
-    pub(crate) fn moving(&mut self, body: u32) -> Option<&mut RigidBody> {
+    /// A body that no joint moves and that is awake.
+    pub(crate) fn free(&mut self, body: u32) -> Option<&mut RigidBody> {
         let handle = self.bodies[body as usize].handle;
-        if self.free(body)?.is_sleeping() {
+        let on_joint = self.plans[body as usize].joint.is_some();
+        if on_joint || self.movable(body)?.is_sleeping() {
             return None;
         }
         self.engine.bodies.get_mut(handle)

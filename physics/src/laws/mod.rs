@@ -10,11 +10,14 @@ mod actuators;
 mod bases;
 mod bodies;
 mod contacts;
+mod link;
 mod target;
 
 pub(crate) use acts::{
     Acts, Compliance, ContactValues, JointLoad, MotorStep, Resistance, Side, Stage, Touch,
 };
+
+pub(crate) use link::{LinkStep, Push};
 
 use crate::error::PhysicsError;
 use crate::model::PhysicsModel;

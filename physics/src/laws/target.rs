@@ -5,33 +5,50 @@ use crate::error::PhysicsError;
 use crate::laws::Side;
 use crate::model::{BodyPlan, PhysicsModel};
 use dwell_scene::material::library;
-use dwell_scene::{House, LawInfo, LawSpec, ObjectId, StructureId};
+use dwell_scene::{House, LawInfo, LawSpec, ObjectId, PartId, StructureId};
 
-/// The free bodies that a spec acts on: those of the object it names, or all.
-pub(super) fn free_bodies<'a>(
+/// The bodies that a spec acts on, free or moved by joints: those of the object that it names, the one of the part that it
+/// names as `OBJECT/PART`, or all; in order.
+pub(super) fn moving_bodies<'a>(
     spec: &LawSpec,
     info: &LawInfo,
     model: &'a PhysicsModel,
 ) -> Result<Vec<(u32, &'a BodyPlan)>, PhysicsError> {
     let house = &model.house;
-    let free = || model.bodies.iter().filter(|plan| plan.joint.is_none());
-    let name = |plan: &BodyPlan| house.objects[plan.object].name.as_str();
-    if let Some(target) = &spec.target
-        && !free().any(|plan| name(plan) == target)
-    {
-        let kind = "object that moves freely (neither fixed nor on a joint)";
-        return Err(no_target(info.id, kind, target, free().map(name)));
-    }
-    let wanted = |plan: &BodyPlan| {
-        spec.target
-            .as_ref()
-            .is_none_or(|target| house.objects[plan.object].name == *target)
+    let object = |plan: &BodyPlan| house.objects[plan.object].name.as_str();
+    let named = |plan: &BodyPlan, name: &str| {
+        let own = |part: PartId| {
+            name.strip_prefix(object(plan))?
+                .strip_prefix('/')
+                .map(|rest| rest == house.parts[part].name)
+        };
+        object(plan) == name || plan.parts.iter().any(|(part, _)| own(*part) == Some(true))
     };
+    let target = spec.target.as_deref();
     let bodies = model.bodies.iter().enumerate();
-    Ok(bodies
-        .filter(|(_, plan)| plan.joint.is_none() && wanted(plan))
+    let found: Vec<(u32, &BodyPlan)> = bodies
+        .filter(|(_, plan)| target.is_none_or(|name| named(plan, name)))
         .map(|(index, plan)| (index as u32, plan))
-        .collect())
+        .collect();
+    match target {
+        Some(name) if found.is_empty() => {
+            if let Some(id) = house.object_named(name) {
+                return Err(PhysicsError::LawUnfit {
+                    law: info.id,
+                    what: format!("{:?}", house.objects[id].name),
+                    why: "no part of it moves".to_owned(),
+                });
+            }
+            let kind = "object that moves (or OBJECT/PART of one)";
+            Err(no_target(
+                info.id,
+                kind,
+                name,
+                model.bodies.iter().map(object),
+            ))
+        }
+        _ => Ok(found),
+    }
 }
 
 pub(super) fn no_target<'a>(

@@ -2,11 +2,12 @@
 
 use super::size::cross_section_m2;
 use crate::error::PhysicsError;
-use crate::laws::target::free_bodies;
-use crate::laws::value;
+use crate::laws::target::moving_bodies;
+use crate::laws::{LinkStep, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::ParamInfo;
 use dwell_scene::{LawInfo, LawSpec};
+use glam::DVec3;
 
 /// The cross-section; 0 takes the mean one of the body.
 pub(super) const AREA: ParamInfo = ParamInfo {
@@ -28,7 +29,22 @@ pub(super) const AIR_DENSITY: ParamInfo = ParamInfo {
     plausible: [1.0, 1.4],
 };
 
-/// The free bodies that a spec acts on, each with what `gain` makes of the air's density (kg/m3) and its cross-section (m2).
+/// What [`in_air`] found for a body, kg/m; `None` for one that is not acted on.
+pub(super) fn gain_of(bodies: &[(u32, f32)], body: u32) -> Option<f64> {
+    let place = bodies.binary_search_by_key(&body, |(index, _)| *index);
+    place.ok().map(|place| bodies[place].1.into())
+}
+
+/// The force of `gain |u| u` against the velocity `u` of a body that a joint moves, N.
+pub(super) fn against_air(link: &LinkStep, gain: f64, against: DVec3) -> DVec3 {
+    if link.mass_kg <= 0.0 {
+        return DVec3::ZERO;
+    }
+    let decay = link.quadratic_decay_per_s(gain / link.mass_kg, against.length());
+    -link.mass_kg * decay * against
+}
+
+/// The moving bodies that a spec acts on, each with what `gain` makes of the air's density (kg/m3) and its cross-section (m2).
 pub(super) fn in_air(
     spec: &LawSpec,
     info: &LawInfo,
@@ -39,7 +55,7 @@ pub(super) fn in_air(
         value(spec, info, AIR_DENSITY.name),
         value(spec, info, AREA.name),
     );
-    let bodies = free_bodies(spec, info, model)?.into_iter();
+    let bodies = moving_bodies(spec, info, model)?.into_iter();
     Ok(bodies
         .map(|(index, plan)| {
             let area = if stated > 0.0 {

@@ -3,7 +3,7 @@
 use super::size::volume_m3;
 use crate::error::PhysicsError;
 use crate::inertia::Inertia;
-use crate::laws::target::free_bodies;
+use crate::laws::target::moving_bodies;
 use crate::laws::{Acts, Law, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
@@ -69,7 +69,7 @@ fn install(
 ) -> Result<Box<dyn Acts>, PhysicsError> {
     let density = value(spec, info, "fluid_density_kg_m3");
     let volume = value(spec, info, "volume_m3");
-    let bodies = free_bodies(spec, info, model)?
+    let bodies = moving_bodies(spec, info, model)?
         .into_iter()
         .map(|(index, plan)| {
             let volume = if volume > 0.0 {

@@ -2,7 +2,7 @@
 
 use crate::error::PhysicsError;
 use crate::inertia::Inertia;
-use crate::laws::target::free_bodies;
+use crate::laws::target::moving_bodies;
 use crate::laws::{Acts, Law, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
@@ -51,7 +51,7 @@ fn install(
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let bodies = free_bodies(spec, info, model)?;
+    let bodies = moving_bodies(spec, info, model)?;
     Ok(Box::new(Offset {
         bodies: bodies.into_iter().map(|(index, _)| index).collect(),
         offset: Vec3::from_array(["x_m", "y_m", "z_m"].map(|name| value(spec, info, name))),

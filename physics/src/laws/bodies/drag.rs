@@ -1,8 +1,8 @@
 //! Quadratic air drag.
 
-use super::air::{AIR_DENSITY, AREA, in_air};
+use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, Stage, value};
+use crate::laws::{Acts, Law, LinkStep, Push, Stage, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
@@ -60,13 +60,27 @@ fn install(
 impl Acts for Drag {
     fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
-            let Some(rigid) = stage.moving(*body) else {
+            let Some(rigid) = stage.free(*body) else {
                 continue;
             };
             // The exact solution of m dv/dt = -k |v| v over the half step; it never turns the velocity round.
             let velocity = rigid.linvel();
             let slowed = velocity / (1.0 + gain / rigid.mass() * velocity.length() * half_dt_s);
             rigid.set_linvel(slowed, false);
+        }
+    }
+
+    fn pushes(&self) -> bool {
+        true
+    }
+
+    fn push(&self, link: &LinkStep) -> Push {
+        let Some(gain) = gain_of(&self.bodies, link.body) else {
+            return Push::default();
+        };
+        Push {
+            force: against_air(link, gain, link.velocity),
+            ..Push::default()
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::error::PhysicsError;
 use crate::inertia::Inertia;
-use crate::laws::target::free_bodies;
+use crate::laws::target::moving_bodies;
 use crate::laws::{Acts, Law, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
@@ -76,7 +76,7 @@ fn install(
 ) -> Result<Box<dyn Acts>, PhysicsError> {
     let of = |names: [&str; 3]| Vec3::from_array(names.map(|name| value(spec, info, name)));
     let all = 1.0 + value(spec, info, "scale");
-    let plans = free_bodies(spec, info, model)?;
+    let plans = moving_bodies(spec, info, model)?;
     let law = InertiaError {
         bodies: plans.iter().map(|(index, _)| *index).collect(),
         scale: ((Vec3::ONE + of(["x", "y", "z"])) * all).map(f32::sqrt),
@@ -84,6 +84,10 @@ fn install(
     };
     for (index, plan) in plans {
         let mut inertia = Inertia::of(&model.house, plan, state, 1.0);
+        // A link without mass of its own has no inertia that could be wrong.
+        if !inertia.is_positive() {
+            continue;
+        }
         law.weigh(index, &mut inertia);
         if !inertia.is_positive() {
             return Err(PhysicsError::Range {

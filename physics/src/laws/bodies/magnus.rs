@@ -1,8 +1,8 @@
 //! Lift of a spinning body.
 
-use super::air::{AIR_DENSITY, AREA, in_air};
+use super::air::{AIR_DENSITY, AREA, gain_of, in_air};
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, Stage, value};
+use crate::laws::{Acts, Law, LinkStep, Push, Stage, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
@@ -63,7 +63,7 @@ fn install(
 impl Acts for Magnus {
     fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
-            let Some(rigid) = stage.moving(*body) else {
+            let Some(rigid) = stage.free(*body) else {
                 continue;
             };
             // dv/dt = (gain / m) w x v turns the velocity about the spin and leaves its length.
@@ -77,6 +77,20 @@ impl Acts for Magnus {
                 let turned = (rotation * rigid.linvel()).normalize_or_zero() * length;
                 rigid.set_linvel(turned, false);
             }
+        }
+    }
+
+    fn pushes(&self) -> bool {
+        true
+    }
+
+    fn push(&self, link: &LinkStep) -> Push {
+        let Some(gain) = gain_of(&self.bodies, link.body) else {
+            return Push::default();
+        };
+        Push {
+            force: gain * link.spin.cross(link.velocity),
+            ..Push::default()
         }
     }
 

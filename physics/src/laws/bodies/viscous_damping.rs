@@ -1,8 +1,8 @@
 //! Damping in proportion to speed.
 
 use crate::error::PhysicsError;
-use crate::laws::target::free_bodies;
-use crate::laws::{Acts, Law, Stage, value};
+use crate::laws::target::moving_bodies;
+use crate::laws::{Acts, Law, LinkStep, Push, Stage, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
@@ -57,7 +57,7 @@ fn install(
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let bodies = free_bodies(spec, info, model)?;
+    let bodies = moving_bodies(spec, info, model)?;
     Ok(Box::new(Viscous {
         bodies: bodies.into_iter().map(|(index, _)| index).collect(),
         linear_per_s: value(spec, info, "linear_per_s"),
@@ -70,10 +70,25 @@ impl Acts for Viscous {
         let linear = math::exp(-self.linear_per_s * half_dt_s);
         let angular = math::exp(-self.angular_per_s * half_dt_s);
         for body in &self.bodies {
-            if let Some(rigid) = stage.moving(*body) {
+            if let Some(rigid) = stage.free(*body) {
                 rigid.set_linvel(rigid.linvel() * linear, false);
                 rigid.set_angvel(rigid.angvel() * angular, false);
             }
+        }
+    }
+
+    fn pushes(&self) -> bool {
+        true
+    }
+
+    fn push(&self, link: &LinkStep) -> Push {
+        if self.bodies.binary_search(&link.body).is_err() {
+            return Push::default();
+        }
+        let linear = link.mass_kg * link.decay_per_s(self.linear_per_s.into());
+        Push {
+            force: -linear * link.velocity,
+            moment: -link.decay_per_s(self.angular_per_s.into()) * (link.inertia * link.spin),
         }
     }
 

@@ -1,8 +1,8 @@
 //! Moving air.
 
-use super::air::{AIR_DENSITY, AREA, in_air};
+use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, Stage, value};
+use crate::laws::{Acts, Law, LinkStep, Push, Stage, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
@@ -116,7 +116,7 @@ impl Acts for Wind {
         let air = self.air(stage.time_s());
         let gravity = stage.engine.gravity.length();
         for (body, gain) in &self.bodies {
-            let Some(rigid) = stage.free(*body) else {
+            let Some(rigid) = stage.movable(*body) else {
                 continue;
             };
             let (mass, against) = (rigid.mass(), rigid.linvel() - air);
@@ -124,11 +124,26 @@ impl Acts for Wind {
             if air != Vec3::ZERO && push > WAKING_SHARE * mass * gravity {
                 stage.wake(*body);
             }
-            if let Some(rigid) = stage.moving(*body) {
+            if let Some(rigid) = stage.free(*body) {
                 // The exact solution of m du/dt = -k |u| u for the velocity against the air over the half step.
                 let slowed = against / (1.0 + gain / mass * against.length() * half_dt_s);
                 rigid.set_linvel(air + slowed, false);
             }
+        }
+    }
+
+    fn pushes(&self) -> bool {
+        true
+    }
+
+    fn push(&self, link: &LinkStep) -> Push {
+        let Some(gain) = gain_of(&self.bodies, link.body) else {
+            return Push::default();
+        };
+        let air = self.air(link.time_s).as_dvec3();
+        Push {
+            force: against_air(link, gain, link.velocity - air),
+            ..Push::default()
         }
     }
 

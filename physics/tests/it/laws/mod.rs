@@ -6,6 +6,7 @@ mod bases;
 mod bodies;
 mod contacts;
 mod friction;
+mod links;
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{PhysicsConfig, laws};
