@@ -13,10 +13,18 @@ Physical effects that the basic model lacks. A law at its default is not install
 `{id, version, target, params}`; parameters that are left out have their defaults, values out of bounds are refused. This page is
 written by the test `laws_page` (`UPDATE_GOLDEN=1 cargo test -p dwell-tests --test laws_page`) from what the engines say.
 
-What a target names: a law on an *object* takes an object's name, one on a *joint* a joint's name, `OBJECT/JOINT` or a number, one
-on an *agent* its number, one on *contacts* `NAME` (all contacts of it) or `NAME~NAME` (those between the two, in either order;
-the surface is the first), where a name is that of an object, of a piece of the structure or of a substance of the materials
-library. No target means everything that they can act on. Laws on the *world* take none.
+What a target names: a law on an *object* takes an object's name (all of its bodies, free or moved by joints) or `OBJECT/PART`,
+one on a *joint* a joint's name, `OBJECT/JOINT` or a number, one on an *agent* its number, one on *contacts* `NAME` (all contacts
+of it) or `NAME~NAME` (those between the two, in either order; the surface is the first), where a name is that of an object, of a
+piece of the structure or of a substance of the materials library. No target means everything that they can act on: agents on
+legs have neither wheels nor gyro, and are refused by laws of these. Laws on the *world* take none.
+
+Every parameter has an address, under which it is read and set while the world runs: `law/ID/PARAM` for the law without target,
+`law/ID@TARGET/PARAM` for the one on a target (`law/latency@arm/elbow/delay_s`), `law/N/PARAM` for the law in place N of those
+installed. The first number that differs from its default installs a law, behind the others; one whose numbers are all default
+acts no more, and what it remembered is lost. Otherwise a law keeps its memory when its numbers change: a delay that grows holds
+the oldest command it knows until newer ones are that late, one that shrinks skips some; play, lags and limits of rates go on
+from where their output is. Values stand in the state's list of laws, so that they are in snapshot, hash and replay.
 
 What sleeps: laws that come, go or change wake everything once. After that laws of air and of contact act on what moves and leave
 asleep what sleeps; only wind wakes what it pushes by more than a thousandth of its weight, and keeps it awake as long as it does.

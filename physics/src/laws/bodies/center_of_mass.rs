@@ -25,8 +25,8 @@ pub(in crate::laws) const LAW: Law = Law {
         id: "center_of_mass_offset",
         version: 1,
         name: "offset of the centre of mass",
-        equation: "the centre of mass is c + (x_m, y_m, z_m), with c where shape and density put it, in the frame of the \
-                   object's first moving part (m); mass and inertia about the centre of mass stay",
+        equation: "the centre of mass is c + (x_m, y_m, z_m), with c where shape and density put it, in the frame of \
+                   each body's first part (m); mass and inertia about the centre of mass stay",
         source: "L. D. Landau, E. M. Lifshitz, Mechanics (1976), sections 31 and 32",
         engine: ActsIn::Physics,
         acts_on: "object",

@@ -38,7 +38,7 @@ pub(in crate::laws) const LAW: Law = Law {
         name: "error of the inertia",
         equation: "I_ij = s_i s_j (J_ij + p_ij sqrt(J_ii J_jj)) with s_i = sqrt((1 + scale) (1 + i)), J the inertia about \
                    the centre of mass from shape and density (kg m2), i one of x, y, z and p_ij one of xy, yz, zx, in the \
-                   frame of the object's first moving part; p_ii = 0, the mass stays",
+                   frame of each body's first part; p_ii = 0, the mass stays",
         source: "L. D. Landau, E. M. Lifshitz, Mechanics (1976), section 32",
         engine: ActsIn::Physics,
         acts_on: "object",

@@ -94,7 +94,7 @@ fn off(run: &mut Run, steps: usize, acceleration: impl Fn(f64, f64) -> f64) -> f
     worst
 }
 
-/// I phi'' = -(c_l m d2 + c_a I_c) phi' - m g d sin(phi): the link of a pendulum in linear drag.
+/// `I phi'' = -(c_l m d2 + c_a I_c) phi' - m g d sin(phi)`: the link of a pendulum in linear drag.
 #[test]
 fn a_pendulum_in_linear_drag_decays_as_its_equation_says() {
     let (mass, down, own) = bar();
@@ -223,7 +223,7 @@ fn lift_on_a_slider_balances_what_drives_it_out() {
     }
 }
 
-/// Mass, centre of mass and inertia of a link under laws: T = 2 pi sqrt((I_c + m d2) / (w d)), w the weight.
+/// Mass, centre of mass and inertia of a link under laws: `T = 2 pi sqrt((I_c + m d2) / (w d))`, w the weight.
 #[test]
 fn laws_of_masses_change_the_period_of_a_link() {
     let (mass, down, own) = bar();
