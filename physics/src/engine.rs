@@ -79,6 +79,10 @@ impl Engine {
         };
     }
 
+    pub(crate) fn parameters(&self) -> &IntegrationParameters {
+        &self.parameters
+    }
+
     /// Length of one run of rapier, s: the time over which it keeps impulses.
     pub(crate) fn run_s(&self) -> f32 {
         self.parameters.dt
@@ -89,17 +93,17 @@ impl Engine {
         self.parameters.dt / self.parameters.num_solver_iterations as f32
     }
 
-    /// Bodies that move, touch nothing and hang on no joint, from before a step.
-    fn in_free_flight(&self) -> Vec<RigidBodyHandle> {
-        let flies = |handle: &RigidBodyHandle| {
-            self.bodies.get(*handle).is_some_and(|body| {
+    /// Those of the bodies awake that move, touch nothing and hang on no joint, from before a step.
+    fn in_free_flight(&self, awake: &[RigidBodyHandle]) -> Vec<RigidBodyHandle> {
+        let flies = |handle: &&RigidBodyHandle| {
+            self.bodies.get(**handle).is_some_and(|body| {
                 body.is_dynamic()
                     && body.gravity_scale() != 0.0
-                    && self.joints.attached_joints(*handle).next().is_none()
+                    && self.joints.attached_joints(**handle).next().is_none()
                     && !self.touches(body)
             })
         };
-        self.islands.active_bodies().filter(flies).collect()
+        awake.iter().filter(flies).copied().collect()
     }
 
     fn touches(&self, body: &RigidBody) -> bool {
@@ -127,7 +131,8 @@ impl Engine {
     /// flies freely has half of one substep's gravity taken off before and added after: then it follows its parabola
     /// exactly (the leapfrog method). What touched something in the step keeps what the contact made of its velocity.
     pub(crate) fn step(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
-        let mut flying = self.in_free_flight();
+        let awake: Vec<RigidBodyHandle> = self.islands.active_bodies().collect();
+        let mut flying = self.in_free_flight(&awake);
         self.fall(&flying, -0.5);
         self.advance(hooks, events);
         flying.retain(|handle| {
@@ -135,6 +140,7 @@ impl Engine {
             body.is_some_and(|body| !self.touches(body))
         });
         self.fall(&flying, 0.5);
+        self.tighten(&awake);
     }
 
     fn advance(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {

@@ -135,6 +135,7 @@ impl PhysicsWorld {
             .note_held_back(&self.engine, &self.motion, self.settings.dt_s);
         self.apply_laws(|law, stage| law.half_step(stage, half));
         self.tick += 1;
+        self.give_back_room();
         placed
     }
 

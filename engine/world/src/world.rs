@@ -222,6 +222,11 @@ impl World {
         self.physics.merged_events()
     }
 
+    /// How many pairs of collision pieces physics keeps.
+    pub fn pair_counts(&self) -> dwell_physics::PairCounts {
+        self.physics.pair_counts()
+    }
+
     /// What had to be moved or frozen so that the world could start.
     pub fn start_report(&self) -> &StartReport {
         &self.start_report

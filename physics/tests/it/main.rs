@@ -28,6 +28,7 @@ mod parameters;
 mod placing;
 mod refusals;
 mod reset;
+mod resting;
 mod snapshot;
 mod standing;
 mod start;
