@@ -133,7 +133,7 @@ impl PhysicsWorld {
     }
 
     /// Takes over poses, velocities and joint positions that were set in `state` from outside: what differs from where
-    /// physics has it is moved there and woken. Frozen and shut things that are moved become free.
+    /// physics has it is moved there and woken. Frozen and shut things that are moved, or given a velocity, become free.
     ///
     /// # Errors
     /// [`PhysicsError::ForeignState`] for another house's state; [`PhysicsError::Range`] for a pose that is not rigid.
@@ -188,6 +188,11 @@ impl PhysicsWorld {
                 angular: rigid.angvel(),
             };
             if !same_velocity(&there, &velocity, arm) {
+                if self.holds[index] != Hold::Free {
+                    // What stands would go through everything with its velocity.
+                    self.holds[index] = Hold::Free;
+                    rigid.set_body_type(body::body_type(Hold::Free), true);
+                }
                 rigid.set_linvel(velocity.linear + velocity.angular.cross(arm), true);
                 rigid.set_angvel(velocity.angular, true);
                 disturbed = true;
@@ -203,16 +208,24 @@ impl PhysicsWorld {
             let position = joint.values.clamp(state.joint_position[joint.id]);
             let child = joint.child as usize;
             let shut = joints::stands_shut(joint, articulation, position);
+            let body = self.bodies[child];
             if self.holds[child] == Hold::Latched && !shut {
-                let body = self.bodies[child];
                 joints::release(&mut self.engine, &body, &mut self.holds[child]);
             }
-            stands.push(Stand {
+            let stand = Stand {
                 position,
                 velocity: state.joint_velocity[joint.id],
                 anew: false,
                 shut: self.holds[child] == Hold::Latched,
-            });
+            };
+            let there = joints::read(&self.engine, joint, position);
+            if self.holds[child] == Hold::Frozen && !joints::says_the_same(&stand, there) {
+                self.holds[child] = Hold::Free;
+                if let Some(rigid) = self.engine.bodies.get_mut(body.handle) {
+                    rigid.set_body_type(body::body_type(Hold::Free), true);
+                }
+            }
+            stands.push(stand);
         }
         for tree in &self.trees {
             if disturbed_roots.contains(&tree.root_body()) {

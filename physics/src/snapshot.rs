@@ -15,6 +15,7 @@ use crate::error::PhysicsError;
 use crate::joints::{self, Drives, Pull};
 use crate::laws::{self, Installed};
 use crate::world::{Assembly, PhysicsWorld, Weights, assemble, pose_of};
+use dwell_scene::packing::{pack, unpack};
 use dwell_scene::{AgentId, Id, State};
 use rapier3d::dynamics::{ImpulseJointSet, IslandManager, RigidBodySet};
 use rapier3d::geometry::{BroadPhaseBvh, NarrowPhase};
@@ -27,10 +28,6 @@ use xxhash_rust::xxh3::xxh3_64;
 const MAGIC: &[u8; 4] = b"dwph";
 const MAGIC_OF_MOMENTS: &[u8; 4] = b"dwpm";
 const VERSION: u32 = 6;
-/// How hard a snapshot is packed (1 to 10): further levels take twice the time for a tenth less.
-const PACKING: u8 = 1;
-/// Nothing that a packed snapshot holds is larger, bytes.
-const MOST_UNPACKED: usize = 1 << 30;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.
@@ -93,8 +90,7 @@ impl PhysicsWorld {
     /// # Panics
     /// Never: writing plain data to memory cannot fail.
     pub fn snapshot(&self) -> Vec<u8> {
-        let body = miniz_oxide::deflate::compress_to_vec_zlib(&self.body(), PACKING);
-        self.with_header(MAGIC, &body)
+        self.with_header(MAGIC, &pack(&self.body()))
     }
 
     /// As [`PhysicsWorld::snapshot`], but not packed: some three times as large and many times as fast, to go back within
@@ -301,10 +297,7 @@ impl PhysicsWorld {
         if !packed {
             return Ok(Cow::Borrowed(body));
         }
-        let unpacked = miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(body, MOST_UNPACKED);
-        unpacked
-            .map(Cow::Owned)
-            .map_err(|error| PhysicsError::Snapshot(format!("it cannot be unpacked: {error}")))
+        Ok(Cow::Owned(unpack(body)?))
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod validity;
 
 use dwell::{Engines, Env, EnvConfig, SensorConfig};
+use dwell_houses::{Robot, open_robot};
 use serde_json::json;
 use std::sync::{Arc, OnceLock};
 
@@ -17,6 +18,22 @@ pub fn apartment() -> Arc<Engines> {
         Engines::new(Arc::new(house))
     };
     APARTMENT.get_or_init(open).clone()
+}
+
+/// An arm of two joints with a gripper, from a URDF whose palm is a box here instead of a mesh.
+///
+/// # Panics
+/// When the file cannot be written or read.
+pub fn arm() -> Robot {
+    let palm = r#"<mesh filename="palm.stl" scale="0.001 0.001 0.001"/>"#;
+    let text = include_str!("../../engine/houses/tests/robots/arm.urdf");
+    let text = text.replace("package://arm/palm.stl", "palm.stl");
+    assert!(text.contains(palm), "the file has a palm");
+    let folder = tempfile::tempdir().expect("a folder for a moment");
+    let path = folder.path().join("arm.urdf");
+    let text = text.replace(palm, r#"<box size="0.02 0.08 0.04"/>"#);
+    std::fs::write(&path, text).expect("a folder of our own can be written to");
+    open_robot(&path).expect("the arm opens").0
 }
 
 /// An environment of the first task in the apartment with these sensors, all small.

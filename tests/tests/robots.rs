@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell::{Engines, World, WorldConfig};
-use dwell_houses::{open_robot, with_robot};
+use dwell_houses::with_robot;
 use dwell_render::{Camera, Channels, Frame, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, JointCommand, JointId, Pose, ShoeboxMaterials, space};
@@ -11,19 +11,18 @@ use glam::{DQuat, DVec3, Vec3};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-const URDF: &str = include_str!("../../engine/houses/tests/robots/arm.urdf");
 const BASE: Vec3 = Vec3::new(2.0, 0.0, 2.0);
 
 fn world() -> World {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("arm.urdf");
-    let palm = r#"<mesh filename="palm.stl" scale="0.001 0.001 0.001"/>"#;
-    let text = URDF.replace("package://arm/palm.stl", "palm.stl");
-    assert!(text.contains(palm));
-    std::fs::write(&path, text.replace(palm, r#"<box size="0.02 0.08 0.04"/>"#)).unwrap();
-    let (robot, _) = open_robot(&path).unwrap();
     let room = House::shoebox([4.0, 3.0, 4.0], &ShoeboxMaterials::default()).unwrap();
-    let house = with_robot(&room, &robot, "arm", Pose::from_position(BASE), true).unwrap();
+    let house = with_robot(
+        &room,
+        &dwell_tests::arm(),
+        "arm",
+        Pose::from_position(BASE),
+        true,
+    )
+    .unwrap();
     World::new(Engines::new(Arc::new(house)), &WorldConfig::default()).unwrap()
 }
 

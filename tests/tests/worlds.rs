@@ -41,6 +41,32 @@ fn a_restored_world_continues_with_the_same_bits() {
     assert_eq!(walk(&mut other, 12), first);
 }
 
+/// 256 KiB and 2 KiB a body for a world whose agents do not listen; what an ear remembers of each source comes on top.
+#[test]
+fn snapshots_of_worlds_stay_within_their_size() {
+    let mut world = world();
+    world.reset(Key::root(4)).unwrap();
+    let bound = (256 + 2 * world.start_report().bodies) * 1024;
+    let mut sizes = Vec::new();
+    for listens in [false, true] {
+        if listens {
+            world.listen(&[(AGENT, 800)]).unwrap();
+        }
+        for k in 0..40 {
+            let action = DiscreteAction::ALL[1 + k % 3];
+            world
+                .act_discrete(AGENT, action, &Stride::default())
+                .unwrap();
+        }
+        let mut again = self::world();
+        again.restore(&world.snapshot()).unwrap();
+        assert_eq!(again.hash(), world.hash());
+        sizes.push(world.snapshot().len());
+    }
+    println!("  {sizes:?} bytes of {bound}, without and with an ear");
+    assert!(sizes[0] <= bound, "{sizes:?} of {bound}");
+}
+
 #[test]
 fn damaged_snapshots_are_refused_and_leave_the_world_alone() {
     let mut world = world();

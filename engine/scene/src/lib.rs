@@ -17,6 +17,7 @@ pub mod material;
 pub mod math;
 mod mesh;
 pub mod navigation;
+pub mod packing;
 pub mod parallel;
 pub mod random;
 pub mod rays;

@@ -9,6 +9,7 @@ use dwell_physics::{
     PhysicsWorld, StartReport,
 };
 use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::packing::{pack, unpack};
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
@@ -352,22 +353,23 @@ impl World {
         xxh3_64(&bytes)
     }
 
-    /// The whole world as bytes: state, physics with its contact caches, sound queues and the key of the episode.
+    /// The whole world as bytes: state, physics with its contact caches, sound queues and the key of the episode; packed.
     ///
     /// # Panics
     /// Never: plain bytes can always be written to memory.
     pub fn snapshot(&self) -> Vec<u8> {
         let parts = Parts {
             state: self.state.to_bytes(self.house()),
-            physics: self.physics.snapshot(),
+            physics: self.physics.moment(),
             sound: self.sound.to_bytes(),
             key: self.key,
         };
         let body =
             postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory");
+        let packed = pack(&body);
         let mut bytes = MAGIC.to_vec();
-        bytes.extend_from_slice(&xxh3_64(&body).to_le_bytes());
-        bytes.extend_from_slice(&body);
+        bytes.extend_from_slice(&xxh3_64(&packed).to_le_bytes());
+        bytes.extend_from_slice(&packed);
         bytes
     }
 
@@ -377,17 +379,18 @@ impl World {
     /// [`WorldError`] with the reason; the world is then as it was before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         let refuse = |why: &str| WorldError::Snapshot(why.to_owned());
-        let body = bytes
+        let packed = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwworld1\""))?;
-        let (sum, body) = body
+            .ok_or_else(|| refuse("it does not begin with \"dwworld2\""))?;
+        let (sum, packed) = packed
             .split_first_chunk::<8>()
             .ok_or_else(|| refuse("it is too short"))?;
-        if u64::from_le_bytes(*sum) != xxh3_64(body) {
+        if u64::from_le_bytes(*sum) != xxh3_64(packed) {
             return Err(refuse("its check sum does not fit: it is damaged"));
         }
+        let body = unpack(packed)?;
         let parts: Parts =
-            postcard::from_bytes(body).map_err(|error| WorldError::Snapshot(error.to_string()))?;
+            postcard::from_bytes(&body).map_err(|error| WorldError::Snapshot(error.to_string()))?;
         let mut state = State::from_bytes(self.engines.house(), &parts.state)?;
         let bodies =
             |state: &State| -> Vec<_> { state.agents.iter().map(|agent| agent.body).collect() };
@@ -419,7 +422,7 @@ impl World {
 }
 
 /// What a world's snapshot begins with: its kind and version.
-const MAGIC: &[u8] = b"dwworld1";
+const MAGIC: &[u8] = b"dwworld2";
 
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Parts {

@@ -74,6 +74,34 @@ fn what_needs_more_than_the_bound_is_frozen_and_named() {
     assert_eq!(run.world.fastest_m_s(), 0.0);
 }
 
+/// A frozen thing stands for good; who gives it a velocity frees it, so that it meets what is in its way.
+#[test]
+fn a_frozen_thing_with_a_velocity_is_free() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let half = Vec3::splat(0.5);
+    build.fixed("block", Piece::cuboid(half, Vec3::new(3.0, 0.5, 3.0)));
+    let piece = Piece::cuboid(Vec3::splat(0.1), Vec3::new(3.0, 0.95, 3.0));
+    let sunk = build.movable("sunk", piece);
+    let mut run = build.run_with(PhysicsConfig {
+        max_start_shift_m: 0.01,
+        ..PhysicsConfig::default()
+    });
+    assert_eq!(run.report.frozen.len(), 1);
+    run.world.adopt(&mut run.state).unwrap();
+    run.steps(20);
+    assert_eq!(run.position(sunk), Vec3::new(3.0, 0.95, 3.0), "it stands");
+    let root = run.root(sunk);
+    run.state.part_velocity[root].linear = Vec3::new(2.0, 1.0, 0.0);
+    run.world.adopt(&mut run.state).unwrap();
+    run.steps(100);
+    let at = run.position(sunk);
+    assert!(
+        at.x > 3.2 && at.x < 5.92 && at.y > 0.09,
+        "it flew and fell inside the room: {at}"
+    );
+    assert!(run.world.fastest_m_s() < 0.1);
+}
+
 /// With a larger bound the same thing is lifted out.
 #[test]
 fn the_bound_is_a_setting() {

@@ -1,0 +1,99 @@
+//! What agents and joints are told: mostly with sense.
+
+use dwell_physics::{Action, AgentControl, Grasp, Target};
+use dwell_scene::random::Stream;
+use dwell_scene::{AgentBody, EntityId, JointCommand, JointId, Locomotion, ObjectId};
+use glam::Vec3;
+
+/// Mostly forward, now and then anywhere; on legs sometimes faster than any leg, and sometimes low.
+pub(crate) fn control(stream: &mut Stream, body: &AgentBody) -> AgentControl {
+    let drive = matches!(body.locomotion, Locomotion::DifferentialDrive(_));
+    let pitch_rate_rad_s = stream.range(-1.0, 1.0);
+    if drive && stream.below(2) == 0 {
+        return AgentControl {
+            wheel_rad_s: Some([stream.range(-10.0, 25.0), stream.range(-10.0, 25.0)]),
+            pitch_rate_rad_s,
+            ..AgentControl::default()
+        };
+    }
+    let right_m_s = stream.range(-1.0, 1.0);
+    AgentControl {
+        forward_m_s: stream.range(-1.0, 3.0),
+        right_m_s: if drive { 0.0 } else { right_m_s },
+        yaw_rate_rad_s: stream.range(-3.0, 3.0),
+        pitch_rate_rad_s,
+        crouch: !drive && stream.below(6) == 0,
+        wheel_rad_s: None,
+    }
+}
+
+/// Something to act on: mostly an object, now and then one that does not exist, or a ray that leads anywhere or nowhere.
+fn target(stream: &mut Stream, objects: usize) -> Target {
+    match stream.below(8) {
+        0 => Target::Gaze,
+        1 => Target::Ray {
+            origin: stream.direction() * stream.range(0.0, 20.0),
+            direction: stream.direction(),
+        },
+        2 => Target::Ray {
+            origin: Vec3::NAN,
+            direction: Vec3::ZERO,
+        },
+        3 => Target::Entity(EntityId(stream.below(2 * objects) as i32 - 5)),
+        _ => Target::Object(ObjectId(stream.below(objects + 2) as u32)),
+    }
+}
+
+/// Any action, with and without sense.
+pub(crate) fn action(stream: &mut Stream, objects: usize) -> Action {
+    let target = target(stream, objects);
+    let number = *stream
+        .choose(&[0.0, 0.5, 3.0, -1.0, 1e30, f32::NAN])
+        .unwrap_or(&0.0);
+    match stream.below(17) {
+        0..=4 => Action::Pick {
+            target,
+            grasp: Grasp::default(),
+        },
+        5 => Action::Drop,
+        6 => Action::Place { on: None },
+        7 => Action::Place { on: Some(target) },
+        8 => Action::PlaceAt {
+            point: stream.direction() * number,
+        },
+        9 => Action::PutIn { container: target },
+        10 => Action::Throw {
+            direction: stream.direction(),
+            speed_m_s: number,
+        },
+        11 => Action::Push {
+            target,
+            force_n: Some(number),
+        },
+        12 => Action::Pull {
+            target,
+            force_n: None,
+        },
+        13 => Action::Open {
+            target,
+            fraction: number,
+        },
+        14 => Action::Close { target },
+        15 => Action::Point { target },
+        _ => Action::Toggle { target },
+    }
+}
+
+/// Any joint and any command: doors know positions only, some numbers are none, and one joint does not exist.
+pub(crate) fn command(stream: &mut Stream, joints: usize) -> (JointId, JointCommand) {
+    let joint = JointId(stream.below(joints + 1) as u32);
+    let number = stream.range(-2.0, 2.0);
+    let command = match stream.below(6) {
+        0 | 1 => JointCommand::Position(number),
+        2 => JointCommand::Velocity(number),
+        3 => JointCommand::Effort(5.0 * number),
+        4 => JointCommand::Position(f32::NAN),
+        _ => JointCommand::Off,
+    };
+    (joint, command)
+}
