@@ -14,14 +14,22 @@ use dwell_scene::Pose;
 
 /// The density of a geom that states none, kg/m³ (MuJoCo's).
 const USUAL_DENSITY_KG_M3: f64 = 1000.0;
+/// Half of the edges of a plane without end, m.
+const PLANE_M: f32 = 20.0;
+/// Half of the thickness of the box that stands for a plane, m.
+const PLANE_DEPTH_M: f32 = 0.05;
 /// Groups from which geoms are drawn for debugging only, by MuJoCo's custom.
 const HIDDEN_GROUP: i32 = 3;
 
 /// A geom that is a body's.
 pub(super) struct Piece {
     pub(super) shape: Shape,
+    /// What the file calls it.
+    pub(super) name: Option<String>,
     pub(super) touches: bool,
     pub(super) seen: bool,
+    /// Whether it is a plane, which is held as a flat box.
+    pub(super) is_plane: bool,
     /// As stated, kg.
     mass: Option<f64>,
     /// kg/m³.
@@ -36,14 +44,17 @@ pub(super) fn pieces(
     at: &At,
     report: &mut Report,
 ) -> Result<Vec<Piece>, HousesError> {
+    let of_world = std::ptr::eq(body, &raw const model.bodies[0].body);
     let mut pieces = Vec::with_capacity(body.geoms.len());
     for (k, geom) in body.geoms.iter().enumerate() {
         let name = geom.name.clone().unwrap_or(k.to_string());
         let at = at.field(format_args!("geom[{name}]"));
-        if let Some(shape) = shape(model, geom, files, &at, report)? {
+        if let Some(shape) = shape(model, geom, of_world, files, &at, report)? {
             let touches = touches(geom);
             pieces.push(Piece {
                 shape,
+                name: geom.name.clone(),
+                is_plane: geom.type_ == GeomType::Plane,
                 touches,
                 seen: geom.group < HIDDEN_GROUP || !touches,
                 mass: geom.mass,
@@ -61,6 +72,7 @@ fn touches(geom: &Geom) -> bool {
 fn shape(
     model: &Model,
     geom: &Geom,
+    of_world: bool,
     files: &mut Files,
     at: &At,
     report: &mut Report,
@@ -112,6 +124,13 @@ fn shape(
                 mesh: files.mesh(&path, &at, report)?,
                 scale: DVec3::from_array(asset.scale).as_vec3(),
             }
+        }
+        // Of the world's; a robot has none.
+        GeomType::Plane if of_world => {
+            let size = |x: f32| if x > 0.0 { x } else { PLANE_M };
+            let half = Vec3::new(size(a), size(b), PLANE_DEPTH_M);
+            link_from_shape = link_from_shape * Pose::from_position(Vec3::NEG_Z * PLANE_DEPTH_M);
+            Solid::Cuboid { half }
         }
         GeomType::Plane | GeomType::Hfield | GeomType::Sdf => {
             let what = format!("a geom of the type {:?} is not read on a robot", geom.type_);

@@ -1,10 +1,11 @@
-//! MJCF, the robots of MuJoCo.
+//! MJCF: robots and houses of `MuJoCo`.
 //!
 //! `mjcf-rs` parses it: classes of defaults, angles and the many ways to write a rotation come resolved. Files it would
 //! include are checked first, so that none lies out of the data root.
 
 mod actuators;
 mod geoms;
+mod house;
 mod includes;
 mod read;
 
@@ -32,12 +33,17 @@ pub(crate) fn recognizes(path: &Path) -> bool {
     xml && read().is_ok() && String::from_utf8_lossy(&head).contains("<mujoco")
 }
 
-/// Opens a robot on a ground of its own.
+/// Opens a house of several bodies (`docs/formats/mjcf.md`), or a robot on a ground of its own.
 ///
 /// # Errors
-/// Those of [`open_robot`](crate::open_robot).
+/// Those of [`open_robot`](crate::open_robot); of a house, what cannot be read is left out and reported.
 pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
     let mut report = Report::new();
+    let source = read::Source::load(path)?;
+    if house::is_house(&source) {
+        let house = house::read(source, &mut report)?;
+        return Ok((house, report));
+    }
     let robot = read(path, &mut report)?;
     Ok((robot::alone(&robot)?, report))
 }

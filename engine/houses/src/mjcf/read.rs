@@ -16,77 +16,154 @@ use crate::report::{At, Report};
 use crate::robot::{Files, Joint, Link, Motion, Robot, Weight, check};
 use crate::root::folder_of;
 
+/// A parsed file and what stands beside it.
+pub(super) struct Source {
+    pub(super) model: Model,
+    files: Files,
+    pub(super) at: At,
+}
+
+impl Source {
+    /// Reads and parses the file at `path`.
+    ///
+    /// # Errors
+    /// Those of [`open_robot`](crate::open_robot) for files that cannot be read or are not this format.
+    pub(super) fn load(path: &Path) -> Result<Self, HousesError> {
+        let files = Files::around(path)?;
+        let text = files.text()?;
+        includes::check(&files, &text)?;
+        let at = At::file(&files.file);
+        let folder = files.root.folder().join(folder_of(&files.file));
+        let model = Model::from_str(&text, folder).map_err(|error| HousesError::Syntax {
+            at: at.clone(),
+            message: error.to_string(),
+        })?;
+        Ok(Self { model, files, at })
+    }
+
+    /// The file's name inside its folder.
+    pub(super) fn name(&self) -> &str {
+        &self.files.file
+    }
+
+    /// The bodies that hang on nothing.
+    pub(super) fn roots(&self) -> Vec<BodyId> {
+        let roots = self.model.bodies_iter();
+        let roots = roots.filter(|(_, entry)| entry.parent == Some(0));
+        roots.map(|(id, _)| id).collect()
+    }
+
+    /// The geoms of a body.
+    ///
+    /// # Errors
+    /// [`HousesError::Field`] for a mesh that cannot be read.
+    pub(super) fn pieces(
+        &mut self,
+        id: BodyId,
+        report: &mut Report,
+    ) -> Result<Vec<Piece>, HousesError> {
+        let name = name_of(&self.model, id);
+        let at = self.at.field(format_args!("body[{name}]"));
+        let body = &self.model.bodies[id].body;
+        geoms::pieces(&self.model, body, &mut self.files, &at, report)
+    }
+
+    /// A body and what hangs on it. A root that turns or slides hangs on an empty link that stays where it is.
+    ///
+    /// # Errors
+    /// Those of [`open_robot`](crate::open_robot).
+    pub(super) fn robot(
+        &mut self,
+        root: BodyId,
+        report: &mut Report,
+    ) -> Result<Robot, HousesError> {
+        let bodies = below(&self.model, root);
+        let (mut links, mut joints) = (Vec::new(), Vec::new());
+        let root_at = self
+            .at
+            .field(format_args!("body[{}]", name_of(&self.model, root)));
+        let base = base(&self.model.bodies[root].body, &root_at)?;
+        let hung = usize::from(base == Base::Hung);
+        if base == Base::Hung {
+            links.push(Link {
+                name: format!("{}_frame", name_of(&self.model, root)),
+                weight: None,
+                visuals: Vec::new(),
+                collisions: Vec::new(),
+            });
+        }
+        for id in &bodies {
+            let pieces = self.pieces(*id, report)?;
+            let entry = &self.model.bodies[*id];
+            let name = name_of(&self.model, *id);
+            let at = self.at.field(format_args!("body[{name}]"));
+            let of = |takes: fn(&Piece) -> bool| {
+                let taken = pieces.iter().filter(|piece| takes(piece));
+                taken.map(|piece| piece.shape.clone()).collect()
+            };
+            links.push(Link {
+                weight: weight(&self.model, &entry.body, &pieces, &at)?,
+                name,
+                visuals: of(|piece| piece.seen),
+                collisions: of(|piece| piece.touches),
+            });
+            let place =
+                |id: BodyId| hung + bodies.iter().position(|other| *other == id).unwrap_or(0);
+            if *id == root {
+                if base == Base::Hung {
+                    let mut joint = joint(&self.model, root, [0, 1], &at)?;
+                    // The frame stands where the body does.
+                    joint.parent_from_joint = joint.child_from_joint;
+                    joints.push(joint);
+                }
+                continue;
+            }
+            let parent = place(entry.parent.unwrap_or(root));
+            joints.push(joint(&self.model, *id, [parent, place(*id)], &at)?);
+        }
+        for equality in &self.model.equality {
+            follow(equality, &mut joints, &self.at, report);
+        }
+        actuators::add(&self.model, &mut joints, &self.at, report);
+        check(Robot {
+            name: self
+                .model
+                .name
+                .clone()
+                .unwrap_or_else(|| "robot".to_owned()),
+            source: self.files.file.clone(),
+            format: "mjcf",
+            links,
+            joints,
+            fixed_base: base != Base::Free,
+        })
+    }
+}
+
 /// Reads an MJCF file: the first body of the world and what hangs on it.
 ///
 /// # Errors
 /// Those of [`open_robot`](crate::open_robot).
 pub(crate) fn read(path: &Path, report: &mut Report) -> Result<Robot, HousesError> {
-    let mut files = Files::around(path)?;
-    let text = files.text()?;
-    includes::check(&files, &text)?;
-    let at = At::file(&files.file);
-    let folder = files.root.folder().join(folder_of(&files.file));
-    let model = Model::from_str(&text, folder).map_err(|error| HousesError::Syntax {
-        at: at.clone(),
-        message: error.to_string(),
-    })?;
-    let mut roots = model
-        .bodies_iter()
-        .filter(|(_, entry)| entry.parent == Some(0));
-    let Some((root, _)) = roots.next() else {
+    let mut source = Source::load(path)?;
+    let roots = source.roots();
+    let Some(root) = roots.first() else {
         return Err(HousesError::Field {
-            at,
+            at: source.at,
             expected: "a <body> in <worldbody>",
             found: "none".to_owned(),
         });
     };
-    let left_out = roots.count() + model.bodies[0].body.geoms.len();
+    let left_out = roots.len() - 1 + source.model.bodies[0].body.geoms.len();
     if left_out > 0 {
         let what = format!("{left_out} bodies or geoms of the world beside the robot are not read");
-        report.warn(at.field("worldbody"), Damage::Simplified { what });
+        report.warn(source.at.field("worldbody"), Damage::Simplified { what });
     }
-    let bodies = below(&model, root);
-    let (mut links, mut joints) = (Vec::new(), Vec::new());
-    let mut fixed_base = true;
-    for id in &bodies {
-        let entry = &model.bodies[*id];
-        let name = name_of(&model, *id);
-        let at = at.field(format_args!("body[{name}]"));
-        let pieces = geoms::pieces(&model, &entry.body, &mut files, &at, report)?;
-        let of = |takes: fn(&Piece) -> bool| {
-            let taken = pieces.iter().filter(|piece| takes(piece));
-            taken.map(|piece| piece.shape.clone()).collect()
-        };
-        links.push(Link {
-            weight: weight(&model, &entry.body, &pieces, &at)?,
-            name,
-            visuals: of(|piece| piece.seen),
-            collisions: of(|piece| piece.touches),
-        });
-        if *id == root {
-            fixed_base = !is_free(&entry.body, &at)?;
-            continue;
-        }
-        let place = |id: BodyId| bodies.iter().position(|other| *other == id).unwrap_or(0);
-        let parent = place(entry.parent.unwrap_or(root));
-        joints.push(joint(&model, *id, [parent, place(*id)], &at)?);
-    }
-    for equality in &model.equality {
-        follow(equality, &mut joints, &at, report);
-    }
-    actuators::add(&model, &mut joints, &at, report);
-    check(Robot {
-        name: model.name.clone().unwrap_or_else(|| "robot".to_owned()),
-        source: files.file.clone(),
-        format: "mjcf",
-        links,
-        joints,
-        fixed_base,
-    })
+    source.robot(*root, report)
 }
 
 /// The name of a body; those without one are numbered.
-fn name_of(model: &Model, id: BodyId) -> String {
+pub(super) fn name_of(model: &Model, id: BodyId) -> String {
     let name = model.bodies[id].body.name.clone();
     name.unwrap_or_else(|| format!("body_{id}"))
 }
@@ -125,14 +202,25 @@ fn refuse<T>(at: At, expected: &'static str, found: impl Into<String>) -> Result
     })
 }
 
-/// Whether the root floats.
-fn is_free(root: &Body, at: &At) -> Result<bool, HousesError> {
+/// What holds a root.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Base {
+    /// Nothing: it falls.
+    Free,
+    /// The world.
+    Fixed,
+    /// A hinge or slide on the world: a door.
+    Hung,
+}
+
+fn base(root: &Body, at: &At) -> Result<Base, HousesError> {
     match root.joints[..] {
-        [] => Ok(false),
-        [ref joint] if joint.type_ == JointType::Free => Ok(true),
+        [] => Ok(Base::Fixed),
+        [ref joint] if joint.type_ == JointType::Free => Ok(Base::Free),
+        [ref joint] if matches!(joint.type_, JointType::Hinge | JointType::Slide) => Ok(Base::Hung),
         _ => refuse(
             at.field("joint"),
-            "a free joint or none for the root",
+            "a free joint, a hinge, a slide or none for the root",
             "another joint",
         ),
     }

@@ -23,7 +23,7 @@ const GROUND_M: f32 = 5.0;
 const GROUND_DEPTH_M: f32 = 0.1;
 
 /// From a robot's axes (+X forward, +Z up) to dwell's (-Z forward, +Y up).
-pub(super) fn ours_from_robot() -> Pose {
+pub(crate) fn ours_from_robot() -> Pose {
     let axes = Mat3::from_cols(Vec3::NEG_Z, Vec3::NEG_X, Vec3::Y);
     Pose::new(Vec3::ZERO, Quat::from_mat3(&axes))
 }

@@ -107,6 +107,11 @@ impl Robot {
         self.links.iter().map(|link| link.name.as_str())
     }
 
+    /// Whether no joint of it has a motor.
+    pub(crate) fn is_passive(&self) -> bool {
+        self.joints.iter().all(|joint| joint.servo.is_none())
+    }
+
     /// The names of the joints that move, in the order in which they get into a house.
     pub fn joints(&self) -> impl Iterator<Item = &str> {
         let moving = self

@@ -1,0 +1,410 @@
+//! A house of several bodies, as `MolmoSpaces` and others write them for `MuJoCo`.
+//!
+//! Bodies and geoms that are called walls, floors and ceilings become the building, each floor a room; every other body of
+//! the world becomes an object with what hangs on it.
+
+use std::sync::Arc;
+
+use dwell_scene::material::{Substance, library};
+use dwell_scene::{
+    Aabb, Category, House, HouseData, Level, LevelId, Material, MaterialId, Mobility, ObjectId,
+    Pose, Room, RoomId, State, Structure, StructureKind, units,
+};
+use glam::Vec2;
+use mjcf_rs::BodyId;
+
+use super::geoms::Piece;
+use super::read::{Source, name_of, pose};
+use crate::build::{CategoryRow, Names, category_of, room_kind, structure_kind, substance_of};
+use crate::damage::{Damage, Unmapped};
+use crate::error::HousesError;
+use crate::limits::MAX_NODES;
+use crate::report::Report;
+use crate::robot;
+
+/// The one storey; where floors differ by more, the report says so.
+const LEVEL: LevelId = LevelId(0);
+/// Height of rooms without ceiling and walls, m.
+const CEILING_M: f32 = 2.5;
+/// The largest thing that a hand takes, m.
+const HANDY_M: f32 = 0.6;
+/// The most joints whose object counts as furniture; more are a robot.
+const MOST_JOINTS: usize = 40;
+
+/// Whether the file is a house: more than one body stands in the world, or one beside geoms that are called walls or floors.
+pub(super) fn is_house(source: &Source) -> bool {
+    let world = &source.model.bodies[0].body;
+    let built = world
+        .geoms
+        .iter()
+        .filter_map(|geom| structure_kind(geom.name.as_deref()?));
+    let walls = built.filter(|kind| *kind == StructureKind::Wall).count();
+    source.roots().len() > 1 || walls > 1
+}
+
+/// Reads the house.
+///
+/// # Errors
+/// [`HousesError::TooLarge`] for more bodies than are read, [`HousesError::Empty`] when no triangle is left,
+/// [`HousesError::Scene`] when the result breaks a rule of the scene.
+pub(super) fn read(mut source: Source, report: &mut Report) -> Result<House, HousesError> {
+    let at = source.at.clone();
+    let count = source.model.bodies.len();
+    if count > MAX_NODES {
+        return Err(HousesError::TooLarge {
+            at: at.field("worldbody"),
+            what: "body count",
+            found: count as u64,
+            allowed: MAX_NODES as u64,
+        });
+    }
+    let stem = source.name().rsplit('/').next().unwrap_or_default();
+    let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
+    let name = source.model.name.clone().unwrap_or_else(|| stem.to_owned());
+    let mut reader = Reader {
+        data: HouseData {
+            name,
+            source: "mjcf".to_owned(),
+            ..HouseData::default()
+        },
+        structure_names: Names::default(),
+        names: Names::default(),
+        world_from_file: robot::ours_from_robot(),
+    };
+    reader.data.levels.push(Level {
+        name: "0".to_owned(),
+        bounds: Aabb::EMPTY,
+    });
+    let mut objects = Vec::new();
+    match source.pieces(0, report) {
+        Ok(pieces) => reader.building(&source, 0, Pose::IDENTITY, &pieces, report),
+        Err(error) => left_out(&error, &source, report),
+    }
+    for root in source.roots() {
+        if structure_kind(&name_of(&source.model, root)).is_some() {
+            reader.walls(&mut source, root, report);
+        } else {
+            objects.push(root);
+        }
+    }
+    reader.rooms(report, &source);
+    for root in objects {
+        match source.robot(root, report) {
+            Ok(thing) => reader.object(&source, root, &thing),
+            Err(error) => left_out(&error, &source, report),
+        }
+    }
+    let mut data = reader.data;
+    if data.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
+        let damage = report.len();
+        return Err(HousesError::Empty { at, damage });
+    }
+    place(&mut data);
+    House::new(data).map_err(HousesError::scene(&at))
+}
+
+fn left_out(error: &HousesError, source: &Source, report: &mut Report) {
+    let what = format!("left out: {error}");
+    report.warn(source.at.field("worldbody"), Damage::Simplified { what });
+}
+
+struct Reader {
+    data: HouseData,
+    structure_names: Names,
+    names: Names,
+    /// From the file's axes, +Z up, to ours.
+    world_from_file: Pose,
+}
+
+impl Reader {
+    /// A body of the building and all below it, where they stand.
+    fn walls(&mut self, source: &mut Source, root: BodyId, report: &mut Report) {
+        let mut open = vec![(root, Pose::IDENTITY)];
+        while let Some((id, file_from_parent)) = open.pop() {
+            let file_from_body = file_from_parent * pose(&source.model.bodies[id].body.pose);
+            match source.pieces(id, report) {
+                Ok(pieces) => self.building(source, id, file_from_body, &pieces, report),
+                Err(error) => left_out(&error, source, report),
+            }
+            let children = source.model.bodies_iter();
+            let children = children.filter(|(_, entry)| entry.parent == Some(id));
+            open.extend(children.map(|(child, _)| (child, file_from_body)));
+        }
+    }
+
+    /// The geoms of a body as pieces of the building. What is seen counts; where nothing is, what touches.
+    fn building(
+        &mut self,
+        source: &Source,
+        id: BodyId,
+        file_from_body: Pose,
+        pieces: &[Piece],
+        report: &mut Report,
+    ) {
+        let body = name_of(&source.model, id);
+        let seen = pieces.iter().any(|piece| piece.seen);
+        for piece in pieces.iter().filter(|piece| piece.seen || !seen) {
+            let name = match (&piece.name, id) {
+                (Some(name), _) if structure_kind(name).is_some() || id == 0 => name.clone(),
+                (None, 0) => "geom".to_owned(),
+                _ => body.clone(),
+            };
+            let kind = structure_kind(&name).unwrap_or(if piece.is_plane {
+                StructureKind::Ground
+            } else {
+                StructureKind::Other
+            });
+            let material = self.material(piece, &name, report, source);
+            let place = self.world_from_file * file_from_body * piece.shape.link_from_shape;
+            let mut mesh = piece.shape.solid.surface().transformed(&place.to_affine());
+            mesh.slots = Vec::new();
+            let bounds = mesh.bounds();
+            self.data.levels[LEVEL].bounds = self.data.levels[LEVEL].bounds.union(&bounds);
+            let mesh = self.data.meshes.push(Arc::new(mesh));
+            self.data.structure.push(Structure {
+                name: self.structure_names.unique(&name),
+                kind,
+                room: None,
+                level: LEVEL,
+                mesh,
+                materials: vec![material],
+            });
+        }
+    }
+
+    /// A material of the building: what its name means, else plaster, or parquet on floors.
+    fn material(
+        &mut self,
+        piece: &Piece,
+        name: &str,
+        report: &mut Report,
+        source: &Source,
+    ) -> MaterialId {
+        let known = substance_by_words(&piece.shape.material);
+        if known.is_none() && !piece.shape.material.is_empty() {
+            let damage = Damage::Unmapped {
+                what: Unmapped::Substance,
+                name: piece.shape.material.clone(),
+            };
+            report.warn(source.at.field("asset"), damage);
+        }
+        let floor = structure_kind(name) == Some(StructureKind::Floor);
+        let usual = if floor { "parquet" } else { "painted_plaster" };
+        let substance = known.unwrap_or_else(|| library().get_or_default(usual));
+        let word = if piece.shape.material.is_empty() {
+            "surface"
+        } else {
+            &piece.shape.material
+        };
+        let mut material = Material::of(word.replace(['/', '\\'], "-"), substance);
+        if let Some([r, g, b, opacity]) = piece.shape.rgba {
+            let clean = |x: f32| {
+                if x.is_finite() {
+                    x.clamp(0.0, 1.0)
+                } else {
+                    0.0
+                }
+            };
+            material.base_color = [r, g, b].map(|c| units::linear_from_srgb(clean(c)));
+            material.opacity = clean(opacity);
+        }
+        let same = |other: &Material| {
+            Material {
+                name: material.name.clone(),
+                ..other.clone()
+            } == material
+                && other.name.starts_with(&material.name)
+        };
+        if let Some(k) = self.data.materials.iter().position(same) {
+            return MaterialId(k as u32);
+        }
+        let names = || self.data.materials.iter().map(|other| &other.name);
+        let base = material.name.clone();
+        let mut number = 2;
+        while names().any(|other| *other == material.name) {
+            material.name = format!("{base}_{number}");
+            number += 1;
+        }
+        self.data.materials.push(material)
+    }
+
+    /// A room over each floor.
+    fn rooms(&mut self, report: &mut Report, source: &Source) {
+        let mut names = Names::default();
+        let bounds_of = |data: &HouseData, kind: StructureKind| -> Vec<Aabb> {
+            let pieces = data.structure.iter().filter(|piece| piece.kind == kind);
+            pieces
+                .map(|piece| data.meshes[piece.mesh].bounds())
+                .collect()
+        };
+        let ceilings = bounds_of(&self.data, StructureKind::Ceiling);
+        let walls = bounds_of(&self.data, StructureKind::Wall);
+        for k in 0..self.data.structure.len() {
+            let piece = &self.data.structure.as_slice()[k];
+            if piece.kind != StructureKind::Floor {
+                continue;
+            }
+            let mesh = &self.data.meshes[piece.mesh];
+            let bounds = mesh.bounds();
+            let floor_y = bounds.max.y;
+            let up = |triangle: &usize| {
+                let [a, b, c] = mesh.corners(*triangle);
+                let flat = (b - a).cross(c - a).normalize_or_zero().y > 0.7;
+                flat && [a, b, c].iter().all(|p| p.y > floor_y - 0.02)
+            };
+            let footprint: Vec<[Vec2; 3]> = (0..mesh.triangles.len())
+                .filter(up)
+                .map(|k| mesh.corners(k).map(|p| Vec2::new(p.x, p.z)))
+                .collect();
+            if footprint.is_empty() {
+                continue;
+            }
+            let over = |other: &&Aabb| {
+                other.min.x < bounds.max.x
+                    && other.max.x > bounds.min.x
+                    && other.min.z < bounds.max.z
+                    && other.max.z > bounds.min.z
+                    && other.max.y > floor_y + 1.0
+            };
+            let above = ceilings.iter().filter(over).map(|b| b.min.y);
+            let tops = walls.iter().filter(over).map(|b| b.max.y);
+            let ceiling_y = above
+                .filter(|y| *y > floor_y + 1.0)
+                .reduce(f32::min)
+                .or(tops.reduce(f32::max))
+                .unwrap_or(floor_y + CEILING_M);
+            let words = kind_words(&piece.name);
+            let kind = words.and_then(|words| room_kind(&words).ok());
+            if kind.is_none() {
+                let damage = Damage::Unmapped {
+                    what: Unmapped::RoomType,
+                    name: piece.name.clone(),
+                };
+                report.warn(source.at.field("worldbody"), damage);
+            }
+            let name = names.counted(&kind.as_deref().unwrap_or("room").replace(' ', "_"));
+            let id = self.data.rooms.push(Room {
+                name,
+                level: LEVEL,
+                kinds: kind.into_iter().collect(),
+                footprint,
+                floor_y,
+                ceiling_y,
+                bounds: Aabb::new(bounds.min, bounds.max.with_y(ceiling_y)),
+            });
+            self.data.structure.as_mut_slice()[k].room = Some(id);
+        }
+    }
+
+    /// A body with what hangs on it.
+    fn object(&mut self, source: &Source, root: BodyId, thing: &robot::Robot) {
+        let body = &source.model.bodies[root].body;
+        let file_name = name_of(&source.model, root);
+        let name = self.names.unique(&file_name);
+        let world_from_root = self.world_from_file * pose(&body.pose);
+        robot::add(
+            &mut self.data,
+            thing,
+            &name,
+            world_from_root,
+            thing.has_fixed_base(),
+        );
+        let Some(object) = self.data.objects.as_mut_slice().last_mut() else {
+            return;
+        };
+        object.source_id.clone_from(&file_name);
+        object.model.clone_from(&file_name);
+        let row = category_of(&file_name);
+        let joints = thing.joints().count();
+        if let Some(row) = row {
+            object.category = category(row);
+            object.switch = row.is_switchable().then_some(false);
+        } else if joints <= MOST_JOINTS && thing.is_passive() {
+            object.category = Category::default();
+        }
+        if thing.has_fixed_base() && joints == 0 {
+            object.mobility = Mobility::Fixed;
+        }
+    }
+}
+
+fn category(row: &CategoryRow) -> Category {
+    Category {
+        fine: row.name.clone(),
+        coarse: row.name.clone(),
+        nyu40: row.nyu40_name.clone(),
+    }
+}
+
+/// The substance that a whole name means, or one of its words: `DarkWood_2` is wood.
+fn substance_by_words(name: &str) -> Option<&'static Substance> {
+    let mut words = String::new();
+    for c in name.chars() {
+        if c.is_ascii_uppercase() {
+            words.push(' ');
+        }
+        words.push(if c.is_ascii_alphabetic() {
+            c.to_ascii_lowercase()
+        } else {
+            ' '
+        });
+    }
+    let mut words = words.split_whitespace();
+    substance_of(name).or_else(|| words.find_map(substance_of))
+}
+
+/// `floor_living_room_2` as `living room`; `None` for a name without more.
+fn kind_words(name: &str) -> Option<String> {
+    let words: Vec<&str> = name
+        .split(|c: char| !c.is_ascii_alphabetic())
+        .filter(|word| !word.is_empty())
+        .skip(1)
+        .filter(|word| !matches!(*word, "visual" | "mesh" | "collision" | "geom" | "room"))
+        .collect();
+    let plain = words.join(" ").to_ascii_lowercase();
+    let with_room = format!("{plain} room");
+    let known = [plain.clone(), with_room]
+        .into_iter()
+        .find(|words| room_kind(words).is_ok());
+    known.or(Some(plain)).filter(|words| !words.is_empty())
+}
+
+/// Rooms of objects and the storey's box, by where things stand; what is small and loose can be taken.
+fn place(data: &mut HouseData) {
+    let Ok(house) = House::new(data.clone()) else {
+        return;
+    };
+    let state = State::new(&house);
+    for k in 0..data.objects.len() {
+        let id = ObjectId(k as u32);
+        let bounds = house.object_bounds(&state, id);
+        if bounds.is_empty() {
+            continue;
+        }
+        let level = &mut data.levels[LEVEL].bounds;
+        *level = level.union(&bounds);
+        let center = bounds.center();
+        let room = data.rooms.iter().position(|room| {
+            room.contains_xz(Vec2::new(center.x, center.z))
+                && (room.floor_y - 0.3..room.ceiling_y + 0.3).contains(&center.y)
+        });
+        let object = &mut data.objects[id];
+        object.room = room.map(|k| RoomId(k as u32));
+        let loose = object.mobility == Mobility::Movable;
+        object.pickable = loose && bounds.size().max_element() <= HANDY_M;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_floors_mean_rooms() {
+        let kind = |name: &str| kind_words(name).and_then(|words| room_kind(&words).ok());
+        assert_eq!(kind("floor_kitchen_1").as_deref(), Some("kitchen"));
+        assert_eq!(kind("floor_living_room").as_deref(), Some("living room"));
+        assert_eq!(kind("floor"), None);
+        assert_eq!(kind_words("floor_visual_3"), None);
+    }
+}

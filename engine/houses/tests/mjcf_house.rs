@@ -1,0 +1,211 @@
+//! Houses of MJCF, written by hand.
+#![allow(
+    clippy::unwrap_used,
+    reason = "tests stop at the first surprise and compare exact numbers"
+)]
+
+use dwell_houses::{Damage, HousesError, Report, open};
+use dwell_scene::{House, JointKind, Mobility, Object, ObjectId, State, StructureKind};
+use glam::Vec3;
+
+/// A kitchen (x 0 to 4, y 0 to 3) and a living room (y 3 to 6); +Z up.
+const HOUSE: &str = r#"
+<mujoco model="two_rooms">
+  <compiler angle="radian"/>
+  <asset>
+    <material name="DarkWood" rgba="0.4 0.2 0.1 1"/>
+    <material name="Qux7" rgba="0.9 0.9 0.8 1"/>
+  </asset>
+  <worldbody>
+    <geom name="ground" type="plane" size="0 0 1" pos="0 0 -0.2"/>
+    <body name="floor_kitchen"><geom type="box" pos="2 1.5 -0.05" size="2 1.5 0.05" material="DarkWood"/></body>
+    <body name="floor_living_room"><geom type="box" pos="2 4.5 -0.05" size="2 1.5 0.05"/></body>
+    <body name="walls">
+      <geom name="wall_south" type="box" pos="2 -0.05 1.25" size="2 0.05 1.25" material="Qux7"/>
+      <geom name="wall_middle_a" type="box" pos="0.75 3 1.25" size="0.75 0.05 1.25"/>
+      <geom name="wall_middle_b" type="box" pos="3.2 3 1.25" size="0.8 0.05 1.25"/>
+    </body>
+    <body name="ceiling_1"><geom type="box" pos="2 3 2.55" size="2 3 0.05"/></body>
+    <body name="door_1" pos="1.5 3 0">
+      <joint name="door_hinge" type="hinge" axis="0 0 1" range="0 1.5" damping="0.5"/>
+      <geom type="box" pos="0.45 0 1" size="0.44 0.02 1" mass="20"/>
+    </body>
+    <body name="table_2" pos="2 1.5 0">
+      <geom name="top" type="box" pos="0 0 0.7" size="0.6 0.4 0.02"/>
+      <geom name="leg" type="box" pos="0 0 0.34" size="0.05 0.05 0.34"/>
+    </body>
+    <body name="mug_1" pos="2 1.5 0.77" quat="0.7071067811865476 0 0 0.7071067811865476">
+      <freejoint/>
+      <geom type="cylinder" size="0.04 0.05" mass="0.3"/>
+      <geom type="box" pos="0.05 0 0" size="0.01 0.005 0.03" mass="0.02"/>
+    </body>
+    <body name="dresser_1" pos="1 5.5 0">
+      <geom type="box" pos="0 0 0.4" size="0.4 0.2 0.4" contype="0" conaffinity="0"/>
+      <geom type="box" pos="0 0.15 0.4" size="0.4 0.02 0.4"/>
+      <body name="drawer" pos="0 -0.2 0.6">
+        <joint name="drawer_slide" type="slide" axis="0 -1 0" range="0 0.3"/>
+        <geom type="box" size="0.35 0.02 0.1" mass="2"/>
+      </body>
+    </body>
+    <body name="quxwidget" pos="3 4 0.1"><freejoint/><geom type="box" size="0.1 0.1 0.1" mass="1"/></body>
+    <body name="spinner" pos="3 5 0.5"><joint type="ball"/><geom type="sphere" size="0.1"/></body>
+  </worldbody>
+</mujoco>"#;
+
+fn opened(text: &str) -> Result<(House, Report), HousesError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.xml");
+    std::fs::write(&path, text).unwrap();
+    open(&path.to_string_lossy())
+}
+
+fn object<'a>(house: &'a House, name: &str) -> (ObjectId, &'a Object) {
+    house
+        .objects
+        .iter_ids()
+        .find(|(_, o)| o.source_id == name)
+        .unwrap()
+}
+
+/// The file's +X is our -Z, its +Y our -X, its +Z our +Y.
+fn ours(x: f32, y: f32, z: f32) -> Vec3 {
+    Vec3::new(-y, z, -x)
+}
+
+#[test]
+fn floors_become_rooms_and_walls_the_building() {
+    let (house, report) = opened(HOUSE).unwrap();
+    assert_eq!(
+        (house.name.as_str(), house.source.as_str()),
+        ("two_rooms", "mjcf")
+    );
+    let round = |x: f32| (x * 1e4).round() / 1e4;
+    let rooms: Vec<_> = house
+        .rooms
+        .iter()
+        .map(|room| {
+            (
+                room.name.as_str(),
+                room.kinds[0].as_str(),
+                round(room.area_m2()),
+                round(room.ceiling_y),
+            )
+        })
+        .collect();
+    assert_eq!(
+        rooms,
+        [
+            ("kitchen_1", "kitchen", 12.0, 2.5),
+            ("living_room_1", "living room", 12.0, 2.5)
+        ]
+    );
+    let count = |kind: StructureKind| house.structure.iter().filter(|p| p.kind == kind).count();
+    assert_eq!(count(StructureKind::Wall), 3);
+    assert_eq!(count(StructureKind::Ceiling), 1);
+    assert_eq!(count(StructureKind::Ground), 1);
+    let south = house
+        .structure
+        .iter()
+        .find(|p| p.name == "wall_south")
+        .unwrap();
+    let bounds = house.meshes[south.mesh].bounds();
+    let (a, b) = (ours(0.0, -0.1, 0.0), ours(4.0, 0.0, 2.5));
+    assert!(bounds.min.abs_diff_eq(a.min(b), 1e-5) && bounds.max.abs_diff_eq(a.max(b), 1e-5));
+    let kitchen = house
+        .structure
+        .iter()
+        .find(|p| p.name == "floor_kitchen")
+        .unwrap();
+    assert_eq!(house.materials[kitchen.materials[0]].substance, "wood");
+    let unmapped: Vec<_> = report.unmapped().map(|(_, name, _)| name).collect();
+    assert_eq!(unmapped, ["Qux7"]);
+}
+
+#[test]
+fn bodies_become_objects_that_stand_move_and_open_as_the_file_says() {
+    let (house, report) = opened(HOUSE).unwrap();
+    let state = State::new(&house);
+    let kinds = |name: &str| {
+        let (_, o) = object(&house, name);
+        let room = o.room.map(|room| house.rooms[room].name.as_str());
+        (o.category.coarse.as_str(), o.mobility, o.pickable, room)
+    };
+    assert_eq!(
+        kinds("table_2"),
+        ("table", Mobility::Fixed, false, Some("kitchen_1"))
+    );
+    assert_eq!(
+        kinds("mug_1"),
+        ("cup", Mobility::Movable, true, Some("kitchen_1"))
+    );
+    assert_eq!(
+        kinds("dresser_1"),
+        (
+            "dresser",
+            Mobility::Articulated,
+            false,
+            Some("living_room_1")
+        )
+    );
+    assert_eq!(
+        kinds("quxwidget"),
+        ("", Mobility::Movable, true, Some("living_room_1"))
+    );
+    assert_eq!(kinds("door_1").1, Mobility::Articulated);
+    // A quarter turn about the file's z takes the handle from +X to +Y.
+    let (mug, _) = object(&house, "mug_1");
+    let bounds = house.object_bounds(&state, mug);
+    let (a, b) = (ours(1.96, 1.46, 0.72), ours(2.04, 1.56, 0.82));
+    assert!(bounds.min.abs_diff_eq(a.min(b), 2e-3), "{bounds:?}");
+    assert!(bounds.max.abs_diff_eq(a.max(b), 2e-3), "{bounds:?}");
+    let joint = |name: &str| house.joints.iter().find(|j| j.name == name).unwrap();
+    let hinge = joint("door_hinge");
+    assert_eq!(
+        (hinge.kind, hinge.limits),
+        (JointKind::Hinge, Some([0.0, 1.5]))
+    );
+    // Opened, the leaf's far edge goes from (2.39, 3) to a circle about (1.5, 3).
+    let parent = house.parts[hinge.parent.unwrap()].world_from_part;
+    let far = Vec3::new(0.89, 0.0, 1.0);
+    let shut = hinge.world_from_child(&parent, 0.0).transform_point(far);
+    let wide = hinge.world_from_child(&parent, 1.5).transform_point(far);
+    assert!(shut.abs_diff_eq(ours(2.39, 3.0, 1.0), 1e-5), "{shut}");
+    let (s, c) = 1.5_f32.sin_cos();
+    assert!(
+        wide.abs_diff_eq(ours(1.5 + 0.89 * c, 3.0 + 0.89 * s, 1.0), 1e-5),
+        "{wide}"
+    );
+    let slide = joint("drawer_slide");
+    let parent = house.parts[slide.parent.unwrap()].world_from_part;
+    let out = slide.world_from_child(&parent, 0.3).position;
+    assert!(out.abs_diff_eq(ours(1.0, 5.0, 0.6), 1e-5), "{out}");
+    let said = |d: &Damage| matches!(d, Damage::Simplified { what } if what.contains("spinner"));
+    assert_eq!(report.count(said), 1, "{report}");
+}
+
+#[test]
+fn a_single_body_is_still_a_robot_on_a_ground() {
+    let text = r#"<mujoco model="arm"><worldbody><geom type="plane" size="1 1 1"/>
+        <body name="base"><geom type="box" size="0.1 0.1 0.1"/></body></worldbody></mujoco>"#;
+    let (house, _) = opened(text).unwrap();
+    assert_eq!(house.objects.as_slice()[0].category.coarse, "robot");
+    assert!(house.rooms.is_empty());
+}
+
+#[test]
+fn broken_houses_say_what_is_wrong() {
+    let error = opened(&HOUSE.replace("</mujoco>", "")).unwrap_err();
+    assert!(matches!(error, HousesError::Syntax { .. }), "{error}");
+    let (house, report) = opened(&HOUSE.replace("mass=\"0.3\"", "mass=\"-1\"")).unwrap();
+    assert!(house.objects.iter().all(|o| o.source_id != "mug_1"));
+    assert!(report.to_string().contains("mug_1"), "{report}");
+    let (_, report) = opened(&HOUSE.replace(
+        "<geom type=\"box\" size=\"0.1 0.1 0.1\" mass=\"1\"/>",
+        "<geom type=\"mesh\" mesh=\"none\"/>",
+    ))
+    .unwrap();
+    assert!(
+        report.to_string().contains("the name of a mesh"),
+        "{report}"
+    );
+}
