@@ -378,8 +378,8 @@ class World:
         Raises:
             ConfigError: For what is no pair of finite numbers.
             UsageError: There is no such joint.
-            DwellError: A position is beyond the joint's limits, or a speed beyond 1000 rad/s or m/s.
-                Nothing has changed then.
+            DwellError: A position is beyond the joint's limits, or a speed beyond 1000 rad/s or
+                m/s. Nothing has changed then.
         """
         rows = []
         for joint, stand in joints.items():
@@ -426,14 +426,15 @@ class World:
 
         Raises:
             ConfigError: For a thing that does not exist or what is no finite number.
-            DwellError: It is fixed, held, frozen at the start or moved by a joint, or physics cannot
-                keep the numbers. Nothing has changed then.
+            DwellError: It is fixed, held, frozen at the start or moved by a joint, or physics
+                cannot keep the numbers. Nothing has changed then.
 
         Examples:
             >>> import dwell
             >>> world = dwell.World("builtin:apartment")
-            >>> world.set_body("apple_1", position=(1.0, 1.5, 1.0), linear_m_s=(0.0, 2.0, 0.0))
-            >>> world.body("apple_1")["linear_m_s"]
+            >>> name = next(thing["name"] for thing in world.objects() if thing["pickable"])
+            >>> world.set_body(name, position=(1.0, 1.5, 1.0), linear_m_s=(0.0, 2.0, 0.0))
+            >>> world.body(name)["linear_m_s"]
             (0.0, 2.0, 0.0)
         """
         now = self.body(object, part=part)
