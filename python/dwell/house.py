@@ -53,6 +53,24 @@ class House:
         name = os.fspath(house)
         return cls(_native.House.open(name), (House.open, (name,)))
 
+    @staticmethod
+    def expand(house: str) -> list[str]:
+        """The houses that a HOUSE string stands for where several are taken.
+
+        ``seed:3..5?home=studio`` is ``seed:3?home=studio`` and ``seed:4?home=studio``; any other
+        string is itself.
+
+        Raises:
+            HouseError: The range is empty or none of whole numbers.
+        """
+        return _native.expand(house)
+
+    @staticmethod
+    def builtins() -> list[str]:
+        """The houses that come with dwell, as HOUSE strings."""
+        names: list[str] = json.loads(_native.doctor_json())["houses"]
+        return [f"builtin:{name}" for name in names]
+
     @classmethod
     def generate(cls, seed: int, **spec: object) -> House:
         """Makes the furnished house of a seed; the same seed and spec give the same house.

@@ -1,5 +1,7 @@
 //! What this build knows: actions, tasks, sensors, laws, words, and the machine it runs on.
 
+use crate::doorway::Doorway;
+use crate::errors::Fault;
 use dwell::DiscreteAction;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -56,6 +58,12 @@ pub(crate) fn charset() -> &'static str {
 #[pyfunction]
 pub(crate) fn max_text_length() -> usize {
     dwell_semantics::instruct::MAX_TEXT_LEN
+}
+
+/// The houses that a HOUSE string stands for where several are taken.
+#[pyfunction]
+pub(crate) fn expand(py: Python<'_>, house: &str) -> PyResult<Vec<String>> {
+    py.engine(|| -> Result<_, Fault> { Ok(dwell_houses::expand(house)?) })
 }
 
 /// Versions, threads and features: what `dwell doctor` prints.

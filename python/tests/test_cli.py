@@ -34,7 +34,7 @@ def test_exit_statuses_tell_failure_from_bad_usage() -> None:
     assert "castle" in missing.stderr
     assert missing.stderr.count("\n") == 1
     assert dwell("cook", HOUSE).returncode == 2
-    assert dwell("info").returncode == 2
+    assert dwell("render").returncode == 2
     assert dwell("render", HOUSE, "--at", "1,2", "--out", "x").returncode == 2
     assert dwell().returncode == 2
 

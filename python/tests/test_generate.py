@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 import dwell
+from dwell.envs.config import HouseShelf
 
 
 def test_a_seed_is_a_furnished_house_and_always_the_same() -> None:
@@ -24,6 +25,24 @@ def test_a_seed_is_a_furnished_house_and_always_the_same() -> None:
     again = dwell.House.open("seed:8?home=apartment&storeys=1")
     assert [again.info(), again.describe("house")] == [info, house.describe("house")]
     assert dwell.House.generate(9, home="apartment").info() != info
+
+
+def test_a_range_of_seeds_is_several_houses() -> None:
+    assert dwell.House.expand("seed:3..5?home=studio") == [
+        "seed:3?home=studio",
+        "seed:4?home=studio",
+    ]
+    assert dwell.House.expand("builtin:studio") == ["builtin:studio"]
+    with pytest.raises(dwell.HouseError, match="A < B"):
+        dwell.House.expand("seed:5..3")
+    shelf = HouseShelf(["builtin:studio", "seed:0..3"])
+    assert shelf.names == ["builtin:studio", "seed:0", "seed:1", "seed:2"]
+
+
+def test_built_in_houses_are_listed_and_open() -> None:
+    names = dwell.House.builtins()
+    assert {"builtin:apartment", "builtin:studio", "builtin:house", "builtin:office"} <= set(names)
+    assert dwell.House.open("builtin:house").info()["levels"] == 2
 
 
 def test_rooms_that_are_asked_for_are_there() -> None:

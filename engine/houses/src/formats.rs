@@ -114,6 +114,40 @@ pub fn open(house: &str) -> Result<(House, Report), HousesError> {
     open_with(house, Threads::default())
 }
 
+/// The most houses that one HOUSE string stands for.
+pub const MAX_EXPANDED: u64 = 1_000_000;
+
+/// The houses that a HOUSE string stands for where several are taken: `seed:3..6` is `seed:3`, `seed:4` and `seed:5`, and
+/// `seed:3..6?home=studio` gives each of them the fields. Any other string is one house.
+///
+/// # Errors
+/// [`HousesError::Spec`] for a range that is empty, no range of whole numbers, or longer than [`MAX_EXPANDED`].
+///
+/// ```
+/// let houses = dwell_houses::expand("seed:3..5?home=studio")?;
+/// assert_eq!(houses, ["seed:3?home=studio", "seed:4?home=studio"]);
+/// # Ok::<(), dwell_houses::HousesError>(())
+/// ```
+pub fn expand(house: &str) -> Result<Vec<String>, HousesError> {
+    let seeds = house.strip_prefix("seed:").unwrap_or_default();
+    let (range, fields) = seeds.find('?').map_or((seeds, ""), |at| seeds.split_at(at));
+    let Some((from, to)) = range.split_once("..") else {
+        return Ok(vec![house.to_owned()]);
+    };
+    let ends = from.parse::<u64>().ok().zip(to.parse::<u64>().ok());
+    let fits = |(from, to): &(u64, u64)| from < to && to - from <= MAX_EXPANDED;
+    let Some((from, to)) = ends.filter(fits) else {
+        return Err(HousesError::Spec {
+            field: "seed".to_owned(),
+            found: range.to_owned(),
+            possible: format!("A..B with whole numbers A < B, at most {MAX_EXPANDED} seeds"),
+        });
+    };
+    Ok((from..to)
+        .map(|seed| format!("seed:{seed}{fields}"))
+        .collect())
+}
+
 /// [`open`] on `threads` threads.
 ///
 /// # Errors
@@ -141,4 +175,32 @@ pub fn open_with(house: &str, threads: Threads) -> Result<(House, Report), House
         "house opened"
     );
     Ok((house, report))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_of_seeds_is_its_houses_and_all_else_is_itself() {
+        let one = |house: &str| expand(house).unwrap() == [house];
+        assert!(one("seed:7") && one("seed:7?home=studio") && one("a..b/house.json"));
+        assert_eq!(expand("seed:0..3").unwrap(), ["seed:0", "seed:1", "seed:2"]);
+        for wrong in [
+            "seed:3..3",
+            "seed:4..3",
+            "seed:..3",
+            "seed:a..b",
+            "seed:0..1000002",
+        ] {
+            let told = expand(wrong).unwrap_err().to_string();
+            assert!(told.starts_with("seed: found"), "{told}");
+        }
+    }
+
+    #[test]
+    fn a_range_opened_as_one_house_says_where_ranges_are_taken() {
+        let told = open("seed:0..3").unwrap_err().to_string();
+        assert!(told.contains("0..3") && told.contains("several"), "{told}");
+    }
 }

@@ -25,7 +25,7 @@ mod writers;
 
 pub use damage::{Damage, Unmapped};
 pub use error::HousesError;
-pub use formats::{Format, Opened, formats, open, open_with};
+pub use formats::{Format, MAX_EXPANDED, Opened, expand, formats, open, open_with};
 pub use loss::Loss;
 pub use report::{At, Report, Warning};
 pub use robot::{Robot, open_robot, with_robot};

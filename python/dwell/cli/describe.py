@@ -30,7 +30,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Describes every house; one that cannot be opened is reported and skipped (status 1)."""
-    houses = list(dict.fromkeys(args.houses))
+    from dwell.house import House
+
+    houses = list(dict.fromkeys(one for name in args.houses for one in House.expand(name)))
     job = {"command": "describe", "level": args.level, "seed": args.seed, "houses": houses}
     journal = Journal(args.out, job) if args.out else None
     printer = _Printer(args.level) if args.json else None

@@ -12,7 +12,7 @@ _MOST_WARNINGS = 20
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    parser.add_argument("house", metavar="HOUSE")
+    parser.add_argument("house", metavar="HOUSE", nargs="?", help="without it: built-in houses")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
@@ -20,6 +20,10 @@ def run(args: argparse.Namespace) -> int:
     """Prints counts, rooms, categories and the report."""
     from dwell.house import House
 
+    if args.house is None:
+        names = House.builtins()
+        print_json({"builtins": names}) if args.json else print("\n".join(names))
+        return 0
     info = House.open(args.house).info()
     if args.json:
         print_json(info)

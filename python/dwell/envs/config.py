@@ -22,9 +22,10 @@ class HouseShelf:
         """Keeps what it is given, one house counting as a list of one; opens nothing."""
         alone = isinstance(houses, str | os.PathLike | House)
         try:
-            rows = [houses] if alone else list(houses)  # type: ignore[arg-type] # not alone
+            given = [houses] if alone else list(houses)  # type: ignore[arg-type] # not alone
         except TypeError:
             raise ConfigError(f"houses is {houses!r}; expected HOUSE strings or Houses") from None
+        rows = [one for row in given for one in _expanded(row)]
         if not rows:
             raise ConfigError("houses: expected at least one HOUSE string or House, found none")
         self._open: dict[str, House] = {}
@@ -45,6 +46,11 @@ class HouseShelf:
         if name not in self._open:
             self._open[name] = House.open(name)
         return self._open[name]
+
+
+def _expanded(row: object) -> list[object]:
+    """What stands for itself, or the houses of a range of seeds."""
+    return [*House.expand(row)] if isinstance(row, str) else [row]
 
 
 def env_json(

@@ -2,5 +2,6 @@
 
 mod furniture;
 mod house;
+mod specs;
 mod support;
 mod walking;

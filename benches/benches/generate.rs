@@ -1,0 +1,65 @@
+//! Houses of seeds: how many a second, in memory, on one thread; and how much memory they take while they are kept.
+//!
+//! `cargo bench --profile dev -p dwell-benches --bench generate` makes 200 houses; without `--bench`, 3.
+
+#![expect(clippy::print_stdout, reason = "a program tells by printing")]
+
+use dwell_houses::generate::{HomeKind, HouseSpec, generate};
+use dwell_scene::House;
+use std::time::Instant;
+
+const MIB: f64 = 1024.0 * 1024.0;
+
+/// Memory in use, MiB; `None` where the system does not say.
+fn resident_mib() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    let pages: f64 = text.split_whitespace().nth(1)?.parse().ok()?;
+    Some(pages * 4096.0 / MIB)
+}
+
+fn main() {
+    let count = if std::env::args().any(|argument| argument == "--bench") {
+        200
+    } else {
+        3
+    };
+    let apartment = HouseSpec {
+        home: Some(HomeKind::Apartment),
+        ..HouseSpec::default()
+    };
+    for (name, spec) in [
+        ("all homes", HouseSpec::default()),
+        ("apartments", apartment),
+    ] {
+        let before = resident_mib();
+        let began = Instant::now();
+        let mut kept: Vec<House> = Vec::new();
+        let mut after_first = None;
+        for seed in 0..count {
+            match generate(seed, &spec) {
+                Ok(generated) => kept.push(generated.house),
+                Err(error) => println!("seed {seed}: {error}"),
+            }
+            if seed == 0 {
+                after_first = resident_mib();
+            }
+        }
+        let ms = began.elapsed().as_secs_f64() * 1e3 / count as f64;
+        let houses = kept.len().max(1) as f64;
+        let rooms: usize = kept.iter().map(|house| house.rooms.len()).sum();
+        let objects: usize = kept.iter().map(|house| house.objects.len()).sum();
+        println!(
+            "{name}: {ms:.1} ms a house ({:.0} a second), {:.1} rooms and {:.0} objects each",
+            1e3 / ms,
+            rooms as f64 / houses,
+            objects as f64 / houses
+        );
+        if let (Some(before), Some(first), Some(now)) = (before, after_first, resident_mib()) {
+            println!(
+                "  memory: {:.1} MiB for the first, {:.2} MiB for each further one",
+                first - before,
+                (now - first) / (houses - 1.0).max(1.0)
+            );
+        }
+    }
+}
