@@ -5,8 +5,8 @@ use crate::laws::Compliance;
 use crate::softness;
 use glam::Vec3;
 use rapier3d::dynamics::{
-    CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet, RigidBody,
-    RigidBodyHandle, RigidBodySet, RigidBodyType, SoftBodySet,
+    CCDSolver, FrictionModel, ImpulseJointSet, IntegrationParameters, IslandManager,
+    MultibodyJointSet, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType, SoftBodySet,
 };
 use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, ContactPair, NarrowPhase};
 use rapier3d::math::Pose;
@@ -88,8 +88,13 @@ impl Engine {
         self.parameters.dt
     }
 
+    /// Whether points of one plane share their friction.
+    pub(crate) fn friction_by_patch(&self) -> bool {
+        self.parameters.friction_model == FrictionModel::Simplified
+    }
+
     /// Length of a solver substep, s.
-    fn substep_s(&self) -> f32 {
+    pub(crate) fn substep_s(&self) -> f32 {
         self.parameters.dt / self.parameters.num_solver_iterations as f32
     }
 

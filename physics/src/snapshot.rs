@@ -9,6 +9,7 @@ use crate::actions::Shove;
 use crate::agents::{self, Grip, Loose};
 use crate::body::Hold;
 use crate::config::PhysicsConfig;
+use crate::contact::rolling;
 use crate::contact::{ContactTable, Dress, Excluded, Hooks, MergedEvents, Ongoing};
 use crate::engine::Engine;
 use crate::error::PhysicsError;
@@ -27,7 +28,7 @@ use xxhash_rust::xxh3::xxh3_64;
 /// What a snapshot begins with, and what a moment begins with, which is not packed.
 const MAGIC: &[u8; 4] = b"dwph";
 const MAGIC_OF_MOMENTS: &[u8; 4] = b"dwpm";
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.
@@ -209,6 +210,9 @@ impl PhysicsWorld {
             let (engine, entries) = (&mut built.engine, &mut built.entries);
             agents.push(agents::insert(engine, values, entries, id, agent, force));
         }
+        rolling::resume(&model.rollers, &mut built, &bodies, |entry| {
+            values.rule(entry).1
+        });
         flush(&mut built, values, &memory.excluded);
         let Assembly {
             engine: scaffold,
@@ -307,5 +311,6 @@ fn flush(assembly: &mut Assembly, dress: Dress<'_>, excluded: &Excluded) {
         entries,
         dress,
         excluded,
+        dt_s: 0.0,
     });
 }

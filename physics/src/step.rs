@@ -3,9 +3,10 @@
 use crate::actions::{ActionCode, ActionOutcome, Notice};
 use crate::agents::{self, AgentControl, Way};
 use crate::body::Hold;
+use crate::contact::rolling::Roller;
 use crate::contact::{Collector, ContactEvent, Dress, Hooks, bound, note_motion};
 use crate::error::PhysicsError;
-use crate::joints::{self, Drive, Drivers, Going, Progress};
+use crate::joints::{self, Drive, Drivers, Outlook, Progress};
 use crate::laws::{Acts, JointLoad, LinkStep, Push, Resistance, Stage};
 use crate::motors;
 use crate::world::PhysicsWorld;
@@ -103,7 +104,7 @@ impl PhysicsWorld {
             dt_s: self.settings.dt_s,
         };
         let trees = self.trees.iter();
-        let courses: Vec<Vec<Going>> = trees
+        let outlooks: Vec<Option<Outlook>> = trees
             .map(|tree| joints::exert(&mut self.engine, tree, &drivers))
             .collect();
         let half = 0.5 * self.settings.dt_s;
@@ -120,14 +121,24 @@ impl PhysicsWorld {
                 laws: &self.laws,
             },
             excluded: &self.excluded,
+            dt_s: self.settings.dt_s,
         };
         let config = &self.settings.config;
         let slowest = config.event_min_speed_m_s.min(config.slide_min_speed_m_s);
         let collector = Collector::new(&self.entries, &self.motion, slowest);
         self.engine.step(&hooks, &collector);
         let mut placed = false;
-        for course in &courses {
-            placed |= joints::settle(&mut self.engine, &self.joints, course);
+        let drivers = Drivers {
+            joints: &self.joints,
+            pulls: &self.pulls,
+            near: &|joint| state.joint_position[joint],
+            resist: None,
+            dt_s: self.settings.dt_s,
+        };
+        for (tree, outlook) in self.trees.iter().zip(&outlooks) {
+            if let Some(outlook) = outlook {
+                placed |= joints::settle(&mut self.engine, tree, &drivers, outlook);
+            }
         }
         self.ongoing
             .settle(collector, self.tick, config, &self.table, events);
@@ -136,7 +147,31 @@ impl PhysicsWorld {
         self.apply_laws(|law, stage| law.half_step(stage, half));
         self.tick += 1;
         self.give_back_room();
+        placed |= self.watch_rolling();
         placed
+    }
+
+    /// Lets rapier ask about the contacts of what rolls. Returns whether something began or ceased to roll.
+    pub(crate) fn watch_rolling(&mut self) -> bool {
+        let model = self.model.clone();
+        let dress = Dress {
+            house: &model.house,
+            table: &self.table,
+            laws: &self.laws,
+        };
+        let mut changed = false;
+        for roller in &model.rollers {
+            let handle = self.bodies[roller.body()].handle;
+            let body = self.engine.bodies.get(handle);
+            let (own, rolls) = (
+                body.and_then(|body| roller.collider(body)),
+                body.is_some_and(|body| roller.rolls(body)),
+            );
+            let entries = &self.entries;
+            let asked = |index: usize| entries.get(index).is_some_and(|entry| dress.rule(entry).1);
+            changed |= Roller::follow(&mut self.engine, rolls, own, asked);
+        }
+        changed
     }
 
     /// Lets each law act on the world between steps.

@@ -340,6 +340,7 @@ impl PhysicsWorld {
 
     /// Brings positions, contacts and queries up to date after a change from outside.
     pub(crate) fn flush(&mut self) {
+        self.watch_rolling();
         let hooks = Hooks {
             entries: &self.entries,
             dress: Dress {
@@ -348,6 +349,7 @@ impl PhysicsWorld {
                 laws: &self.laws,
             },
             excluded: &self.excluded,
+            dt_s: 0.0,
         };
         self.engine.flush(&hooks);
     }

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 import operator
+import os
 import re
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -15,6 +17,10 @@ from dwell._native import ConfigError
 
 #: What the border holds: seeds and counts are unsigned and have 64 bits.
 _MOST = 2**64 - 1
+#: The engines reckon in 32 bits: what is larger would be infinite there.
+_LARGEST = float(np.finfo(np.float32).max)
+
+_Record = TypeVar("_Record")
 
 
 def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
@@ -30,20 +36,106 @@ def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
 
 
 def finite(name: str, value: object) -> float:
-    """A finite number as Python's own float."""
+    """A finite number as Python's own float; ``True`` and ``"1"`` are none."""
     try:
+        if isinstance(value, bool | str | bytes):
+            raise TypeError
         number = float(value)  # type: ignore[arg-type] # what this finds out
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ConfigError(f"{name} is {value!r}; expected a number") from None
     if not math.isfinite(number):
         raise ConfigError(f"{name} is {number}; allowed are finite numbers")
+    if abs(number) > _LARGEST:
+        raise ConfigError(
+            f"{name} is {number}; allowed are numbers up to {_LARGEST:.3g} either way"
+        )
     return number
 
 
-def point(name: str, value: Sequence[float]) -> tuple[float, float, float]:
+def text(name: str, value: object) -> str:
+    """Text."""
+    if not isinstance(value, str):
+        raise ConfigError(f"{name} is {value!r}; expected text")
+    return value
+
+
+def choice(name: str, value: object, allowed: Sequence[str]) -> str:
+    """One of several words."""
+    if value not in allowed:
+        raise ConfigError(f"{name} is {value!r}; allowed are {', '.join(allowed)}")
+    return text(name, value)
+
+
+def texts(name: str, values: object) -> list[str]:
+    """A list of text; one text alone is none."""
+    if isinstance(values, str | bytes | Mapping):
+        raise ConfigError(f"{name} is {values!r}; expected a list of text")
+    try:
+        rows = list(values)  # type: ignore[call-overload] # what this finds out
+    except TypeError:
+        raise ConfigError(f"{name} is {values!r}; expected a list of text") from None
+    return [text(f"{name}[{k}]", row) for k, row in enumerate(rows)]
+
+
+def path(name: str, value: object) -> str:
+    """The path of a file or folder, as text."""
+    try:
+        return text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
+    except TypeError:
+        raise ConfigError(f"{name} is {value!r}; expected text or a path") from None
+
+
+def flag(name: str, value: object) -> bool:
+    """``True`` or ``False``."""
+    if not isinstance(value, bool | np.bool_):
+        raise ConfigError(f"{name} is {value!r}; allowed are True and False")
+    return bool(value)
+
+
+def mapping(name: str, value: object, of: str = "values by name") -> dict[str, Any]:
+    """A mapping whose keys are text."""
+    if not isinstance(value, Mapping):
+        raise ConfigError(f"{name} is {value!r}; expected {of}")
+    return {text(f"a name in {name}", key): part for key, part in value.items()}
+
+
+def fields(
+    name: str, value: object, known: Mapping[str, Callable[[str, object], Any]]
+) -> dict[str, Any]:
+    """A mapping of known fields, each checked by its own rule."""
+    checked = {}
+    for key, part in mapping(name, value).items():
+        if key not in known:
+            at = f"{name}: " if name else ""
+            raise ConfigError(f"{at}no field {key!r}; allowed are {', '.join(known)}")
+        checked[key] = known[key](f"{name}.{key}" if name else key, part)
+    return checked
+
+
+def record(
+    name: str, value: object, kind: type[_Record], words: Mapping[str, Sequence[str]]
+) -> dict[str, Any]:
+    """The fields of a data class, numbers or one of several ``words``."""
+    if not isinstance(value, kind):
+        raise ConfigError(f"{name} is {value!r}; expected a dwell.{kind.__name__}")
+    checked: dict[str, Any] = {}
+    for field in dataclasses.fields(kind):  # type: ignore[arg-type] # every kind is a data class
+        part, at = getattr(value, field.name), f"{name}.{field.name}"
+        if isinstance(field.default, int):
+            checked[field.name] = whole(at, part)
+        elif isinstance(field.default, float):
+            checked[field.name] = finite(at, part)
+        else:
+            checked[field.name] = choice(at, part, words[field.name])
+    return checked
+
+
+def point(name: str, value: object) -> tuple[float, float, float]:
     """A point (x, y, z) in metres, from any sequence or array of three finite numbers."""
     try:
-        parts = list(value)
+        if isinstance(value, str | bytes | Mapping):
+            raise TypeError
+        parts = list(value)  # type: ignore[call-overload] # what this finds out
     except TypeError:
         parts = []
     if len(parts) != 3:

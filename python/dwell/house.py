@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal
 
-from dwell import UsageError, _native
-from dwell.arguments import file_name, finite, whole
-from dwell.navigation import Navigation, Walker
+from dwell import UsageError, _native, arguments
+from dwell.arguments import file_name, finite, flag, point, text, whole
+from dwell.navigation import Navigation, Walker, walker_json
 
 Level = Literal["object", "room", "house", "graph", "instructions"]
 Form = Literal["dwell", "suncg", "glb"]
@@ -50,7 +49,7 @@ class House:
             HouseNotFoundError: There is nothing of that name.
             HouseError: It cannot be read; the message names file, node and field.
         """
-        name = os.fspath(house)
+        name = arguments.path("house", house)
         return cls(_native.House.open(name), (House.open, (name,)))
 
     @staticmethod
@@ -90,7 +89,9 @@ class House:
         Raises:
             HouseError: A field cannot be had; the message names it and says what is possible.
         """
-        fields = "&".join(f"{name}={json.dumps(value)}" for name, value in spec.items())
+        plain = {name: arguments.to_json({name: value}) for name, value in spec.items()}
+        values = {name: json.loads(value)[name] for name, value in plain.items()}
+        fields = "&".join(f"{name}={json.dumps(value)}" for name, value in values.items())
         name = f"seed:{whole('seed', seed)}"
         return cls.open(f"{name}?{fields}" if fields else name)
 
@@ -111,8 +112,12 @@ class House:
             absorption: Random-incidence absorption of energy, 0 to 1, at every frequency.
             scattering: Random-incidence scattering, 0 to 1, at every frequency.
         """
-        x, y, z = (finite(f"size_m[{k}]", edge) for k, edge in enumerate(size_m))
-        again = ((x, y, z), substance, absorption, scattering)
+        again = (
+            point("size_m", size_m),
+            None if substance is None else text("substance", substance),
+            None if absorption is None else finite("absorption", absorption),
+            None if scattering is None else finite("scattering", scattering),
+        )
         return cls(_native.House.shoebox(*again), (_shoebox, again))
 
     def with_robot(
@@ -136,7 +141,15 @@ class House:
         Raises:
             HouseError: The file cannot be read; the message names file, node and field.
         """
-        return House(self._native.with_robot(os.fspath(path), name, position, yaw_deg, fixed_base))
+        return House(
+            self._native.with_robot(
+                arguments.path("path", path),
+                text("name", name),
+                point("position", position),
+                finite("yaw_deg", yaw_deg),
+                None if fixed_base is None else flag("fixed_base", fixed_base),
+            )
+        )
 
     @property
     def native(self) -> _native.House:
@@ -166,7 +179,8 @@ class House:
                 ``graph`` (one JSON object), ``instructions`` (a JSON object each).
             seed: Draws the wording of instructions; without it each has its first wording.
         """
-        return self._native.describe(level, None if seed is None else whole("seed", seed))
+        seed = None if seed is None else whole("seed", seed)
+        return self._native.describe(text("level", level), seed)
 
     def semantic_classes(self) -> list[str]:
         """The names of the numbers in semantic images; 0 is void."""
@@ -174,8 +188,7 @@ class House:
 
     def navigation(self, walker: Walker | None = None) -> Navigation:
         """Where one can walk in the house as it starts."""
-        config = json.dumps(dataclasses.asdict(walker or Walker()))
-        return Navigation(_native.Navigation(self._native, config))
+        return Navigation(_native.Navigation(self._native, walker_json(walker)))
 
     def write(self, path: str | os.PathLike[str], form: Form) -> list[str]:
         """Writes the house as it starts.
@@ -188,7 +201,7 @@ class House:
         Returns:
             What the form cannot hold, in sentences.
         """
-        return self._native.write(os.fspath(path), form)
+        return self._native.write(arguments.path("path", path), text("form", form))
 
     def write_into(
         self, root: str | os.PathLike[str], name: str, form: Form
@@ -204,12 +217,13 @@ class House:
         Returns:
             Where the house is, as :meth:`open` takes it, and what the form cannot hold.
         """
-        return self._native.write_into(os.fspath(root), file_name("name", name), form)
+        root, form_name = arguments.path("root", root), text("form", form)
+        return self._native.write_into(root, file_name("name", name), form_name)
 
     @staticmethod
     def finish_folder(root: str | os.PathLike[str], form: Form) -> None:
         """Writes what a folder of :meth:`write_into` holds once: after the last house, or again."""
-        _native.House.finish_folder(os.fspath(root), form)
+        _native.House.finish_folder(arguments.path("root", root), text("form", form))
 
     def __copy__(self) -> House:
         """The same: a house never changes."""

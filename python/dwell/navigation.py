@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import _native
-from dwell.arguments import point, whole
+from dwell import ConfigError, _native
+from dwell.arguments import point, record, whole
 
 if TYPE_CHECKING:
     from dwell.world import World
@@ -39,6 +39,12 @@ class Walker:
     max_slope_rad: float = 0.785
     doors: Literal["as_they_stand", "open", "priced"] = "as_they_stand"
     door_price_m: float = 2.0
+
+
+def walker_json(walker: Walker | None) -> str:
+    """A walker, the default one for ``None``, as the native half reads it."""
+    doors = {"doors": ("as_they_stand", "open", "priced")}
+    return json.dumps(record("walker", Walker() if walker is None else walker, Walker, doors))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -120,4 +126,7 @@ class Navigation:
         Returns:
             How many columns of the grid were looked at again.
         """
-        return world.native.follow(self._native)
+        native = getattr(world, "native", None)
+        if not isinstance(native, _native.World):
+            raise ConfigError(f"world is {world!r}; expected a dwell.World")
+        return native.follow(self._native)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from dwell._native import ConfigError
+from dwell.arguments import fields, finite, mapping, text, whole
 
 #: Laws to install; or what calibration found (laws and parameters), as a mapping or by path.
 Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[Mapping[str, Any]] | None
@@ -48,7 +49,35 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         raise ConfigError(f"{at}: expected a list of laws, each {{id, version, target, params}}")
     if not isinstance(parameters, Mapping):
         raise ConfigError(f"{at}: parameters: expected values by address")
-    return [dict(law) for law in laws if isinstance(law, Mapping)], dict(parameters)
+    rows = [fields(f"laws[{k}]", law, _LAW) for k, law in enumerate(laws)]
+    for k, row in enumerate(rows):
+        for name in ("id", "version"):
+            if name not in row:
+                raise ConfigError(f"laws[{k}]: no field {name!r}; a law has {', '.join(_LAW)}")
+    return rows, _values("parameters", parameters)
+
+
+def _values(name: str, parameters: object) -> dict[str, float]:
+    """Values by address."""
+    values = mapping(name, parameters, "values by address")
+    return {address: finite(address, value) for address, value in values.items()}
+
+
+def _target(name: str, value: object) -> str | None:
+    return None if value is None else text(name, value)
+
+
+def _params(name: str, value: object) -> dict[str, float]:
+    return {key: finite(f"{name}.{key}", part) for key, part in mapping(name, value).items()}
+
+
+#: The fields of a law, and what they may be.
+_LAW: dict[str, Callable[[str, object], Any]] = {
+    "id": text,
+    "version": whole,
+    "target": _target,
+    "params": _params,
+}
 
 
 def world_settings(
@@ -59,8 +88,12 @@ def world_settings(
     Raises:
         ConfigError: ``further`` names what has an argument of its own.
     """
-    further = dict(further or {})
+    further = {} if further is None else mapping("world", further)
     for name in sorted(_FOUND & set(further)):
         raise ConfigError(f"world: holds {name!r}; give it as the argument {name}= instead")
+    for name in further:
+        if name.endswith("_hz"):
+            finite(name, further[name])
     rows, values = found(laws)
-    return {"laws": rows, "parameters": {**values, **(parameters or {})}, **further}
+    own = {} if parameters is None else _values("parameters", parameters)
+    return {"laws": rows, "parameters": {**values, **own}, **further}

@@ -13,16 +13,22 @@ from numpy.typing import NDArray
 from dwell import ConfigError, _native
 from dwell.arguments import (
     bodies,
+    fields,
     finite,
+    flag,
+    mapping,
     pair,
     point,
+    record,
+    text,
+    texts,
     to_json,
     triple,
     unit_quaternion,
     whole,
 )
 from dwell.house import House
-from dwell.navigation import Navigation, Walker
+from dwell.navigation import Navigation, Walker, walker_json
 from dwell.settings import Laws, world_settings
 
 Channel = Literal["rgb", "depth", "instance", "semantic"]
@@ -196,10 +202,11 @@ class World:
         """
         if controls is None:
             controls = np.zeros((len(self.agents()), 4), np.float32)
-        if not isinstance(controls, np.ndarray) and any(isinstance(c, Mapping) for c in controls):
-            self._native.step_json(to_json(list(controls)))
-            return
-        self._native.step(np.ascontiguousarray(controls, np.float32))
+        rows = _controls(controls)
+        if isinstance(rows, np.ndarray):
+            self._native.step(rows)
+        else:
+            self._native.step_json(to_json(rows))
 
     def act(
         self,
@@ -241,9 +248,10 @@ class World:
             >>> world.act({"kind": "pick", "object": -1}).code
             'unknown_object'
         """
-        request: dict[str, Any] = (
-            {"kind": action} if isinstance(action, str) else dict(action)
-        ) | details
+        request: dict[str, Any] = {"kind": action} if isinstance(action, str) else {}
+        if not isinstance(action, str):
+            request = mapping("action", action, "the name of an action, or a mapping with kind")
+        request |= details
         if object is not None:
             request["object"] = object
         agent = whole("agent", agent)
@@ -306,13 +314,16 @@ class World:
             ``rgb`` (height, width, 3) uint8 sRGB; ``depth`` (height, width, 1) float32 m;
             ``instance`` and ``semantic`` (height, width, 1) int32.
         """
-        view: dict[str, Any] = dataclasses.asdict(camera or Camera())
+        view = record(
+            "camera", Camera() if camera is None else camera, Camera, {"preset": ("flat", "lit")}
+        )
         if position is None:
             view["agent"] = 0 if agent is None else whole("agent", agent)
         else:
-            place = list(point("position", position))
-            view |= {"position": place, "yaw_deg": yaw_deg, "pitch_deg": pitch_deg}
-        return self._native.render(to_json(view), list(channels))
+            view["position"] = list(point("position", position))
+            view["yaw_deg"] = finite("yaw_deg", yaw_deg)
+            view["pitch_deg"] = finite("pitch_deg", pitch_deg)
+        return self._native.render(to_json(view), texts("channels", channels))
 
     def map(self, longest_edge: int = 512) -> tuple[NDArray[np.uint8], tuple[float, float], float]:
         """The lowest storey from above.
@@ -327,8 +338,7 @@ class World:
 
     def navigation(self, walker: Walker | None = None) -> Navigation:
         """Where one can walk in the house as it stands now."""
-        config = json.dumps(dataclasses.asdict(walker or Walker()))
-        return Navigation(self._native.navigation(config))
+        return Navigation(self._native.navigation(walker_json(walker)))
 
     def merged_events(self) -> dict[str, Any]:
         """The events of the last step beyond its limit: count and impulse_n_s."""
@@ -346,7 +356,7 @@ class World:
 
     def describe(self, level: str = "house") -> list[str]:
         """As :meth:`House.describe`, of the house as it is now."""
-        return self._native.describe(level)
+        return self._native.describe(text("level", level))
 
     def joints(self) -> list[dict[str, Any]]:
         """Every joint: id, name, object, kind, limits, motor, position, velocity, command."""
@@ -367,7 +377,7 @@ class World:
             UsageError: There is no such joint, or it cannot obey.
         """
         joint = whole("joint", joint, high=_MOST_IDS)
-        self._native.command_joint(joint, kind, finite("value", value))
+        self._native.command_joint(joint, text("kind", kind), finite("value", value))
 
     def set_joints(self, joints: Mapping[int, tuple[float, float]]) -> None:
         """Puts joints to a position and a velocity at once; what hangs on them moves along.
@@ -381,6 +391,8 @@ class World:
             DwellError: A position is beyond the joint's limits, or a speed beyond 1000 rad/s or
                 m/s. Nothing has changed then.
         """
+        if not isinstance(joints, Mapping):
+            raise ConfigError(f"joints is {joints!r}; expected (position, velocity) by id")
         rows = []
         for joint, stand in joints.items():
             position, velocity = pair(f"joint {joint!r}: (position, velocity)", stand)
@@ -398,7 +410,11 @@ class World:
             ``position`` (m) and ``rotation`` (x, y, z, w) of the part's origin, ``linear_m_s`` and
             ``angular_rad_s``.
         """
-        body: dict[str, list[float]] = json.loads(self._native.body_json(object, part))
+        body: dict[str, list[float]] = json.loads(
+            self._native.body_json(
+                text("object", object), None if part is None else text("part", part)
+            )
+        )
         return {name: tuple(values) for name, values in body.items()}
 
     def set_body(
@@ -451,7 +467,9 @@ class World:
 
     def parameter(self, address: str) -> dict[str, Any]:
         """What stands at an address: value, unit, low, high."""
-        parameter: dict[str, Any] = json.loads(self._native.parameter_json(address))
+        parameter: dict[str, Any] = json.loads(
+            self._native.parameter_json(text("address", address))
+        )
         return parameter
 
     def parameters(self, prefix: str = "") -> dict[str, dict[str, Any]]:
@@ -461,7 +479,7 @@ class World:
             prefix: What the addresses begin with, such as ``"law/"`` or ``"joint/"``.
         """
         rows: list[tuple[str, dict[str, Any]]] = json.loads(self._native.parameters_json())
-        return {address: row for address, row in rows if address.startswith(prefix)}
+        return {address: row for address, row in rows if address.startswith(text("prefix", prefix))}
 
     def set_parameter(self, address: str, value: float) -> None:
         """Sets a parameter from now on; it goes into snapshots and the hash.
@@ -471,7 +489,7 @@ class World:
         that differs from its default installs a law; one whose numbers are all default acts no
         more.
         """
-        self._native.set_parameter(address, finite(address, value))
+        self._native.set_parameter(text("address", address), finite(address, value))
 
     def snapshot(self) -> bytes:
         """The whole world as bytes; no mesh is in them."""
@@ -479,6 +497,8 @@ class World:
 
     def restore(self, snapshot: bytes) -> None:
         """Goes to where the snapshot was taken; the next steps give the same bits as then."""
+        if not isinstance(snapshot, bytes):
+            raise ConfigError(f"snapshot is {snapshot!r:.60}; expected the bytes of snapshot()")
         self._native.restore(snapshot)
 
     def state_hash(self) -> int:
@@ -486,17 +506,73 @@ class World:
         return self._native.hash()
 
 
+def _controls(controls: object) -> NDArray[np.float32] | list[dict[str, Any]]:
+    """Controls as the native half reads them: an array (agent, 4), or a mapping for each agent."""
+    expected = "expected numbers of shape (agent, 4) or a mapping for each agent"
+    if isinstance(controls, str | bytes | Mapping):
+        raise ConfigError(f"controls is {controls!r}; {expected}")
+    try:
+        rows = controls if isinstance(controls, np.ndarray) else list(controls)  # type: ignore[call-overload]
+    except TypeError:
+        raise ConfigError(f"controls is {controls!r}; {expected}") from None
+    if isinstance(rows, list) and any(isinstance(row, Mapping) for row in rows):
+        return [fields(f"controls[{k}]", row, _CONTROL) for k, row in enumerate(rows)]
+    try:
+        array = np.asarray(rows)
+        if array.dtype.kind not in "fiu" and array.size > 0:
+            raise TypeError
+    except (TypeError, ValueError):
+        raise ConfigError(f"controls is {controls!r}; {expected}") from None
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise ConfigError(f"controls has the shape {array.shape}; {expected}")
+    return np.ascontiguousarray(array, np.float32)
+
+
+def _thing(name: str, value: object) -> str | int:
+    if isinstance(value, str):
+        return value
+    return whole(name, value, low=-(2**31), high=2**31 - 1)
+
+
+def _camera(name: str, value: object) -> dict[str, Any]:
+    """A camera as what its pixels depend on."""
+    if isinstance(value, Camera):
+        value = {"width": value.width, "height": value.height, "fov_deg": value.fov_deg}
+    return fields(name, value, {"width": whole, "height": whole, "fov_deg": finite})
+
+
+def _grasp(name: str, value: object) -> str | dict[str, Any]:
+    return value if isinstance(value, str) else mapping(name, value, "text or a mapping")
+
+
+#: The fields of a control and of an action, and what they may be.
+_CONTROL = {
+    "forward_m_s": finite,
+    "right_m_s": finite,
+    "yaw_rate_rad_s": finite,
+    "pitch_rate_rad_s": finite,
+    "wheel_rad_s": pair,
+    "crouch": flag,
+}
+_ACTION = {
+    "kind": text,
+    "object": _thing,
+    "part": text,
+    "pixel": pair,
+    "camera": _camera,
+    "origin": point,
+    "direction": point,
+    "point": point,
+    "speed_m_s": finite,
+    "force_n": finite,
+    "fraction": finite,
+    "grasp": _grasp,
+}
+
+
 def _action_json(request: Mapping[str, Any]) -> str:
-    """An action as the native half reads it; a camera becomes what its pixels depend on."""
-    plain = dict(request)
-    camera = plain.get("camera")
-    if isinstance(camera, Camera):
-        plain["camera"] = {
-            "width": camera.width,
-            "height": camera.height,
-            "fov_deg": camera.fov_deg,
-        }
-    return to_json(plain)
+    """An action as the native half reads it."""
+    return to_json(fields("", request, _ACTION))
 
 
 def actions() -> list[str]:

@@ -291,7 +291,9 @@ impl World {
         if !command.is_finite() {
             return refuse("the command is no finite number");
         }
-        let gain = articulation.servo.map(|servo| servo.velocity_gain);
+        // What is in force: an address may have changed the house's own.
+        let servo = self.state.joint_values(&house, joint).servo;
+        let gain = servo.map(|servo| servo.velocity_gain);
         match command {
             _ if articulation.mimic.is_some() && command != JointCommand::Off => {
                 return refuse("it follows another joint; command that one");

@@ -31,6 +31,8 @@ pub(crate) struct Shove {
     left_s: f32,
     /// Where the hand was at first, m.
     start: Vec3,
+    /// Whether the hand has turned to something else since.
+    left: bool,
 }
 
 impl PhysicsWorld {
@@ -91,7 +93,14 @@ impl PhysicsWorld {
         let direction = level.try_normalize().unwrap_or(ahead) * way;
         let force = wanted.min(most);
         let point_in_body = rigid.position().inverse() * point;
-        self.shoves.retain(|shove| shove.agent != actor.id);
+        // One hand, one push: what it pushed until now ends in the next step, and is told of.
+        for shove in self
+            .shoves
+            .iter_mut()
+            .filter(|shove| shove.agent == actor.id)
+        {
+            shove.left = true;
+        }
         self.shoves.push(Shove {
             agent: actor.id,
             object,
@@ -100,6 +109,7 @@ impl PhysicsWorld {
             force: direction * force,
             left_s: PUSH_S,
             start: point,
+            left: false,
         });
         self.shoves.sort_by_key(|shove| shove.agent);
         let limit = if force < wanted { ", all you have" } else { "" };
@@ -158,6 +168,7 @@ impl PhysicsWorld {
                 point.is_some_and(|point| free && (point - agent.eye_position()).length() <= reach);
             if shove.left_s > 0.5 * dt_s
                 && near
+                && !shove.left
                 && let Some(point) = point
             {
                 self.engine
@@ -173,7 +184,12 @@ impl PhysicsWorld {
             self.shoves.remove(place);
             let moved = point.map_or(0.0, |point| (point - shove.start).length());
             let name = self.call(shove.object);
-            let outcome = if moved >= MOVED_M {
+            let outcome = if shove.left {
+                let sentence = format!(
+                    "You let go of the {name} and turned to something else; it had moved by {moved:.2} m."
+                );
+                fail(ActionCode::Blocked, sentence, Some(shove.object))
+            } else if moved >= MOVED_M {
                 let sentence = format!("The {name} moved by {moved:.2} m.");
                 done(ActionCode::Done, sentence, Some(shove.object))
             } else {

@@ -3,6 +3,7 @@
 use crate::contact::{Dress, Hooks};
 use crate::engine::Engine;
 use crate::world::PhysicsWorld;
+use dwell_scene::math;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::Aabb;
 use rapier3d::math::Pose as RapierPose;
@@ -21,7 +22,7 @@ const TURNS_RAD: f32 = 0.1;
 const NEAR_M: f32 = 0.05;
 
 fn moved(a: &RapierPose, b: &RapierPose, most_m: f32, most_rad: f32) -> bool {
-    let turn = 2.0 * (a.rotation.inverse() * b.rotation).w.abs().min(1.0).acos();
+    let turn = 2.0 * math::acos((a.rotation.inverse() * b.rotation).w.abs());
     (a.translation - b.translation).length() > most_m || turn > most_rad
 }
 
@@ -74,6 +75,7 @@ impl PhysicsWorld {
                 laws: &self.laws,
             },
             excluded: &self.excluded,
+            dt_s: self.settings.dt_s,
         };
         let steps = (TRIAL_S / self.settings.dt_s).ceil() as u32;
         let last = (REST_S / self.settings.dt_s).ceil() as u32;

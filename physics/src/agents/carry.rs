@@ -4,7 +4,7 @@ use crate::actions::Grasp;
 use crate::body::Body;
 use crate::engine::Engine;
 use crate::model::PhysicsModel;
-use dwell_scene::{AgentId, AgentState, ObjectId, Pose};
+use dwell_scene::{AgentId, AgentState, ObjectId, Pose, math};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
@@ -119,7 +119,9 @@ pub(crate) fn carry(
     let turn = {
         let q = target.rotation * now.rotation.inverse();
         let q = if q.w < 0.0 { -q } else { q };
-        q.to_scaled_axis()
+        let part = Vec3::new(q.x, q.y, q.z);
+        let sin = part.length();
+        part.normalize_or_zero() * (2.0 * math::atan2(sin, q.w))
     };
     let mass = rigid.mass().max(1e-6);
     let (linear, angular) = match grip.grasp {

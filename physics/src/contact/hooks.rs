@@ -1,12 +1,13 @@
 //! What rapier asks during a step: which pairs meet, and with what friction.
 
 use super::entry::{Entry, entry_index};
+use super::rolling;
 use super::substances::ContactTable;
 use crate::laws::{self, ContactValues, Installed, Side, Touch};
 use dwell_scene::material::PairContact;
 use dwell_scene::{AgentId, House};
 use glam::{Quat, Vec3};
-use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{SolverContact, SolverContacts, SolverFlags};
 use rapier3d::pipeline::{
     ContactModificationContext, ModifiableManifold, PairFilterContext, PhysicsHooks,
@@ -83,6 +84,8 @@ pub(crate) struct Hooks<'a> {
     pub(crate) entries: &'a [Entry],
     pub(crate) dress: Dress<'a>,
     pub(crate) excluded: &'a Excluded,
+    /// Length of the step, s.
+    pub(crate) dt_s: f32,
 }
 
 impl PhysicsHooks for Hooks<'_> {
@@ -95,8 +98,9 @@ impl PhysicsHooks for Hooks<'_> {
     }
 
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
-        let a = entry_index(&context.colliders[context.collider1]);
-        let b = entry_index(&context.colliders[context.collider2]);
+        let colliders = context.colliders;
+        let (one, two) = (&colliders[context.collider1], &colliders[context.collider2]);
+        let (a, b) = (entry_index(one), entry_index(two));
         let (Some(a), Some(b)) = (self.entries.get(a), self.entries.get(b)) else {
             return;
         };
@@ -105,6 +109,12 @@ impl PhysicsHooks for Hooks<'_> {
         let Some(manifold) = context.rigid_mut() else {
             return;
         };
+        let turns = |body: Option<RigidBodyHandle>| {
+            body.and_then(|body| bodies.get(body))
+                .map_or(Vec3::ZERO, RigidBody::angvel)
+        };
+        let turns = (turns(body_a), turns(body_b));
+        rolling::straighten(manifold, (one, two), turns, self.dt_s);
         let class_a = a.surface.class(manifold.manifold.subshape1);
         let class_b = b.surface.class(manifold.manifold.subshape2);
         let pair = table.pair(class_a, class_b);
@@ -213,7 +223,7 @@ impl Hooks<'_> {
         *plane.restitution = values.restitution.clamp(0.0, 1.0);
         if values.surface_velocity != Vec3::ZERO {
             for contact in plane.solver_contacts.iter_mut() {
-                contact.tangent_velocity = values.surface_velocity;
+                contact.tangent_velocity += values.surface_velocity;
             }
         }
     }

@@ -5,6 +5,7 @@ mod entry;
 mod events;
 mod hooks;
 mod ongoing;
+pub(crate) mod rolling;
 mod substances;
 mod touching;
 

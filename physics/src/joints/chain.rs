@@ -4,6 +4,7 @@ use super::exert::Pushing;
 use super::frame::Frame;
 use super::motion::{Axis, Lump, Motion, Moving};
 use super::support::{self, Support};
+use super::touch::{self, Touch};
 use super::tree::Tree;
 use super::{Drivers, Joint};
 use crate::engine::Engine;
@@ -47,6 +48,7 @@ pub(super) struct Chain<'a> {
     root_velocity: DVec3,
     free_root: Option<Lump>,
     supports: Vec<Support>,
+    touches: Vec<Touch>,
     /// Whether what it hangs on stands.
     stands: bool,
     gravity: DVec3,
@@ -82,22 +84,28 @@ impl<'a> Chain<'a> {
                 && root.angvel() == glam::Vec3::ZERO
         };
         let free_root = root.filter(|root| root.is_dynamic()).map(Lump::of);
+        let child = |k: &usize| drivers.joints[tree.joints[*k]].child_handle;
+        let mut handles: Vec<RigidBodyHandle> = free.iter().map(child).collect();
+        if free_root.is_some() {
+            handles.push(tree.root);
+        }
+        let link_of = |k: usize| (k < free.len()).then_some(k);
         let mut supports = Vec::new();
         if free_root.is_some() {
-            let child = |k: &usize| drivers.joints[tree.joints[*k]].child_handle;
-            let mut handles: Vec<RigidBodyHandle> = free.iter().map(child).collect();
-            handles.push(tree.root);
             for (k, handle) in handles.iter().enumerate() {
-                let link = (k < free.len()).then_some(k);
-                supports.extend(support::of_body(engine, *handle, link, &handles));
+                supports.extend(support::of_body(engine, *handle, link_of(k), &handles));
             }
         }
+        let bodies = handles.iter().enumerate();
+        let bodies: Vec<_> = bodies.map(|(k, handle)| (*handle, link_of(k))).collect();
+        let touches = touch::of_tree(engine, &bodies, free_root.is_some());
         Self {
             links: free.iter().map(link).collect(),
             root: root.map_or_else(Moving::default, evenly),
             root_velocity: root.map_or(DVec3::ZERO, |root| root.linvel().as_dvec3()),
             free_root,
             supports,
+            touches,
             stands: root.is_none_or(still),
             gravity: engine.gravity.as_dvec3(),
             push: drivers.push,
@@ -158,6 +166,7 @@ impl<'a> Chain<'a> {
             free_root: self.free_root,
             root_velocity: self.root_velocity,
             supports: self.supports.clone(),
+            touches: self.touches.clone(),
             gravity: self.gravity,
         }
     }
@@ -207,7 +216,11 @@ impl Frame {
         match kind {
             JointKind::Hinge => Self {
                 at: DVec3::ZERO,
-                turn: DQuat::from_axis_angle(axis, position),
+                turn: {
+                    let (sin, cos) = libm::sincos(0.5 * position);
+                    let part = axis * sin;
+                    DQuat::from_xyzw(part.x, part.y, part.z, cos)
+                },
             },
             JointKind::Slide => Self {
                 at: axis * position,

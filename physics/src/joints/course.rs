@@ -119,7 +119,8 @@ impl Freedoms<'_> {
                 let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between, at(true));
                 gained = self.part(&middle, &q, &v, part_s).gained;
             }
-            q = plus(&q, &plus(&v, &gained, 0.5 * part_s), part_s);
+            let next = plus(&q, &plus(&v, &gained, 0.5 * part_s), part_s);
+            q = self.within_stops(&q, next);
             v = plus(&v, &gained, part_s);
             left -= 1.0;
         }
@@ -142,6 +143,17 @@ impl Freedoms<'_> {
             answer,
             middle,
         }
+    }
+
+    /// Where joints are after a part of a step that would end at `next`. Stops act on the velocity at its end, and the mean
+    /// velocity may pass them.
+    fn within_stops(&self, from: &[f64], mut next: Vec<f64>) -> Vec<f64> {
+        for ((joint, from), next) in self.joints.iter().zip(from).zip(&mut next) {
+            if let Some([low, high]) = joint.values.limits.map(|limits| limits.map(f64::from)) {
+                *next = next.clamp(low.min(*from), high.max(*from));
+            }
+        }
+        next
     }
 
     /// The accelerations in a part of a step that begins with positions `from` and velocities `now`, with inertia and loads

@@ -37,6 +37,9 @@ pub(crate) enum Gain {
     Effort,
 }
 
+/// The share of what a linkage is off that it mends in a step: all of it at once would swing with what its joints hold.
+const LINKED: f64 = 0.1;
+
 /// One degree of freedom before a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Freedom {
@@ -100,13 +103,13 @@ impl Freedom {
 
     /// A linkage: this position shall be `multiplier` times another's plus `offset`.
     pub(super) fn follow(&self, leader: &Self, multiplier: f64, offset: f64) -> Element {
-        let stiffness = STOP * self.inertia / (self.dt_s * self.dt_s);
+        let slope = RIGID * self.inertia / self.dt_s;
         let off = self.position - multiplier * leader.position - offset;
         Element {
             follows: Some((leader.index, multiplier)),
             ..self.element(
-                -stiffness * off,
-                stiffness * self.dt_s,
+                -slope * (LINKED * off / self.dt_s),
+                slope,
                 [f64::NEG_INFINITY, f64::INFINITY],
             )
         }

@@ -10,6 +10,7 @@ use super::chain::Chain;
 use super::course::{Course, Freedoms};
 use super::element::Pull;
 use super::place;
+use super::project;
 use super::tree::Tree;
 use crate::engine::Engine;
 use crate::laws::{JointLoad, LinkStep, Push, Resistance};
@@ -42,7 +43,7 @@ pub(crate) type Resist<'a> = dyn Fn(JointId, &JointLoad, &mut Resistance) + 'a;
 
 /// Where one joint goes in a step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Going {
+struct Going {
     /// Its place in the world's joints.
     joint: usize,
     /// Before and after the step, rad or m.
@@ -51,9 +52,19 @@ pub(crate) struct Going {
     velocity: f64,
 }
 
-/// Gives rapier the efforts of a tree for the next step. Returns where its joints go if nothing touches them, parents
-/// first; nothing for a tree that stands still or whose root moves.
-pub(crate) fn exert(engine: &mut Engine, tree: &Tree, drivers: &Drivers<'_>) -> Vec<Going> {
+/// What is expected of a tree in a step.
+#[derive(Clone, Debug)]
+pub(crate) struct Outlook {
+    /// The joints that may move, by their places in the tree.
+    free: Vec<usize>,
+    /// Where they go if nothing touches them, parents first; nothing for a tree that stands still or whose root moves.
+    course: Vec<Going>,
+    /// Whether something pressed on the tree, or its root is free.
+    loose: bool,
+}
+
+/// Gives rapier the efforts of a tree for the next step. `None` for a tree that is asleep or shut.
+pub(crate) fn exert(engine: &mut Engine, tree: &Tree, drivers: &Drivers<'_>) -> Option<Outlook> {
     let free: Vec<usize> = (0..tree.joints.len())
         .filter(|k| {
             let child = drivers.joints[tree.joints[*k]].child_handle;
@@ -62,7 +73,7 @@ pub(crate) fn exert(engine: &mut Engine, tree: &Tree, drivers: &Drivers<'_>) -> 
         })
         .collect();
     if free.is_empty() {
-        return Vec::new();
+        return None;
     }
     let joints: Vec<&Joint> = free
         .iter()
@@ -84,17 +95,22 @@ pub(crate) fn exert(engine: &mut Engine, tree: &Tree, drivers: &Drivers<'_>) -> 
     };
     let course = freedoms.course(&chain, &positions, &velocities);
     carry(engine, tree, &joints, &course);
-    if !course.moves {
-        return Vec::new();
-    }
-    free.iter()
-        .enumerate()
-        .map(|(k, place)| Going {
-            joint: tree.joints[*place],
-            positions: [positions[k], course.positions[k]],
-            velocity: course.velocities[k],
-        })
-        .collect()
+    let loose = course.answer.is_some() || !course.middle.touches.is_empty();
+    let going = |(k, place): (usize, &usize)| Going {
+        joint: tree.joints[*place],
+        positions: [positions[k], course.positions[k]],
+        velocity: course.velocities[k],
+    };
+    let course = if course.moves {
+        free.iter().enumerate().map(going).collect()
+    } else {
+        Vec::new()
+    };
+    Some(Outlook {
+        free,
+        course,
+        loose,
+    })
 }
 
 /// Gives every body all that acts on it, the reactions of its joints included: rapier's rows, which are solved in turn and
@@ -115,27 +131,30 @@ fn carry(engine: &mut Engine, tree: &Tree, joints: &[&Joint], course: &Course) {
     }
 }
 
-/// Puts a tree that nothing touched in the step where its joints went. Returns whether it was moved.
-pub(crate) fn settle(engine: &mut Engine, joints: &[Joint], course: &[Going]) -> bool {
-    let on_course = course.iter().all(|going| {
-        let joint = &joints[going.joint];
+/// Puts a tree that nothing touched in the step where its joints went, and holds one together that something did. Returns
+/// whether it was moved.
+pub(crate) fn settle(
+    engine: &mut Engine,
+    tree: &Tree,
+    drivers: &Drivers<'_>,
+    outlook: &Outlook,
+) -> bool {
+    let on_course = outlook.course.iter().all(|going| {
+        let joint = &drivers.joints[going.joint];
         let [before, after] = going.positions;
         let (position, _) = super::read(engine, joint, after as f32);
         let off = (f64::from(position) - after).abs();
         off <= OFF_COURSE.0 + OFF_COURSE.1 * (after - before).abs() && untouched(engine, joint)
     });
-    if !on_course {
-        return false;
+    if on_course && !outlook.loose {
+        for going in &outlook.course {
+            let joint = &drivers.joints[going.joint];
+            place::put(engine, joint, (going.positions[1], going.velocity), false);
+        }
+        return !outlook.course.is_empty();
     }
-    for going in course {
-        place::put(
-            engine,
-            &joints[going.joint],
-            (going.positions[1], going.velocity),
-            false,
-        );
-    }
-    !course.is_empty()
+    project::project(engine, tree, &outlook.free, drivers);
+    true
 }
 
 /// Whether a joint's body moves freely and nothing pressed on it in the last step.

@@ -95,7 +95,12 @@ impl Reduced {
         for (momentum, bias) in momentum.iter_mut().zip(&bias) {
             *momentum -= dt_s * bias;
         }
-        let Some(floating) = motion.floating() else {
+        let floating = motion.floating();
+        let (efforts, root_efforts) = motion.touched(floating.as_ref());
+        for (momentum, effort) in momentum.iter_mut().zip(efforts) {
+            *momentum += dt_s * effort;
+        }
+        let Some(floating) = floating else {
             return Self {
                 inertia,
                 momentum,
@@ -118,6 +123,9 @@ impl Reduced {
         }
         let brake = FIRM * floating.whole.mass / dt_s;
         let mut shared = floating.columns.clone();
+        for (momentum, effort) in root_momentum.iter_mut().zip(root_efforts) {
+            *momentum += dt_s * effort;
+        }
         let rows: Vec<[Row; 3]> = motion
             .supports
             .iter()
@@ -227,7 +235,7 @@ pub(super) fn let_go(motion: &Motion, loads: &Loads, answer: &Answer, holds: &mu
     let mut changed = false;
     let weighed = motion.supports.iter().zip(&loads.carried);
     for (((support, weight), force), hold) in weighed.zip(&answer.forces).zip(holds) {
-        let aside = force.x.hypot(force.z);
+        let aside = libm::hypot(force.x, force.z);
         let most = support.friction * weight;
         let next = match *hold {
             Hold::Off => Hold::Off,

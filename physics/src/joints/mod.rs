@@ -12,12 +12,14 @@ mod frame;
 mod latch;
 mod motion;
 mod place;
+mod project;
 mod support;
+mod touch;
 mod tree;
 
 pub(crate) use drive::{Drive, Drives, Progress, advance};
 pub(crate) use element::{Gain, Pull};
-pub(crate) use exert::{Drivers, Going, exert, relax, settle};
+pub(crate) use exert::{Drivers, Outlook, exert, relax, settle};
 pub(crate) use latch::{release, shut, stands_shut, tolerance};
 pub(crate) use place::{Stand, place, says_the_same};
 pub(crate) use tree::{Tree, trees};

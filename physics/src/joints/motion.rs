@@ -8,6 +8,7 @@ use super::convex::Inertia;
 use super::floating::Floating;
 use super::footing::Answer;
 use super::support::{self, Support};
+use super::touch::Touch;
 use crate::laws::Push;
 use dwell_scene::JointKind;
 use glam::{DMat3, DVec3};
@@ -94,6 +95,15 @@ impl Axis {
             JointKind::Slide => (self.direction, DVec3::ZERO),
         }
     }
+
+    /// What it feels of a force and moment about the origin: what acts along it.
+    pub(super) fn feels(&self, wrench: &Wrench) -> f64 {
+        let Wrench { force, moment } = *wrench;
+        match self.kind {
+            JointKind::Hinge => self.direction.dot(moment - self.at.cross(force)),
+            JointKind::Slide => self.direction.dot(force),
+        }
+    }
 }
 
 /// How a body moves, with accelerations as if no joint accelerated.
@@ -138,6 +148,8 @@ pub(super) struct Motion {
     pub(super) root_velocity: DVec3,
     /// What carries a tree whose root is free.
     pub(super) supports: Vec<Support>,
+    /// What else presses on the tree.
+    pub(super) touches: Vec<Touch>,
     pub(super) gravity: DVec3,
 }
 
@@ -223,6 +235,23 @@ impl Motion {
         moving
     }
 
+    /// What the touches of the last step do: to the joints, shape (freedom,), and to a free root's six.
+    pub(super) fn touched(&self, floating: Option<&Floating>) -> (Vec<f64>, [f64; 6]) {
+        let mut efforts = vec![0.0; self.axes.len()];
+        let mut whole = Wrench::default();
+        for touch in &self.touches {
+            let wrench = touch.about_origin();
+            whole = whole.plus(&wrench, 1.0);
+            let mut link = touch.link;
+            while let Some(k) = link {
+                efforts[k] += self.axes[k].feels(&wrench);
+                link = self.axes[k].parent;
+            }
+        }
+        let root = floating.map_or([0.0; 6], |floating| floating.felt(&whole));
+        (efforts, root)
+    }
+
     /// The force on each body besides its weight and what carries it, and the moment about its centre of mass besides the
     /// gyroscopic one, with which joints and root accelerate like this: those of the joints' bodies, shape (freedom,), and
     /// that of a free root. Within a tree over a free root they add up to nothing.
@@ -246,6 +275,14 @@ impl Motion {
             .map(|(body, lump)| wrench(body, lump))
             .collect();
         let mut of_root = self.free_root.as_ref().map(|lump| wrench(&root, lump));
+        for touch in &self.touches {
+            let (wrench, center) = match (touch.link, &mut of_root, &self.free_root) {
+                (Some(link), _, _) => (&mut wrenches[link], self.masses[link].center),
+                (None, Some(root), Some(own)) => (root, own.center),
+                (None, _, _) => continue,
+            };
+            *wrench = wrench.plus(&touch.about(center), -1.0);
+        }
         if let (Some(answer), Some(own)) = (answer, &self.free_root) {
             for (k, support) in self.supports.iter().enumerate() {
                 let (wrench, center) = match (support.link, &mut of_root) {
@@ -325,14 +362,8 @@ impl Motion {
 
     /// The efforts that bear the loads with motion (0) or of weight (1). Shape (freedom,).
     pub(super) fn along(&self, loads: &Loads, which: usize) -> Vec<f64> {
-        let effort = |(axis, load): (&Axis, &[Wrench; 2])| {
-            let Wrench { force, moment } = load[which];
-            match axis.kind {
-                JointKind::Hinge => axis.direction.dot(moment - axis.at.cross(force)),
-                JointKind::Slide => axis.direction.dot(force),
-            }
-        };
-        self.axes.iter().zip(&loads.links).map(effort).collect()
+        let pairs = self.axes.iter().zip(&loads.links);
+        pairs.map(|(axis, load)| axis.feels(&load[which])).collect()
     }
 
     /// The efforts that carry weight: a free root is carried where it or a joint's body stands on something, and gives way

@@ -3,14 +3,18 @@
 use super::convex::Inertia;
 use super::motion::Wrench;
 use crate::engine::Engine;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rapier3d::dynamics::RigidBodyHandle;
-use rapier3d::geometry::Collider;
+use rapier3d::geometry::{
+    Collider, ColliderHandle, ContactManifold, ContactPair, SolverContact, TypedShape,
+};
 
 /// How near to a surface a point stands on it, m.
 const STANDS_M: f32 = 1e-3;
 /// How far a surface that carries may lean: the least vertical part of its normal.
 const UPRIGHT: f32 = 0.5;
+/// How far a cylinder may stand up that still lies on its side: the sine.
+const LYING: f32 = 0.2;
 /// What three equations are stiffened by, relative to their size, where fewer than three points carry.
 const RIDGE: f64 = 1e-9;
 
@@ -46,22 +50,14 @@ pub(super) fn of_body(
                 continue;
             }
             for plane in pair.solver_manifolds() {
-                let up = if first {
-                    -plane.data.normal.y
-                } else {
-                    plane.data.normal.y
-                };
-                if up < UPRIGHT {
+                if !carries(engine, *own, plane, first) {
                     continue;
                 }
                 for contact in &plane.data.solver_contacts {
                     if contact.dist > STANDS_M {
                         continue;
                     }
-                    let (p, q) = plane
-                        .data
-                        .solver_contact_world_points(contact, &engine.bodies);
-                    let at = 0.5 * (p.as_dvec3() + q.as_dvec3());
+                    let at = place(engine, pair, plane, contact);
                     supports.push(Support {
                         link,
                         at,
@@ -73,6 +69,60 @@ pub(super) fn of_body(
     }
     supports.sort_by(|a, b| a.at.x.total_cmp(&b.at.x).then(a.at.z.total_cmp(&b.at.z)));
     supports
+}
+
+/// Whether a plane of contact carries a body from below on points that stand. A wheel does not: it stands on another line in every
+/// step. `first`: whether the body's is the first of its colliders.
+pub(super) fn carries(
+    engine: &Engine,
+    own: ColliderHandle,
+    plane: &ContactManifold,
+    first: bool,
+) -> bool {
+    let normal = if first {
+        -plane.data.normal
+    } else {
+        plane.data.normal
+    };
+    let on_its_side = |own: &Collider| {
+        let axis = own.position().rotation * Vec3::Y;
+        own.shape().as_cylinder().is_some() && axis.dot(normal).abs() < LYING
+    };
+    normal.y >= UPRIGHT && !engine.colliders.get(own).is_some_and(on_its_side)
+}
+
+/// Where the surfaces of a point touch now, m. What is flat carries its points along; on what rolls they stay where it is
+/// nearest.
+pub(super) fn place(
+    engine: &Engine,
+    pair: &ContactPair,
+    plane: &ContactManifold,
+    contact: &SolverContact,
+) -> DVec3 {
+    let point = plane.points.get(contact.contact_indices()[0] as usize);
+    let on = |collider, body: Option<RigidBodyHandle>, arm: Option<Vec3>, outward: Vec3| {
+        let collider = engine.colliders.get(collider)?;
+        match collider.shape().as_typed_shape() {
+            TypedShape::Ball(ball) => Some(collider.position().translation + outward * ball.radius),
+            TypedShape::Cylinder(_) | TypedShape::Capsule(_) | TypedShape::Cone(_) => {
+                let body = body.and_then(|body| engine.bodies.get(body))?;
+                Some(body.center_of_mass() + arm?)
+            }
+            _ => None,
+        }
+    };
+    let (data, normal) = (&plane.data, plane.data.normal);
+    let arms = point.map(|point| (point.data.solver_dp1, point.data.solver_dp2));
+    let (first, second) = (arms.map(|arms| arms.0), arms.map(|arms| arms.1));
+    let rolled = on(pair.collider1, data.rigid_body1, first, normal)
+        .or_else(|| on(pair.collider2, data.rigid_body2, second, -normal))
+        .map(Vec3::as_dvec3);
+    rolled.unwrap_or_else(|| {
+        let (p, q) = plane
+            .data
+            .solver_contact_world_points(contact, &engine.bodies);
+        0.5 * (p.as_dvec3() + q.as_dvec3())
+    })
 }
 
 /// The vertical forces with the least squares that carry a weight (about the origin), as far as pushes can. Shape

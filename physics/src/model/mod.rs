@@ -6,6 +6,7 @@ pub(crate) mod shapes;
 
 pub(crate) use plan::{BodyPlan, Cover, Owner, Piece};
 
+use crate::contact::rolling::Roller;
 use dwell_scene::{Aabb, House, IdVec, ObjectId, PartId};
 use std::fmt;
 use std::sync::Arc;
@@ -21,6 +22,8 @@ pub struct PhysicsModel {
     pub(crate) body_of_part: IdVec<PartId, Option<u32>>,
     /// Objects that move and came without collision pieces: they have convex pieces of what is seen.
     pub(crate) stand_ins: Vec<ObjectId>,
+    /// Cylinders of bodies.
+    pub(crate) rollers: Vec<Roller>,
     /// The box around all static pieces and bodies at the start, m.
     pub(crate) bounds: Aabb,
 }

@@ -3,6 +3,7 @@
 use super::PhysicsModel;
 use super::decompose;
 use super::shapes::{self, Shaped};
+use crate::contact::rolling;
 use crate::convert::to_rapier;
 use dwell_scene::{
     Aabb, Collider, House, Id, IdVec, Inertial, JointId, MaterialId, MeshId, Mobility, ObjectId,
@@ -311,6 +312,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
     statics.extend(sides);
     PhysicsModel {
         house,
+        rollers: rolling::rollers(&bodies),
         statics,
         bodies,
         body_of_part,

@@ -315,3 +315,38 @@ fn nobody_takes_or_pushes_what_somebody_stands_on() {
         )
     );
 }
+
+/// A second push while the first goes on ends that, and says so in the next step.
+#[test]
+fn a_push_that_gives_way_to_another_is_told_of() {
+    let mut build = hall();
+    let one = build.movable(
+        "crate_1",
+        Piece::cuboid(Vec3::splat(0.15), Vec3::new(1.6, 0.15, 2.0)),
+    );
+    let two = build.movable(
+        "crate_2",
+        Piece::cuboid(Vec3::splat(0.15), Vec3::new(2.4, 0.15, 2.0)),
+    );
+    let mut run = build.run();
+    let agent = run.agent(Vec3::new(2.0, 0.0, 2.8), 0.0);
+    run.steps(2);
+    assert_eq!(run.act(agent, push(one, None)).code, ActionCode::Started);
+    run.steps(1);
+    assert_eq!(run.act(agent, push(two, None)).code, ActionCode::Started);
+    run.steps(1);
+    let told = &run.world.notices()[0];
+    assert_eq!((told.agent, told.outcome.object), (Some(agent), Some(one)));
+    assert!(
+        told.outcome.sentence.contains("let go of the crate"),
+        "{}",
+        told.outcome.sentence
+    );
+    let told = run.told(20).expect("the second push ends");
+    assert_eq!(
+        (told.code, told.object),
+        (ActionCode::Done, Some(two)),
+        "{}",
+        told.sentence
+    );
+}

@@ -77,9 +77,8 @@ fn balls_and_cylinders_roll_down_a_slope_as_their_inertia_says() {
         piece
     };
     let ball = |at| Piece::ball(radius, at);
-    // Beyond 1 m/s the points at which a cylinder touches ride with it and brake it: by 7 % in the second second.
     let shapes: [Shape<'_>; 2] = [
-        ("cylinder", &cylinder, 2.0 / 3.0, 1),
+        ("cylinder", &cylinder, 2.0 / 3.0, 3),
         ("ball", &ball, 5.0 / 7.0, 3),
     ];
     for (name, shape, share, longest) in shapes {

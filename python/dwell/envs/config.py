@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from dwell import ConfigError
-from dwell.arguments import to_json
+from dwell.arguments import fields, finite, mapping, text, texts, to_json
 from dwell.house import House
 from dwell.settings import Laws, world_settings
 
 Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | House]
 Sensors = Sequence[str] | Mapping[str, Mapping[str, Any]] | None
+
+
+_STRIDE = {"forward_m": finite, "turn_deg": finite, "look_deg": finite}
 
 
 class HouseShelf:
@@ -65,14 +68,16 @@ def env_json(
 ) -> str:
     """The native ``EnvConfig`` as JSON."""
     config: dict[str, Any] = {
-        "task": task,
+        "task": text("task", task),
         "world": world_settings(laws, parameters, world),
     }
     if task_settings is not None:
-        config["task_settings"] = task_settings
+        config["task_settings"] = mapping("task_settings", task_settings)
     if stride is not None:
-        config["stride"] = stride
+        config["stride"] = fields("stride", stride, _STRIDE)
     if sensors is not None:
-        rows = sensors.items() if isinstance(sensors, Mapping) else ((name, {}) for name in sensors)
+        by_name = isinstance(sensors, Mapping)
+        named: dict[str, Any] = {} if by_name else {name: {} for name in texts("sensors", sensors)}
+        rows = (mapping("sensors", sensors) if by_name else named).items()
         config["sensors"] = [{"kind": name, "settings": settings} for name, settings in rows]
     return to_json(config)

@@ -12,7 +12,7 @@ from gymnasium.utils import EzPickle
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import to_json, whole
+from dwell.arguments import mapping, to_json, whole
 from dwell.envs.config import Houses, HouseShelf, Sensors, env_json
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.spaces import action_space, observation_space
@@ -145,7 +145,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
                 ``episode_id``: that of an earlier ``info``, to play the same episode again.
         """
         super().reset(seed=seed)
-        options = dict(options or {})
+        options = {} if options is None else mapping("options", options)
         if unknown := sorted(set(options) - {"house", "episode_id"}):
             raise ConfigError(f"options: no {unknown[0]!r}; allowed are house and episode_id")
         house = int(self.np_random.integers(len(self._shelf.names)))

@@ -8,6 +8,10 @@ use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 use glam::Vec3;
+use rapier3d::math::Pose as RapierPose;
+
+/// How far aside a body's centre of mass may be, as a share of its box's edges.
+const FARTHEST: f32 = 0.75;
 
 const fn offset(name: &'static str) -> ParamInfo {
     ParamInfo {
@@ -51,10 +55,24 @@ fn install(
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let bodies = moving_bodies(spec, info, model)?;
+    let plans = moving_bodies(spec, info, model)?;
+    let offset = Vec3::from_array(["x_m", "y_m", "z_m"].map(|name| value(spec, info, name)));
+    for (_, plan) in plans.iter().filter(|(_, plan)| !plan.pieces.is_empty()) {
+        // A thin thing whose centre of mass is a metre aside turns about that: contacts lose it, and it falls through floors.
+        let size = plan.bounds(&RapierPose::IDENTITY).size();
+        if !offset.abs().cmple(size * FARTHEST).all() {
+            let name = &model.house.objects[plan.object].name;
+            return Err(PhysicsError::Range {
+                at: format!("law {}, object {name:?} of {size} m", info.id),
+                field: "x_m, y_m, z_m",
+                found: offset.to_string(),
+                allowed: "offsets up to three quarters of the object's size along each axis",
+            });
+        }
+    }
     Ok(Box::new(Offset {
-        bodies: bodies.into_iter().map(|(index, _)| index).collect(),
-        offset: Vec3::from_array(["x_m", "y_m", "z_m"].map(|name| value(spec, info, name))),
+        bodies: plans.into_iter().map(|(index, _)| index).collect(),
+        offset,
     }))
 }
 

@@ -2,7 +2,7 @@
 
 use super::{spec, tower};
 use crate::common::{Build, Piece, Run, gravity};
-use dwell_physics::PhysicsConfig;
+use dwell_physics::{PhysicsConfig, PhysicsWorld};
 use dwell_scene::{LawSpec, ObjectId, State};
 use glam::{Quat, Vec3};
 use std::f32::consts::PI;
@@ -189,6 +189,36 @@ fn a_box_tips_once_its_centre_of_mass_is_beyond_its_edge() {
         let object = run.house.object_named("box").unwrap();
         let up = run.state.part_pose[run.root(object)].rotation * Vec3::Y;
         assert_eq!(up.y < 0.5, tips, "{shift} m: {up}");
+    }
+}
+
+/// A knife whose centre of mass is a metre aside is refused, with the knife, what was asked and what may be.
+#[test]
+fn a_centre_of_mass_far_outside_its_object_is_refused() {
+    let mut build = Build::room([4.0, 3.0, 4.0]);
+    let at = Vec3::new(2.0, 0.02, 2.0);
+    build.movable("knife", Piece::cuboid(Vec3::new(0.1, 0.01, 0.005), at));
+    let house = build.house();
+    for (axis, shift, may) in [
+        ("x_m", 0.14, true),
+        ("x_m", 0.16, false),
+        ("z_m", 0.05, false),
+    ] {
+        let mut state = State::new(&house);
+        state.laws = vec![spec(
+            "center_of_mass_offset",
+            Some("knife"),
+            &[(axis, shift)],
+        )];
+        let made = PhysicsWorld::new(house.clone(), PhysicsConfig::default(), &mut state);
+        assert_eq!(made.is_ok(), may, "{axis} {shift}");
+        if let Err(error) = made {
+            let said = error.to_string();
+            assert!(
+                said.contains("\"knife\"") && said.contains("three quarters"),
+                "{said}"
+            );
+        }
     }
 }
 

@@ -1,0 +1,204 @@
+//! Cylinders that roll.
+//!
+//! Where a cylinder lies on something flat, the general search for nearest points finds the line of contact only to a tenth
+//! of a radian (its distance hardly changes there), and with it a normal that leans: a cart on such wheels jerks, and stops
+//! on a slope. While a cylinder turns about its axis, its line of contact is computed from the flat face instead.
+
+use super::entry::entry_index;
+use crate::engine::Engine;
+use crate::model::{BodyPlan, Piece};
+use crate::world::Assembly;
+use glam::Vec3;
+use rapier3d::dynamics::{RigidBody, RigidBodySet};
+use rapier3d::geometry::{Collider, ColliderHandle, Cylinder, TypedShape};
+use rapier3d::pipeline::{ActiveHooks, ModifiableManifold};
+
+/// How fast the side of a cylinder goes round from where on it rolls, m/s.
+const ROLLS_M_S: f32 = 0.01;
+/// How far a cylinder may stand up that still lies on its side: the sine.
+const LYING: f32 = 0.2;
+/// How much the normal found and a face's own may differ: the cosine.
+const SAME_WAY: f32 = 0.99;
+/// Points of contact ride with the side up from the face, by `r (1 - cos w t)` in a step; rapier knows a drift at a steady
+/// rate only. This share of the way at the end of a step keeps it nearest over all substeps.
+const LIFTED: f32 = 0.75;
+
+/// A cylinder of a body that may move.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Roller {
+    body: u32,
+    /// Its number among the body's pieces.
+    piece: usize,
+    axis_in_body: Vec3,
+    radius_m: f32,
+}
+
+/// All cylinders of bodies, in order.
+pub(crate) fn rollers(bodies: &[BodyPlan]) -> Vec<Roller> {
+    let of_body = |(index, plan): (usize, &BodyPlan)| {
+        let roller = move |(piece, shaped): (usize, &Piece)| {
+            let cylinder = shaped.shape.as_cylinder()?;
+            Some(Roller {
+                body: index as u32,
+                piece,
+                axis_in_body: shaped.place.rotation * Vec3::Y,
+                radius_m: cylinder.radius,
+            })
+        };
+        let pieces = plan.pieces.iter().enumerate();
+        pieces.filter_map(roller).collect::<Vec<_>>()
+    };
+    bodies.iter().enumerate().flat_map(of_body).collect()
+}
+
+impl Roller {
+    /// Whether it turns about its axis.
+    pub(crate) fn rolls(&self, body: &RigidBody) -> bool {
+        let axis = body.position().rotation * self.axis_in_body;
+        (body.angvel().dot(axis) * self.radius_m).abs() > ROLLS_M_S
+    }
+
+    /// The place in a list of bodies.
+    pub(crate) fn body(&self) -> usize {
+        self.body as usize
+    }
+
+    /// Lets rapier ask about a cylinder while it `rolls`. `asked`: whether it asks about an entry at other times. Returns
+    /// whether that changed.
+    pub(crate) fn follow(
+        engine: &mut Engine,
+        rolls: bool,
+        own: Option<ColliderHandle>,
+        asked: impl Fn(usize) -> bool,
+    ) -> bool {
+        let Some(own) = own else {
+            return false;
+        };
+        let Some(collider) = engine.colliders.get(own) else {
+            return false;
+        };
+        let hooks = collider.active_hooks();
+        let flag = ActiveHooks::MODIFY_SOLVER_CONTACTS;
+        if rolls == hooks.contains(flag) {
+            return false;
+        }
+        let wanted = rolls || asked(entry_index(collider));
+        if wanted == hooks.contains(flag) {
+            return false;
+        }
+        if let Some(collider) = engine.colliders.get_mut(own) {
+            let mut hooks = hooks;
+            hooks.set(flag, wanted);
+            collider.set_active_hooks(hooks);
+        }
+        true
+    }
+
+    /// The collider that it is of a body.
+    pub(crate) fn collider(&self, body: &RigidBody) -> Option<ColliderHandle> {
+        body.colliders().get(self.piece).copied()
+    }
+}
+
+/// Lets rapier ask about what rolled at the moment of a snapshot. `bodies`: those of the snapshot.
+pub(crate) fn resume(
+    rollers: &[Roller],
+    built: &mut Assembly,
+    bodies: &RigidBodySet,
+    asked: impl Fn(&super::Entry) -> bool,
+) {
+    for roller in rollers {
+        let handle = built.bodies[roller.body()].handle;
+        let own = built.engine.bodies.get(handle);
+        let own = own.and_then(|body| roller.collider(body));
+        let entries = &built.entries;
+        let asked = |index: usize| entries.get(index).is_some_and(&asked);
+        let rolls = bodies.get(handle).is_some_and(|body| roller.rolls(body));
+        Roller::follow(&mut built.engine, rolls, own, asked);
+    }
+}
+
+/// Puts the contacts of a cylinder that lies on something flat where they are, and the normal upright. `turns`: how fast the
+/// first and the second body turn, rad/s.
+pub(super) fn straighten(
+    plane: &mut ModifiableManifold<'_>,
+    (one, two): (&Collider, &Collider),
+    turns: (Vec3, Vec3),
+    dt_s: f32,
+) {
+    let as_cylinder = |collider: &Collider| collider.shape().as_cylinder().copied();
+    let (cylinder, own, other, first) = match (as_cylinder(one), as_cylinder(two)) {
+        (Some(cylinder), None) => (cylinder, one, two, true),
+        (None, Some(cylinder)) => (cylinder, two, one, false),
+        _ => return,
+    };
+    let Cylinder {
+        half_height,
+        radius,
+    } = cylinder;
+    let place = own.position();
+    let axis = place.rotation * Vec3::Y;
+    let found = if first { *plane.normal } else { -*plane.normal };
+    if axis.dot(found).abs() > LYING {
+        return;
+    }
+    let subshape = if first {
+        plane.manifold.subshape2
+    } else {
+        plane.manifold.subshape1
+    };
+    let Some((face, point)) = face(other, -found, subshape) else {
+        return;
+    };
+    let way = -face;
+    let Some(radial) = (way - axis * axis.dot(way)).try_normalize() else {
+        return;
+    };
+    let spin = (if first { turns.0 } else { turns.1 }).dot(axis);
+    let drift = way * (LIFTED * 0.5 * radius * spin * spin * dt_s);
+    for contact in plane.solver_contacts.iter_mut() {
+        let middle = (contact.anchor1 + contact.anchor2) * 0.5;
+        let along = (middle - place.translation).dot(axis);
+        let side =
+            place.translation + axis * along.clamp(-half_height, half_height) + radial * radius;
+        let gap = (point - side).dot(way);
+        let below = side + way * gap;
+        (contact.anchor1, contact.anchor2) = if first { (side, below) } else { (below, side) };
+        contact.dist = gap;
+        contact.tangent_velocity += if first { drift } else { -drift };
+    }
+    *plane.normal = if first { way } else { -way };
+}
+
+/// The normal and a point of the face of a shape that looks along `wanted`, in the world; `None` where none does.
+fn face(collider: &Collider, wanted: Vec3, subshape: u32) -> Option<(Vec3, Vec3)> {
+    let place = collider.position();
+    let looks = place.rotation.inverse() * wanted;
+    let (normal, point) = match collider.shape().as_typed_shape() {
+        TypedShape::Cuboid(cuboid) => {
+            let k = looks.abs().max_position();
+            let mut normal = Vec3::ZERO;
+            normal[k] = looks[k].signum();
+            (normal, normal * cuboid.half_extents[k])
+        }
+        TypedShape::TriMesh(mesh) => {
+            let corners = mesh.indices().get(subshape as usize)?;
+            let [a, b, c] = corners.map(|k| mesh.vertices()[k as usize]);
+            let normal = (b - a).cross(c - a).try_normalize()?;
+            (normal * normal.dot(looks).signum(), a)
+        }
+        TypedShape::ConvexPolyhedron(hull) => {
+            let faces = hull.faces().iter();
+            let face = faces.max_by(|a, b| a.normal.dot(looks).total_cmp(&b.normal.dot(looks)))?;
+            let corner = hull
+                .vertices_adj_to_face()
+                .get(face.first_vertex_or_edge as usize)?;
+            (face.normal, hull.points()[*corner as usize])
+        }
+        _ => return None,
+    };
+    (normal.dot(looks) > SAME_WAY).then(|| {
+        let normal = place.rotation * normal;
+        (normal, place.rotation * point + place.translation)
+    })
+}

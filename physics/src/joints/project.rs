@@ -1,0 +1,164 @@
+//! Holds a tree together that something pressed on in a step.
+//!
+//! rapier solves the rows that hold joints and those of contacts in turn, and leaves both a little wrong: a light finger
+//! between a hand and what it holds wobbles in its joint until the grip is lost. Of the motion that rapier leaves, joints
+//! keep what they can do, with the same momentum along each, and bodies are put where their joints stand.
+//!
+//! # Source
+//! C. F. Gauss's principle of least constraint: of the motions that joints allow, the one nearest to the unconstrained one,
+//! weighed by mass. R. Featherstone, Rigid Body Dynamics Algorithms (2008), 6.2, for the joint-space inertia.
+
+use super::chain::Chain;
+use super::convex::{Element, Inertia, Problem};
+use super::floating::Floating;
+use super::motion::{Motion, Wrench};
+use super::place;
+use super::tree::Tree;
+use super::{Drivers, Joint};
+use crate::engine::Engine;
+use glam::DVec3;
+
+/// How much steeper than inertia a stop is that gives way to nothing.
+const RIGID: f64 = 1e6;
+
+/// Puts the bodies of a tree where its joints stand after a step, with velocities that its joints allow.
+pub(super) fn project(engine: &mut Engine, tree: &Tree, free: &[usize], drivers: &Drivers<'_>) {
+    let joints: Vec<&Joint> = free
+        .iter()
+        .map(|k| &drivers.joints[tree.joints[*k]])
+        .collect();
+    let (positions, velocities): (Vec<f64>, Vec<f64>) = joints
+        .iter()
+        .map(|joint| {
+            let (position, velocity) = super::read(engine, joint, (drivers.near)(joint.id));
+            (f64::from(position), f64::from(velocity))
+        })
+        .unzip();
+    let chain = Chain::of(engine, tree, free, drivers);
+    let motion = chain.at(&positions, &velocities);
+    let momenta: Vec<Wrench> = joints
+        .iter()
+        .zip(&motion.masses)
+        .map(|(joint, lump)| {
+            let Some(body) = engine.bodies.get(joint.child_handle) else {
+                return Wrench::default();
+            };
+            let (linear, angular) = (body.linvel().as_dvec3(), body.angvel().as_dvec3());
+            let (linear, angular) = motion.beside_root(lump.center, linear, angular);
+            let force = linear * lump.mass;
+            Wrench {
+                force,
+                moment: lump.inertia * angular + lump.center.cross(force),
+            }
+        })
+        .collect();
+    let floating = motion.floating();
+    let inertia = motion.inertia();
+    let held = held_by_stops(&joints, &positions, &inertia);
+    let (velocity, root) = motion.allowed(floating.as_ref(), momenta, (inertia, held));
+    if let (Some((linear, angular)), Some(body)) = (root, engine.bodies.get_mut(tree.root)) {
+        body.set_linvel(linear.as_vec3(), false);
+        body.set_angvel(angular.as_vec3(), false);
+    }
+    for ((joint, position), velocity) in joints.iter().zip(positions).zip(velocity) {
+        let [low, high] = stops(joint);
+        let position = position.max(low).min(high);
+        place::put(engine, joint, (position, velocity), false);
+    }
+}
+
+fn stops(joint: &Joint) -> [f64; 2] {
+    joint
+        .values
+        .limits
+        .map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| {
+            limits.map(f64::from)
+        })
+}
+
+/// What keeps joints that are past their stops from going on: a plastic impact, with the momentum that it gives the others.
+fn held_by_stops(joints: &[&Joint], positions: &[f64], inertia: &Inertia) -> Vec<Element> {
+    let held = |(k, (joint, position)): (usize, (&&Joint, &f64))| {
+        let [low, high] = stops(joint);
+        let bounds = if *position < low {
+            [0.0, f64::INFINITY]
+        } else if *position > high {
+            [f64::NEG_INFINITY, 0.0]
+        } else {
+            return None;
+        };
+        Some(Element {
+            index: k,
+            follows: None,
+            offset: 0.0,
+            slope: RIGID * inertia.get(k, k),
+            bounds,
+            speed: None,
+        })
+    };
+    let pairs = joints.iter().zip(positions).enumerate();
+    pairs.filter_map(held).collect()
+}
+
+impl Motion {
+    /// A velocity and rotation of a body, less what a root that is led gives it. A free root counts with the others.
+    fn beside_root(&self, center: DVec3, linear: DVec3, angular: DVec3) -> (DVec3, DVec3) {
+        if self.free_root.is_some() {
+            return (linear, angular);
+        }
+        let with_root = self.root_velocity + self.root.angular.cross(center - self.root.center);
+        (linear - with_root, angular - self.root.angular)
+    }
+
+    /// The joints' velocities, and those of a free root's centre of mass and its rotation, that have these momenta about the
+    /// origin, less what stops take: those of the joints' bodies, shape (freedom,), and the root's own.
+    fn allowed(
+        &self,
+        floating: Option<&Floating>,
+        mut momenta: Vec<Wrench>,
+        (inertia, stops): (Inertia, Vec<Element>),
+    ) -> (Vec<f64>, Option<(DVec3, DVec3)>) {
+        let mut whole = match &self.free_root {
+            Some(root) => {
+                let force = self.root_velocity * root.mass;
+                let moment = root.inertia * self.root.angular + root.center.cross(force);
+                Wrench { force, moment }
+            }
+            None => Wrench::default(),
+        };
+        for k in (0..momenta.len()).rev() {
+            let below = momenta[k];
+            let above = match self.axes[k].parent {
+                Some(parent) => &mut momenta[parent],
+                None => &mut whole,
+            };
+            *above = above.plus(&below, 1.0);
+        }
+        let along = self.axes.iter().zip(&momenta);
+        let mut along: Vec<f64> = along.map(|(axis, momentum)| axis.feels(momentum)).collect();
+        if let Some(floating) = floating {
+            floating.unload(&whole, &mut along);
+        }
+        let velocity = Problem {
+            free: inertia.factor().solve(&along),
+            inertia,
+            elements: stops,
+            dt_s: 1.0,
+        }
+        .solve();
+        let Some(floating) = floating else {
+            return (velocity, None);
+        };
+        let mut left = floating.felt(&whole);
+        for (column, velocity) in floating.columns.iter().zip(&velocity) {
+            for (left, share) in left.iter_mut().zip(column) {
+                *left -= share * velocity;
+            }
+        }
+        let six = floating.inertia().factor().solve(&left);
+        let angular = DVec3::new(six[3], six[4], six[5]);
+        let arm = self.root.center - floating.whole.center;
+        let linear = DVec3::new(six[0], six[1], six[2]) + angular.cross(arm);
+        (velocity, Some((linear, angular)))
+    }
+}
