@@ -133,6 +133,7 @@ impl PhysicsWorld {
             pulls: &self.pulls,
             near: &|joint| state.joint_position[joint],
             resist: None,
+            push: None,
             dt_s: self.settings.dt_s,
         };
         for (tree, outlook) in self.trees.iter().zip(&outlooks) {

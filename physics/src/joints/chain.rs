@@ -32,7 +32,7 @@ struct Link {
 }
 
 /// When within a step a tree is looked at.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct When {
     /// Length of the step, s.
     pub(super) dt_s: f64,

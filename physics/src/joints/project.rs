@@ -8,7 +8,7 @@
 //! C. F. Gauss's principle of least constraint: of the motions that joints allow, the one nearest to the unconstrained one,
 //! weighed by mass. R. Featherstone, Rigid Body Dynamics Algorithms (2008), 6.2, for the joint-space inertia.
 
-use super::chain::Chain;
+use super::chain::{Chain, When};
 use super::convex::{Element, Inertia, Problem};
 use super::floating::Floating;
 use super::motion::{Motion, Wrench};
@@ -35,7 +35,7 @@ pub(super) fn project(engine: &mut Engine, tree: &Tree, free: &[usize], drivers:
         })
         .unzip();
     let chain = Chain::of(engine, tree, free, drivers);
-    let motion = chain.at(&positions, &velocities);
+    let motion = chain.at(&positions, &velocities, When::default());
     let momenta: Vec<Wrench> = joints
         .iter()
         .zip(&motion.masses)
