@@ -1,6 +1,7 @@
 //! What the project checks about itself. `cargo xtask` lists the commands.
 #![expect(clippy::print_stdout, reason = "a command's report is its output")]
 
+mod bits;
 mod check;
 mod features;
 mod layers;
@@ -37,6 +38,11 @@ const COMMANDS: &[(&str, &str, Command)] = &[
         "features",
         "tests and extension ask their dependencies for the same features",
         features::run,
+    ),
+    (
+        "bits",
+        "no elementary functions of the platform where bits matter",
+        bits::run,
     ),
     (
         "check",

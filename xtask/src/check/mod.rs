@@ -3,7 +3,7 @@
 mod stages;
 
 use crate::outcome::Outcome;
-use crate::{features, layers, licences, sizes};
+use crate::{bits, features, layers, licences, sizes};
 use stages::Stage;
 use std::path::Path;
 use std::process::Command;
@@ -16,11 +16,12 @@ pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
         println!("-- {}", stage.name);
         timed(&mut outcome, stage.name, || run_program(root, &stage));
     }
-    let own: [(&str, crate::Command); 4] = [
+    let own: [(&str, crate::Command); 5] = [
         ("layers", layers::run),
         ("sizes", sizes::run),
         ("licences", licences::run),
         ("features", features::run),
+        ("bits", bits::run),
     ];
     for (name, command) in own {
         println!("-- {name}");
