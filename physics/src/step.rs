@@ -78,6 +78,7 @@ impl PhysicsWorld {
     /// Returns whether a tree of joints was put on its course at the end of the step.
     fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) -> bool {
         self.drive_motors(state);
+        self.follow_joints(state);
         for joint in &self.joints {
             joints::relax(&mut self.engine, joint);
         }
@@ -173,6 +174,20 @@ impl PhysicsWorld {
             changed |= Roller::follow(&mut self.engine, rolls, own, asked);
         }
         changed
+    }
+
+    /// Tells laws that remember it where joints stand.
+    fn follow_joints(&mut self, state: &State) {
+        if !self.laws.iter().any(|installed| installed.law.follows()) {
+            return;
+        }
+        for joint in &self.joints {
+            let near = state.joint_position[joint.id];
+            let (position, _) = joints::read(&self.engine, joint, near);
+            for installed in &mut self.laws {
+                installed.law.follow(joint.id, position);
+            }
+        }
     }
 
     /// Lets each law act on the world between steps.

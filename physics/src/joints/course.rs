@@ -222,6 +222,7 @@ impl Freedoms<'_> {
             let resistances: Vec<Resistance> = (0..from.len())
                 .map(|k| {
                     let load = JointLoad {
+                        position: from[k] as f32,
                         velocity: (0.5 * (now[k] + ends[k])) as f32,
                         motor_effort: gives(k, ends[k]) as f32,
                         external_effort: -weights[k] as f32,
@@ -262,6 +263,7 @@ impl Freedoms<'_> {
             friction: joint.values.friction,
             damping: joint.values.damping,
             armature: joint.values.armature,
+            elastic: None,
         };
         if let Some(resist) = self.drivers.resist {
             resist(joint.id, load, &mut resistance);
@@ -279,6 +281,9 @@ impl Freedoms<'_> {
             }
             if resistance.friction > 0.0 {
                 elements.push(freedom.friction(resistance.friction.into()));
+            }
+            if let Some(elastic) = &resistance.elastic {
+                elements.push(freedom.elastic(elastic));
             }
             if let Some(pull) = &self.drivers.pulls[self.tree.joints[*place]] {
                 elements.push(freedom.pull(pull));

@@ -1,6 +1,7 @@
 //! Efforts along joints that answer to the velocity at the end of a step.
 
 use super::convex::Element;
+use crate::laws::Elastic;
 use dwell_scene::JointKind;
 use serde::{Deserialize, Serialize};
 
@@ -87,6 +88,17 @@ impl Freedom {
     pub(super) fn friction(&self, friction: f64) -> Element {
         let slope = RIGID * self.inertia / self.dt_s;
         self.element(0.0, slope, [-friction, friction])
+    }
+
+    /// A spring that slips: the effort in the middle of the step, where the midpoint rule takes nothing from what rings; at
+    /// its end where the spring is too stiff for the step to follow.
+    pub(super) fn elastic(&self, spring: &Elastic) -> Element {
+        let (stiffness, most) = (f64::from(spring.stiffness), f64::from(spring.max_effort));
+        let stiff = stiffness * self.dt_s * self.dt_s > self.inertia;
+        let share = if stiff { 0.5 } else { 0.25 };
+        let slope = share * stiffness * self.dt_s;
+        let offset = f64::from(spring.effort) - slope * self.velocity;
+        self.element(offset, slope, [-most, most])
     }
 
     /// A stop that is not passed: from below (`side` 1) or from above (-1).

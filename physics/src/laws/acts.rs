@@ -66,6 +66,14 @@ pub(crate) trait Acts: Debug + Send + Sync {
     /// Changes what a joint's motor gives for its command in one physics step.
     fn strengthen(&self, _joint: JointId, _pull: &mut Pull) {}
 
+    /// Whether it remembers where joints have been: [`Acts::follow`].
+    fn follows(&self) -> bool {
+        false
+    }
+
+    /// A joint stands at `position` (rad or m) at the beginning of a physics step.
+    fn follow(&mut self, _joint: JointId, _position: f32) {}
+
     /// Whether it changes how joints resist: [`Acts::resist`].
     fn resists(&self) -> bool {
         false
@@ -121,6 +129,8 @@ impl MotorStep {
 /// What loads a joint in a physics step; efforts are positive along the joint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointLoad {
+    /// At the beginning of the step, rad or m.
+    pub(crate) position: f32,
     /// At the middle of the step, rad/s or m/s.
     pub(crate) velocity: f32,
     /// What the motor or the hand gives, N·m or N.
@@ -140,6 +150,19 @@ pub(crate) struct Resistance {
     pub(crate) damping: f32,
     /// Inertia of the joint's own, kg·m² or kg.
     pub(crate) armature: f32,
+    /// A spring that slips.
+    pub(crate) elastic: Option<Elastic>,
+}
+
+/// A spring at a joint that slips beyond its largest effort.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Elastic {
+    /// At the beginning of the step, N·m or N.
+    pub(crate) effort: f32,
+    /// N·m/rad or N/m.
+    pub(crate) stiffness: f32,
+    /// N·m or N.
+    pub(crate) max_effort: f32,
 }
 
 /// The world as a law sees it between steps.

@@ -14,7 +14,7 @@ mod link;
 mod target;
 
 pub(crate) use acts::{
-    Acts, Compliance, ContactValues, JointLoad, MotorStep, Resistance, Side, Stage, Touch,
+    Acts, Compliance, ContactValues, Elastic, JointLoad, MotorStep, Resistance, Side, Stage, Touch,
 };
 
 pub(crate) use link::{LinkStep, Push};
@@ -57,6 +57,7 @@ static LAWS: &[Law] = &[
     actuators::joint_friction::LAW,
     actuators::motor_constants::LAW,
     actuators::compliance::LAW,
+    actuators::hysteresis::LAW,
     bases::unequal_wheels::LAW,
     bases::wheel_slip::LAW,
     bases::gyro_bias_scale::LAW,

@@ -84,7 +84,7 @@ fn any_pose_and_velocity_of_a_free_body_reads_back() {
     println!("state {by_state:?}, engine {by_engine:?}");
     assert_eq!(by_state, [0.0; 4]);
     assert!(
-        by_engine.iter().all(|worst| *worst <= 4e-6),
+        by_engine.iter().all(|worst| *worst <= 1e-6),
         "{by_engine:?}"
     );
 }
@@ -114,15 +114,18 @@ fn any_pose_and_velocity_of_a_robot_that_stands_free_reads_back() {
             let (q, v) = run.world.measure_joint(&run.state, joint.joint).unwrap();
             joints_off[0] = joints_off[0].max((q - joint.position).abs());
             joints_off[1] = joints_off[1].max((v - joint.velocity).abs());
-            let kept = run.state.joint_position[joint.joint];
-            assert_eq!(kept, joint.position, "{round}");
+            let kept = (
+                run.state.joint_position[joint.joint],
+                run.state.joint_velocity[joint.joint],
+            );
+            assert_eq!(kept, (joint.position, joint.velocity), "{round}");
         }
     }
     println!("base {by_state:?}, joints as the engine has them {joints_off:?}");
     assert_eq!(by_state, [0.0; 4]);
     assert!(joints_off[0] <= 1e-6, "{joints_off:?}");
-    // The engine holds sums of up to 15 m/s and 35 rad/s along the chain.
-    assert!(joints_off[1] <= 4e-6, "{joints_off:?}");
+    // The engine holds sums of up to 15 m/s and 35 rad/s along the chain, in f32; measured 1.4e-6.
+    assert!(joints_off[1] <= 2e-6, "{joints_off:?}");
 }
 
 /// A base that is moved without a turn takes its links along.

@@ -169,6 +169,7 @@ mod tests {
 
     fn load(velocity: f32, motor_effort: f32, external_effort: f32) -> JointLoad {
         JointLoad {
+            position: 0.0,
             velocity,
             motor_effort,
             external_effort,

@@ -8,6 +8,7 @@ pub(super) mod backlash;
 pub(super) mod compliance;
 pub(super) mod deadband;
 pub(super) mod first_order_lag;
+pub(super) mod hysteresis;
 pub(super) mod joint_friction;
 pub(super) mod latency;
 pub(super) mod motor_constants;
