@@ -1,6 +1,8 @@
 //! What all worlds over one house share: the house, and each engine's view of it, made at first use.
 
+use crate::config::WorldConfig;
 use crate::error::WorldError;
+use crate::start::Start;
 use dwell_acoustics::{AcousticConfig, AcousticScene};
 use dwell_physics::PhysicsModel;
 use dwell_render::CpuRenderer;
@@ -8,7 +10,7 @@ use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
 use dwell_scene::{House, State};
 use dwell_semantics::Semantics;
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 /// A house with the engines' shared views of it. A thousand worlds over one house share one of these.
 #[derive(Debug)]
@@ -21,6 +23,8 @@ pub struct Engines {
     acoustics: Mutex<BTreeMap<(String, u32), AcousticScene>>,
     /// For the walker whose radius, height and step these are; others get a grid of their own.
     navigation: OnceLock<(NavConfig, Arc<NavGrid>)>,
+    /// Of the latest config, as long as a world of it is left.
+    start: Mutex<Option<(WorldConfig, Weak<Start>)>>,
 }
 
 impl Engines {
@@ -33,6 +37,7 @@ impl Engines {
             physics: OnceLock::new(),
             acoustics: Mutex::default(),
             navigation: OnceLock::new(),
+            start: Mutex::default(),
         })
     }
 
@@ -55,6 +60,18 @@ impl Engines {
     pub fn physics(&self) -> &Arc<PhysicsModel> {
         self.physics
             .get_or_init(|| Arc::new(PhysicsModel::new(self.house.clone())))
+    }
+
+    /// Where worlds of a config begin; worlds that run side by side share it.
+    pub(crate) fn start(&self, config: &WorldConfig) -> Result<Arc<Start>, WorldError> {
+        let mut latest = self.start.lock().unwrap_or_else(PoisonError::into_inner);
+        let shared = latest.as_ref().filter(|(of, _)| of == config);
+        if let Some(start) = shared.and_then(|(_, start)| start.upgrade()) {
+            return Ok(start);
+        }
+        let start = Arc::new(Start::new(self, config)?);
+        *latest = Some((config.clone(), Arc::downgrade(&start)));
+        Ok(start)
     }
 
     /// The house prepared for sound with the settings called `preset`; what belongs to the house is shared.

@@ -18,6 +18,7 @@ mod request;
 mod requests;
 pub mod sensors;
 mod sound;
+mod start;
 pub mod tasks;
 mod world;
 

@@ -4,20 +4,19 @@ use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::sound::Sound;
+use crate::start::Start;
 use dwell_physics::{
-    Action, ActionOutcome, AgentControl, BodyState, ContactEvent, JointState, PhysicsConfig,
-    PhysicsWorld, StartReport,
+    Action, ActionOutcome, AgentControl, BodyState, ContactEvent, JointState, PhysicsWorld,
+    StartReport,
 };
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::packing::{pack, unpack};
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Address, AgentId, AgentState, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId,
-    Parameter, State,
+    Address, AgentId, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId, Parameter, State,
 };
 use glam::Vec3;
-use std::collections::BTreeSet;
 use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -31,10 +30,9 @@ pub struct World {
     rays: RayScene,
     sound: Sound,
     events: Vec<ContactEvent>,
-    start_report: StartReport,
     key: Key,
-    /// What [`World::reset`] goes back to.
-    start: (State, Vec<u8>),
+    /// What [`World::reset`] goes back to; worlds of one config share it.
+    start: Arc<Start>,
 }
 
 impl World {
@@ -44,49 +42,19 @@ impl World {
     /// [`WorldError`] names the setting, parameter or law that is wrong.
     pub fn new(engines: Arc<Engines>, config: &WorldConfig) -> Result<Self, WorldError> {
         config.check()?;
-        let house = engines.house().clone();
-        let mut state = State::new(&house);
-        // Agents come first: parameters and laws may name them.
-        let spot = default_spot(&house);
-        for body in &config.agents {
-            state.agents.push(AgentState::new(*body, spot, 0.0));
-        }
-        state.laws = crate::laws::install(&config.laws)?;
-        let mut set = BTreeSet::new();
-        for (text, value) in &config.parameters {
-            let address: Address = text.parse()?;
-            if !set.insert(state.canonical(&house, &address)?) {
-                return Err(WorldError::Config {
-                    field: "parameters",
-                    found: format!("{text} twice, in two spellings"),
-                    allowed: "each parameter once".to_owned(),
-                });
-            }
-            crate::laws::set_parameter(&mut state, &house, &address, *value)?;
-        }
-        let physics_config = PhysicsConfig {
-            control_rate_hz: config.control_rate_hz as f32,
-            physics_rate_hz: config.physics_rate_hz as f32,
-            ..PhysicsConfig::default()
-        };
-        let (physics, start_report) =
-            PhysicsWorld::over(engines.physics().clone(), &physics_config, &mut state)?;
-        let mut rays = RayScene::new(house);
+        let start = engines.start(config)?;
+        let (state, physics) = (start.state.clone(), start.physics.clone());
+        let mut rays = RayScene::new(engines.house().clone());
         rays.update(&state);
-        let start = (state.clone(), physics.moment());
-        let sound = Sound::new(config);
-        let key = Key::root(0);
-        let events = Vec::new();
         Ok(Self {
             engines,
             config: config.clone(),
             state,
             physics,
             rays,
-            sound,
-            events,
-            start_report,
-            key,
+            sound: Sound::new(config),
+            events: Vec::new(),
+            key: Key::root(0),
             start,
         })
     }
@@ -94,10 +62,10 @@ impl World {
     /// Goes back to the start; random streams begin anew under `key`.
     ///
     /// # Errors
-    /// [`WorldError::Physics`] if physics cannot restore its own start.
+    /// None so far: the start is a copy of one that was possible.
     pub fn reset(&mut self, key: Key) -> Result<(), WorldError> {
-        self.state.clone_from(&self.start.0);
-        self.physics.restore(&mut self.state, &self.start.1)?;
+        self.state.clone_from(&self.start.state);
+        self.physics.clone_from(&self.start.physics);
         self.rays.update(&self.state);
         self.sound.reset();
         self.events.clear();
@@ -230,7 +198,7 @@ impl World {
 
     /// What had to be moved or frozen so that the world could start.
     pub fn start_report(&self) -> &StartReport {
-        &self.start_report
+        &self.start.report
     }
 
     /// What stands at an address now.
@@ -408,12 +376,7 @@ impl World {
             parts.key.child("sound"),
             &parts.sound,
         )?;
-        let before = self.physics.moment();
-        if let Err(error) = self.physics.restore(&mut state, &parts.physics) {
-            let mut old = self.state.clone();
-            self.physics.restore(&mut old, &before)?;
-            return Err(error.into());
-        }
+        self.physics.restore(&mut state, &parts.physics)?;
         self.state = state;
         self.sound = sound;
         self.key = parts.key;
@@ -432,13 +395,4 @@ struct Parts {
     physics: Vec<u8>,
     sound: Vec<u8>,
     key: Key,
-}
-
-/// The middle of the first room's floor, or the origin.
-fn default_spot(house: &House) -> Vec3 {
-    house.rooms.iter().next().map_or(Vec3::ZERO, |room| {
-        let corners = room.footprint.first().copied().unwrap_or_default();
-        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-        Vec3::new(middle.x, room.floor_y, middle.y)
-    })
 }

@@ -1,0 +1,66 @@
+//! How worlds of one house and one config begin.
+
+use crate::config::WorldConfig;
+use crate::engines::Engines;
+use crate::error::WorldError;
+use dwell_physics::{PhysicsConfig, PhysicsWorld, StartReport};
+use dwell_scene::{Address, AgentState, House, State};
+use glam::Vec3;
+use std::collections::BTreeSet;
+
+/// The first moment of a world: nothing overlaps, doors are shut, agents stand at the first room's floor. Worlds begin with a
+/// copy of it, and go back to one.
+#[derive(Debug)]
+pub(crate) struct Start {
+    pub(crate) state: State,
+    pub(crate) physics: PhysicsWorld,
+    pub(crate) report: StartReport,
+}
+
+impl Start {
+    /// # Errors
+    /// [`WorldError`] names the setting, parameter or law that is wrong.
+    pub(crate) fn new(engines: &Engines, config: &WorldConfig) -> Result<Self, WorldError> {
+        let house = engines.house();
+        let mut state = State::new(house);
+        // Agents come first: parameters and laws may name them.
+        let spot = default_spot(house);
+        for body in &config.agents {
+            state.agents.push(AgentState::new(*body, spot, 0.0));
+        }
+        state.laws = crate::laws::install(&config.laws)?;
+        let mut set = BTreeSet::new();
+        for (text, value) in &config.parameters {
+            let address: Address = text.parse()?;
+            if !set.insert(state.canonical(house, &address)?) {
+                return Err(WorldError::Config {
+                    field: "parameters",
+                    found: format!("{text} twice, in two spellings"),
+                    allowed: "each parameter once".to_owned(),
+                });
+            }
+            crate::laws::set_parameter(&mut state, house, &address, *value)?;
+        }
+        let physics_config = PhysicsConfig {
+            control_rate_hz: config.control_rate_hz as f32,
+            physics_rate_hz: config.physics_rate_hz as f32,
+            ..PhysicsConfig::default()
+        };
+        let (physics, report) =
+            PhysicsWorld::over(engines.physics().clone(), &physics_config, &mut state)?;
+        Ok(Self {
+            state,
+            physics,
+            report,
+        })
+    }
+}
+
+/// The middle of the first room's floor, or the origin.
+fn default_spot(house: &House) -> Vec3 {
+    house.rooms.iter().next().map_or(Vec3::ZERO, |room| {
+        let corners = room.footprint.first().copied().unwrap_or_default();
+        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+        Vec3::new(middle.x, room.floor_y, middle.y)
+    })
+}
