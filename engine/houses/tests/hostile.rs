@@ -12,14 +12,16 @@ use dwell_scene::{House, ShoeboxMaterials};
 use proptest::prelude::*;
 
 /// The formats that read files, and where each one's sample stands.
-const FILES: [(&str, &str); 7] = [
+const FILES: [(&str, &str); 9] = [
     ("native", "a.dwell"),
     ("habitat", "habitat/room.scene_instance.json"),
+    ("procthor", "procthor/home.json"),
     ("suncg", "suncg"),
     ("gltf", "a.glb"),
     ("obj", "obj/a.obj"),
     ("urdf", "urdf/arm.urdf"),
     ("mjcf", "mjcf/arm.xml"),
+    ("mjcf", "mjcf_house/rooms.xml"),
 ];
 const OBJ: &str = "mtllib a.mtl\no box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
                    usemtl red\nf 1/1/1 2/2/1 3/3/1 4/1/1\ng lid\nusemtl blue\nf -1 -2 -3\nf 1//1 5//1 2//1\n";
@@ -56,11 +58,16 @@ fn samples() -> &'static [Sample] {
         std::fs::create_dir(at("obj")).unwrap();
         std::fs::write(at("obj/a.obj"), OBJ).unwrap();
         std::fs::write(at("obj/a.mtl"), MTL).unwrap();
+        let home = common::procthor_set::file().to_string();
+        let assets = common::procthor_set::database().to_string();
         for (file, text) in [
             ("urdf/palm.stl", tetrahedron().as_str()),
             ("mjcf/palm.stl", tetrahedron().as_str()),
             ("urdf/arm.urdf", include_str!("robots/arm.urdf")),
             ("mjcf/arm.xml", include_str!("robots/arm.xml")),
+            ("mjcf_house/rooms.xml", include_str!("robots/rooms.xml")),
+            ("procthor/home.json", home.as_str()),
+            ("procthor/asset-database.json", assets.as_str()),
         ] {
             std::fs::create_dir_all(at(file).parent().unwrap()).unwrap();
             std::fs::write(at(file), text).unwrap();
@@ -192,7 +199,7 @@ fn every_format_that_reads_files_has_a_sample() {
 fn house_strings_that_mean_nothing_list_what_is_allowed() {
     let message = |house: &str| open(house).map(|_| ()).unwrap_err().to_string();
     let allowed = "builtin:NAME; seed:N or seed:N?field=value&field=value; a path to a .dwell; \
-                   a path to a .scene_instance.json of Habitat; \
+                   a path to a .scene_instance.json of Habitat; a path to a house's .json of ProcTHOR; \
                    a path to a house.json, its folder, or a data root with one house; a path to a .glb or .gltf; a path to an .obj; a path to a .urdf; a path to a .xml of MuJoCo";
     for house in ["castle", "seeds:5", "", "house.blend"] {
         assert_eq!(
@@ -202,7 +209,7 @@ fn house_strings_that_mean_nothing_list_what_is_allowed() {
     }
     assert_eq!(
         message("builtin:castle"),
-        "no built-in house \"castle\"; this version has [\"apartment\"]"
+        "no built-in house \"castle\"; this version has [\"apartment\", \"studio\", \"house\", \"office\"]"
     );
     assert_eq!(
         message("no/such/house.json"),

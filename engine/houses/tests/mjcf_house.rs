@@ -9,48 +9,7 @@ use dwell_scene::{House, JointKind, Mobility, Object, ObjectId, State, Structure
 use glam::Vec3;
 
 /// A kitchen (x 0 to 4, y 0 to 3) and a living room (y 3 to 6); +Z up.
-const HOUSE: &str = r#"
-<mujoco model="two_rooms">
-  <compiler angle="radian"/>
-  <asset>
-    <material name="DarkWood" rgba="0.4 0.2 0.1 1"/>
-    <material name="Qux7" rgba="0.9 0.9 0.8 1"/>
-  </asset>
-  <worldbody>
-    <geom name="ground" type="plane" size="0 0 1" pos="0 0 -0.2"/>
-    <body name="floor_kitchen"><geom type="box" pos="2 1.5 -0.05" size="2 1.5 0.05" material="DarkWood"/></body>
-    <body name="floor_living_room"><geom type="box" pos="2 4.5 -0.05" size="2 1.5 0.05"/></body>
-    <body name="walls">
-      <geom name="wall_south" type="box" pos="2 -0.05 1.25" size="2 0.05 1.25" material="Qux7"/>
-      <geom name="wall_middle_a" type="box" pos="0.75 3 1.25" size="0.75 0.05 1.25"/>
-      <geom name="wall_middle_b" type="box" pos="3.2 3 1.25" size="0.8 0.05 1.25"/>
-    </body>
-    <body name="ceiling_1"><geom type="box" pos="2 3 2.55" size="2 3 0.05"/></body>
-    <body name="door_1" pos="1.5 3 0">
-      <joint name="door_hinge" type="hinge" axis="0 0 1" range="0 1.5" damping="0.5"/>
-      <geom type="box" pos="0.45 0 1" size="0.44 0.02 1" mass="20"/>
-    </body>
-    <body name="table_2" pos="2 1.5 0">
-      <geom name="top" type="box" pos="0 0 0.7" size="0.6 0.4 0.02"/>
-      <geom name="leg" type="box" pos="0 0 0.34" size="0.05 0.05 0.34"/>
-    </body>
-    <body name="mug_1" pos="2 1.5 0.77" quat="0.7071067811865476 0 0 0.7071067811865476">
-      <freejoint/>
-      <geom type="cylinder" size="0.04 0.05" mass="0.3"/>
-      <geom type="box" pos="0.05 0 0" size="0.01 0.005 0.03" mass="0.02"/>
-    </body>
-    <body name="dresser_1" pos="1 5.5 0">
-      <geom type="box" pos="0 0 0.4" size="0.4 0.2 0.4" contype="0" conaffinity="0"/>
-      <geom type="box" pos="0 0.15 0.4" size="0.4 0.02 0.4"/>
-      <body name="drawer" pos="0 -0.2 0.6">
-        <joint name="drawer_slide" type="slide" axis="0 -1 0" range="0 0.3"/>
-        <geom type="box" size="0.35 0.02 0.1" mass="2"/>
-      </body>
-    </body>
-    <body name="quxwidget" pos="3 4 0.1"><freejoint/><geom type="box" size="0.1 0.1 0.1" mass="1"/></body>
-    <body name="spinner" pos="3 5 0.5"><joint type="ball"/><geom type="sphere" size="0.1"/></body>
-  </worldbody>
-</mujoco>"#;
+const HOUSE: &str = include_str!("robots/rooms.xml");
 
 fn opened(text: &str) -> Result<(House, Report), HousesError> {
     let folder = tempfile::tempdir().unwrap();

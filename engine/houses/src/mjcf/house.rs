@@ -361,12 +361,15 @@ fn kind_words(name: &str) -> Option<String> {
         .skip(1)
         .filter(|word| !matches!(*word, "visual" | "mesh" | "collision" | "geom" | "room"))
         .collect();
+    if words.is_empty() {
+        return None;
+    }
     let plain = words.join(" ").to_ascii_lowercase();
     let with_room = format!("{plain} room");
     let known = [plain.clone(), with_room]
         .into_iter()
         .find(|words| room_kind(words).is_ok());
-    known.or(Some(plain)).filter(|words| !words.is_empty())
+    known.or(Some(plain))
 }
 
 /// Rooms of objects and the storey's box, by where things stand; what is small and loose can be taken.

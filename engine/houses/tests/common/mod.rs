@@ -4,6 +4,7 @@
 
 pub(crate) mod generate;
 pub(crate) mod habitat_set;
+pub(crate) mod procthor_set;
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
