@@ -124,13 +124,14 @@ impl Play {
     }
 }
 
-/// Plays, watches every step, and goes astray in the middle; the hash at the end.
+/// Plays, watches every step, and goes astray early on and in the middle; the hash at the end.
 fn play_watched(engines: &Arc<Engines>, steps: usize) -> u64 {
     let mut play = Play::new(engines);
     let control_steps = steps / SUBSTEPS;
     let mut memory = Vec::new();
     for k in 0..control_steps {
-        if k == control_steps / 2 {
+        // Once before memory is watched, so that it has seen all that is to come.
+        if k == control_steps / 20 || k == control_steps / 2 {
             play.go_astray();
         }
         let before = places(&play.world);
