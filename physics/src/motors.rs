@@ -11,7 +11,7 @@ pub(crate) fn are_driven(laws: &[Installed]) -> bool {
 }
 
 /// What a joint's motor is told in this control step.
-fn told(state: &State, joint: JointId) -> JointCommand {
+pub(crate) fn told(state: &State, joint: JointId) -> JointCommand {
     let command = state.joint_command[joint];
     if command.is_finite() {
         command
@@ -56,7 +56,8 @@ impl PhysicsWorld {
                     installed.law.strengthen(joint.id, pull);
                 }
             }
-            if pull.is_some() && self.pulls[index] != pull {
+            // One that lets go wakes what it held, too.
+            if self.pulls[index] != pull {
                 joints::wake(&mut self.engine, &joint);
             }
             self.pulls[index] = pull;

@@ -10,6 +10,7 @@ use crate::world::{PhysicsWorld, Weights};
 use dwell_scene::State;
 use glam::Vec3;
 use rapier3d::dynamics::{MassProperties, RigidBody};
+use rapier3d::geometry::ColliderHandle;
 
 impl PhysicsWorld {
     /// Takes over the state's overrides and laws: masses, friction and restitution of pairs and materials, gravity,
@@ -173,13 +174,23 @@ impl PhysicsWorld {
         self.write_bodies(state);
     }
 
+    /// Whether a collider is a cylinder that rolls now: its contacts are asked about whatever the materials say.
+    fn rolls(&self, collider: ColliderHandle) -> bool {
+        self.model.rollers.iter().any(|roller| {
+            let body = self.bodies.get(roller.body());
+            let body = body.and_then(|body| self.engine.bodies.get(body.handle));
+            body.is_some_and(|body| roller.collider(body) == Some(collider) && roller.rolls(body))
+        })
+    }
+
     /// Gives a collider its contact values and density. Returns whether they were others before.
     fn redress(&mut self, entry: usize, values: Dress<'_>, density: Option<f32>) -> bool {
-        let rule = values.rule(&self.entries[entry]);
         // Colliders are inserted in the order of entries and never removed.
         let Some((collider, handle)) = self.engine.colliders.get_unknown_gen(entry as u32) else {
             return false;
         };
+        let mut rule = values.rule(&self.entries[entry]);
+        rule.1 |= self.rolls(handle);
         let same_rule = collider.friction() == rule.0.friction
             && collider.restitution() == rule.0.restitution
             && collider

@@ -251,7 +251,8 @@ impl PhysicsWorld {
             let limits = (step_s, effort);
             let (pull, progress) =
                 joints::advance(joint.kind, &joint.values, command, hand, now, limits);
-            if pull.is_some() && self.pulls[index] != pull {
+            // A motor that lets go wakes what it held, too.
+            if self.pulls[index] != pull {
                 joints::wake(&mut self.engine, &joint);
             }
             self.pulls[index] = pull;

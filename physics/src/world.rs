@@ -410,9 +410,12 @@ fn check_counts(house: &House, state: &State) -> Result<(), PhysicsError> {
     same("objects", state.held_by.len(), house.objects.len())
 }
 
-/// Puts every joint's part where its joint says, unless it stands there already.
+/// Puts every joint's part where its joint says, unless it stands there already; a joint beyond its limits, as a parameter may
+/// have set them, stands at the nearer one.
 fn align_joints(model: &PhysicsModel, state: &mut State) {
     for (id, joint) in model.house.joints.iter_ids() {
+        let values = state.joint_values(&model.house, id);
+        state.joint_position[id] = values.clamp(state.joint_position[id]);
         let parent = joint.parent.map_or(dwell_scene::Pose::IDENTITY, |parent| {
             state.part_pose[parent]
         });

@@ -74,6 +74,10 @@ mod tests {
         let mut stream = crate::random::Key::root(1).stream();
         let half: Vec<u8> = (0..500_000).map(|_| stream.bits() as u8).collect();
         let packed = pack(&[half.clone(), half.clone()].concat());
-        assert!(packed.len() < half.len() + half.len() / 50, "{}", packed.len());
+        assert!(
+            packed.len() < half.len() + half.len() / 50,
+            "{}",
+            packed.len()
+        );
     }
 }

@@ -117,6 +117,7 @@ impl World {
         }
         self.physics
             .place_agent(&mut self.state, agent, position, yaw_rad)?;
+        self.rays.update(&self.state);
         Ok(())
     }
 

@@ -57,11 +57,17 @@ pub(super) fn no_target<'a>(
     name: &str,
     known: impl Iterator<Item = &'a str>,
 ) -> PhysicsError {
+    let mut names: Vec<String> = Vec::new();
+    for known in known {
+        if names.len() < 12 && !names.iter().any(|name| name == known) {
+            names.push(known.to_owned());
+        }
+    }
     PhysicsError::LawTarget {
         law,
         kind,
         name: name.to_owned(),
-        known: known.take(12).map(str::to_owned).collect(),
+        known: names,
     }
 }
 

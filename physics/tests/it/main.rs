@@ -24,6 +24,7 @@ mod havoc;
 mod houses;
 mod joints;
 mod laws;
+mod letting_go;
 mod motion;
 mod parameters;
 mod placing;

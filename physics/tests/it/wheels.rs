@@ -2,6 +2,7 @@
 
 use crate::arms::awake;
 use crate::common::{Build, Piece, Run, gravity};
+use crate::laws::spec;
 use dwell_houses::{open_robot, with_robot};
 use dwell_scene::math;
 use dwell_scene::{JointCommand, JointId, PartId, Pose};
@@ -98,4 +99,28 @@ fn a_braked_cart_stands_on_a_slope() {
     let way = run.state.part_pose[part].position - from;
     // The springs of 250 N m/rad give way by 2e-4 m along the wheels' rims.
     assert!(way.length() < 2e-3, "{way}");
+}
+
+/// While wheels roll, rapier is asked about their contacts whatever the materials say: no parameter may take that for a change.
+#[test]
+fn a_number_set_and_set_back_while_wheels_roll_leaves_no_trace() {
+    let play = |touched: bool| {
+        let mut run = cart(0.0);
+        for k in 0..4 {
+            run.state.joint_command[JointId(k)] = JointCommand::Velocity(10.0);
+        }
+        run.steps(20);
+        if touched {
+            for laws in [
+                vec![spec("drag", Some("cart"), &[("c_d", 0.5)])],
+                Vec::new(),
+            ] {
+                run.state.laws = laws;
+                run.world.apply_parameters(&mut run.state).unwrap();
+            }
+        }
+        run.steps(20);
+        run.hash()
+    };
+    assert_eq!(play(false), play(true));
 }

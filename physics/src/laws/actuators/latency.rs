@@ -4,6 +4,7 @@ use super::{Motors, number, same_kind, with};
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law, MotorStep, value};
 use crate::model::PhysicsModel;
+use crate::motors::told;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
 use std::collections::{BTreeMap, VecDeque};
@@ -34,7 +35,8 @@ pub(in crate::laws) const LAW: Law = Law {
     install,
 };
 
-/// What a joint was told in past physics steps, the newest first: as many as the delay reaches back. When the delay grows
+/// What a joint was told in past physics steps, the newest first: as many as the delay reaches back; at the start what it is
+/// told when the law begins. When the delay grows
 /// at run time, the oldest command that is known stays until newer ones arrive; when it shrinks, those between are lost.
 #[derive(Clone, Debug, Default)]
 struct Past(VecDeque<JointCommand>);
@@ -49,17 +51,21 @@ fn install(
     spec: &LawSpec,
     info: &LawInfo,
     model: &PhysicsModel,
-    _state: &State,
+    state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let motors = Motors::of(spec, info, model)?;
+    let mut motors = Motors::of(spec, info, model)?.each(Past::default);
+    // What motors are told at that moment they have been told for long: no motor lets go because a cable grew.
+    for (joint, past) in &mut motors {
+        past.0.push_back(told(state, *joint));
+    }
     Ok(Box::new(Latency {
         delay_s: value(spec, info, "delay_s"),
-        past: motors.each(Past::default),
+        past: motors,
     }))
 }
 
 impl Past {
-    /// Remembers this step's command and gives the one that arrives: before the first that is known nothing was told.
+    /// Remembers this step's command and gives the one that arrives: before the first that is known the same was told.
     fn shift(&mut self, command: JointCommand, delay_steps: f32) -> JointCommand {
         let whole = delay_steps as usize;
         let part = delay_steps - whole as f32;

@@ -13,7 +13,7 @@ use dwell_physics::{PhysicsConfig, laws};
 use dwell_scene::{JointCommand, JointKind, LawInfo, LawSpec, Mobility, Servo, State};
 use glam::Vec3;
 
-fn spec(id: &str, target: Option<&str>, params: &[(&str, f64)]) -> LawSpec {
+pub(crate) fn spec(id: &str, target: Option<&str>, params: &[(&str, f64)]) -> LawSpec {
     LawSpec {
         id: id.into(),
         version: 1,
