@@ -15,6 +15,7 @@ mod facts;
 mod house;
 mod navigation;
 mod picture;
+mod running;
 mod world;
 
 use pyo3::prelude::*;

@@ -5,14 +5,13 @@ use crate::errors::Fault;
 use crate::house::{PyHouse, describe_level};
 use crate::navigation::PyNavigation;
 use crate::picture;
+use crate::running::Running;
 use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
-use dwell_physics::{ActionOutcome, AgentControl, BodyState};
+use dwell_physics::{AgentControl, BodyState};
 use dwell_render::{Channels, Frame, Map};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
-use dwell_scene::{
-    Address, AgentId, Entity, Id, JointCommand, JointId, LevelId, ObjectId, PartId, Pose, Velocity,
-};
+use dwell_scene::{Address, JointCommand, JointId, LevelId, Pose, Velocity};
 use glam::{Quat, Vec3};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -24,92 +23,6 @@ use std::sync::{Mutex, TryLockError};
 #[pyclass(name = "World", module = "dwell._native", frozen)]
 pub(crate) struct PyWorld {
     world: Mutex<Running>,
-}
-
-struct Running {
-    world: World,
-    guide: Option<([u32; 3], Guide)>,
-}
-
-impl Running {
-    fn object(&self, named: &serde_json::Value) -> Result<ObjectId, Fault> {
-        let house = self.world.house();
-        let by_id = named
-            .as_i64()
-            .and_then(|id| house.entity(dwell_scene::EntityId(i32::try_from(id).ok()?)));
-        let found = match by_id {
-            Some(dwell_scene::Entity::Object(object)) => Some(object),
-            _ => named.as_str().and_then(|name| house.object_named(name)),
-        };
-        found.ok_or_else(|| {
-            let first: Vec<_> = house
-                .objects
-                .iter()
-                .take(12)
-                .map(|object| object.name.as_str())
-                .collect();
-            Fault::Config(format!(
-                "no object {named}; there are {} such as {first:?}",
-                house.objects.len()
-            ))
-        })
-    }
-
-    /// A part by its object's name and its own; without one the object's first part that moves.
-    fn part(&self, object: &str, part: Option<&str>) -> Result<PartId, Fault> {
-        let house = self.world.house();
-        let id = self.object(&json!(object))?;
-        let mut parts = house.objects[id].parts();
-        let Some(name) = part else {
-            let moving = parts.find(|id| !house.parts[*id].fixed);
-            return Ok(moving.unwrap_or(house.objects[id].first_part));
-        };
-        parts
-            .find(|id| house.parts[*id].name == name)
-            .ok_or_else(|| {
-                let parts = house.objects[id].parts();
-                let known: Vec<_> = parts.map(|id| &house.parts[id].name).collect();
-                Fault::Config(format!("no part {name:?}; {object:?} has {known:?}"))
-            })
-    }
-
-    fn agent(&self, agent: usize) -> Result<AgentId, Fault> {
-        let count = self.world.state().agents.len();
-        if agent < count {
-            Ok(AgentId::from_index(agent))
-        } else {
-            Err(Fault::Usage(format!("no agent {agent}; there are {count}")))
-        }
-    }
-
-    fn outcome_json(&self, outcome: &ActionOutcome) -> Result<serde_json::Value, Fault> {
-        let house = self.world.house();
-        let name = |object: ObjectId| house.objects[object].name.clone();
-        let pointed = outcome.pointed.map(|pointed| {
-            let (kind, name) = match house.entity(pointed.entity) {
-                Some(Entity::Object(id)) => ("object", name(id)),
-                Some(Entity::Structure(id)) => ("structure", house.structure[id].name.clone()),
-                Some(Entity::Agent(id)) => ("agent", id.0.to_string()),
-                _ => ("void", String::new()),
-            };
-            json!({
-                "id": pointed.entity.0,
-                "kind": kind,
-                "name": name,
-                "point": pointed.point.to_array(),
-                "distance_m": pointed.distance_m,
-            })
-        });
-        let object = outcome.object.map(name);
-        let code = serde_json::to_value(outcome.code)?;
-        Ok(json!({
-            "success": outcome.success,
-            "code": code,
-            "sentence": outcome.sentence,
-            "object": object,
-            "pointed": pointed,
-        }))
-    }
 }
 
 impl PyWorld {

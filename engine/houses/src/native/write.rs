@@ -24,7 +24,7 @@ pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
 /// all houses of `root` share them. Returns the house's folder.
 ///
 /// # Errors
-/// Those of [`write`].
+/// Those of [`write()`].
 pub fn write_into(house: &House, root: &Path, name: &str) -> Result<PathBuf, HousesError> {
     let path = root.join("house").join(format!("{name}.dwell"));
     for folder in ["house", "object", "texture"] {

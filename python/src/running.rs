@@ -1,0 +1,95 @@
+//! A running world, and how Python names what is in it.
+
+use crate::errors::Fault;
+use dwell::{Guide, World};
+use dwell_physics::ActionOutcome;
+use dwell_scene::{AgentId, Entity, Id, ObjectId, PartId};
+use serde_json::json;
+
+/// What a `World` of Python holds.
+pub(crate) struct Running {
+    pub(crate) world: World,
+    /// Size of the guide's walker and the guide.
+    pub(crate) guide: Option<([u32; 3], Guide)>,
+}
+
+impl Running {
+    pub(crate) fn object(&self, named: &serde_json::Value) -> Result<ObjectId, Fault> {
+        let house = self.world.house();
+        let by_id = named
+            .as_i64()
+            .and_then(|id| house.entity(dwell_scene::EntityId(i32::try_from(id).ok()?)));
+        let found = match by_id {
+            Some(dwell_scene::Entity::Object(object)) => Some(object),
+            _ => named.as_str().and_then(|name| house.object_named(name)),
+        };
+        found.ok_or_else(|| {
+            let first: Vec<_> = house
+                .objects
+                .iter()
+                .take(12)
+                .map(|object| object.name.as_str())
+                .collect();
+            Fault::Config(format!(
+                "no object {named}; there are {} such as {first:?}",
+                house.objects.len()
+            ))
+        })
+    }
+
+    /// A part by its object's name and its own; without one the object's first part that moves.
+    pub(crate) fn part(&self, object: &str, part: Option<&str>) -> Result<PartId, Fault> {
+        let house = self.world.house();
+        let id = self.object(&json!(object))?;
+        let mut parts = house.objects[id].parts();
+        let Some(name) = part else {
+            let moving = parts.find(|id| !house.parts[*id].fixed);
+            return Ok(moving.unwrap_or(house.objects[id].first_part));
+        };
+        parts
+            .find(|id| house.parts[*id].name == name)
+            .ok_or_else(|| {
+                let parts = house.objects[id].parts();
+                let known: Vec<_> = parts.map(|id| &house.parts[id].name).collect();
+                Fault::Config(format!("no part {name:?}; {object:?} has {known:?}"))
+            })
+    }
+
+    pub(crate) fn agent(&self, agent: usize) -> Result<AgentId, Fault> {
+        let count = self.world.state().agents.len();
+        if agent < count {
+            Ok(AgentId::from_index(agent))
+        } else {
+            Err(Fault::Usage(format!("no agent {agent}; there are {count}")))
+        }
+    }
+
+    pub(crate) fn outcome_json(&self, outcome: &ActionOutcome) -> Result<serde_json::Value, Fault> {
+        let house = self.world.house();
+        let name = |object: ObjectId| house.objects[object].name.clone();
+        let pointed = outcome.pointed.map(|pointed| {
+            let (kind, name) = match house.entity(pointed.entity) {
+                Some(Entity::Object(id)) => ("object", name(id)),
+                Some(Entity::Structure(id)) => ("structure", house.structure[id].name.clone()),
+                Some(Entity::Agent(id)) => ("agent", id.0.to_string()),
+                _ => ("void", String::new()),
+            };
+            json!({
+                "id": pointed.entity.0,
+                "kind": kind,
+                "name": name,
+                "point": pointed.point.to_array(),
+                "distance_m": pointed.distance_m,
+            })
+        });
+        let object = outcome.object.map(name);
+        let code = serde_json::to_value(outcome.code)?;
+        Ok(json!({
+            "success": outcome.success,
+            "code": code,
+            "sentence": outcome.sentence,
+            "object": object,
+            "pointed": pointed,
+        }))
+    }
+}
