@@ -1,5 +1,5 @@
 //! Parametric models of household things. A model is a function or a small struct of sizes and finishes that gives a
-//! [`Model`](super::model::Model); [`all`] lists one specimen of each.
+//! [`Model`](super::model::Model); `specimens::all` lists one specimen of each.
 
 pub mod appliances;
 pub mod bath;

@@ -1,4 +1,4 @@
-//! Procedural images. Each recipe is one function and one line in [`recipes`]; the same pattern gives the same bytes.
+//! Procedural images. Each recipe is one function and one line in `recipes`; the same pattern gives the same bytes.
 
 mod boards;
 mod canvas;
@@ -24,7 +24,7 @@ pub type Srgb = [u8; 3];
 /// An image to be made: a recipe, its colours and its seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pattern {
-    /// A name of [`recipes`].
+    /// A name of the list of recipes.
     pub recipe: &'static str,
     /// Ground, second and third colour.
     pub colors: [Srgb; 3],
