@@ -40,7 +40,7 @@ class House:
         Args:
             house: ``builtin:NAME``, ``seed:N``, or the path of a SUNCG ``house.json``, a ``.dwell``
                 folder, a ``.glb``, ``.gltf`` or ``.obj`` file, a ``.scene_instance.json`` of
-                Habitat, a robot's ``.urdf`` or MuJoCo ``.xml``.
+                Habitat, a house's ``.json`` of ProcTHOR, a ``.urdf`` or MuJoCo ``.xml``.
 
         Returns:
             The house; what its reader had to say stands in ``info()["report"]``.

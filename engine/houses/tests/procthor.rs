@@ -10,7 +10,7 @@ use std::path::Path;
 
 use common::procthor_set::{database, file, xyz};
 use dwell_houses::{Damage, HousesError, Report, open};
-use dwell_scene::{House, Mobility, Object, State, StructureKind};
+use dwell_scene::{Aabb, House, Mobility, Object, State, StructureKind};
 use glam::Vec3;
 use serde_json::{Value, json};
 
@@ -31,6 +31,13 @@ fn opened(file: &Value, with_sizes: bool) -> (House, Report) {
 
 fn object<'a>(house: &'a House, id: &str) -> &'a Object {
     house.objects.iter().find(|o| o.source_id == id).unwrap()
+}
+
+/// The box around the object of a file's id.
+fn bounds(house: &House, state: &State, id: &str) -> Aabb {
+    let of_file = |o: &Object| o.source_id == id;
+    let k = house.objects.iter().position(of_file).unwrap();
+    house.object_bounds(state, dwell_scene::ObjectId(k as u32))
 }
 
 #[test]
@@ -110,14 +117,7 @@ fn walls_are_exact_with_their_holes_and_look_at_their_rooms() {
 fn doors_and_windows_fill_their_holes() {
     let (house, _) = opened(&file(), true);
     let state = State::new(&house);
-    let bounds = |id: &str| {
-        let k = house
-            .objects
-            .iter()
-            .position(|o| o.source_id == id)
-            .unwrap();
-        house.object_bounds(&state, dwell_scene::ObjectId(k as u32))
-    };
+    let bounds = |id: &str| bounds(&house, &state, id);
     let window = bounds("window|1");
     // Along x = 0 from z = 0 to z = 3 in the file: 1.0 to 2.2, between 0.9 m and 1.8 m.
     assert!((window.min.z - -2.2).abs() < 1e-4 && (window.max.z - -1.0).abs() < 1e-4);
@@ -155,14 +155,7 @@ fn one_can_walk_through_the_door() {
 fn things_have_the_assets_sizes_places_and_fronts() {
     let (house, report) = opened(&file(), true);
     let state = State::new(&house);
-    let bounds = |id: &str| {
-        let k = house
-            .objects
-            .iter()
-            .position(|o| o.source_id == id)
-            .unwrap();
-        house.object_bounds(&state, dwell_scene::ObjectId(k as u32))
-    };
+    let bounds = |id: &str| bounds(&house, &state, id);
     let table = bounds("DiningTable|1|0");
     // A quarter turn: its width lies along z.
     assert!(

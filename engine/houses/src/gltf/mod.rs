@@ -34,7 +34,7 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 
 /// Opens a `.glb` or `.gltf` file. Every node with a mesh is a thing; names mean structure or a category.
 ///
-/// Animations, skins, cameras and lights are not read; each is reported once.
+/// Animations, skins and cameras are not read and reported once each; lights and extras are passed over.
 ///
 /// # Errors
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no valid glTF 2.0,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{
     Aabb, Category, House, HouseData, Level, LevelId, Material, MaterialId, Mobility, ObjectId,
-    Pose, Room, RoomId, State, Structure, StructureKind, units,
+    Pose, Room, State, Structure, StructureKind, units,
 };
 use glam::Vec2;
 use mjcf_rs::BodyId;
@@ -386,13 +386,8 @@ fn place(data: &mut HouseData) {
         }
         let level = &mut data.levels[LEVEL].bounds;
         *level = level.union(&bounds);
-        let center = bounds.center();
-        let room = data.rooms.iter().position(|room| {
-            room.contains_xz(Vec2::new(center.x, center.z))
-                && (room.floor_y - 0.3..room.ceiling_y + 0.3).contains(&center.y)
-        });
         let object = &mut data.objects[id];
-        object.room = room.map(|k| RoomId(k as u32));
+        object.room = house.room_at(bounds.center());
         let loose = object.mobility == Mobility::Movable;
         object.pickable = loose && bounds.size().max_element() <= HANDY_M;
     }

@@ -11,7 +11,7 @@ mod sizes;
 use std::path::Path;
 
 use dwell_scene::{Aabb, House, RoomId};
-use glam::{DVec2, Quat, Vec3};
+use glam::{DVec2, Quat, Vec2, Vec3};
 
 use crate::building::assembly::Assembly;
 use crate::damage::Damage;
@@ -112,22 +112,6 @@ struct ReadRoom {
     ceiling_y: f32,
 }
 
-impl ReadRoom {
-    /// Whether a place lies over the floor (even-odd rule).
-    fn contains(&self, place: DVec2) -> bool {
-        let mut inside = false;
-        for (k, a) in self.outline.iter().enumerate() {
-            let b = self.outline[(k + 1) % self.outline.len()];
-            if (a.y > place.y) != (b.y > place.y)
-                && place.x < a.x + (place.y - a.y) / (b.y - a.y) * (b.x - a.x)
-            {
-                inside = !inside;
-            }
-        }
-        inside
-    }
-}
-
 /// A house on its way.
 struct Reader<'a> {
     at: At,
@@ -140,11 +124,19 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The room over whose floor a place lies, else the one whose middle is nearest.
+    /// The room over whose floor a place lies.
+    fn room_over(&self, place: Vec3) -> Option<&ReadRoom> {
+        let known = &self.assembly.data.rooms;
+        let place = Vec2::new(place.x, place.z);
+        self.rooms
+            .iter()
+            .find(|room| known[room.id].contains_xz(place))
+    }
+
+    /// That room, else the one whose middle is nearest.
     fn room_at(&self, place: Vec3) -> Option<&ReadRoom> {
-        let place = DVec2::new(f64::from(place.x), f64::from(place.z));
-        let over = self.rooms.iter().find(|room| room.contains(place));
-        over.or_else(|| {
+        self.room_over(place).or_else(|| {
+            let place = DVec2::new(f64::from(place.x), f64::from(place.z));
             let distance = |room: &ReadRoom| {
                 let sum: DVec2 = room.outline.iter().sum();
                 (sum / room.outline.len() as f64).distance_squared(place)

@@ -22,7 +22,7 @@ const FRAME_M: f32 = 0.1;
 /// Height of rooms without walls, m.
 const CEILING_M: f32 = 2.5;
 /// How far from a wall is looked for the room on that side, m.
-const BESIDE_M: f64 = 0.05;
+const BESIDE_M: f32 = 0.05;
 /// The smallest hole that holds a door or a window, m.
 const LEAST_M: f32 = 0.3;
 /// The widest casement, m.
@@ -295,12 +295,7 @@ impl Reader<'_> {
         let along = run.normalize();
         let side = along.cross(Vec3::Y);
         let middle = *foot + run * 0.5;
-        let middle = DVec2::new(f64::from(middle.x), f64::from(middle.z));
-        let step = DVec2::new(f64::from(side.x), f64::from(side.z)) * BESIDE_M;
-        let on = |sign: f64| {
-            let place = middle + step * sign;
-            self.rooms.iter().find(|room| room.contains(place))
-        };
+        let on = |sign: f32| self.room_over(middle + side * (sign * BESIDE_M));
         let faces_front = match (on(1.0), on(-1.0)) {
             (Some(front), Some(back)) => {
                 front.file_id == wall.room_id || back.file_id != wall.room_id
