@@ -21,6 +21,7 @@ pub mod packing;
 pub mod parallel;
 pub mod random;
 pub mod rays;
+mod sky;
 pub mod space;
 mod state;
 mod texture;
@@ -42,6 +43,7 @@ pub use ids::{
 pub use law::{LawInfo, LawSpec};
 pub use material::{Bands, Material};
 pub use mesh::Mesh;
+pub use sky::{Daytime, Dome, Sky, Weather};
 pub use space::Pose;
 pub use state::{
     Address, AgentBody, AgentState, BaseState, Contact, DifferentialDrive, Gait, HolonomicBase,

@@ -153,7 +153,8 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
     }
     objects(data)?;
     joints(data)?;
-    fixtures(data)
+    fixtures(data)?;
+    data.sky.map_or(Ok(()), |sky| sky.check())
 }
 
 fn objects(data: &HouseData) -> Result<(), SceneError> {

@@ -9,6 +9,7 @@ use crate::ids::{
 };
 use crate::material::Material;
 use crate::mesh::Mesh;
+use crate::sky::Sky;
 use crate::space::Pose;
 use crate::texture::Texture;
 use glam::{Affine3A, Vec2, Vec3};
@@ -46,6 +47,9 @@ pub struct HouseData {
     pub emitters: Vec<SoundEmitter>,
     /// Places that hold things.
     pub receptacles: Vec<Receptacle>,
+    /// Sun and sky; `None`: nothing is known of the open air.
+    #[serde(default)]
+    pub sky: Option<Sky>,
 }
 
 /// A storey.

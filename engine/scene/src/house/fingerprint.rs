@@ -8,10 +8,11 @@ use xxhash_rust::xxh3::Xxh3;
 /// The number of [`House::fingerprint`](super::House::fingerprint).
 pub(super) fn of(data: &HouseData) -> u64 {
     let mut hash = Xxh3::new();
-    // Meshes are hashed below, images not at all.
+    // Meshes are hashed below, images and the sky not at all: they only look.
     let tables = HouseData {
         meshes: IdVec::default(),
         textures: IdVec::default(),
+        sky: None,
         ..data.clone()
     };
     let tables = postcard::to_stdvec(&tables)

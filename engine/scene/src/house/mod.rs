@@ -49,7 +49,7 @@ impl House {
     }
 
     /// A number that tells this house from any other: its tables (names, places, masses, collision pieces, joints) and the
-    /// triangles of its meshes, not its images. Counted at first use.
+    /// triangles of its meshes, not its images or its sky. Counted at first use.
     pub fn fingerprint(&self) -> u64 {
         *self.fingerprint.get_or_init(|| fingerprint::of(&self.data))
     }
