@@ -80,8 +80,8 @@ class House:
                 ``"house"``, ``"office"``), ``storeys`` (1 to 3), ``area_m2``, ``rooms`` (names such
                 as ``"living_room"``), ``adjacency`` (pairs of them), ``style``,
                 ``furniture_density`` and ``clutter`` (0 to 1), ``doors`` (``"open"``,
-                ``"closed"``, ``"ajar"``, ``"mixed"``), ``split`` (``"train"``, ``"val"``,
-                ``"test"``, ``"all"``: which looks it may have).
+                ``"closed"``, ``"ajar"``, ``"mixed"``), ``time_of_day`` (0 to 24 h), ``split``
+                (``"train"``, ``"val"``, ``"test"``, ``"all"``: which looks it may have).
 
         Returns:
             The house; what was given up stands in ``info()["report"]``.

@@ -280,13 +280,42 @@ fn known_room(node: &::gltf::Node<'_>, house: &House) -> bool {
         .any(|room| Some(room.name.as_str()) == node.name())
 }
 
+#[test]
+fn the_sun_is_a_directional_light_of_its_illuminance() {
+    for (hour, shines) in [("12.5", true), ("23", false)] {
+        let house = open(&format!("seed:3?home=studio&time_of_day={hour}"))
+            .unwrap()
+            .0;
+        let sky = house.sky.unwrap();
+        let file = foreign(&house);
+        let mut scene = file.default_scene().unwrap().nodes();
+        let node = scene.find(|node| node.name() == Some("sun")).unwrap();
+        let light = node.light().unwrap();
+        let kind = light.kind();
+        assert!(matches!(
+            kind,
+            ::gltf::khr_lights_punctual::Kind::Directional
+        ));
+        let told = Vec3::from(light.color()) * light.intensity();
+        assert!(told.abs_diff_eq(Vec3::from(sky.sun_lx), 1e-2), "{told}");
+        assert_eq!(told.max_element() > 0.0, shines);
+        let turn = glam::Quat::from_array(node.transform().decomposed().1);
+        let along = turn * Vec3::NEG_Z;
+        assert!(along.abs_diff_eq(-sky.to_sun, 1e-4), "{along}");
+    }
+}
+
 /// 1 W counts as 100 lm; a point light spreads them over 4 pi sr, a spot over the solid angle of its cone.
 #[test]
 fn lamps_shine_as_bright_and_where_they_stand() {
     let (house, _) = open("builtin:apartment").unwrap();
     let file = foreign(&house);
     let state = State::new(&house);
-    let lights: Vec<_> = file.nodes().filter(|node| node.light().is_some()).collect();
+    let is_lamp = |node: &::gltf::Node<'_>| {
+        let kind = node.light().map(|light| light.kind());
+        kind.is_some_and(|kind| !matches!(kind, ::gltf::khr_lights_punctual::Kind::Directional))
+    };
+    let lights: Vec<_> = file.nodes().filter(is_lamp).collect();
     assert_eq!(lights.len(), house.lights.len());
     for node in &lights {
         let light = node.light().unwrap();

@@ -12,7 +12,7 @@ pub enum Preset {
     /// Texture times colour, no lamps: fast, and the same for every time of day.
     #[default]
     Flat,
-    /// Lamps, daylight through windows, light that rooms throw back, tone-mapped; no shadows. See the crate's page.
+    /// Lamps, sun and sky, light that rooms throw back, tone-mapped; only the sun casts shadows. See the crate's page.
     Lit,
 }
 

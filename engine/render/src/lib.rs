@@ -6,13 +6,14 @@
 //! # Light
 //! [`Preset::Flat`] shows texture times colour: no lamps, the same at every time of day, the sky where nothing is.
 //!
-//! [`Preset::Lit`] adds light, without shadows: nothing dims what a lamp or window of a room sends to that room's
-//! surfaces, and walls stop all of it. In linear light it sums up
+//! [`Preset::Lit`] adds light. Only the sun of a house that knows its sky casts shadows: nothing dims what a lamp or the sky
+//! in a window sends to that room's surfaces, and walls stop all of it. In linear light it sums up
 //!
 //! - lamps that are on: a watt counts as 100 lm, sent evenly by points and lines (a line is four points) and into their
 //!   cone by spots, with the attenuation of the file (usually the inverse square); a lamp shines through its own shade;
-//! - windows that lead to the open air: a sky of 2,500 cd/m² as a disc of the window's area, and the sun where its ray
-//!   passes the window;
+//! - windows that lead to the open air: sky and ground as a disc of the window's area, and the sun where its ray passes the
+//!   window and meets nothing but glass. They are those of [`dwell_scene::Sky`]; a house without one has an even sky of
+//!   2,500 cd/m² and a low sun without shadows;
 //! - what a room throws back, evenly from all around: the equation of the integrating sphere, with the mean reflectance
 //!   of the room's walls; rooms share it through doors as far as those are open;
 //! - materials that glow, unless their thing is switched off.

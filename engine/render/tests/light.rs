@@ -10,7 +10,9 @@ mod common;
 use common::{Builder, World, look, pixel, quad};
 use dwell_render::{Camera, Preset, View};
 use dwell_scene::units::linear_from_srgb;
-use dwell_scene::{Category, House, Light, LightShape, Mesh, ObjectId, Pose, ShoeboxMaterials};
+use dwell_scene::{
+    Category, Daytime, House, Light, LightShape, Mesh, ObjectId, Pose, ShoeboxMaterials, Sky,
+};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -244,4 +246,93 @@ fn either_side_of_a_surface_is_lit_as_it_faces() {
         let lit = before_tone_mapping(pixel(&world.shot(&view), &camera, 10, 10)[0]);
         assert_eq!(lit > 0.6, brighter, "{lit}");
     }
+}
+
+/// A roofed room with a window of 1.4 m in its south wall, the sun shining in at 45 degrees.
+fn sunny_room(hour_h: f32, awning: bool) -> World {
+    let mut builder = Builder::from(&grey_room());
+    let south = builder
+        .data
+        .structure
+        .iter_ids()
+        .find(|(_, piece)| piece.name == "south")
+        .map(|(id, _)| id)
+        .unwrap();
+    // Only the part of the wall beside the window stays.
+    let wall = quad(Vec2::new(0.0, 0.0), Vec2::new(2.3, 3.0), 6.0);
+    builder.data.structure[south].mesh = builder.data.meshes.push(std::sync::Arc::new(wall));
+    let mut glass = Builder::plaster("glass");
+    glass.opacity = 0.1;
+    let pane = quad(Vec2::new(-0.7, -0.7), Vec2::new(0.7, 0.7), 0.0);
+    let place = Pose::from_position(Vec3::new(3.0, 1.5, 6.0));
+    let object = builder.add("window", pane, glass, false, place);
+    builder.data.objects[object].category.coarse = "window".into();
+    if awning {
+        let board = Mesh::cuboid(Vec3::new(1.0, 3.2, 6.1), Vec3::new(5.0, 3.3, 10.0));
+        builder.add(
+            "awning",
+            board,
+            Builder::plaster("cloth"),
+            false,
+            Pose::IDENTITY,
+        );
+    }
+    // South is +Z. At the equinox the sun of noon stands 45 degrees high at this latitude.
+    let moment = Daytime {
+        hour_h,
+        day: 80,
+        latitude_deg: 45.0,
+        ..Daytime::default()
+    };
+    builder.data.sky = Some(Sky::at(&moment).unwrap());
+    builder.build()
+}
+
+#[test]
+fn the_sun_draws_the_window_on_the_floor_unless_something_stands_before_it() {
+    // The window spans heights 0.8 to 2.2 m at z = 6 and x = 2.3 to 3.7: its patch lies 0.8 to 2.2 m before the wall.
+    let at = |world: &World, x: f32, z: f32| {
+        let view = downwards(2.5);
+        let frame = world.shot(&view);
+        // 200 pixels for 5 m of floor, image up is -Z.
+        let (column, row) = (100.0 + (x - 3.0) * 40.0, 100.0 + (z - 3.0) * 40.0);
+        before_tone_mapping(pixel(&frame, &view.camera, column as usize, row as usize)[1])
+    };
+    let noon = sunny_room(12.0, false);
+    let (lit, beside, deeper) = (
+        at(&noon, 3.0, 4.5),
+        at(&noon, 4.3, 4.5),
+        at(&noon, 3.0, 3.2),
+    );
+    assert!(
+        lit > 2.0 * beside && lit > 2.0 * deeper,
+        "{lit} {beside} {deeper}"
+    );
+    // An awning takes the sun and leaves the sky.
+    let shaded = sunny_room(12.0, true);
+    let (under, next) = (at(&shaded, 3.0, 4.5), at(&shaded, 3.0, 3.2));
+    assert!(
+        lit / deeper > 2.0 * under / next && under > next && next > 0.0,
+        "{lit} {deeper} without, {under} {next} with"
+    );
+    // In the morning the patch lies further west, at night there is none.
+    let morning = sunny_room(10.0, false);
+    assert!(at(&morning, 2.2, 4.6) > 2.0 * at(&morning, 3.6, 4.6));
+    let night = sunny_room(23.0, false);
+    let (a, b) = (at(&night, 3.0, 4.5), at(&night, 4.3, 4.5));
+    assert!((a - b).abs() < 0.2 * b, "{a} {b}");
+}
+
+#[test]
+fn the_open_air_is_blue_by_day_and_black_by_night() {
+    let sky = |hour: f32| {
+        let world = sunny_room(hour, false);
+        let camera = Camera::from_fov(21, 21, 30.0).unwrap();
+        let mut view = look(camera, Vec3::new(3.0, 1.5, 4.0), Vec3::new(3.0, 3.5, 9.0));
+        view.preset = Preset::Lit;
+        pixel(&world.shot(&view), &camera, 10, 10)
+    };
+    let (noon, night) = (sky(15.0), sky(1.0));
+    assert!(noon[2] > 120 && noon[2] > noon[0], "{noon:?}");
+    assert!(night.iter().all(|byte| *byte < 30), "{night:?}");
 }

@@ -28,15 +28,15 @@ use crate::error::HousesError;
 use crate::formats::Opened;
 use crate::report::{At, Report};
 use dwell_furniture::style::{STYLES, Style};
-use dwell_scene::House;
 use dwell_scene::random::Key;
+use dwell_scene::{Daytime, House, SceneError, Sky};
 use openings::Hole;
 use plan::{Cells, FloorPlan};
 use programme::Programme;
 use serde::Serialize;
 
 /// The version of the generator: another one may make other houses of the same seed.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// A generated house.
 #[derive(Debug)]
@@ -96,6 +96,7 @@ pub fn generate(seed: u64, spec: &HouseSpec) -> Result<Generated, HousesError> {
     let shell = builder.build(&mut assembly);
     shell.furnish(furnished, &mut assembly);
     let at = At::file(format!("seed:{seed}"));
+    assembly.data.sky = Some(sky(spec, key.child("sky")).map_err(HousesError::scene(&at))?);
     let house = House::new(assembly.finish()).map_err(HousesError::scene(&at))?;
     let mut given_up = draft.given_up();
     given_up.extend(furnish::missing(furnished));
@@ -261,6 +262,15 @@ fn style(spec: &HouseSpec, key: Key) -> &'static Style {
         .filter(|style| spec.style.as_ref().is_none_or(|name| style.name == name))
         .collect();
     fitting[key.stream().below(fitting.len())]
+}
+
+/// The open air at the hour of the spec; north lies anywhere.
+fn sky(spec: &HouseSpec, key: Key) -> Result<Sky, SceneError> {
+    Sky::at(&Daytime {
+        hour_h: spec.time_of_day,
+        north_yaw_deg: key.stream().uniform_f32() * 360.0 - 180.0,
+        ..Daytime::default()
+    })
 }
 
 fn has_outside(plan: &FloorPlan) -> bool {

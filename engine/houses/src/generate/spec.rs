@@ -3,6 +3,7 @@
 use super::rooms::RoomKind;
 use crate::error::HousesError;
 use dwell_furniture::style::{STYLES, Split};
+use dwell_scene::Daytime;
 use serde::{Deserialize, Serialize};
 
 /// What kind of home.
@@ -93,6 +94,8 @@ pub struct HouseSpec {
     pub clutter: f32,
     /// How doors stand at the start.
     pub doors: DoorStates,
+    /// Local solar time, h, 0 to 24: where the sun stands on a fine day in April. Which way north lies is drawn.
+    pub time_of_day: f32,
     /// Which looks of furniture it may have.
     pub split: AssetSplit,
 }
@@ -109,6 +112,7 @@ impl Default for HouseSpec {
             furniture_density: 0.8,
             clutter: 0.6,
             doors: DoorStates::default(),
+            time_of_day: Daytime::default().hour_h,
             split: AssetSplit::default(),
         }
     }
@@ -181,6 +185,10 @@ impl HouseSpec {
             if !(0.0..=1.0).contains(&value) {
                 return Err(fault(field, value.to_string(), "0 to 1"));
             }
+        }
+        let hour = self.time_of_day;
+        if !(0.0..=24.0).contains(&hour) {
+            return Err(fault("time_of_day", hour.to_string(), "0 to 24 (hours)"));
         }
         if let Some(style) = &self.style {
             let known: Vec<&str> = STYLES

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use dwell_scene::{
-    Aabb, Articulation, Bands, Category, Collider, Holding, HouseData, JointKind, Level, LevelId,
-    Light, LightShape, Material, MaterialId, Mesh, MeshId, Mobility, Object, ObjectId, Part,
-    PartId, Pose, Receptacle, Room, RoomId, Servo, SoundEmitter, Structure, StructureKind, Texture,
-    TextureId,
+    Aabb, Articulation, Bands, Category, Collider, Daytime, Holding, HouseData, JointKind, Level,
+    LevelId, Light, LightShape, Material, MaterialId, Mesh, MeshId, Mobility, Object, ObjectId,
+    Part, PartId, Pose, Receptacle, Room, RoomId, Servo, Sky, SoundEmitter, Structure,
+    StructureKind, Texture, TextureId, Weather,
 };
 use glam::{Affine3A, Mat3A, Quat, Vec2, Vec3, Vec3A};
 
@@ -299,6 +299,20 @@ pub(crate) fn house(numbers: &[u32]) -> HouseData {
         });
         fixtures(n, &mut data, object, first_part);
     }
+    let moment = Daytime {
+        hour_h: n.unit() * 24.0,
+        day: 1 + n.below(366) as u16,
+        latitude_deg: n.unit() * 180.0 - 90.0,
+        north_yaw_deg: n.unit() * 360.0 - 180.0,
+        weather: if n.flag() {
+            Weather::Overcast
+        } else {
+            Weather::Clear {
+                turbidity: 2.0 + n.unit() * 8.0,
+            }
+        },
+    };
+    data.sky = n.flag().then(|| Sky::at(&moment).unwrap());
     data
 }
 

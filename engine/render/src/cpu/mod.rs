@@ -12,13 +12,19 @@ use crate::semantic::class_of_entities;
 use crate::surfaces::Surfaces;
 use crate::texture::Textures;
 use band::Band;
+use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, State};
+use glam::Vec3;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Rows of an image that one thread takes at a time; a multiple of a packet's edge.
 const BAND_ROWS: usize = 8;
+/// How far what gives shadow may be, m.
+const SUN_RAY_M: f32 = 500.0;
+/// Most surfaces of glass that the sun passes; behind more it counts as shadow.
+const PANES: usize = 8;
 
 /// Renders views of one house, in any of its worlds.
 ///
@@ -148,7 +154,7 @@ impl CpuRenderer {
             }
             if !last.is_some_and(|state| std::ptr::eq(state, job.state)) {
                 last = Some(job.state);
-                lightings.push(self.lighting(job.state));
+                lightings.push(self.lighting(job.scene, job.state));
             }
             lit.push(Some(lightings.len() - 1));
         }
@@ -191,14 +197,38 @@ impl CpuRenderer {
             .get_or_init(|| HouseLight::new(&self.house, &self.looks, &self.textures))
     }
 
-    fn lighting(&self, state: &State) -> Lighting {
+    /// Whether nothing but glass stands between a point and the sun.
+    fn sun_reaches(&self, scene: &RayScene, point: Vec3) -> bool {
+        let mut ray = Ray {
+            origin: point,
+            direction: self.house_light().sun.0,
+            near_m: 0.0,
+            far_m: SUN_RAY_M,
+        };
+        for _ in 0..PANES {
+            let Some(hit) = scene.closest(&ray, RayMask::EYE) else {
+                return true;
+            };
+            let position = self.surfaces.position(hit.instance, hit.triangle);
+            let material = self.surfaces.triangle(position).material;
+            if self.looks[material as usize].opacity > 0.5 {
+                return false;
+            }
+            ray.near_m = hit.distance_m * (1.0 + 1e-5) + 1e-3;
+        }
+        false
+    }
+
+    fn lighting(&self, scene: &RayScene, state: &State) -> Lighting {
         let used = self
             .lightings
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .pop();
         let mut lighting = used.unwrap_or_default();
-        lighting.update(&self.house, self.house_light(), state);
+        lighting.update(&self.house, self.house_light(), state, |point| {
+            self.sun_reaches(scene, point)
+        });
         lighting
     }
 

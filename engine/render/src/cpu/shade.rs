@@ -15,10 +15,10 @@ const LAYERS: usize = 8;
 const OPAQUE: f32 = 1.0 - 1.0 / 512.0;
 /// A ray that goes on starts so far behind the surface that it passed: a length and a part of the depth.
 const GAP: (f32, f32) = (2e-4, 2e-6);
+/// How far off a surface its shadow ray starts, m.
+const OFF_SURFACE_M: f32 = 1e-3;
 /// The least cosine at which a pixel's footprint still grows.
 const GRAZING: f32 = 0.05;
-/// What the sky shows on a lit picture, against a flat one: tone mapping darkens it again.
-const LIT_SKY: f32 = 2.5;
 
 /// A pixel whose ray passed a surface.
 #[derive(Clone, Copy)]
@@ -106,7 +106,7 @@ impl Band<'_> {
         open: &mut OpenLanes,
     ) -> [u8; 3] {
         let Some(sight) = packet.sight(lane) else {
-            return self.encode(self.sky(packet.direction(lane)));
+            return self.encode(self.sky(renderer, packet.direction(lane)));
         };
         let position = renderer.surfaces.position(sight.instance, sight.triangle);
         let [r, g, b, kind] = renderer.surfaces.quick(position);
@@ -141,7 +141,8 @@ impl Band<'_> {
             } in open.all()
             {
                 let Some(sight) = packet.sight(lane) else {
-                    bytes[lane] = self.encode(light + self.sky(packet.direction(lane)) * rest);
+                    bytes[lane] =
+                        self.encode(light + self.sky(renderer, packet.direction(lane)) * rest);
                     continue;
                 };
                 let position = renderer.surfaces.position(sight.instance, sight.triangle);
@@ -167,9 +168,11 @@ impl Band<'_> {
     }
 
     /// Light of nothing.
-    fn sky(&self, direction: Vec3) -> Vec3 {
-        let strength = if self.light.is_some() { LIT_SKY } else { 1.0 };
-        sky(direction) * strength
+    fn sky(&self, renderer: &CpuRenderer, direction: Vec3) -> Vec3 {
+        let light = self
+            .light
+            .map(|(_, exposure)| (renderer.house_light(), exposure));
+        sky(direction, light)
     }
 
     #[inline]
@@ -244,6 +247,7 @@ impl Band<'_> {
             smooth,
             beside_surface(point, facing, direction),
             sight.id,
+            || renderer.sun_reaches(self.scene, point + facing * OFF_SURFACE_M),
         );
         (
             color * brightness + self.glow(renderer, look.emission, sight.id),

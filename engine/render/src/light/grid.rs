@@ -1,6 +1,6 @@
 //! Which room a point lies in, by table.
 
-use dwell_scene::{House, Id, RoomId};
+use dwell_scene::{House, Id, RoomId, Structure, StructureKind};
 use glam::{Vec2, Vec3};
 
 /// Edge of a cell, m; larger for houses that would need more than [`MOST_CELLS`].
@@ -69,7 +69,7 @@ impl RoomGrid {
                 .ids()
                 .filter(|id| house.rooms[*id].level == level)
                 .collect();
-            rooms.retain(|id| id.index() < usize::from(OUTSIDE));
+            rooms.retain(|id| id.index() < usize::from(OUTSIDE) && is_roofed(house, *id));
             rooms.sort_by(|a, b| {
                 house.rooms[*b]
                     .area_m2()
@@ -159,6 +159,13 @@ impl RoomGrid {
             .filter(|room| *room != OUTSIDE);
         rooms.next().map(usize::from)
     }
+}
+
+/// Whether a room is one to light: balconies and terraces lie in the open where there is a sky.
+fn is_roofed(house: &House, id: RoomId) -> bool {
+    let is_ceiling =
+        |piece: &Structure| piece.kind == StructureKind::Ceiling && piece.room == Some(id);
+    house.sky.is_none() || house.structure.iter().any(is_ceiling)
 }
 
 #[cfg(test)]

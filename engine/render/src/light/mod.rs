@@ -1,5 +1,6 @@
 //! The light of [`Preset::Lit`](crate::Preset): lamps, daylight through windows, and what rooms throw back.
 
+mod air;
 mod grid;
 mod lamps;
 mod openings;
@@ -12,20 +13,24 @@ pub(crate) use tone::display;
 use dwell_scene::{House, State};
 use glam::Vec3;
 use lamps::{Lamp, add_lamps};
-use rooms::{PANE_TRANSMITTANCE, RoomLight, SKY_LUMINANCE_CD_M2};
+use openings::Window;
+use rooms::{PANE_TRANSMITTANCE, RoomLight, TO_SUN};
 use std::f32::consts::PI;
 
-/// Illuminance by the sun on a surface across its rays behind a pane, lx: a low sun behind thin cloud.
-const SUN_LX: f32 = 2500.0;
-/// Towards the sun: 36 degrees high, between the axes, so that it enters houses however they stand.
-const TO_SUN: Vec3 = Vec3::new(0.485, 0.588, 0.647);
 /// Width of the border of sunlit patches, m.
 const PENUMBRA_M: f32 = 0.03;
+/// Points along an edge of a window at which the sun is looked for.
+const SUN_POINTS: u32 = 4;
+/// How far before the middle of a window that is done, m: beyond the wall that it stands in.
+const BEFORE_PANE_M: f32 = 0.25;
 /// How far from a surface its room is looked for, m: off the skin of the wall that it belongs to, and towards the viewer,
 /// who sees it from its room.
 const OFF_SURFACE_M: [f32; 2] = [0.1, 0.2];
 /// What white shows in the open, in units of display white: the open has an exposure of its own.
 const OPEN_AIR: f32 = 1.3;
+
+/// What a plain sky shows on a lit picture, against a flat one: tone mapping darkens it again.
+const LIT_SKY: f32 = 2.5;
 
 /// All light of a house in one state.
 #[derive(Debug, Default)]
@@ -37,6 +42,8 @@ pub(crate) struct Lighting {
     /// Shape (room,).
     rooms: Vec<RoomLight>,
     flux_lm: Vec<Vec3>,
+    /// How much of each window the sun reaches. Shape (window,), or empty.
+    sunlit: Vec<f32>,
 }
 
 /// The brightness to which an eye in a room adapts.
@@ -47,8 +54,21 @@ pub(crate) struct Exposure {
 }
 
 impl Lighting {
-    /// Reads the switches and places of lamps from `state`, in the memory of an earlier state.
-    pub(crate) fn update(&mut self, house: &House, fixed: &HouseLight, state: &State) {
+    /// Reads the switches and places of lamps from `state`, in the memory of an earlier state. `sun_reaches`: whether
+    /// nothing stands between a point and the sun.
+    pub(crate) fn update(
+        &mut self,
+        house: &House,
+        fixed: &HouseLight,
+        state: &State,
+        sun_reaches: impl Fn(Vec3) -> bool,
+    ) {
+        self.sunlit.clear();
+        if fixed.air.is_some() {
+            let windows = fixed.windows.iter();
+            self.sunlit
+                .extend(windows.map(|window| sunlit(window, fixed.sun, &sun_reaches)));
+        }
         self.lamps.clear();
         for light in &house.lights {
             add_lamps(house, state, &fixed.grid, light, &mut self.lamps);
@@ -67,7 +87,13 @@ impl Lighting {
                 self.flux_lm[room] += lamp.flux_lm;
             }
         }
-        fixed.rooms(house, state, &mut self.flux_lm, &mut self.rooms);
+        fixed.rooms(
+            house,
+            state,
+            &mut self.flux_lm,
+            &self.sunlit,
+            &mut self.rooms,
+        );
     }
 
     /// How a camera at `eye` is exposed: by the mean light of its room, not quite to the full, so that dim rooms look
@@ -89,7 +115,9 @@ impl Lighting {
     /// What a surface of reflectance 1 shows at `point`, in units of display white, for red, green and blue.
     ///
     /// `normal`: unit length, towards the viewer. `looked_up`: where the point's room is looked up, see
-    /// [`beside_surface`]. `entity`: whose surface it is.
+    /// [`beside_surface`]. `entity`: whose surface it is. `sun_reaches`: whether nothing stands between the point and the
+    /// sun, asked only where the sun shines and the house has a sky.
+    #[expect(clippy::too_many_arguments, reason = "what light depends on")]
     pub(crate) fn brightness(
         &self,
         fixed: &HouseLight,
@@ -98,15 +126,36 @@ impl Lighting {
         normal: Vec3,
         looked_up: Vec3,
         entity: i32,
+        sun_reaches: impl Fn() -> bool,
     ) -> Vec3 {
         let room = fixed.grid.room(looked_up);
         let Some(position) = room else {
-            return self.open_air(exposure, point, normal, entity);
+            let lamps = self.lamplight(None, point, normal, entity);
+            let Some(air) = &fixed.air else {
+                return open_air(normal) + lamps * exposure.per_lx;
+            };
+            let mut lx = lamps + air.skylight(normal) + air.groundlight(normal);
+            let across = normal.dot(air.to_sun);
+            if across > 0.0 && air.sun_lx != Vec3::ZERO && sun_reaches() {
+                lx += air.sun_lx * across;
+            }
+            return lx * air.per_lx(exposure.per_lx);
         };
         let mut lx = self.rooms[position].indirect * fill(normal)
             + self.lamplight(room, point, normal, entity);
+        let mut sun = 0.0_f32;
         for window in fixed.windows_of(position) {
-            lx += Vec3::splat(daylight(window, point, normal));
+            let (sky, part) = daylight(window, fixed.sun.0, point, normal);
+            lx += sky;
+            if fixed.air.is_some() {
+                // Windows side by side let in one and the same sun.
+                sun = sun.max(part);
+            } else {
+                lx += fixed.sun.1 * part;
+            }
+        }
+        if sun > 0.0 && fixed.sun.1 != Vec3::ZERO && sun_reaches() {
+            lx += fixed.sun.1 * sun;
         }
         lx * exposure.per_lx
     }
@@ -118,13 +167,6 @@ impl Lighting {
         mine.iter().fold(Vec3::ZERO, |sum, lamp| {
             sum + lamp.illuminance(point, normal, entity)
         })
-    }
-
-    fn open_air(&self, exposure: Exposure, point: Vec3, normal: Vec3, entity: i32) -> Vec3 {
-        let sky = 0.35 + 0.25 * normal.y;
-        let sun = 0.5 * normal.dot(TO_SUN).max(0.0);
-        Vec3::splat((sky + sun) * OPEN_AIR)
-            + self.lamplight(None, point, normal, entity) * exposure.per_lx
     }
 }
 
@@ -141,35 +183,70 @@ fn fill(normal: Vec3) -> f32 {
     0.95 + 0.08 * normal.y + 0.07 * normal.x + 0.03 * normal.z
 }
 
-/// Illuminance by a window, lx: the sky as a disc of the same area seen through it, and the sun where its ray passes it.
-fn daylight(window: &openings::Window, point: Vec3, normal: Vec3) -> f32 {
+/// Illuminance by a window, lx: the sky as a disc of the same area seen through it; and how much of the sun the surface
+/// has, where its ray passes the window.
+fn daylight(window: &Window, to_sun: Vec3, point: Vec3, normal: Vec3) -> (Vec3, f32) {
     let way = window.center - point;
     let height = -window.normal.dot(way);
     if height <= 0.0 {
-        return 0.0;
+        return (Vec3::ZERO, 0.0);
     }
     let distance_squared = way.length_squared();
     let direction = way / distance_squared.sqrt();
     let area = window.area_m2();
     let cosines = normal.dot(direction).max(0.0) * (height / distance_squared.sqrt());
-    let sky =
-        SKY_LUMINANCE_CD_M2 * PANE_TRANSMITTANCE * area * cosines / (distance_squared + area / PI);
+    let [up, down] = window.luminance_cd_m2;
+    let luminance = down.lerp(up, (0.5 + 1.5 * direction.y).clamp(0.0, 1.0));
+    let sky = luminance * PANE_TRANSMITTANCE * area * cosines / (distance_squared + area / PI);
     // Against the sun's ray: from the point back to the plane of the window.
-    let against = -window.normal.dot(TO_SUN);
-    let on_surface = normal.dot(TO_SUN);
+    let against = -window.normal.dot(to_sun);
+    let on_surface = normal.dot(to_sun);
     if against <= 0.01 || on_surface <= 0.0 {
-        return sky;
+        return (sky, 0.0);
     }
-    let on_window = point + TO_SUN * (height / against) - window.center;
+    let on_window = point + to_sun * (height / against) - window.center;
     let inside = window.half.map(|half| {
         let length = half.length().max(1e-6);
         ((length - on_window.dot(half / length).abs()) / PENUMBRA_M).clamp(0.0, 1.0)
     });
-    sky + SUN_LX * on_surface * inside[0] * inside[1]
+    (sky, on_surface * inside[0] * inside[1])
 }
 
-/// The sky behind everything, in units of display white, along a unit direction.
-pub(crate) fn sky(direction: Vec3) -> Vec3 {
+/// How much of a window the sun reaches, by points on it.
+fn sunlit(window: &Window, (to_sun, lx): (Vec3, Vec3), sun_reaches: impl Fn(Vec3) -> bool) -> f32 {
+    if window.normal.dot(to_sun) >= -0.01 || lx == Vec3::ZERO {
+        return 0.0;
+    }
+    let [across, along] = window.half;
+    let lit = |k: u32| {
+        let place = |k: u32| (k as f32 + 0.5) * (2.0 / SUN_POINTS as f32) - 1.0;
+        let (a, b) = (place(k % SUN_POINTS), place(k / SUN_POINTS));
+        sun_reaches(window.center + across * a + along * b - window.normal * BEFORE_PANE_M)
+    };
+    let count = (0..SUN_POINTS * SUN_POINTS).filter(|k| lit(*k)).count();
+    count as f32 / (SUN_POINTS * SUN_POINTS) as f32
+}
+
+/// What white shows in the open air of a house that knows no sky, in units of display white.
+fn open_air(normal: Vec3) -> Vec3 {
+    let sky = 0.35 + 0.25 * normal.y;
+    let sun = 0.5 * normal.dot(TO_SUN).max(0.0);
+    Vec3::splat((sky + sun) * OPEN_AIR)
+}
+
+/// What is seen where nothing is, in units of display white, along a unit direction. `light`: nothing on a flat picture.
+pub(crate) fn sky(direction: Vec3, light: Option<(&HouseLight, Exposure)>) -> Vec3 {
+    match light {
+        None => plain_sky(direction),
+        Some((fixed, exposure)) => match &fixed.air {
+            None => plain_sky(direction) * LIT_SKY,
+            Some(air) => air.behind_everything(direction) * air.per_lx(exposure.per_lx),
+        },
+    }
+}
+
+/// A blue sky over grey ground.
+fn plain_sky(direction: Vec3) -> Vec3 {
     let (zenith, horizon, ground) = (
         Vec3::new(0.35, 0.55, 0.9),
         Vec3::new(0.85, 0.92, 1.0),

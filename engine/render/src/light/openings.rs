@@ -18,6 +18,8 @@ pub(crate) struct Window {
     pub(crate) normal: Vec3,
     /// From the middle to two of its edges, m.
     pub(crate) half: [Vec3; 2],
+    /// Mean luminance seen through it upwards and downwards, cd/m².
+    pub(crate) luminance_cd_m2: [Vec3; 2],
 }
 
 impl Window {
@@ -38,8 +40,12 @@ pub(crate) struct Passage {
     pub(crate) door: ObjectId,
 }
 
-/// All windows and doors of a house at their start.
-pub(crate) fn openings(house: &House, grid: &RoomGrid) -> (Vec<Window>, Vec<Passage>) {
+/// All windows and doors of a house at their start. `luminance`: upwards and downwards, by the way a window faces.
+pub(crate) fn openings(
+    house: &House,
+    grid: &RoomGrid,
+    luminance: impl Fn(Vec3) -> [Vec3; 2],
+) -> (Vec<Window>, Vec<Passage>) {
     let (mut windows, mut passages) = (Vec::new(), Vec::new());
     for (id, object) in house.objects.iter_ids() {
         let names = [&object.category.coarse, &object.category.fine];
@@ -55,6 +61,15 @@ pub(crate) fn openings(house: &House, grid: &RoomGrid) -> (Vec<Window>, Vec<Pass
             grid.room(center + thin + normal * STEP_M),
             grid.room(center - thin - normal * STEP_M),
         ];
+        // Glass doors are windows, too, where there is a sky to be seen.
+        let lets_in = is("window") || (house.sky.is_some() && is_glazed(house, id));
+        let window = |room: usize, inwards: Vec3| Window {
+            room,
+            center,
+            normal: inwards,
+            half,
+            luminance_cd_m2: luminance(-inwards),
+        };
         let area_m2 = 4.0 * half[0].length() * half[1].length();
         match sides {
             [Some(a), Some(b)] if a != b => passages.push(Passage {
@@ -62,22 +77,19 @@ pub(crate) fn openings(house: &House, grid: &RoomGrid) -> (Vec<Window>, Vec<Pass
                 area_m2,
                 door: id,
             }),
-            [Some(room), None] if is("window") => windows.push(Window {
-                room,
-                center,
-                normal,
-                half,
-            }),
-            [None, Some(room)] if is("window") => windows.push(Window {
-                room,
-                center,
-                normal: -normal,
-                half,
-            }),
+            [Some(room), None] if lets_in => windows.push(window(room, normal)),
+            [None, Some(room)] if lets_in => windows.push(window(room, -normal)),
             _ => {}
         }
     }
     (windows, passages)
+}
+
+/// Whether light passes some of an object's surfaces.
+fn is_glazed(house: &House, id: ObjectId) -> bool {
+    let parts = house.objects[id].parts().map(|part| &house.parts[part]);
+    let mut materials = parts.flat_map(|part| &part.materials);
+    materials.any(|material| house.materials[*material].opacity < 0.5)
 }
 
 /// Middle, half the thinnest edge and the other half edges of an object's box in the space of its first part.

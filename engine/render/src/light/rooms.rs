@@ -1,5 +1,6 @@
 //! The light that rooms throw back.
 
+use super::air::Air;
 use super::grid::RoomGrid;
 use super::openings::{Passage, Window, openings};
 use crate::look::Look;
@@ -8,10 +9,15 @@ use dwell_scene::{House, Id, RoomId, State};
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Luminance of the sky, cd/m²: an overcast sky that gives about 8,000 lx in the open.
-pub(crate) const SKY_LUMINANCE_CD_M2: f32 = 2500.0;
+/// Luminance of the sky of a house that does not say, cd/m²: an overcast sky that gives about 8,000 lx in the open.
+const SKY_LUMINANCE_CD_M2: f32 = 2500.0;
 /// What window panes let through.
 pub(crate) const PANE_TRANSMITTANCE: f32 = 0.7;
+/// Illuminance by the sun of a house that does not say, on a surface across its rays behind a pane, lx: a low sun behind
+/// thin cloud.
+const SUN_LX: f32 = 2500.0;
+/// Towards that sun: 36 degrees high, between the axes, so that it enters houses however they stand.
+pub(super) const TO_SUN: Vec3 = Vec3::new(0.485, 0.588, 0.647);
 /// Illuminance that even a dark room has, lx: what comes through gaps and from appliances that are not modelled.
 const RESIDUAL_LX: f32 = 15.0;
 /// What furniture leaves of the walls' reflectance.
@@ -27,8 +33,12 @@ const ROUNDS: usize = 8;
 #[derive(Debug)]
 pub(crate) struct HouseLight {
     pub(crate) grid: RoomGrid,
+    /// The open air, if the house knows its own.
+    pub(crate) air: Option<Air>,
+    /// Direction to the sun, and its illuminance behind a pane across its rays, lx.
+    pub(crate) sun: (Vec3, Vec3),
     /// By room.
-    windows: Vec<Window>,
+    pub(crate) windows: Vec<Window>,
     /// Where the windows of each room start, and where the last end. Shape (room + 1,).
     window_starts: Vec<usize>,
     passages: Vec<Passage>,
@@ -57,7 +67,23 @@ pub(crate) struct RoomLight {
 impl HouseLight {
     pub(crate) fn new(house: &House, looks: &[Look], textures: &Textures) -> Self {
         let grid = RoomGrid::new(house);
-        let (mut windows, passages) = openings(house, &grid);
+        let air = house.sky.as_ref().map(Air::new);
+        let luminance = |outwards: Vec3| {
+            let Some(air) = &air else {
+                return [Vec3::splat(SKY_LUMINANCE_CD_M2); 2];
+            };
+            // Each half of what a window sees, as if evenly bright.
+            let mean = |lx: Vec3, share: f32| lx / (PI * share.max(0.05));
+            let up = 0.5 + 0.5 * outwards.y;
+            [
+                mean(air.skylight(outwards), up),
+                mean(air.groundlight(outwards), 1.0 - up),
+            ]
+        };
+        let (mut windows, passages) = openings(house, &grid, luminance);
+        let sun = air.as_ref().map_or((TO_SUN, Vec3::splat(SUN_LX)), |air| {
+            (air.to_sun, air.sun_lx * PANE_TRANSMITTANCE)
+        });
         windows.sort_by_key(|window| window.room);
         let start = |room: usize| windows.partition_point(|window| window.room < room);
         let window_starts = (0..=house.rooms.len()).map(start).collect();
@@ -68,6 +94,8 @@ impl HouseLight {
             .collect();
         Self {
             grid,
+            air,
+            sun,
             windows,
             window_starts,
             passages,
@@ -81,7 +109,7 @@ impl HouseLight {
         &self.windows[self.window_starts[room]..self.window_starts[room + 1]]
     }
 
-    /// The light in every room when lamps send `flux_lm` into each.
+    /// The light in every room when lamps send `flux_lm` into each. `sunlit`: how much of each window the sun reaches.
     ///
     /// # Source
     /// The equation of the integrating sphere, E = `flux` / (A (1 - r)), whose indirect part is r times that; e.g.
@@ -91,13 +119,24 @@ impl HouseLight {
         house: &House,
         state: &State,
         flux_lm: &mut [Vec3],
+        sunlit: &[f32],
         light: &mut Vec<RoomLight>,
     ) {
-        for window in &self.windows {
-            // A vertical window sees half the sky, a roof window all of it.
-            let sky = 0.5 + 0.5 * window.normal.y.abs();
+        for (k, window) in self.windows.iter().enumerate() {
+            let area_m2 = window.area_m2();
+            let Some(air) = &self.air else {
+                // A vertical window sees half the sky, a roof window all of it.
+                let sky = 0.5 + 0.5 * window.normal.y.abs();
+                flux_lm[window.room] +=
+                    Vec3::splat(PI * SKY_LUMINANCE_CD_M2 * sky * PANE_TRANSMITTANCE * area_m2);
+                continue;
+            };
+            let lx = air.skylight(-window.normal) + air.groundlight(-window.normal);
+            let (to_sun, behind_pane_lx) = self.sun;
+            let across = (-window.normal).dot(to_sun).max(0.0);
+            let share = sunlit.get(k).copied().unwrap_or(0.0);
             flux_lm[window.room] +=
-                Vec3::splat(PI * SKY_LUMINANCE_CD_M2 * sky * PANE_TRANSMITTANCE * window.area_m2());
+                (lx * PANE_TRANSMITTANCE + behind_pane_lx * (across * share)) * area_m2;
         }
         let mean = |room: usize, total: Vec3| {
             let walls = &self.rooms[room];

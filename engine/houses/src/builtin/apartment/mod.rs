@@ -26,7 +26,7 @@ mod walls;
 
 use crate::building::assembly::Assembly;
 use crate::building::site::Site;
-use dwell_scene::HouseData;
+use dwell_scene::{Daytime, HouseData, Sky};
 
 /// The furnished apartment.
 pub(super) fn build() -> HouseData {
@@ -51,6 +51,8 @@ pub(super) fn build() -> HouseData {
             room,
         });
     }
+    let sky = Sky::at(&Daytime::default()).expect("the default moment is within its ranges");
+    assembly.data.sky = Some(sky);
     assembly.finish()
 }
 

@@ -30,6 +30,13 @@ fn impossible_specs_name_the_field_and_what_is_possible() {
             "area_m2",
         );
     }
+    for time_of_day in [-0.1, 24.5, f32::NAN] {
+        let spec = HouseSpec {
+            time_of_day,
+            ..base()
+        };
+        assert!(refused(&spec, "time_of_day").contains("0 to 24"));
+    }
     let crowded = HouseSpec {
         rooms: vec![RoomKind::Bedroom; 40],
         area_m2: Some(20.0),
@@ -142,4 +149,20 @@ fn a_spec_is_kept() {
         ..HouseSpec::default()
     };
     assert_eq!(generate(3, &studio).unwrap().house.rooms.len(), 1);
+}
+
+#[test]
+fn the_hour_moves_the_sun_and_nothing_else() {
+    let at = |time_of_day| {
+        let spec = HouseSpec {
+            time_of_day,
+            ..HouseSpec::default()
+        };
+        generate(5, &spec).unwrap().house
+    };
+    let (noon, night) = (at(12.0), at(23.0));
+    assert!(noon.sky.unwrap().to_sun.y > 0.5 && night.sky.unwrap().to_sun.y < 0.0);
+    let mut data = night.data().clone();
+    data.sky = noon.sky;
+    assert_eq!(&data, noon.data());
 }

@@ -1,13 +1,14 @@
-//! Lamps as `KHR_lights_punctual`.
+//! Lamps and the sun as `KHR_lights_punctual`.
 //!
 //! # Source
-//! Khronos, `KHR_lights_punctual` (glTF 2.0 Vendor Extensions): intensity in cd, attenuation by the inverse square of the
+//! Khronos, `KHR_lights_punctual` (glTF 2.0 Vendor Extensions): intensity in cd (of directional
+//! lights in lx), attenuation by the inverse square of the
 //! distance, light along -Z of its node. 1 W of a lamp counts as 100 lm, as [`Light::power_w`] says.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use dwell_scene::math::cos;
-use dwell_scene::{HouseData, Light, LightShape};
+use dwell_scene::{HouseData, Light, LightShape, Sky};
 use glam::{Quat, Vec3};
 use serde_json::{Value, json};
 
@@ -66,6 +67,25 @@ pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> Lamp {
     Lamp { light: value, node }
 }
 
+/// The sun: a directional light along -Z of its node, its intensity in lx. All of the sky stands in the node's extras.
+pub(super) fn sun(sky: &Sky, index: usize) -> Lamp {
+    let rgb = Vec3::from_array(sky.sun_lx);
+    let most = rgb.max_element();
+    let color = if most > 0.0 { rgb / most } else { Vec3::ONE };
+    let turn = Quat::from_rotation_arc(Vec3::NEG_Z, -sky.to_sun);
+    Lamp {
+        light: json!({
+            "name": "sun", "type": "directional", "color": color.to_array(), "intensity": most,
+        }),
+        node: json!({
+            "name": "sun",
+            "rotation": turn.normalize().to_array(),
+            "extensions": {EXTENSION: {"light": index}},
+            "extras": {"dwell": {"sky": sky}},
+        }),
+    }
+}
+
 /// What the extension cannot say of lights.
 pub(super) fn losses(house: &HouseData, losses: &mut Losses) {
     let count = |is: fn(&Light) -> bool| house.lights.iter().filter(|light| is(light)).count();
@@ -80,5 +100,9 @@ pub(super) fn losses(house: &HouseData, losses: &mut Losses) {
     losses.add(
         "attenuation of light other than by the square of the distance",
         count(|light| light.attenuation != [0.0, 0.0, 1.0]),
+    );
+    losses.add(
+        "light of the sky; the sun shines, the sky is listed in extras",
+        usize::from(house.sky.is_some()),
     );
 }

@@ -1,7 +1,7 @@
 //! Any house as a GLB file that every viewer opens.
 //!
-//! Nodes: storeys, in them rooms, in them pieces of the building and objects, in those parts and lights. What a node means
-//! beyond its shape stands in its `extras.dwell`.
+//! Nodes: storeys and the sun; in storeys rooms, in them pieces of the building and objects, in those parts and lights.
+//! What a node means beyond its shape stands in its `extras.dwell`.
 
 mod extras;
 mod lights;
@@ -158,7 +158,7 @@ struct Tree<'a> {
     house: &'a HouseData,
     shapes: Shapes<'a>,
     nodes: Vec<Value>,
-    /// Nodes of storeys.
+    /// Nodes of storeys, and of the sun.
     roots: Vec<usize>,
     /// Lights of the extension.
     lights: Vec<Value>,
@@ -218,6 +218,12 @@ impl<'a> Tree<'a> {
                 self.lights.push(lamp.light);
                 self.add(lamp.node, Some(node));
             }
+        }
+        if let Some(sky) = &house.sky {
+            let sun = lights::sun(sky, self.lights.len());
+            self.lights.push(sun.light);
+            let id = self.add(sun.node, None);
+            self.roots.push(id);
         }
     }
 
