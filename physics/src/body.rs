@@ -92,7 +92,9 @@ pub(crate) fn insert_body(
 ) -> Body {
     let mut builder = RigidBodyBuilder::new(body_type(place.hold))
         .pose(place.world_from_body)
-        .can_sleep(place.sleeping_allowed);
+        .can_sleep(place.sleeping_allowed)
+        // rapier brakes what turns by more than an eighth of a turn in a step: no wheel and no rotor.
+        .allow_fast_rotation(plan.joint.is_some());
     if let Some(inertia) = &place.inertia {
         builder = builder
             .additional_mass_properties(inertia.properties())

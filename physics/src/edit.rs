@@ -218,8 +218,14 @@ impl PhysicsWorld {
                 anew: false,
                 shut: self.holds[child] == Hold::Latched,
             };
-            let there = joints::read(&self.engine, joint, position);
-            if self.holds[child] == Hold::Frozen && !joints::says_the_same(&stand, there) {
+            let there = joints::read(&self.engine, joint, position.into());
+            let put = !stand.shut && !joints::says_the_same(&stand, there);
+            if put {
+                for installed in &mut self.laws {
+                    installed.law.placed(joint.id, position);
+                }
+            }
+            if self.holds[child] == Hold::Frozen && put {
                 self.holds[child] = Hold::Free;
                 if let Some(rigid) = self.engine.bodies.get_mut(body.handle) {
                     rigid.set_body_type(body::body_type(Hold::Free), true);
@@ -228,7 +234,7 @@ impl PhysicsWorld {
             stands.push(stand);
         }
         for tree in &self.trees {
-            if disturbed_roots.contains(&tree.root_body()) {
+            if disturbed_roots.contains(&tree.root()) {
                 for joint in &tree.joints {
                     stands[*joint].anew = true;
                 }
@@ -251,8 +257,8 @@ impl PhysicsWorld {
         // The state keeps the numbers it was given: what physics reads off its bodies differs by rounding.
         for (joint, stand) in self.joints.iter().zip(&stands) {
             let read = (
-                state.joint_position[joint.id],
-                state.joint_velocity[joint.id],
+                state.joint_position[joint.id].into(),
+                state.joint_velocity[joint.id].into(),
             );
             if !stand.shut && joints::says_the_same(stand, read) {
                 state.joint_position[joint.id] = stand.position;
@@ -267,11 +273,9 @@ impl PhysicsWorld {
     /// moves nothing.
     pub fn measure_joint(&self, state: &State, joint: JointId) -> Option<(f32, f32)> {
         let found = self.joints.iter().find(|other| other.id == joint)?;
-        Some(joints::read(
-            &self.engine,
-            found,
-            *state.joint_position.get(joint)?,
-        ))
+        let near = f64::from(*state.joint_position.get(joint)?);
+        let (position, velocity) = joints::read(&self.engine, found, near);
+        Some((position as f32, velocity as f32))
     }
 }
 

@@ -93,6 +93,11 @@ impl Engine {
         self.parameters.friction_model == FrictionModel::Simplified
     }
 
+    /// Solver substeps in a physics step.
+    pub(crate) fn substeps(&self) -> u32 {
+        self.runs * self.parameters.num_solver_iterations as u32
+    }
+
     /// Length of a solver substep, s.
     pub(crate) fn substep_s(&self) -> f32 {
         self.parameters.dt / self.parameters.num_solver_iterations as f32

@@ -33,8 +33,8 @@ impl PhysicsWorld {
             if articulation.servo.is_none() {
                 continue;
             }
-            let near = state.joint_position[joint.id];
-            let (position, velocity) = joints::read(&self.engine, &joint, near);
+            let (position, velocity) = joints::read(&self.engine, &joint, self.near[index]);
+            let (position, velocity) = (position as f32, velocity as f32);
             let motor = MotorStep {
                 joint: joint.id,
                 position,
@@ -43,9 +43,6 @@ impl PhysicsWorld {
             };
             let mut command = told(state, joint.id);
             for installed in &mut self.laws {
-                if let JointCommand::Position(target) = &mut command {
-                    *target = installed.law.servo_target(joint.id, *target);
-                }
                 installed.law.drive(&motor, &mut command);
             }
             let now = (position, velocity);

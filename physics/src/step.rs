@@ -44,6 +44,11 @@ impl PhysicsWorld {
         self.notices.clear();
         let first_event = events.len();
         let asleep = self.engine.islands.num_active_bodies() == 0;
+        let stand = self
+            .joints
+            .iter()
+            .map(|joint| state.joint_position[joint.id]);
+        self.near = stand.map(f64::from).collect();
         self.drive_joints(state);
         let mut ways = Way::all(state);
         let mut placed = false;
@@ -69,6 +74,9 @@ impl PhysicsWorld {
         self.part_ways(state);
         // What slept all the time stands as it was written.
         if !asleep || self.engine.islands.num_active_bodies() > 0 {
+            for (joint, near) in self.joints.iter().zip(&self.near) {
+                state.joint_position[joint.id] = *near as f32;
+            }
             self.write_bodies(state);
             self.write_contacts(state);
         }
@@ -78,7 +86,7 @@ impl PhysicsWorld {
     /// Returns whether a tree of joints was put on its course at the end of the step.
     fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) -> bool {
         self.drive_motors(state);
-        self.follow_joints(state);
+        self.follow_joints();
         for joint in &self.joints {
             joints::relax(&mut self.engine, joint);
         }
@@ -99,7 +107,7 @@ impl PhysicsWorld {
         let drivers = Drivers {
             joints: &self.joints,
             pulls: &self.pulls,
-            near: &|joint| state.joint_position[joint],
+            near: &self.near,
             resist: if resisting { Some(&resist) } else { None },
             push: if pushing { Some(&push) } else { None },
             dt_s: self.settings.dt_s,
@@ -108,8 +116,12 @@ impl PhysicsWorld {
         let outlooks: Vec<Option<Outlook>> = trees
             .map(|tree| joints::exert(&mut self.engine, tree, &drivers))
             .collect();
+        let trees = self.trees.iter();
+        let answering: Vec<u32> = trees
+            .filter_map(|tree| tree.answering_root(&self.engine, &self.joints))
+            .collect();
         let half = 0.5 * self.settings.dt_s;
-        self.apply_laws(|law, stage| {
+        self.apply_laws(&answering, |law, stage| {
             law.half_step(stage, half);
             law.before_step(stage);
         });
@@ -129,24 +141,17 @@ impl PhysicsWorld {
         let collector = Collector::new(&self.entries, &self.motion, slowest);
         self.engine.step(&hooks, &collector);
         let mut placed = false;
-        let drivers = Drivers {
-            joints: &self.joints,
-            pulls: &self.pulls,
-            near: &|joint| state.joint_position[joint],
-            resist: None,
-            push: None,
-            dt_s: self.settings.dt_s,
-        };
-        for (tree, outlook) in self.trees.iter().zip(&outlooks) {
+        for (tree, outlook) in self.trees.iter().zip(outlooks) {
             if let Some(outlook) = outlook {
-                placed |= joints::settle(&mut self.engine, tree, &drivers, outlook);
+                let (engine, near) = (&mut self.engine, &mut self.near);
+                placed |= joints::settle(engine, tree, &self.joints, outlook, near);
             }
         }
         self.ongoing
             .settle(collector, self.tick, config, &self.table, events);
         self.ongoing
             .note_held_back(&self.engine, &self.motion, self.settings.dt_s);
-        self.apply_laws(|law, stage| law.half_step(stage, half));
+        self.apply_laws(&answering, |law, stage| law.half_step(stage, half));
         self.tick += 1;
         self.give_back_room();
         placed |= self.watch_rolling();
@@ -177,13 +182,13 @@ impl PhysicsWorld {
     }
 
     /// Tells laws that remember it where joints stand.
-    fn follow_joints(&mut self, state: &State) {
+    fn follow_joints(&mut self) {
         if !self.laws.iter().any(|installed| installed.law.follows()) {
             return;
         }
-        for joint in &self.joints {
-            let near = state.joint_position[joint.id];
-            let (position, _) = joints::read(&self.engine, joint, near);
+        for (joint, near) in self.joints.iter().zip(&self.near) {
+            let (position, _) = joints::read(&self.engine, joint, *near);
+            let position = position as f32;
             for installed in &mut self.laws {
                 installed.law.follow(joint.id, position);
             }
@@ -191,11 +196,16 @@ impl PhysicsWorld {
     }
 
     /// Lets each law act on the world between steps.
-    fn apply_laws(&mut self, mut each: impl FnMut(&mut dyn Acts, &mut Stage<'_>)) {
+    fn apply_laws(
+        &mut self,
+        answering: &[u32],
+        mut each: impl FnMut(&mut dyn Acts, &mut Stage<'_>),
+    ) {
         let mut stage = Stage {
             engine: &mut self.engine,
             bodies: &self.bodies,
             plans: &self.model.bodies,
+            answering,
             entries: &self.entries,
             house: &self.model.house,
             table: &self.table,
@@ -219,22 +229,15 @@ impl PhysicsWorld {
             if by_laws && articulation.servo.is_some() {
                 continue;
             }
-            let mut command = state.joint_command[joint.id];
-            if !command.is_finite() {
-                command = JointCommand::Off;
-            }
+            let command = motors::told(state, joint.id);
             let child = joint.child as usize;
             let now = (
                 state.joint_position[joint.id],
                 state.joint_velocity[joint.id],
             );
-            if articulation.servo.is_some() {
-                if let JointCommand::Position(target) = &mut command {
-                    for installed in &mut self.laws {
-                        *target = installed.law.servo_target(joint.id, *target);
-                    }
-                }
-            } else if let JointCommand::Position(goal) = command {
+            if articulation.servo.is_none()
+                && let JointCommand::Position(goal) = command
+            {
                 let goal = joint.values.clamp(goal);
                 let drive = self.drives.get(&joint.id);
                 if drive.is_none_or(|drive| drive.goal != goal) {
@@ -244,7 +247,7 @@ impl PhysicsWorld {
                     let body = self.bodies[child];
                     joints::release(&mut self.engine, &body, &mut self.holds[child]);
                 }
-            } else {
+            } else if articulation.servo.is_none() {
                 self.drives.remove(&joint.id);
             }
             let hand = self.drives.get_mut(&joint.id);

@@ -45,6 +45,9 @@ pub struct PhysicsWorld {
     pub(crate) joints: Vec<Joint>,
     /// Joints that act on each other.
     pub(crate) trees: Vec<Tree>,
+    /// About where each joint stands within a control step, rad or m: the turns of hinges are counted here. Between control
+    /// steps the state has them. Shape (joint,).
+    pub(crate) near: Vec<f64>,
     /// What pulls at each joint during this control step.
     pub(crate) pulls: Vec<Option<Pull>>,
     pub(crate) agents: Vec<Agent>,
@@ -189,6 +192,7 @@ impl PhysicsWorld {
             applied: state.overrides.clone(),
             joints: Vec::new(),
             trees: Vec::new(),
+            near: Vec::new(),
             pulls: Vec::new(),
             agents: Vec::new(),
             loose: Vec::new(),
@@ -227,7 +231,7 @@ impl PhysicsWorld {
         };
         let model = self.model.clone();
         self.joints = joints::insert(&mut self.engine, &model, &self.bodies, anchor, state);
-        self.trees = joints::trees(&self.joints, &model.house, anchor);
+        self.trees = joints::trees(&self.joints, &model, anchor);
         self.pulls = vec![None; self.joints.len()];
         self.flush();
         let start = Start {
@@ -274,7 +278,7 @@ impl PhysicsWorld {
         });
         let stands: Vec<joints::Stand> = stands.collect();
         for tree in &self.trees {
-            let root = tree.root_body();
+            let root = tree.root();
             let moved = (0..self.bodies.len()).any(|index| {
                 let start = to_rapier(&state.part_pose[self.model.bodies[index].root()]);
                 self.bodies[index].handle == root
@@ -360,8 +364,9 @@ impl PhysicsWorld {
             body::write_parts(&self.engine, plan, body, state);
         }
         for joint in &self.joints {
-            let near = state.joint_position[joint.id];
-            let (position, velocity) = joints::read(&self.engine, joint, near);
+            let near = state.joint_position[joint.id].into();
+            let (position, velocity) = joints::stands(&self.engine, joint, near);
+            let (position, velocity) = (position as f32, velocity as f32);
             // A door that is shut stands at its closed position, whatever rounding says.
             let shut = self.holds[joint.child as usize] == Hold::Latched;
             let closed = self.model.house.joints[joint.id].closed;

@@ -1,17 +1,17 @@
 //! A tree as numbers: what moves with each joint, and where all of it is for given positions.
 
+use super::Joint;
 use super::exert::Pushing;
 use super::frame::Frame;
 use super::motion::{Axis, Lump, Motion, Moving};
 use super::support::{self, Support};
 use super::touch::{self, Touch};
 use super::tree::Tree;
-use super::{Drivers, Joint};
 use crate::engine::Engine;
 use crate::laws::{LinkStep, Push};
 use dwell_scene::JointKind;
 use glam::{DMat3, DQuat, DVec3};
-use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
+use rapier3d::dynamics::RigidBodyHandle;
 
 /// A body and the joint that moves it.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +23,7 @@ struct Link {
     axis: DVec3,
     /// Which of the free joints moves its parent.
     parent: Option<usize>,
+    parent_handle: RigidBodyHandle,
     /// The parent body, where no free joint moves it.
     world_from_parent: Frame,
     parent_from_joint: Frame,
@@ -31,9 +32,10 @@ struct Link {
     lump: Lump,
 }
 
-/// When within a step a tree is looked at.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct When {
+/// How laws push at a tree, and when within a step.
+#[derive(Clone, Copy)]
+pub(super) struct Pushed<'a> {
+    pub(super) push: &'a Pushing<'a>,
     /// Length of the step, s.
     pub(super) dt_s: f64,
     /// Whether it is its middle, else its beginning.
@@ -41,75 +43,92 @@ pub(super) struct When {
 }
 
 /// The free joints of a tree, parents first. Shape (freedom,).
-#[derive(Clone)]
-pub(super) struct Chain<'a> {
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
     links: Vec<Link>,
     root: Moving,
     root_velocity: DVec3,
     free_root: Option<Lump>,
+    /// The number of a free root's plan in the model.
+    root_body: Option<u32>,
     supports: Vec<Support>,
     touches: Vec<Touch>,
     /// Whether what it hangs on stands.
     stands: bool,
     gravity: DVec3,
-    push: Option<&'a Pushing<'a>>,
 }
 
-impl<'a> Chain<'a> {
+impl Chain {
     /// `free`: which of the tree's joints may move.
-    pub(super) fn of(engine: &Engine, tree: &Tree, free: &[usize], drivers: &Drivers<'a>) -> Self {
+    pub(super) fn of(engine: &Engine, tree: &Tree, free: &[usize], joints: &[Joint]) -> Self {
         let body = |handle| engine.bodies.get(handle);
         let link = |k: &usize| {
-            let joint: &Joint = &drivers.joints[tree.joints[*k]];
-            let parent = body(joint.parent_handle);
+            let joint = &joints[tree.joints[*k]];
             Link {
                 body: joint.child,
                 kind: joint.kind,
-                axis: joint.axis.as_dvec3().normalize_or(DVec3::Y),
+                axis: joint.unit_axis(),
                 parent: tree.parents[*k].and_then(|parent| free.iter().position(|f| *f == parent)),
-                world_from_parent: parent
-                    .map_or(Frame::IDENTITY, |parent| Frame::of(parent.position())),
+                parent_handle: joint.parent_handle,
+                world_from_parent: Frame::IDENTITY,
                 parent_from_joint: Frame::of(&joint.parent_from_joint),
                 joint_from_child: Frame::of(&joint.child_from_joint).inverse(),
                 lump: body(joint.child_handle).map_or_else(Lump::default, Lump::own),
             }
         };
-        let root = body(tree.root);
-        let evenly = |root: &RigidBody| {
-            Moving::evenly(root.center_of_mass().as_dvec3(), root.angvel().as_dvec3())
+        let mut chain = Self {
+            links: free.iter().map(link).collect(),
+            root: Moving::default(),
+            root_velocity: DVec3::ZERO,
+            free_root: None,
+            root_body: tree.root_body,
+            supports: Vec::new(),
+            touches: Vec::new(),
+            stands: true,
+            gravity: engine.gravity.as_dvec3(),
         };
-        let still = |root: &RigidBody| {
-            !root.is_dynamic()
-                && root.linvel() == glam::Vec3::ZERO
-                && root.angvel() == glam::Vec3::ZERO
+        chain.follow_root(engine, tree);
+        chain.feel(engine, tree, free, joints);
+        chain
+    }
+
+    /// Takes over where what the tree hangs on is and how it moves.
+    pub(super) fn follow_root(&mut self, engine: &Engine, tree: &Tree) {
+        for link in self.links.iter_mut().filter(|link| link.parent.is_none()) {
+            let parent = engine.bodies.get(link.parent_handle);
+            link.world_from_parent =
+                parent.map_or(Frame::IDENTITY, |parent| Frame::of(parent.position()));
+        }
+        let Some(root) = engine.bodies.get(tree.root) else {
+            return;
         };
-        let free_root = root.filter(|root| root.is_dynamic()).map(Lump::of);
-        let child = |k: &usize| drivers.joints[tree.joints[*k]].child_handle;
+        let center = root.center_of_mass().as_dvec3();
+        self.root = Moving::evenly(center, root.angvel().as_dvec3());
+        self.root_velocity = root.linvel().as_dvec3();
+        self.free_root = root.is_dynamic().then(|| Lump::of(root));
+        self.stands = !root.is_dynamic()
+            && root.linvel() == glam::Vec3::ZERO
+            && root.angvel() == glam::Vec3::ZERO;
+    }
+
+    /// Finds what carries the tree and what presses on it.
+    fn feel(&mut self, engine: &Engine, tree: &Tree, free: &[usize], joints: &[Joint]) {
+        let child = |k: &usize| joints[tree.joints[*k]].child_handle;
         let mut handles: Vec<RigidBodyHandle> = free.iter().map(child).collect();
-        if free_root.is_some() {
+        let floats = self.free_root.is_some();
+        if floats {
             handles.push(tree.root);
         }
         let link_of = |k: usize| (k < free.len()).then_some(k);
-        let mut supports = Vec::new();
-        if free_root.is_some() {
+        if floats {
             for (k, handle) in handles.iter().enumerate() {
-                supports.extend(support::of_body(engine, *handle, link_of(k), &handles));
+                let supports = support::of_body(engine, *handle, link_of(k), &handles);
+                self.supports.extend(supports);
             }
         }
         let bodies = handles.iter().enumerate();
         let bodies: Vec<_> = bodies.map(|(k, handle)| (*handle, link_of(k))).collect();
-        let touches = touch::of_tree(engine, &bodies, free_root.is_some());
-        Self {
-            links: free.iter().map(link).collect(),
-            root: root.map_or_else(Moving::default, evenly),
-            root_velocity: root.map_or(DVec3::ZERO, |root| root.linvel().as_dvec3()),
-            free_root,
-            supports,
-            touches,
-            stands: root.is_none_or(still),
-            gravity: engine.gravity.as_dvec3(),
-            push: drivers.push,
-        }
+        self.touches = touch::of_tree(engine, &bodies, floats);
     }
 
     /// Whether what the tree hangs on stands.
@@ -117,8 +136,14 @@ impl<'a> Chain<'a> {
         self.stands
     }
 
-    /// The tree with its joints at these positions, rad or m, and velocities. Shape (freedom,) each.
-    pub(super) fn at(&self, positions: &[f64], velocities: &[f64], when: When) -> Motion {
+    /// The tree with its joints at these positions, rad or m, and velocities. Shape (freedom,) each. `pushed`: `None` where no
+    /// law pushes.
+    pub(super) fn at(
+        &self,
+        positions: &[f64],
+        velocities: &[f64],
+        pushed: Option<Pushed<'_>>,
+    ) -> Motion<'_> {
         let count = self.links.len();
         let mut frames: Vec<Frame> = Vec::with_capacity(count);
         let mut axes = Vec::with_capacity(count);
@@ -153,32 +178,63 @@ impl<'a> Chain<'a> {
             });
             frames.push(frame);
         }
-        let pushes = match self.push {
-            Some(push) => self.pushes(push, (&axes, &masses, &angular), when),
-            None => Vec::new(),
+        let (pushes, root_push) = match &pushed {
+            Some(pushed) => (
+                self.pushes(pushed, (&axes, &masses, &angular)),
+                self.root_push(pushed),
+            ),
+            None => (Vec::new(), Push::default()),
         };
         Motion {
             pushes,
+            root_push,
             axes,
             masses,
             angular,
             root: self.root,
             free_root: self.free_root,
             root_velocity: self.root_velocity,
-            supports: self.supports.clone(),
-            touches: self.touches.clone(),
+            supports: &self.supports,
+            touches: &self.touches,
             gravity: self.gravity,
         }
     }
 }
 
-impl Chain<'_> {
+impl Pushed<'_> {
+    /// How laws push at a body that moves with this velocity and spin.
+    fn at(&self, body: u32, lump: &Lump, velocity: DVec3, spin: DVec3) -> Push {
+        (self.push)(LinkStep {
+            body,
+            mass_kg: lump.mass,
+            inertia: lump.inertia,
+            velocity,
+            spin,
+            dt_s: self.dt_s,
+            middle: self.middle,
+            time_s: 0.0,
+        })
+    }
+}
+
+impl Chain {
+    /// How laws push at a free root: it is looked at as the step begins.
+    fn root_push(&self, pushed: &Pushed<'_>) -> Push {
+        let (Some(lump), Some(body)) = (&self.free_root, self.root_body) else {
+            return Push::default();
+        };
+        let begins = Pushed {
+            middle: false,
+            ..*pushed
+        };
+        begins.at(body, lump, self.root_velocity, self.root.angular)
+    }
+
     /// How laws push at each joint's body. Shape (freedom,).
     fn pushes(
         &self,
-        push: &Pushing<'_>,
+        pushed: &Pushed<'_>,
         (axes, masses, angular): (&[Axis], &[Lump], &[DVec3]),
-        when: When,
     ) -> Vec<Push> {
         let mut linear: Vec<DVec3> = Vec::with_capacity(axes.len());
         let mut pushes = Vec::with_capacity(axes.len());
@@ -190,16 +246,7 @@ impl Chain<'_> {
             let center = masses[k].center;
             let (along, _) = axis.moves(center);
             linear.push(velocity + spin.cross(center - from) + along * axis.velocity);
-            pushes.push(push(LinkStep {
-                body: self.links[k].body,
-                mass_kg: masses[k].mass,
-                inertia: masses[k].inertia,
-                velocity: linear[k],
-                spin: angular[k],
-                dt_s: when.dt_s,
-                middle: when.middle,
-                time_s: 0.0,
-            }));
+            pushes.push(pushed.at(self.links[k].body, &masses[k], linear[k], angular[k]));
         }
         pushes
     }

@@ -8,7 +8,7 @@
 //! E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), II.1.1 and XI.3: the midpoint rule, and the
 //! energy of symmetric methods.
 
-use super::chain::{Chain, When};
+use super::chain::{Chain, Pushed};
 use super::convex::{Element, Inertia, Problem};
 use super::element::Freedom;
 use super::footing::{self, Answer, Hold, Reduced};
@@ -25,8 +25,12 @@ const STRIDE: f64 = 0.05;
 const MOST_PARTS: f64 = 8.0;
 /// How often the middle of a part is looked for.
 const SWEEPS: usize = 3;
-/// How often friction is found anew from the load that it answers to.
-const FRICTION_SWEEPS: usize = 4;
+/// How often friction is found anew, at most, from the load that it answers to.
+const FRICTION_SWEEPS: usize = 8;
+/// Loads that differ by less count as found: N·m or N, and as a share.
+const FOUND: f64 = 1e-6;
+/// How steeply a load may seem to fall, and to rise, with what is taken for it.
+const FALLS: [f64; 2] = [-20.0, 0.5];
 /// How often what carries a tree is looked at anew.
 const GROUND_ROUNDS: usize = 6;
 
@@ -40,7 +44,7 @@ pub(super) struct Freedoms<'a> {
 }
 
 /// What becomes of a tree in a step that nothing else touches. Shape (freedom,) each.
-pub(super) struct Course {
+pub(super) struct Course<'a> {
     /// Whether it moves so that rounding alone does not say where to.
     pub(super) moves: bool,
     pub(super) positions: Vec<f64>,
@@ -50,7 +54,7 @@ pub(super) struct Course {
     /// What a free root does.
     pub(super) answer: Option<Answer>,
     /// The tree at the middle of the step.
-    pub(super) middle: Motion,
+    pub(super) middle: Motion<'a>,
 }
 
 /// Accelerations of the joints and of a free root.
@@ -82,14 +86,31 @@ fn rate(before: &[f64], after: &[f64], time_s: f64) -> Vec<f64> {
         .collect()
 }
 
+/// What to take for the loads next, where `taken` led to `seen`: the latter or, where a load answers to what was taken for it,
+/// where the line through both pairs meets itself (Steffensen). Shape (freedom,).
+fn steered(taken: &[f64], seen: &[f64], before: Option<&[Vec<f64>; 2]>) -> Vec<f64> {
+    let Some([taken_before, seen_before]) = before else {
+        return seen.to_vec();
+    };
+    let next = |k: usize| {
+        let way = taken[k] - taken_before[k];
+        if way.abs() < 1e-9 {
+            return seen[k];
+        }
+        let fall = ((seen[k] - seen_before[k]) / way).clamp(FALLS[0], FALLS[1]);
+        taken[k] + (seen[k] - taken[k]) / (1.0 - fall)
+    };
+    (0..taken.len()).map(next).collect()
+}
+
 impl Freedoms<'_> {
     /// Where the tree goes from here.
-    pub(super) fn course(
+    pub(super) fn course<'c>(
         &self,
-        chain: &Chain<'_>,
+        chain: &'c Chain,
         positions: &[f64],
         velocities: &[f64],
-    ) -> Course {
+    ) -> Course<'c> {
         let dt_s = f64::from(self.drivers.dt_s);
         let fastest = velocities
             .iter()
@@ -101,9 +122,12 @@ impl Freedoms<'_> {
             1.0
         };
         let part_s = dt_s / parts;
-        let at = |middle: bool| When {
-            dt_s: part_s,
-            middle,
+        let at = |middle: bool| {
+            self.drivers.push.map(|push| Pushed {
+                push,
+                dt_s: part_s,
+                middle,
+            })
         };
         let (mut q, mut v) = (positions.to_vec(), velocities.to_vec());
         let mut answer = None;
@@ -158,7 +182,7 @@ impl Freedoms<'_> {
 
     /// The accelerations in a part of a step that begins with positions `from` and velocities `now`, with inertia and loads
     /// as in `motion`.
-    fn part(&self, motion: &Motion, from: &[f64], now: &[f64], part_s: f64) -> Part {
+    fn part(&self, motion: &Motion<'_>, from: &[f64], now: &[f64], part_s: f64) -> Part {
         let loads = motion.loads();
         let weights = motion.weights(&loads);
         let bare = motion.inertia();
@@ -217,6 +241,8 @@ impl Freedoms<'_> {
             |k: usize, velocity: f64| pulls[k].as_ref().map_or(0.0, |pull| pull.at(velocity).0);
         // What each joint resists with depends on what loads it and on its speed, and these on what it resists with.
         let mut ends = now.to_vec();
+        let mut external: Vec<f64> = weights.iter().map(|weight| -weight).collect();
+        let mut before: Option<[Vec<f64>; 2]> = None;
         let mut sweep = 0;
         loop {
             let resistances: Vec<Resistance> = (0..from.len())
@@ -225,7 +251,7 @@ impl Freedoms<'_> {
                         position: from[k] as f32,
                         velocity: (0.5 * (now[k] + ends[k])) as f32,
                         motor_effort: gives(k, ends[k]) as f32,
-                        external_effort: -weights[k] as f32,
+                        external_effort: external[k] as f32,
                         powered: pulls[k].is_some(),
                     };
                     self.resistance(k, &load)
@@ -248,10 +274,27 @@ impl Freedoms<'_> {
             }
             .solve();
             sweep += 1;
-            let settled = self.drivers.resist.is_none() || velocity == ends;
-            if settled || sweep == FRICTION_SWEEPS {
+            if self.drivers.resist.is_none() || sweep == FRICTION_SWEEPS {
                 return velocity;
             }
+            let seen: Vec<f64> = freedoms
+                .iter()
+                .zip(&resistances)
+                .map(|(freedom, resistance)| {
+                    let velocity = velocity[freedom.index];
+                    let own = self.own_elements(freedom, resistance);
+                    let own: f64 = own.map(|element| element.at(velocity).0).sum();
+                    freedom.inertia * (velocity - freedom.velocity) / part_s - own
+                })
+                .collect();
+            let same = |a: f64, b: f64| (a - b).abs() <= FOUND * b.abs().max(1.0);
+            let pairs = external.iter().zip(&seen);
+            let speeds = ends.iter().zip(&velocity);
+            if pairs.chain(speeds).all(|(a, b)| same(*a, *b)) {
+                return velocity;
+            }
+            let next = steered(&external, &seen, before.as_ref());
+            before = Some([std::mem::replace(&mut external, next), seen]);
             ends = velocity;
         }
     }
@@ -271,23 +314,28 @@ impl Freedoms<'_> {
         resistance
     }
 
+    /// What acts along a joint by its motor and by what it resists with.
+    fn own_elements<'a>(
+        &'a self,
+        freedom: &'a Freedom,
+        resistance: &'a Resistance,
+    ) -> impl Iterator<Item = Element> + 'a {
+        let damps = (resistance.damping > 0.0).then(|| freedom.damping(resistance.damping.into()));
+        let rubs = resistance.friction > 0.0;
+        let rubs = rubs.then(|| freedom.friction(resistance.friction.into()));
+        let springs = resistance.elastic.as_ref().map(|e| freedom.elastic(e));
+        let place = self.tree.joints[self.free[freedom.index]];
+        let pulls = self.drivers.pulls[place].as_ref();
+        let pulls = pulls.map(|pull| freedom.pull(pull));
+        [damps, rubs, springs, pulls].into_iter().flatten()
+    }
+
     /// All that acts along the joints.
     fn elements(&self, freedoms: &[Freedom], resistances: &[Resistance]) -> Vec<Element> {
         let mut elements = Vec::with_capacity(3 * freedoms.len());
         for ((joint, freedom), place) in self.joints.iter().zip(freedoms).zip(self.free) {
             let resistance = &resistances[freedom.index];
-            if resistance.damping > 0.0 {
-                elements.push(freedom.damping(resistance.damping.into()));
-            }
-            if resistance.friction > 0.0 {
-                elements.push(freedom.friction(resistance.friction.into()));
-            }
-            if let Some(elastic) = &resistance.elastic {
-                elements.push(freedom.elastic(elastic));
-            }
-            if let Some(pull) = &self.drivers.pulls[self.tree.joints[*place]] {
-                elements.push(freedom.pull(pull));
-            }
+            elements.extend(self.own_elements(freedom, resistance));
             if let Some([low, high]) = joint.values.limits {
                 elements.push(freedom.stop(low.into(), 1.0));
                 elements.push(freedom.stop(high.into(), -1.0));

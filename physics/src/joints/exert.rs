@@ -6,11 +6,11 @@
 //! holds joints together after the fact, which costs energy.
 
 use super::Joint;
-use super::chain::Chain;
 use super::course::{Course, Freedoms};
 use super::element::Pull;
 use super::place;
-use super::project;
+use super::reading::{Reading, is_untouched};
+use super::standing::Standing;
 use super::tree::Tree;
 use crate::engine::Engine;
 use crate::laws::{JointLoad, LinkStep, Push, Resistance};
@@ -26,8 +26,8 @@ pub(crate) struct Drivers<'a> {
     pub(crate) joints: &'a [Joint],
     /// What pulls at each. Shape (joint,).
     pub(crate) pulls: &'a [Option<Pull>],
-    /// About where each stands, rad or m: picks the turn of hinges.
-    pub(crate) near: &'a dyn Fn(JointId) -> f32,
+    /// About where each stands, rad or m: picks the turn of hinges. Shape (joint,).
+    pub(crate) near: &'a [f64],
     /// How laws change what a joint resists with; `None`: no law does.
     pub(crate) resist: Option<&'a Resist<'a>>,
     /// How laws push at the bodies that joints move; `None`: no law does.
@@ -55,45 +55,27 @@ struct Going {
 /// What is expected of a tree in a step.
 #[derive(Clone, Debug)]
 pub(crate) struct Outlook {
-    /// The joints that may move, by their places in the tree.
-    free: Vec<usize>,
-    /// Where they go if nothing touches them, parents first; nothing for a tree that stands still or whose root moves.
+    standing: Standing,
+    /// Where its joints go if nothing touches them, parents first. Shape (freedom,).
     course: Vec<Going>,
+    /// Whether they go anywhere, over a root that stands.
+    moves: bool,
     /// Whether something pressed on the tree, or its root is free.
     loose: bool,
 }
 
 /// Gives rapier the efforts of a tree for the next step. `None` for a tree that is asleep or shut.
 pub(crate) fn exert(engine: &mut Engine, tree: &Tree, drivers: &Drivers<'_>) -> Option<Outlook> {
-    let free: Vec<usize> = (0..tree.joints.len())
-        .filter(|k| {
-            let child = drivers.joints[tree.joints[*k]].child_handle;
-            let body = engine.bodies.get(child);
-            body.is_some_and(|body| body.is_dynamic() && !body.is_sleeping())
-        })
-        .collect();
-    if free.is_empty() {
-        return None;
-    }
-    let joints: Vec<&Joint> = free
-        .iter()
-        .map(|k| &drivers.joints[tree.joints[*k]])
-        .collect();
-    let (positions, velocities): (Vec<f64>, Vec<f64>) = joints
-        .iter()
-        .map(|joint| {
-            let (position, velocity) = super::read(engine, joint, (drivers.near)(joint.id));
-            (f64::from(position), f64::from(velocity))
-        })
-        .unzip();
-    let chain = Chain::of(engine, tree, &free, drivers);
+    let standing = Standing::of(engine, tree, drivers)?;
+    let (positions, velocities) = (standing.positions(), standing.velocities());
+    let joints = standing.joints(tree, drivers.joints);
     let freedoms = Freedoms {
         tree,
-        free: &free,
+        free: &standing.free,
         joints: &joints,
         drivers,
     };
-    let course = freedoms.course(&chain, &positions, &velocities);
+    let course = freedoms.course(&standing.chain, &positions, &velocities);
     carry(engine, tree, &joints, &course);
     let loose = course.answer.is_some() || !course.middle.touches.is_empty();
     let going = |(k, place): (usize, &usize)| Going {
@@ -101,21 +83,19 @@ pub(crate) fn exert(engine: &mut Engine, tree: &Tree, drivers: &Drivers<'_>) -> 
         positions: [positions[k], course.positions[k]],
         velocity: course.velocities[k],
     };
-    let course = if course.moves {
-        free.iter().enumerate().map(going).collect()
-    } else {
-        Vec::new()
-    };
+    let moves = course.moves;
+    let course = standing.free.iter().enumerate().map(going).collect();
     Some(Outlook {
-        free,
+        standing,
         course,
+        moves,
         loose,
     })
 }
 
 /// Gives every body all that acts on it, the reactions of its joints included: rapier's rows, which are solved in turn and
 /// would give way under a long chain, then find nothing left to do.
-fn carry(engine: &mut Engine, tree: &Tree, joints: &[&Joint], course: &Course) {
+fn carry(engine: &mut Engine, tree: &Tree, joints: &[&Joint], course: &Course<'_>) {
     let (wrenches, root) = course
         .middle
         .wrenches(&course.gained, course.answer.as_ref());
@@ -131,42 +111,65 @@ fn carry(engine: &mut Engine, tree: &Tree, joints: &[&Joint], course: &Course) {
     }
 }
 
-/// Puts a tree that nothing touched in the step where its joints went, and holds one together that something did. Returns
-/// whether it was moved.
+impl Going {
+    /// Whether a joint that was as `before` came to `now` as it was expected to. rapier takes a whole step for the blow of a
+    /// stop, and may leave the joint short of it.
+    fn came_true(&self, engine: &Engine, before: &Reading, now: &Reading) -> bool {
+        let [from, to] = self.positions;
+        let way = before.way(engine, self.velocity);
+        let misses = |expected: f64, way: f64| {
+            (now.position - expected).abs() > OFF_COURSE.0 + OFF_COURSE.1 * way.abs()
+        };
+        !misses(to, to - from) || !misses(from + way, way)
+    }
+}
+
+/// Puts a tree that nothing touched in the step where its joints went, and holds one together that something did; `near` then
+/// says where its joints stand. Returns whether it was moved.
 pub(crate) fn settle(
     engine: &mut Engine,
     tree: &Tree,
-    drivers: &Drivers<'_>,
-    outlook: &Outlook,
+    joints: &[Joint],
+    outlook: Outlook,
+    near: &mut [f64],
 ) -> bool {
-    let on_course = outlook.course.iter().all(|going| {
-        let joint = &drivers.joints[going.joint];
-        let [before, after] = going.positions;
-        let (position, _) = super::read(engine, joint, after as f32);
-        let off = (f64::from(position) - after).abs();
-        off <= OFF_COURSE.0 + OFF_COURSE.1 * (after - before).abs() && untouched(engine, joint)
-    });
-    if on_course && !outlook.loose {
-        for going in &outlook.course {
-            let joint = &drivers.joints[going.joint];
+    let Outlook {
+        mut standing,
+        course,
+        moves,
+        loose,
+    } = outlook;
+    let before = standing.again(engine, tree, joints);
+    for (going, now) in course.iter().zip(&standing.readings) {
+        near[going.joint] = now.position;
+    }
+    if !moves && !loose {
+        return false;
+    }
+    let pairs = before.iter().zip(&standing.readings);
+    let came_true: Vec<bool> = course
+        .iter()
+        .zip(pairs)
+        .map(|(going, (before, now))| going.came_true(engine, before, now))
+        .collect();
+    let free = |going: &Going| is_untouched(engine, &joints[going.joint]);
+    if !loose && came_true.iter().all(|came| *came) && course.iter().all(free) {
+        for going in &course {
+            let joint = &joints[going.joint];
+            near[going.joint] = going.positions[1];
             place::put(engine, joint, (going.positions[1], going.velocity), false);
         }
-        return !outlook.course.is_empty();
+        return true;
     }
-    project::project(engine, tree, &outlook.free, drivers);
+    let ends = course.iter().zip(&came_true);
+    let ends: Vec<Option<f64>> = ends
+        .map(|(going, came)| {
+            let [from, to] = going.positions;
+            (*came && (to - from).abs() > OFF_COURSE.0).then_some(to)
+        })
+        .collect();
+    standing.project(engine, tree, joints, &ends, near);
     true
-}
-
-/// Whether a joint's body moves freely and nothing pressed on it in the last step.
-fn untouched(engine: &Engine, joint: &Joint) -> bool {
-    let Some(body) = engine.bodies.get(joint.child_handle) else {
-        return false;
-    };
-    let pressed = |handle| {
-        let mut pairs = engine.narrow_phase.contact_pairs_with(handle);
-        pairs.any(|pair| pair.total_impulse_magnitude() > 0.0)
-    };
-    body.is_dynamic() && !body.is_sleeping() && !body.colliders().iter().any(|c| pressed(*c))
 }
 
 /// Takes the efforts of the last step back, before new ones are given.

@@ -83,7 +83,7 @@ pub(super) struct Reduced {
 impl Reduced {
     /// `holds`: how each support stands.
     pub(super) fn of(
-        motion: &Motion,
+        motion: &Motion<'_>,
         loads: &Loads,
         now: &[f64],
         holds: &[Hold],
@@ -183,7 +183,7 @@ impl Reduced {
 }
 
 /// How a point of a joint's body (or the root) moves, in three directions.
-fn rows(motion: &Motion, floating: &Floating, link: Option<usize>, at: DVec3) -> [Row; 3] {
+fn rows(motion: &Motion<'_>, floating: &Floating, link: Option<usize>, at: DVec3) -> [Row; 3] {
     let mut joints = vec![DVec3::ZERO; motion.axes.len()];
     let mut link = link;
     while let Some(k) = link {
@@ -231,7 +231,12 @@ impl Footing {
 
 /// Lets go of what pulls, and lets slip what friction under the weight there does not hold. Returns whether anything
 /// changed.
-pub(super) fn let_go(motion: &Motion, loads: &Loads, answer: &Answer, holds: &mut [Hold]) -> bool {
+pub(super) fn let_go(
+    motion: &Motion<'_>,
+    loads: &Loads,
+    answer: &Answer,
+    holds: &mut [Hold],
+) -> bool {
     let mut changed = false;
     let weighed = motion.supports.iter().zip(&loads.carried);
     for (((support, weight), force), hold) in weighed.zip(&answer.forces).zip(holds) {

@@ -13,6 +13,8 @@ mod latch;
 mod motion;
 mod place;
 mod project;
+mod reading;
+mod standing;
 mod support;
 mod touch;
 mod tree;
@@ -22,14 +24,15 @@ pub(crate) use element::{Gain, Pull};
 pub(crate) use exert::{Drivers, Outlook, exert, relax, settle};
 pub(crate) use latch::{release, shut, stands_shut, tolerance};
 pub(crate) use place::{Stand, place, says_the_same};
+pub(crate) use reading::{read, stands};
 pub(crate) use tree::{Tree, trees};
 
 use crate::body::Body;
 use crate::convert::to_rapier;
 use crate::engine::Engine;
 use crate::model::PhysicsModel;
-use dwell_scene::{Articulation, JointId, JointKind, JointValues, PartId, Pose, State, math};
-use glam::{Quat, Vec3};
+use dwell_scene::{Articulation, JointId, JointKind, JointValues, PartId, Pose, State};
+use glam::{DVec3, Quat, Vec3};
 use rapier3d::dynamics::{
     GenericJointBuilder, ImpulseJointHandle, JointAxesMask, JointAxis, RigidBodyHandle,
 };
@@ -54,6 +57,13 @@ pub(crate) struct Joint {
     pub(crate) latchable: bool,
     /// What is in force. Stops that rapier can keep it keeps too: it feels what presses against them.
     pub(crate) values: JointValues,
+}
+
+impl Joint {
+    /// In the joint's frame, unit length.
+    fn unit_axis(&self) -> DVec3 {
+        self.axis.as_dvec3().normalize_or(DVec3::X)
+    }
 }
 
 /// Inserts the joints of a house. `anchor` is a fixed body at the origin that carries no collider.
@@ -116,11 +126,14 @@ fn free_axis(kind: JointKind) -> JointAxis {
     }
 }
 
+/// How much further than ours rapier's stops stand, rad or m: at a stop it would take the rounding of bodies' coordinates for a way
+/// beyond it, and push.
+const SLACK: f32 = 1e-5;
+
 /// The limits that rapier keeps too.
 fn held_by_rapier(kind: JointKind, values: &JointValues) -> Option<[f32; 2]> {
-    values
-        .limits
-        .filter(|limits| element::rapier_holds(kind, *limits))
+    let limits = values.limits?;
+    element::rapier_holds(kind, limits).then_some([limits[0] - SLACK, limits[1] + SLACK])
 }
 
 /// rapier turns about and slides along the frames' X axes.
@@ -188,38 +201,6 @@ pub(crate) fn set_values(
         }
     }
     true
-}
-
-/// Where a joint stands and how fast it moves, rad or m (and per second). `near` picks the turn of a hinge.
-pub(crate) fn read(engine: &Engine, joint: &Joint, near: f32) -> (f32, f32) {
-    let (Some(parent), Some(child)) = (
-        engine.bodies.get(joint.parent_handle),
-        engine.bodies.get(joint.child_handle),
-    ) else {
-        return (near, 0.0);
-    };
-    let world_from_joint = *parent.position() * joint.parent_from_joint;
-    let relative = world_from_joint.inverse() * (*child.position() * joint.child_from_joint);
-    let axis_in_world = world_from_joint.rotation * joint.axis;
-    match joint.kind {
-        JointKind::Hinge => {
-            let q = relative.rotation;
-            let angle = 2.0 * math::atan2(Vec3::new(q.x, q.y, q.z).dot(joint.axis), q.w);
-            let position = near + math::wrap_angle(angle - near);
-            (
-                position,
-                (child.angvel() - parent.angvel()).dot(axis_in_world),
-            )
-        }
-        JointKind::Slide => {
-            let at = world_from_joint.translation;
-            let velocity = child.velocity_at_point(at) - parent.velocity_at_point(at);
-            (
-                relative.translation.dot(joint.axis),
-                velocity.dot(axis_in_world),
-            )
-        }
-    }
 }
 
 /// Where the child's body stands when the joint is at `position` and its parent where it is.

@@ -134,9 +134,11 @@ impl Moving {
 }
 
 /// A tree at one moment. Shape (freedom,) each.
-pub(super) struct Motion {
+pub(super) struct Motion<'a> {
     /// How laws push at the joints' bodies; empty where none does.
     pub(super) pushes: Vec<Push>,
+    /// How laws push at a free root.
+    pub(super) root_push: Push,
     pub(super) axes: Vec<Axis>,
     pub(super) masses: Vec<Lump>,
     pub(super) angular: Vec<DVec3>,
@@ -147,13 +149,13 @@ pub(super) struct Motion {
     /// The velocity of the root's centre of mass, m/s.
     pub(super) root_velocity: DVec3,
     /// What carries a tree whose root is free.
-    pub(super) supports: Vec<Support>,
+    pub(super) supports: &'a [Support],
     /// What else presses on the tree.
-    pub(super) touches: Vec<Touch>,
+    pub(super) touches: &'a [Touch],
     pub(super) gravity: DVec3,
 }
 
-impl Motion {
+impl Motion<'_> {
     /// The mass that each joint moves, and the momentum of it for each unit of its velocity. Shape (freedom,) each.
     fn carried(&self) -> (Vec<Lump>, Vec<(DVec3, DVec3)>) {
         let mut carried = self.masses.clone();
@@ -239,7 +241,7 @@ impl Motion {
     pub(super) fn touched(&self, floating: Option<&Floating>) -> (Vec<f64>, [f64; 6]) {
         let mut efforts = vec![0.0; self.axes.len()];
         let mut whole = Wrench::default();
-        for touch in &self.touches {
+        for touch in self.touches {
             let wrench = touch.about_origin();
             whole = whole.plus(&wrench, 1.0);
             let mut link = touch.link;
@@ -254,7 +256,7 @@ impl Motion {
 
     /// The force on each body besides its weight and what carries it, and the moment about its centre of mass besides the
     /// gyroscopic one, with which joints and root accelerate like this: those of the joints' bodies, shape (freedom,), and
-    /// that of a free root. Within a tree over a free root they add up to nothing.
+    /// that of a free root. Within a tree over a free root they add up to what laws push with.
     pub(super) fn wrenches(
         &self,
         accelerations: &[f64],
@@ -275,7 +277,7 @@ impl Motion {
             .map(|(body, lump)| wrench(body, lump))
             .collect();
         let mut of_root = self.free_root.as_ref().map(|lump| wrench(&root, lump));
-        for touch in &self.touches {
+        for touch in self.touches {
             let (wrench, center) = match (touch.link, &mut of_root, &self.free_root) {
                 (Some(link), _, _) => (&mut wrenches[link], self.masses[link].center),
                 (None, Some(root), Some(own)) => (root, own.center),
@@ -314,17 +316,21 @@ impl Motion {
         let moving = self.moving(&vec![0.0; n]);
         let pairs = moving.iter().zip(&self.masses);
         let mut links: Vec<[Wrench; 2]> = pairs.map(|(body, lump)| own(body, lump)).collect();
-        for ((link, push), lump) in links.iter_mut().zip(&self.pushes).zip(&self.masses) {
+        let pushed = |load: &mut [Wrench; 2], push: &Push, lump: &Lump| {
             let push = Wrench {
                 force: push.force,
                 moment: push.moment + lump.center.cross(push.force),
             };
-            link[0] = link[0].plus(&push, -1.0);
-        }
-        let mut root = match &self.free_root {
-            Some(lump) => own(&self.root, lump),
-            None => [Wrench::default(); 2],
+            load[0] = load[0].plus(&push, -1.0);
         };
+        for ((link, push), lump) in links.iter_mut().zip(&self.pushes).zip(&self.masses) {
+            pushed(link, push, lump);
+        }
+        let mut root = [Wrench::default(); 2];
+        if let Some(lump) = &self.free_root {
+            root = own(&self.root, lump);
+            pushed(&mut root, &self.root_push, lump);
+        }
         let mut carried = Vec::new();
         if let Some(lump) = &self.free_root {
             let all = links
@@ -332,7 +338,7 @@ impl Motion {
                 .fold(root[1], |all, link| all.plus(&link[1], 1.0));
             let masses = self.masses.iter();
             let whole = masses.fold(*lump, |whole, mass| whole.with(mass));
-            carried = support::forces(&self.supports, &all, whole.center);
+            carried = support::forces(self.supports, &all, whole.center);
             for (support, force) in self.supports.iter().zip(&carried) {
                 let force = DVec3::Y * *force;
                 let moment = support.at.cross(force);

@@ -8,62 +8,86 @@
 //! C. F. Gauss's principle of least constraint: of the motions that joints allow, the one nearest to the unconstrained one,
 //! weighed by mass. R. Featherstone, Rigid Body Dynamics Algorithms (2008), 6.2, for the joint-space inertia.
 
-use super::chain::{Chain, When};
+use super::Joint;
 use super::convex::{Element, Inertia, Problem};
 use super::floating::Floating;
 use super::motion::{Motion, Wrench};
 use super::place;
+use super::standing::Standing;
 use super::tree::Tree;
-use super::{Drivers, Joint};
 use crate::engine::Engine;
 use glam::DVec3;
 
 /// How much steeper than inertia a stop is that gives way to nothing.
 const RIGID: f64 = 1e6;
 
-/// Puts the bodies of a tree where its joints stand after a step, with velocities that its joints allow.
-pub(super) fn project(engine: &mut Engine, tree: &Tree, free: &[usize], drivers: &Drivers<'_>) {
-    let joints: Vec<&Joint> = free
-        .iter()
-        .map(|k| &drivers.joints[tree.joints[*k]])
-        .collect();
-    let (positions, velocities): (Vec<f64>, Vec<f64>) = joints
-        .iter()
-        .map(|joint| {
-            let (position, velocity) = super::read(engine, joint, (drivers.near)(joint.id));
-            (f64::from(position), f64::from(velocity))
-        })
-        .unzip();
-    let chain = Chain::of(engine, tree, free, drivers);
-    let motion = chain.at(&positions, &velocities, When::default());
-    let momenta: Vec<Wrench> = joints
-        .iter()
-        .zip(&motion.masses)
-        .map(|(joint, lump)| {
-            let Some(body) = engine.bodies.get(joint.child_handle) else {
-                return Wrench::default();
-            };
-            let (linear, angular) = (body.linvel().as_dvec3(), body.angvel().as_dvec3());
-            let (linear, angular) = motion.beside_root(lump.center, linear, angular);
-            let force = linear * lump.mass;
-            Wrench {
-                force,
-                moment: lump.inertia * angular + lump.center.cross(force),
+impl Standing {
+    /// Puts the bodies of a tree where its joints stand after a step, with velocities that its joints allow. `ends`: where a joint
+    /// that went its way undisturbed comes to, if it moved; the middle of all mass stays where it is. `near`: where each of the world's joints stands; rad or m.
+    pub(super) fn project(
+        mut self,
+        engine: &mut Engine,
+        tree: &Tree,
+        joints: &[Joint],
+        ends: &[Option<f64>],
+        near: &mut [f64],
+    ) {
+        self.chain.follow_root(engine, tree);
+        let (positions, velocities) = (self.positions(), self.velocities());
+        let joints = self.joints(tree, joints);
+        let motion = self.chain.at(&positions, &velocities, None);
+        let momenta: Vec<Wrench> = joints
+            .iter()
+            .zip(&motion.masses)
+            .map(|(joint, lump)| {
+                let Some(body) = engine.bodies.get(joint.child_handle) else {
+                    return Wrench::default();
+                };
+                let (linear, angular) = (body.linvel().as_dvec3(), body.angvel().as_dvec3());
+                let (linear, angular) = motion.beside_root(lump.center, linear, angular);
+                let force = linear * lump.mass;
+                Wrench {
+                    force,
+                    moment: lump.inertia * angular + lump.center.cross(force),
+                }
+            })
+            .collect();
+        let floating = motion.floating();
+        let inertia = motion.inertia();
+        let held = held_by_stops(&joints, &positions, &inertia);
+        let (velocity, root) = motion.allowed(floating.as_ref(), momenta, (inertia, held));
+        if let (Some((linear, angular)), Some(body)) = (root, engine.bodies.get_mut(tree.root)) {
+            body.set_linvel(linear.as_vec3(), false);
+            body.set_angvel(angular.as_vec3(), false);
+        }
+        let arrived: Vec<f64> = joints
+            .iter()
+            .zip(positions.iter().zip(ends))
+            .map(|(joint, (position, end))| arrives(joint, *position, *end))
+            .collect();
+        if floating.is_some() && arrived != positions {
+            let shift = motion.middle() - self.chain.at(&arrived, &velocities, None).middle();
+            if let Some(body) = engine.bodies.get_mut(tree.root) {
+                let at = body.position().translation.as_dvec3() + shift;
+                body.set_translation(at.as_vec3(), false);
             }
-        })
-        .collect();
-    let floating = motion.floating();
-    let inertia = motion.inertia();
-    let held = held_by_stops(&joints, &positions, &inertia);
-    let (velocity, root) = motion.allowed(floating.as_ref(), momenta, (inertia, held));
-    if let (Some((linear, angular)), Some(body)) = (root, engine.bodies.get_mut(tree.root)) {
-        body.set_linvel(linear.as_vec3(), false);
-        body.set_angvel(angular.as_vec3(), false);
+        }
+        let states = arrived.into_iter().zip(velocity);
+        for ((joint, k), (position, velocity)) in joints.iter().zip(&self.free).zip(states) {
+            let [low, high] = stops(joint);
+            let position = position.max(low).min(high);
+            near[tree.joints[*k]] = position;
+            place::put(engine, joint, (position, velocity), false);
+        }
     }
-    for ((joint, position), velocity) in joints.iter().zip(positions).zip(velocity) {
-        let [low, high] = stops(joint);
-        let position = position.max(low).min(high);
-        place::put(engine, joint, (position, velocity), false);
+}
+
+/// Where a joint at `position` stands that would come to `end` undisturbed: at the stop that it ran into, and not short of it.
+fn arrives(joint: &Joint, position: f64, end: Option<f64>) -> f64 {
+    let [low, high] = stops(joint);
+    match end {
+        Some(end) if end <= low || end >= high => end,
+        _ => position,
     }
 }
 
@@ -100,7 +124,7 @@ fn held_by_stops(joints: &[&Joint], positions: &[f64], inertia: &Inertia) -> Vec
     pairs.filter_map(held).collect()
 }
 
-impl Motion {
+impl Motion<'_> {
     /// A velocity and rotation of a body, less what a root that is led gives it. A free root counts with the others.
     fn beside_root(&self, center: DVec3, linear: DVec3, angular: DVec3) -> (DVec3, DVec3) {
         if self.free_root.is_some() {
@@ -108,6 +132,16 @@ impl Motion {
         }
         let with_root = self.root_velocity + self.root.angular.cross(center - self.root.center);
         (linear - with_root, angular - self.root.angular)
+    }
+
+    /// The middle of all mass that moves, m.
+    fn middle(&self) -> DVec3 {
+        let root = self.free_root.unwrap_or_default();
+        let whole = self
+            .masses
+            .iter()
+            .fold(root, |whole, mass| whole.with(mass));
+        whole.center
     }
 
     /// The joints' velocities, and those of a free root's centre of mass and its rotation, that have these momenta about the

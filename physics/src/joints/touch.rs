@@ -41,7 +41,8 @@ impl Touch {
     }
 }
 
-/// What touches the bodies of a tree, in a fixed order. `stands`: whether what carries a body from below is left out.
+/// What touches the bodies of a tree, in a fixed order. `stands`: whether what carries it from below is left out; what it
+/// carries of itself never is, or it would press on itself one way only.
 pub(super) fn of_tree(
     engine: &Engine,
     bodies: &[(RigidBodyHandle, Option<usize>)],
@@ -65,7 +66,8 @@ pub(super) fn of_tree(
                     continue;
                 };
                 for plane in pair.solver_manifolds() {
-                    if stands && support::carries(engine, *collider, plane, first) {
+                    let itself = bodies.iter().any(|(handle, _)| *handle == parent);
+                    if stands && !itself && support::carries(engine, *collider, plane, first) {
                         continue;
                     }
                     let touch = of_plane(engine, (body, *link), parent, (pair, plane), first);

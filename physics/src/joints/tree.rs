@@ -1,14 +1,17 @@
 //! Which joints act on each other: a tree of bodies over one root.
 
 use super::Joint;
-use dwell_scene::House;
-use rapier3d::dynamics::RigidBodyHandle;
+use crate::engine::Engine;
+use crate::model::PhysicsModel;
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 
 /// Joints whose efforts are found together.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     /// The body that the first joint hangs on.
     pub(super) root: RigidBodyHandle,
+    /// The number of that body's plan in the model; `None`: it never moves.
+    pub(super) root_body: Option<u32>,
     /// Places in the world's joints, parents first.
     pub(crate) joints: Vec<usize>,
     /// For each, the place in this tree of the joint that moves its parent. Shape (joint,).
@@ -19,14 +22,23 @@ pub(crate) struct Tree {
 
 impl Tree {
     /// The body that the first joint hangs on.
-    pub(crate) fn root_body(&self) -> RigidBodyHandle {
+    pub(crate) fn root(&self) -> RigidBodyHandle {
         self.root
+    }
+
+    /// The number in the model of a root that is free to answer what its joints do; they push back on it.
+    pub(crate) fn answering_root(&self, engine: &Engine, joints: &[Joint]) -> Option<u32> {
+        let dynamic = |handle| engine.bodies.get(handle).is_some_and(RigidBody::is_dynamic);
+        let moves = |k: &usize| dynamic(joints[*k].child_handle);
+        let answers = dynamic(self.root) && self.joints.iter().any(moves);
+        self.root_body.filter(|_| answers)
     }
 }
 
 /// Sorts a world's joints into trees. Joints hang together where one's child is another's parent, where they hang on one
 /// body that may move, and where one follows the other.
-pub(crate) fn trees(joints: &[Joint], house: &House, anchor: RigidBodyHandle) -> Vec<Tree> {
+pub(crate) fn trees(joints: &[Joint], model: &PhysicsModel, anchor: RigidBodyHandle) -> Vec<Tree> {
+    let house = &model.house;
     let mut group: Vec<usize> = (0..joints.len()).collect();
     let merge = |group: &mut Vec<usize>, a: usize, b: usize| {
         let (from, to) = (group[a].max(group[b]), group[a].min(group[b]));
@@ -78,8 +90,11 @@ pub(crate) fn trees(joints: &[Joint], house: &House, anchor: RigidBodyHandle) ->
                 Some((leader, mimic.multiplier, mimic.offset))
             })
             .collect();
+        let first = &joints[order[0]];
+        let root_part = house.joints[first.id].parent;
         trees.push(Tree {
-            root: joints[order[0]].parent_handle,
+            root: first.parent_handle,
+            root_body: root_part.and_then(|part| model.body_of_part[part]),
             joints: order,
             parents,
             follows,

@@ -22,12 +22,12 @@ pub(crate) trait Acts: Debug + Send + Sync {
     /// Acts on bodies once before each physics step, with what the contacts of the last step carried.
     fn before_step(&mut self, _stage: &mut Stage<'_>) {}
 
-    /// Whether it pushes at bodies that joints move: [`Acts::push`].
+    /// Whether it pushes at bodies of trees of joints: [`Acts::push`].
     fn pushes(&self) -> bool {
         false
     }
 
-    /// How it pushes at a body that a joint moves. It is asked several times in a step, until the tree's course and what
+    /// How it pushes at a body that a joint moves, or that joints hang on and that is free. It is asked several times in a step, until the tree's course and what
     /// pushes at it fit.
     fn push(&self, _link: &LinkStep) -> Push {
         Push::default()
@@ -50,11 +50,6 @@ pub(crate) trait Acts: Debug + Send + Sync {
         None
     }
 
-    /// Where a joint's motor goes when its servo is told `target`.
-    fn servo_target(&mut self, _joint: JointId, target: f32) -> f32 {
-        target
-    }
-
     /// Whether it changes what motors do in each physics step: [`Acts::drive`] or [`Acts::strengthen`].
     fn drives(&self) -> bool {
         false
@@ -73,6 +68,9 @@ pub(crate) trait Acts: Debug + Send + Sync {
 
     /// A joint stands at `position` (rad or m) at the beginning of a physics step.
     fn follow(&mut self, _joint: JointId, _position: f32) {}
+
+    /// A joint was put at `position` (rad or m) from outside, which is no motion.
+    fn placed(&mut self, _joint: JointId, _position: f32) {}
 
     /// Whether it changes how joints resist: [`Acts::resist`].
     fn resists(&self) -> bool {
@@ -135,7 +133,8 @@ pub(crate) struct JointLoad {
     pub(crate) velocity: f32,
     /// What the motor or the hand gives, N·m or N.
     pub(crate) motor_effort: f32,
-    /// The pull of gravity along the joint, N·m or N.
+    /// What acts along the joint besides its motor and what it resists with: weight, air, contacts and stops, and what the
+    /// motion of the other joints and of the root asks of it; N·m or N.
     pub(crate) external_effort: f32,
     /// Whether something drives it.
     pub(crate) powered: bool,
@@ -171,6 +170,8 @@ pub(crate) struct Stage<'a> {
     /// By the number of the body's plan in the model.
     pub(crate) bodies: &'a [Body],
     pub(crate) plans: &'a [BodyPlan],
+    /// Bodies that joints hang on and that answer to what these do: laws push at them as at links, through [`Acts::push`].
+    pub(crate) answering: &'a [u32],
     /// What each collider stands for, by its user data.
     pub(crate) entries: &'a [Entry],
     pub(crate) house: &'a House,
@@ -193,11 +194,12 @@ impl Stage<'_> {
         (rigid.is_dynamic() && rigid.mass() > 0.0).then_some(rigid)
     }
 
-    /// A body that no joint moves and that is awake.
+    /// A body that is awake and that moves without joints.
     pub(crate) fn free(&mut self, body: u32) -> Option<&mut RigidBody> {
         let handle = self.bodies[body as usize].handle;
         let on_joint = self.plans[body as usize].joint.is_some();
-        if on_joint || self.movable(body)?.is_sleeping() {
+        let answers = self.answering.contains(&body);
+        if on_joint || answers || self.movable(body)?.is_sleeping() {
             return None;
         }
         self.engine.bodies.get_mut(handle)

@@ -1,11 +1,11 @@
-//! Laws that push at bodies which joints move.
+//! Laws that push at bodies which joints move, or which joints hang on.
 //!
 //! Such a body goes where the joints of its tree let it, so that a law cannot change its velocity between steps as that of a
 //! free body: it says with which force it pushes, and the tree's course is found with all forces at once.
 
 use glam::{DMat3, DVec3};
 
-/// A body that a joint moves, at the beginning of a step or at its middle.
+/// A body of a tree of joints, at the beginning of a step or at its middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkStep {
     /// The number of its plan in the model.

@@ -2,10 +2,10 @@
 
 use super::Motors;
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, value};
+use crate::laws::{Acts, Law, MotorStep, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{Engine as ActsIn, ParamInfo};
-use dwell_scene::{JointId, LawInfo, LawSpec, State};
+use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
 use std::collections::BTreeMap;
 
 pub(in crate::laws) const LAW: Law = Law {
@@ -13,19 +13,35 @@ pub(in crate::laws) const LAW: Law = Law {
         id: "backlash",
         version: 1,
         name: "backlash of a servo joint",
-        equation: "the output y follows the target x only through a play of half-width b (rad or m): \
-                   y <- max(x - b, min(x + b, y)); y is where the motor drives the joint, and keeps its value in between",
-        source: "M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis (1989), the play operator",
+        equation: "a motor and its joint are apart by -b <= g <= b (half-width b, rad or m). Told a position x, the output y \
+                   follows only through this play: y <- max(x - b, min(x + b, y)); y is where the motor drives the joint, and \
+                   keeps its value in between. Told a velocity w or an effort u, the motor acts on a joint with velocity v \
+                   while it lies against a flank and gives nothing while it crosses the play: dg/dt = w - v, or \
+                   motor_inertia d(dg/dt + v)/dt = u, in no time without inertia (kg m2 or kg at the joint); its blow on \
+                   the flank is left out. g begins at 0, y where the joint stands, also where it is put by setting its state",
+        source: "M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis (1989), the play operator; M. Nordin, P.-O. \
+                 Gutman, Controlling mechanical systems with backlash - a survey, Automatica 38 (2002): dead zone between two \
+                 masses",
         engine: ActsIn::Physics,
         acts_on: "joint",
-        params: &[ParamInfo {
-            name: "half_width",
-            unit: "rad or m",
-            default: 0.0,
-            low: 0.0,
-            high: 1.0,
-            plausible: [0.001, 0.2],
-        }],
+        params: &[
+            ParamInfo {
+                name: "half_width",
+                unit: "rad or m",
+                default: 0.0,
+                low: 0.0,
+                high: 1.0,
+                plausible: [0.001, 0.2],
+            },
+            ParamInfo {
+                name: "motor_inertia",
+                unit: "kg m2 or kg",
+                default: 0.0,
+                low: 0.0,
+                high: 1e3,
+                plausible: [0.0, 0.05],
+            },
+        ],
         rivals: &["friction", "latency", "timestamp_offset"],
         separating_experiment: "move the target slowly up and down over the same range: backlash leaves a gap of 2 b \
                                 between the two branches whatever the speed, latency a gap that grows with it, and \
@@ -34,11 +50,22 @@ pub(in crate::laws) const LAW: Law = Law {
     install,
 };
 
+/// What is remembered of a motor.
+#[derive(Clone, Copy, Debug, Default)]
+struct Play {
+    /// Where the motor drives the joint when it is told a position, rad or m.
+    output: f32,
+    /// How far it is ahead of the joint, within the play, rad or m.
+    gap: f32,
+    /// Its velocity seen at the joint, rad/s or m/s.
+    velocity: f32,
+}
+
 #[derive(Clone, Debug)]
 struct Backlash {
     half_width: f32,
-    /// The output of each joint it acts on, rad or m.
-    output: BTreeMap<JointId, f32>,
+    motor_inertia: f32,
+    motors: BTreeMap<JointId, Play>,
 }
 
 fn install(
@@ -47,13 +74,14 @@ fn install(
     model: &PhysicsModel,
     state: &State,
 ) -> Result<Box<dyn Acts>, PhysicsError> {
-    let output = Motors::of(spec, info, model)?
-        .0
-        .into_iter()
-        .map(|id| (id, state.joint_position[id]))
-        .collect();
-    let half_width = value(spec, info, "half_width");
-    Ok(Box::new(Backlash { half_width, output }))
+    let motors = Motors::of(spec, info, model)?.0.into_iter();
+    Ok(Box::new(Backlash {
+        half_width: value(spec, info, "half_width"),
+        motor_inertia: value(spec, info, "motor_inertia"),
+        motors: motors
+            .map(|id| (id, Play::at(state.joint_position[id])))
+            .collect(),
+    }))
 }
 
 /// The play operator.
@@ -61,24 +89,95 @@ fn play(input: f32, half_width: f32, output: f32) -> f32 {
     output.min(input + half_width).max(input - half_width)
 }
 
-impl Acts for Backlash {
-    fn servo_target(&mut self, joint: JointId, target: f32) -> f32 {
-        match self.output.get_mut(&joint) {
-            Some(output) => {
-                *output = play(target, self.half_width, *output);
-                *output
+impl Play {
+    fn at(position: f32) -> Self {
+        Self {
+            output: position,
+            ..Self::default()
+        }
+    }
+
+    /// Lets the motor run ahead of the joint with `velocity` for a step. Returns whether it lies against a flank then.
+    fn cross(&mut self, motor: &MotorStep, velocity: f32, half_width: f32) -> bool {
+        self.gap += (velocity - motor.velocity) * motor.dt_s;
+        let meets = self.gap.abs() >= half_width;
+        self.gap = self.gap.clamp(-half_width, half_width);
+        meets
+    }
+
+    /// One step under an effort. Returns whether it reaches the joint.
+    fn press(&mut self, motor: &MotorStep, effort: f32, half_width: f32, inertia: f32) -> bool {
+        let presses = effort != 0.0 && effort.signum() * self.gap >= half_width;
+        if presses || inertia == 0.0 {
+            if effort != 0.0 {
+                self.gap = half_width.copysign(effort);
             }
-            None => target,
+            self.velocity = motor.velocity;
+            return true;
+        }
+        let before = self.velocity;
+        self.velocity += effort / inertia * motor.dt_s;
+        if self.cross(motor, 0.5 * (before + self.velocity), half_width) {
+            self.velocity = motor.velocity;
+        }
+        false
+    }
+}
+
+impl Acts for Backlash {
+    fn drives(&self) -> bool {
+        true
+    }
+
+    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+        let (half_width, inertia) = (self.half_width, self.motor_inertia);
+        let Some(gear) = self.motors.get_mut(&motor.joint) else {
+            return;
+        };
+        let reaches = match command {
+            JointCommand::Position(target) => {
+                gear.output = play(*target, half_width, gear.output);
+                gear.gap = (*target - gear.output).clamp(-half_width, half_width);
+                gear.velocity = motor.velocity;
+                *target = gear.output;
+                return;
+            }
+            JointCommand::Velocity(target) => {
+                gear.velocity = *target;
+                gear.cross(motor, *target, half_width)
+            }
+            JointCommand::Effort(effort) => gear.press(motor, *effort, half_width, inertia),
+            JointCommand::Off => {
+                gear.velocity = motor.velocity;
+                true
+            }
+        };
+        gear.output = motor.position;
+        if !reaches {
+            *command = JointCommand::Effort(0.0);
+        }
+    }
+
+    fn placed(&mut self, joint: JointId, position: f32) {
+        if let Some(play) = self.motors.get_mut(&joint) {
+            *play = Play::at(position);
         }
     }
 
     fn memory(&self) -> Vec<f32> {
-        self.output.values().copied().collect()
+        let motors = self.motors.values();
+        motors
+            .flat_map(|play| [play.output, play.gap, play.velocity])
+            .collect()
     }
 
     fn recall(&mut self, memory: &[f32]) {
-        for (output, remembered) in self.output.values_mut().zip(memory) {
-            *output = *remembered;
+        for (play, remembered) in self.motors.values_mut().zip(memory.chunks_exact(3)) {
+            *play = Play {
+                output: remembered[0],
+                gap: remembered[1],
+                velocity: remembered[2],
+            };
         }
     }
 
@@ -90,6 +189,62 @@ impl Acts for Backlash {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn law(half_width: f32, motor_inertia: f32) -> Backlash {
+        Backlash {
+            half_width,
+            motor_inertia,
+            motors: BTreeMap::from([(JointId(0), Play::default())]),
+        }
+    }
+
+    /// For how long a motor gives nothing to a joint that stands, s.
+    fn silent_s(law: &mut Backlash, command: JointCommand) -> f32 {
+        let motor = MotorStep {
+            joint: JointId(0),
+            position: 0.0,
+            velocity: 0.0,
+            dt_s: 1e-4,
+        };
+        let given = |law: &mut Backlash| {
+            let mut command = command;
+            law.drive(&motor, &mut command);
+            command
+        };
+        let steps = (0..100_000).take_while(|_| given(law) == JointCommand::Effort(0.0));
+        steps.count() as f32 * motor.dt_s
+    }
+
+    /// From the middle b / w, from flank to flank 2 b / w.
+    #[test]
+    fn a_motor_told_a_velocity_crosses_the_play_at_it() {
+        let mut law = law(0.1, 0.0);
+        for (velocity, way) in [(0.5, 0.1), (-0.25, 0.2), (2.0, 0.2), (3.0, 0.0)] {
+            let found = silent_s(&mut law, JointCommand::Velocity(velocity));
+            let expected = way / velocity.abs();
+            assert!(
+                (found - expected).abs() < 3e-4,
+                "{velocity}: {found} {expected}"
+            );
+        }
+    }
+
+    /// sqrt(2 s J / u) over the way s, in no time without inertia.
+    #[test]
+    fn a_motor_told_an_effort_crosses_the_play_as_it_falls() {
+        let (b, inertia) = (0.1, 0.02);
+        for inertia in [inertia, 0.0] {
+            let mut law = law(b, inertia);
+            for (effort, way) in [(0.3_f32, b), (-0.1, 2.0 * b), (0.2, 2.0 * b), (0.4, 0.0)] {
+                let found = silent_s(&mut law, JointCommand::Effort(effort));
+                let expected = (2.0 * way * inertia / effort.abs()).sqrt();
+                assert!(
+                    (found - expected).abs() < 3e-4,
+                    "{effort}: {found} {expected}"
+                );
+            }
+        }
+    }
 
     /// Closed form: on the way up the output is x - b, on the way down x + b, and it rests over 2 b at each turn.
     #[test]

@@ -15,7 +15,8 @@ pub(in crate::laws) const LAW: Law = Law {
         name: "hysteresis of a joint",
         equation: "an effort -F at the joint (N m or N), with dF = stiffness dq while |F| < max_effort, and F staying at its bound \
                    while the joint q (rad or m) moves on in that direction: a spring in series with a slider, whose loops do not \
-                   depend on speed; F is 0 where the law is installed. One law on a joint: of several the last acts",
+                   depend on speed; F is 0 where the law is \
+                   installed and where the joint is put by setting its state, which is no motion. One law on a joint: of several the last acts",
         source: "L. Prandtl, Ein Gedankenmodell zur kinetischen Theorie der festen Koerper, ZAMM 8, 85 (1928)",
         engine: ActsIn::Physics,
         acts_on: "joint",
@@ -97,6 +98,15 @@ impl Acts for Hysteresis {
         if let Some(spring) = self.springs.get(&joint).copied() {
             let effort = self.effort(&spring, position);
             self.springs.insert(joint, Spring { effort, position });
+        }
+    }
+
+    fn placed(&mut self, joint: JointId, position: f32) {
+        if let Some(spring) = self.springs.get_mut(&joint) {
+            *spring = Spring {
+                effort: 0.0,
+                position,
+            };
         }
     }
 

@@ -24,12 +24,14 @@ pub(in crate::laws) const LAW: Law = Law {
         version: 1,
         name: "friction of a joint (M1 to M6)",
         equation: "resistance of at most K_c + K_l |m - e| + |K_m m - K_e e| + exp(-|w / w_s|^alpha) (K_cs + K_ls |m - e| + \
-                   |K_ms m - K_es e| + Q), and K_v w besides; m the motor's effort and e gravity's along the joint (N m or \
-                   N), w its velocity; Q = K_eq e^2 where the motor drives (|e| < |m|), K_mq m^2 where it is driven, both \
+                   |K_ms m - K_es e| + Q), and K_v w besides; m the motor's effort and e all others' along the joint (N m or N): \
+                   weight, air, contacts and stops, and what the motion of the other joints and of a free root asks of it, but \
+                   not the inertia of what it moves itself; w its velocity; Q = K_eq e^2 where the motor drives (|e| < |m|), K_mq m^2 where it is driven, both \
                    only where m and e oppose. It comes on top of the joint's own friction and damping. M1: K_c, K_v; M2: \
                    and K_cs; M3: and K_l; M4: and K_ls; M5: K_m, K_e, K_ms, K_es instead of K_l, K_ls; M6: and K_mq, K_eq",
         source: "M. Duclusaud, G. Passault, V. Padois, O. Ly, Extended friction models for the physics simulation of servo \
-                 actuators, ICRA 2025: models M1 to M6",
+                 actuators, ICRA 2025: models M1 to M6; e as in Rhoban/bam at 17d9add, bam/mujoco.py (bias and \
+                 constraint forces without friction), and the coupled inertia",
         engine: ActsIn::Physics,
         acts_on: "joint",
         params: &[

@@ -267,3 +267,118 @@ fn equal_laws_on_one_motor_keep_their_own_memory() {
     assert!(plain.hash() == applied.hash());
     assert!(plain.state.joint_position[joint].abs() > 0.05);
 }
+
+/// Told another velocity, a motor turns round through the play at once, and the joint coasts on: they meet after 2 b / 2 w, and
+/// from then on the joint goes with the motor.
+#[test]
+fn a_joint_with_play_coasts_until_its_motor_has_turned_round() {
+    let (b, w) = (0.05_f32, 0.25_f32);
+    let laws = vec![spec("backlash", Some("elbow"), &[("half_width", b.into())])];
+    let (mut run, joint) = elbow(laws);
+    let house = run.house.clone();
+    let address = format!("joint/{}/velocity_gain", joint.0).parse().unwrap();
+    run.state.set_parameter(&house, &address, 5.0).unwrap();
+    run.world.apply_parameters(&mut run.state).unwrap();
+    let mut go = |step: usize| {
+        run.state.joint_command[joint] = JointCommand::Velocity(if step < 20 { w } else { -w });
+        run.steps(1);
+        let state = &run.state;
+        (state.joint_position[joint], state.joint_velocity[joint])
+    };
+    let run: Vec<(f32, f32)> = (0..60).map(&mut go).collect();
+    // From the middle it first crosses b in 0.2 s.
+    let turned = run[19].0;
+    assert!((turned - (w - b)).abs() < 5e-3, "{turned}");
+    for (step, (position, velocity)) in run.iter().enumerate().skip(20) {
+        let t = (step - 19) as f32 * 0.05;
+        let meet = b / w;
+        let coasts = t < meet - 0.01;
+        let way = if t < meet {
+            w * t
+        } else {
+            w * (2.0 * meet - t)
+        };
+        let within = if coasts { 1e-3 } else { 6e-3 };
+        assert!((position - turned - way).abs() < within, "{t}: {position}");
+        if coasts || t > meet + 0.11 {
+            let expected = if coasts { w } else { -w };
+            assert!((velocity - expected).abs() < 2e-3, "{t}: {velocity}");
+        }
+    }
+}
+
+/// Told an effort, a motor with inertia gives it once it has crossed the play: `v = u / I (t - sqrt(2 b J / u))` from the middle.
+#[test]
+fn an_effort_comes_once_the_motor_has_crossed_the_play() {
+    let (b, effort, motor) = (0.1_f32, 0.05_f32, 0.02_f32);
+    for motor in [motor, 0.0] {
+        let numbers = [("half_width", b.into()), ("motor_inertia", motor.into())];
+        let laws = vec![spec("backlash", Some("elbow"), &numbers)];
+        let run = told(laws, 12, |_| JointCommand::Effort(effort));
+        let late = (2.0 * b * motor / effort).sqrt();
+        for (step, (_, velocity)) in run.iter().enumerate() {
+            let t = (step + 1) as f32 * 0.05;
+            let expected = effort / inertia() * (t - late).max(0.0);
+            // A physics step.
+            let within = effort / inertia() * 0.01;
+            assert!(
+                (velocity - expected).abs() < within,
+                "{t}: {velocity} {expected}"
+            );
+        }
+    }
+}
+
+/// Setting a joint is no motion: whatever was before, equal states go on alike.
+#[test]
+fn joints_that_are_set_forget_their_springs_and_their_play() {
+    let laws = || {
+        vec![
+            spec(
+                "joint_hysteresis",
+                Some("elbow"),
+                &[("stiffness", 4.0), ("max_effort", 0.3)],
+            ),
+            spec("backlash", Some("elbow"), &[("half_width", 0.1)]),
+        ]
+    };
+    let go = |run: &mut Run, joint: JointId| -> Vec<(f32, f32)> {
+        let set = dwell_physics::JointState {
+            joint,
+            position: 0.3,
+            velocity: 0.4,
+        };
+        run.world.set_joints(&mut run.state, &[set]).unwrap();
+        (0..40)
+            .map(|step| {
+                run.state.joint_command[joint] = match step / 10 {
+                    0 => JointCommand::Off,
+                    1 => JointCommand::Position(0.35),
+                    2 => JointCommand::Velocity(-0.3),
+                    _ => JointCommand::Effort(0.1),
+                };
+                run.steps(1);
+                let state = &run.state;
+                (state.joint_position[joint], state.joint_velocity[joint])
+            })
+            .collect()
+    };
+    let (mut fresh, joint) = elbow(laws());
+    let plain = go(&mut fresh, joint);
+    let (mut used, _) = elbow(laws());
+    for target in [1.2, -0.9, 0.3] {
+        used.state.joint_command[joint] = JointCommand::Position(target);
+        used.steps(15);
+    }
+    // First from elsewhere, then from the very place.
+    for _ in 0..2 {
+        let again = go(&mut used, joint);
+        for (step, (a, b)) in plain.iter().zip(&again).enumerate() {
+            assert!(
+                (a.0 - b.0).abs() < 1e-5 && (a.1 - b.1).abs() < 1e-4,
+                "{step}: {a:?} {b:?}"
+            );
+        }
+    }
+    assert!((plain[9].0 - 0.3).abs() > 0.01);
+}

@@ -5,8 +5,10 @@ mod addresses;
 mod bases;
 mod bodies;
 mod contacts;
+mod floating;
 mod friction;
 mod links;
+mod loads;
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{PhysicsConfig, laws};
