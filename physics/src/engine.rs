@@ -1,6 +1,7 @@
 //! rapier's parts in one place.
 
 use crate::config::Settings;
+use crate::contact::Kept;
 use crate::laws::Compliance;
 use crate::softness;
 use glam::Vec3;
@@ -8,18 +9,34 @@ use rapier3d::dynamics::{
     CCDSolver, FrictionModel, ImpulseJointSet, IntegrationParameters, IslandManager,
     MultibodyJointSet, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType, SoftBodySet,
 };
-use rapier3d::geometry::{BroadPhaseBvh, ColliderSet, ContactPair, NarrowPhase};
+use rapier3d::geometry::{
+    BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, ContactData, ContactManifold,
+    ContactPair, NarrowPhase, SolverContact,
+};
 use rapier3d::math::Pose;
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, QueryFilter, QueryPipeline};
 
 /// Steps of no length until the tree is back.
 const MOST_FLUSHES: usize = 4;
+
+/// The points of a plane of contact that rapier solves, with what it knows of them.
+pub(crate) fn points(
+    plane: &ContactManifold,
+) -> impl Iterator<Item = (&SolverContact, &ContactData)> {
+    plane.data.solver_contacts.iter().filter_map(|contact| {
+        let point = plane.points.get(contact.contact_indices()[0] as usize)?;
+        Some((contact, &point.data))
+    })
+}
+
 /// The simulation itself. Workspaces that hold nothing between steps are made anew when it is cloned.
 pub(crate) struct Engine {
     pub(crate) gravity: Vec3,
     parameters: IntegrationParameters,
     /// Runs of rapier in a physics step: 1, or as many as soft contacts need.
     runs: u32,
+    /// Whether contacts give.
+    soft: bool,
     pipeline: PhysicsPipeline,
     ccd: CCDSolver,
     multibodies: MultibodyJointSet,
@@ -38,6 +55,7 @@ impl Clone for Engine {
             gravity: self.gravity,
             parameters: self.parameters,
             runs: self.runs,
+            soft: self.soft,
             pipeline: PhysicsPipeline::new(),
             ccd: CCDSolver::new(),
             multibodies: MultibodyJointSet::new(),
@@ -58,6 +76,7 @@ impl Engine {
             gravity: Vec3::new(0.0, -gravity_m_s2, 0.0),
             parameters: softness::rigid(settings),
             runs: 1,
+            soft: false,
             pipeline: PhysicsPipeline::new(),
             ccd: CCDSolver::new(),
             multibodies: MultibodyJointSet::new(),
@@ -73,6 +92,7 @@ impl Engine {
 
     /// Makes contacts give as a law says, or as hard as the rate allows.
     pub(crate) fn soften(&mut self, settings: &Settings, compliance: Option<Compliance>) {
+        self.soft = compliance.is_some();
         (self.parameters, self.runs) = match compliance {
             Some(compliance) => softness::soft(settings, compliance),
             None => (softness::rigid(settings), 1),
@@ -88,9 +108,12 @@ impl Engine {
         self.parameters.dt
     }
 
-    /// Whether points of one plane share their friction.
-    pub(crate) fn friction_by_patch(&self) -> bool {
-        self.parameters.friction_model == FrictionModel::Simplified
+    /// How rapier keeps friction in contact points.
+    pub(crate) fn friction_kept(&self) -> Kept {
+        Kept {
+            by_patch: self.parameters.friction_model == FrictionModel::Simplified,
+            once: self.runs == 1,
+        }
     }
 
     /// Solver substeps in a physics step.
@@ -103,25 +126,77 @@ impl Engine {
         self.parameters.dt / self.parameters.num_solver_iterations as f32
     }
 
-    /// Those of the bodies awake that move, touch nothing and hang on no joint, from before a step.
-    fn in_free_flight(&self, awake: &[RigidBodyHandle]) -> Vec<RigidBodyHandle> {
-        let flies = |handle: &&RigidBodyHandle| {
-            self.bodies.get(**handle).is_some_and(|body| {
+    /// Those of the bodies awake that move, hang on no joint and are carried by nothing, in the order of the islands.
+    pub(crate) fn in_free_flight(&self) -> Vec<RigidBodyHandle> {
+        let flies = |handle: &RigidBodyHandle| {
+            self.bodies.get(*handle).is_some_and(|body| {
                 body.is_dynamic()
                     && body.gravity_scale() != 0.0
-                    && self.joints.attached_joints(**handle).next().is_none()
-                    && !self.touches(body)
+                    && self.joints.attached_joints(*handle).next().is_none()
+                    && !self.is_carried(body)
             })
         };
-        awake.iter().filter(flies).copied().collect()
+        self.islands.active_bodies().filter(flies).collect()
     }
 
-    fn touches(&self, body: &RigidBody) -> bool {
-        let mut pairs = body
-            .colliders()
-            .iter()
-            .flat_map(|collider| self.narrow_phase.contact_pairs_with(*collider));
-        pairs.any(ContactPair::has_any_active_contact)
+    /// For how long of a step gravity acts on a body that hits something in it, s.
+    pub(crate) fn falls_for_s(&self, flies: bool) -> f32 {
+        self.parameters.dt - if flies { 0.5 * self.substep_s() } else { 0.0 }
+    }
+
+    /// The pairs that a body's colliders make with others.
+    pub(crate) fn pairs_of<'a>(
+        &'a self,
+        body: &'a RigidBody,
+    ) -> impl Iterator<Item = &'a ContactPair> {
+        let pairs = |collider: &ColliderHandle| self.narrow_phase.contact_pairs_with(*collider);
+        body.colliders().iter().flat_map(pairs)
+    }
+
+    /// Whether something pressed on a body in the last step.
+    fn is_pressed(&self, body: &RigidBody) -> bool {
+        if self.soft {
+            return self.pairs_of(body).any(ContactPair::has_any_active_contact);
+        }
+        self.pairs_of(body)
+            .flat_map(ContactPair::solver_manifolds)
+            .flat_map(points)
+            .any(|(_, point)| point.impulse > 0.0)
+    }
+
+    /// Whether a body rests on something: that presses, and is not left at a speed that a step of gravity does not take back;
+    /// or that it stands over so low, and moves so slowly, that its bounces would last two steps. Contacts that give carry as
+    /// long as they touch.
+    fn is_carried(&self, body: &RigidBody) -> bool {
+        if self.soft {
+            return self.is_pressed(body);
+        }
+        let pull = self.gravity.length();
+        let slow = pull * self.parameters.dt;
+        self.pairs_of(body).any(|pair| {
+            let motion = |collider: ColliderHandle| {
+                let parent = self.colliders.get(collider).and_then(Collider::parent);
+                let parent = parent.and_then(|parent| self.bodies.get(parent));
+                parent.map_or((Vec3::ZERO, Vec3::ZERO), |parent| {
+                    (parent.linvel(), parent.angvel())
+                })
+            };
+            let (one, two) = (motion(pair.collider1), motion(pair.collider2));
+            pair.solver_manifolds().iter().any(|plane| {
+                points(plane).any(|(contact, point)| {
+                    // The arms do not turn with a wheel.
+                    let away = two.0 + two.1.cross(point.solver_dp2);
+                    let parting = away - one.0 - one.1.cross(point.solver_dp1);
+                    let parting = parting.dot(plane.data.normal);
+                    let (p, q) = plane
+                        .data
+                        .solver_contact_world_points(contact, &self.bodies);
+                    let gap = (q - p).dot(plane.data.normal);
+                    (point.impulse > 0.0 && parting < slow)
+                        || parting * parting + 2.0 * pull * gap < slow * slow
+                })
+            })
+        })
     }
 
     /// Adds a share of what gravity adds in a substep to the velocities of bodies.
@@ -138,19 +213,27 @@ impl Engine {
     /// One physics step.
     ///
     /// Gravity acts at the beginning of rapier's substeps, so that a body would fall half a substep ahead of its time. What
-    /// flies freely has half of one substep's gravity taken off before and added after: then it follows its parabola
-    /// exactly (the leapfrog method). What touched something in the step keeps what the contact made of its velocity.
-    pub(crate) fn step(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
+    /// flies freely (`flying`: [`Engine::in_free_flight`]) has half of one substep's gravity taken off before and added after:
+    /// then it follows its parabola exactly (the leapfrog method). What hit something in the step keeps what the contact made
+    /// of its velocity. Returns what flew and hit something.
+    pub(crate) fn step(
+        &mut self,
+        flying: Vec<RigidBodyHandle>,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+    ) -> Vec<RigidBodyHandle> {
         let awake: Vec<RigidBodyHandle> = self.islands.active_bodies().collect();
-        let mut flying = self.in_free_flight(&awake);
         self.fall(&flying, -0.5);
         self.advance(hooks, events);
-        flying.retain(|handle| {
+        let hit = |handle: &RigidBodyHandle| {
             let body = self.bodies.get(*handle);
-            body.is_some_and(|body| !self.touches(body))
-        });
-        self.fall(&flying, 0.5);
+            body.is_some_and(|body| self.is_pressed(body))
+        };
+        let (landed, flew): (Vec<RigidBodyHandle>, Vec<RigidBodyHandle>) =
+            flying.into_iter().partition(hit);
+        self.fall(&flew, 0.5);
         self.tighten(&awake);
+        landed
     }
 
     fn advance(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {

@@ -307,10 +307,12 @@ impl PhysicsWorld {
 
 fn flush(assembly: &mut Assembly, dress: Dress<'_>, excluded: &Excluded) {
     let entries = &assembly.entries;
+    let kept = assembly.engine.friction_kept();
     assembly.engine.flush(&Hooks {
         entries,
         dress,
         excluded,
+        kept,
         dt_s: 0.0,
     });
 }

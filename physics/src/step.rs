@@ -4,7 +4,7 @@ use crate::actions::{ActionCode, ActionOutcome, Notice};
 use crate::agents::{self, AgentControl, Way};
 use crate::body::Hold;
 use crate::contact::rolling::Roller;
-use crate::contact::{Collector, ContactEvent, Dress, Hooks, bound, note_motion};
+use crate::contact::{Collector, ContactEvent, Dress, Hooks, Rebounds, bound, note_motion};
 use crate::error::PhysicsError;
 use crate::joints::{self, Drive, Drivers, Outlook, Progress};
 use crate::laws::{Acts, JointLoad, LinkStep, Push, Resistance, Stage};
@@ -125,7 +125,8 @@ impl PhysicsWorld {
             law.half_step(stage, half);
             law.before_step(stage);
         });
-        note_motion(&self.engine, &self.ongoing, &mut self.motion);
+        let flying = self.engine.in_free_flight();
+        note_motion(&self.engine, &self.ongoing, &flying, &mut self.motion);
         let hooks = Hooks {
             entries: &self.entries,
             dress: Dress {
@@ -134,12 +135,24 @@ impl PhysicsWorld {
                 laws: &self.laws,
             },
             excluded: &self.excluded,
+            kept: self.engine.friction_kept(),
             dt_s: self.settings.dt_s,
         };
         let config = &self.settings.config;
         let slowest = config.event_min_speed_m_s.min(config.slide_min_speed_m_s);
-        let collector = Collector::new(&self.entries, &self.motion, slowest);
-        self.engine.step(&hooks, &collector);
+        let collector = Collector::new(
+            &self.entries,
+            &self.motion,
+            slowest,
+            self.engine.friction_kept(),
+        );
+        let landed = self.engine.step(flying, &hooks, &collector);
+        let rebounds = Rebounds {
+            motions: &self.motion,
+            entries: &self.entries,
+            dt_s: self.settings.dt_s,
+        };
+        let rebounds = rebounds.correct(&mut self.engine, &landed);
         let mut placed = false;
         for (tree, outlook) in self.trees.iter().zip(outlooks) {
             if let Some(outlook) = outlook {
@@ -147,8 +160,13 @@ impl PhysicsWorld {
                 placed |= joints::settle(engine, tree, &self.joints, outlook, near);
             }
         }
-        self.ongoing
-            .settle(collector, self.tick, config, &self.table, events);
+        self.ongoing.settle(
+            (collector, &rebounds),
+            self.tick,
+            config,
+            &self.table,
+            events,
+        );
         self.ongoing
             .note_held_back(&self.engine, &self.motion, self.settings.dt_s);
         self.apply_laws(&answering, |law, stage| law.half_step(stage, half));

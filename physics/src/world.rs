@@ -353,6 +353,7 @@ impl PhysicsWorld {
                 laws: &self.laws,
             },
             excluded: &self.excluded,
+            kept: self.engine.friction_kept(),
             dt_s: 0.0,
         };
         self.engine.flush(&hooks);

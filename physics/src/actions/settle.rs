@@ -75,6 +75,7 @@ impl PhysicsWorld {
                 laws: &self.laws,
             },
             excluded: &self.excluded,
+            kept: self.engine.friction_kept(),
             dt_s: self.settings.dt_s,
         };
         let steps = (TRIAL_S / self.settings.dt_s).ceil() as u32;
@@ -87,7 +88,8 @@ impl PhysicsWorld {
                     return None;
                 }
             }
-            trial.step(&hooks, &());
+            let flying = trial.in_free_flight();
+            trial.step(flying, &hooks, &());
         }
         let end = *trial.bodies.get(handle)?.position();
         let rests = !moved(&resting, &end, RESTS_M, RESTS_RAD)

@@ -1,15 +1,13 @@
 //! What rapier tells of contacts while it steps.
 
+use super::approach::Approach;
 use super::entry::{Entry, Toucher, entry_index};
-use super::ongoing::Ongoing;
-use crate::engine::Engine;
-use glam::{Quat, Vec3};
-use rapier3d::dynamics::{
-    RigidBody, RigidBodyHandle, RigidBodySet, SoftBodySet, SoftBodyTearEvent,
-};
-use rapier3d::geometry::{
-    ColliderSet, CollisionEvent, ContactManifold, ContactPair, SolverContact,
-};
+use super::friction;
+use super::motion::{Motion, before};
+use crate::engine::points;
+use glam::Vec3;
+use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, SoftBodySet, SoftBodyTearEvent};
+use rapier3d::geometry::{Collider, ColliderSet, CollisionEvent, ContactManifold, ContactPair};
 use rapier3d::pipeline::EventHandler;
 use std::sync::{Mutex, PoisonError};
 
@@ -33,74 +31,10 @@ pub(super) struct Report {
     pub(super) slip: f32,
     /// How fast the centres of mass pass each other along the surface, m/s.
     pub(super) passing: f32,
-}
-
-/// Where a body is and how it moves before the step, at its centre of mass.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Motion {
-    awake: bool,
-    linear: Vec3,
-    angular: Vec3,
-    center: Vec3,
-    rotation: Quat,
-    /// What gravity adds to its velocity, m/s².
-    gravity: Vec3,
-    /// How far it would stand ahead if the last step had not stopped it at a surface, m.
-    ahead: Vec3,
-    /// A bound on the speed of all its points, m/s.
-    fastest: f32,
-}
-
-impl Motion {
-    /// How far the body would have gone on in the step since then, when it was stopped on its way and kept its speed.
-    pub(super) fn held_back(&self, body: &RigidBody, dt_s: f32) -> Option<Vec3> {
-        let fell = self.linear + self.gravity * dt_s;
-        let free = (self.linear + fell) * (0.5 * dt_s);
-        let rest = free - (body.center_of_mass() - self.center);
-        let kept_speed = (body.linvel() - fell).length_squared() < 1e-4 * fell.length_squared();
-        let stopped = rest.length_squared() > 1e-3 * free.length_squared();
-        (self.awake && kept_speed && stopped).then_some(rest)
-    }
-
-    fn of(body: &RigidBody, gravity: Vec3, ahead: Vec3) -> Self {
-        let (linear, angular) = (body.linvel(), body.angvel());
-        let reach = body.mass_properties().max_extent();
-        let falls = if body.is_dynamic() {
-            body.gravity_scale()
-        } else {
-            0.0
-        };
-        Self {
-            awake: true,
-            linear,
-            angular,
-            center: body.center_of_mass(),
-            rotation: *body.rotation(),
-            gravity: gravity * falls,
-            ahead,
-            fastest: linear.length() + angular.length() * reach,
-        }
-    }
-
-    fn at(&self, point: Vec3) -> Vec3 {
-        self.linear + self.angular.cross(point - self.center)
-    }
-}
-
-/// Notes the motion of all bodies that are awake before a step.
-pub(crate) fn note_motion(engine: &Engine, ongoing: &Ongoing, out: &mut Vec<Motion>) {
-    out.clear();
-    for handle in engine.islands.active_bodies() {
-        let Some(body) = engine.bodies.get(handle) else {
-            continue;
-        };
-        let index = handle.into_raw_parts().0 as usize;
-        if out.len() <= index {
-            out.resize(index + 1, Motion::default());
-        }
-        let ahead = ongoing.held_back.get(&(index as u32)).copied();
-        out[index] = Motion::of(body, engine.gravity, ahead.unwrap_or(Vec3::ZERO));
-    }
+    /// What the normal impulses push into the second body, N·s.
+    pub(super) pressed: Vec3,
+    /// What all contacts together pushed into each of the two bodies, N·s, with the body; where that can be told.
+    pub(super) pushed: [Option<(RigidBodyHandle, Vec3)>; 2],
 }
 
 /// Gathers contacts while rapier steps.
@@ -110,15 +44,23 @@ pub(crate) struct Collector<'a> {
     slowest: f32,
     /// Motion before the step of every body that was awake, by its arena index.
     before: &'a [Motion],
+    /// How rapier keeps friction.
+    kept: friction::Kept,
     reports: Mutex<Vec<Report>>,
 }
 
 impl<'a> Collector<'a> {
-    pub(crate) fn new(entries: &'a [Entry], before: &'a [Motion], slowest: f32) -> Self {
+    pub(crate) fn new(
+        entries: &'a [Entry],
+        before: &'a [Motion],
+        slowest: f32,
+        kept: friction::Kept,
+    ) -> Self {
         Self {
             entries,
             slowest,
             before,
+            kept,
             reports: Mutex::new(Vec::new()),
         }
     }
@@ -132,13 +74,8 @@ impl<'a> Collector<'a> {
         reports.sort_by(|a, b| {
             (a.pair, a.classes, a.impulse.to_bits()).cmp(&(b.pair, b.classes, b.impulse.to_bits()))
         });
+        friction::whole(&mut reports);
         reports
-    }
-
-    fn motion(&self, body: Option<RigidBodyHandle>) -> Motion {
-        body.and_then(|body| self.before.get(body.into_raw_parts().0 as usize))
-            .copied()
-            .unwrap_or_default()
     }
 
     fn report(
@@ -151,7 +88,10 @@ impl<'a> Collector<'a> {
         let a = self.entries.get(entry_index(one))?;
         let b = self.entries.get(entry_index(two))?;
         let (touch_a, touch_b) = (a.toucher?, b.toucher?);
-        let motions = (self.motion(one.parent()), self.motion(two.parent()));
+        let motions = (
+            before(self.before, one.parent()),
+            before(self.before, two.parent()),
+        );
         if motions.0.fastest + motions.1.fastest < self.slowest {
             return None;
         }
@@ -166,10 +106,13 @@ impl<'a> Collector<'a> {
             meeting: 0.0,
             slip: 0.0,
             passing: 0.0,
+            pressed: Vec3::ZERO,
+            pushed: [(one, &motions.0), (two, &motions.1)]
+                .map(|(collider, motion)| self.pushed(bodies, collider, motion)),
         };
         let mut strongest = 0.0;
         for manifold in pair.solver_manifolds() {
-            let here = report.add(manifold, bodies, &motions);
+            let here = report.add(manifold, bodies, &motions, self.kept);
             if here > strongest {
                 strongest = here;
                 let classes = (
@@ -183,7 +126,28 @@ impl<'a> Collector<'a> {
                 };
             }
         }
+        // Seen from the thing that sorts first.
+        if touch_a > touch_b {
+            report.pressed = -report.pressed;
+            report.pushed.swap(0, 1);
+        }
         (report.impulse > 0.0).then_some(report)
+    }
+
+    /// What contacts pushed into the body of a collider in the step, N·s.
+    fn pushed(
+        &self,
+        bodies: &RigidBodySet,
+        collider: &Collider,
+        motion: &Motion,
+    ) -> Option<(RigidBodyHandle, Vec3)> {
+        if !self.kept.once {
+            return None;
+        }
+        let handle = collider.parent()?;
+        let body = bodies.get(handle)?;
+        let untouched = motion.linear + motion.free_change?;
+        Some((handle, (body.linvel() - untouched) * body.mass()))
     }
 }
 
@@ -194,71 +158,35 @@ impl Report {
         manifold: &ContactManifold,
         bodies: &RigidBodySet,
         (a, b): &(Motion, Motion),
+        kept: friction::Kept,
     ) -> f32 {
         let normal = manifold.data.normal;
         let mut here = 0.0;
-        let mut friction = Vec3::ZERO;
-        for contact in &manifold.data.solver_contacts {
-            let index = contact.contact_indices()[0] as usize;
-            let Some(point) = manifold.points.get(index) else {
-                continue;
-            };
-            friction += point.data.warmstart_tangent_world;
-            let push = point.data.impulse;
+        for (contact, point) in points(manifold) {
+            let push = point.impulse;
             if push <= 0.0 {
                 continue;
             }
-            let (p, q) = ends_before(manifold, contact, bodies, (a, b));
-            let place = (p + q) * 0.5;
-            let relative = a.at(place) - b.at(place);
-            let approach = relative.dot(normal);
-            if approach > self.speed {
-                self.speed = approach;
-                let gap = (q - p + b.ahead - a.ahead).dot(normal);
-                let pull = (a.gravity - b.gravity).dot(normal);
-                self.meeting = meeting_speed(gap, approach, pull);
-                self.meets_s = 2.0 * gap / (approach + self.meeting).max(1e-6);
+            let approach = Approach::of(manifold, contact, bodies, (a, b));
+            if approach.speed > self.speed {
+                self.speed = approach.speed;
+                self.meeting = approach.meeting;
+                self.meets_s = approach.meets_s;
             }
+            let place = approach.place;
+            let along = approach.relative - normal * approach.speed;
             here += push;
             self.moment += place * push;
-            self.slip += (relative - normal * approach).length() * push;
+            self.slip += along.length() * push;
         }
         let passing = a.linear - b.linear;
         let along = (passing - normal * passing.dot(normal)).length();
         self.passing = self.passing.max(along);
         self.impulse += here;
-        self.tangential += friction.length();
+        self.pressed += normal * here;
+        self.tangential += kept.estimate(manifold);
         here
     }
-}
-
-/// How fast surfaces meet that are a `gap` apart and approach at `speed`, faster by `acceleration`; they meet after twice the
-/// gap over the sum of both speeds, which is negative when they met before.
-fn meeting_speed(gap: f32, speed: f32, acceleration: f32) -> f32 {
-    (speed * speed + 2.0 * acceleration * gap).max(0.0).sqrt()
-}
-
-/// Where the two surfaces of a contact point stood before the step.
-fn ends_before(
-    manifold: &ContactManifold,
-    contact: &SolverContact,
-    bodies: &RigidBodySet,
-    (a, b): (&Motion, &Motion),
-) -> (Vec3, Vec3) {
-    let (p, q) = manifold.data.solver_contact_world_points(contact, bodies);
-    // Anchors ride on their bodies, or stand in the world.
-    let before = |now: Vec3, anchor: Vec3, motion: &Motion, in_world: bool| {
-        if motion.awake && !in_world {
-            motion.center + motion.rotation * anchor
-        } else {
-            now
-        }
-    };
-    let dominance = manifold.data.relative_dominance;
-    (
-        before(p, contact.anchor1, a, dominance > 0),
-        before(q, contact.anchor2, b, dominance < 0),
-    )
 }
 
 impl EventHandler for Collector<'_> {

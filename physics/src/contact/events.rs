@@ -58,7 +58,8 @@ pub struct ContactEvent {
     pub restitution: f32,
     /// The sum of all normal impulses of the impact, or of this control step, N·s.
     pub impulse_n_s: f32,
-    /// The sum of all friction impulses of the same time, N·s.
+    /// How strong friction was in the same time, N·s: the sum over its physics steps. It is exact for what nothing else touches
+    /// in the step; otherwise reckoned from its share of the normal impulse in the last substep.
     pub tangential_impulse_n_s: f32,
     /// Impacts: how fast they approached along the normal, m/s; at least 0. Others: 0.
     pub relative_normal_speed_m_s: f32,

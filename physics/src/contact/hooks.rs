@@ -1,6 +1,7 @@
 //! What rapier asks during a step: which pairs meet, and with what friction.
 
 use super::entry::{Entry, entry_index};
+use super::friction::Kept;
 use super::rolling;
 use super::substances::ContactTable;
 use crate::laws::{self, ContactValues, Installed, Side, Touch};
@@ -84,6 +85,7 @@ pub(crate) struct Hooks<'a> {
     pub(crate) entries: &'a [Entry],
     pub(crate) dress: Dress<'a>,
     pub(crate) excluded: &'a Excluded,
+    pub(crate) kept: Kept,
     /// Length of the step, s.
     pub(crate) dt_s: f32,
 }
@@ -186,22 +188,13 @@ impl Hooks<'_> {
             body.and_then(|body| bodies.get(body))
                 .map_or(Vec3::ZERO, |rigid| rigid.velocity_at_point(point))
         };
-        let friction_impulse: Vec3 = plane
-            .solver_contacts
-            .iter()
-            .filter_map(|contact| {
-                let index = contact.contact_indices()[0] as usize;
-                let point = plane.manifold.points.get(index)?;
-                Some(point.data.warmstart_tangent_world)
-            })
-            .sum();
         let touch = Touch {
             surface: a,
             other: b,
             normal: *plane.normal,
             relative_velocity: velocity(body_b) - velocity(body_a),
             // rapier keeps what acts on the first body.
-            friction_impulse_n_s: -friction_impulse,
+            friction_impulse_n_s: -self.kept.last(plane.manifold),
         };
         let mut values = ContactValues {
             friction: *plane.friction,

@@ -1,8 +1,9 @@
 //! Contacts that go on: blows that take a few steps, and pairs that slide or roll.
 
-use super::collector::{Collector, Motion, Report};
+use super::collector::{Collector, Report};
 use super::entry::Toucher;
 use super::events::{ContactEvent, ContactKind, ContactPhase};
+use super::motion::Motion;
 use super::substances::ContactTable;
 use crate::config::PhysicsConfig;
 use crate::engine::Engine;
@@ -85,16 +86,26 @@ impl Ongoing {
         }
     }
 
-    /// Adds a physics step's reports; impacts that are over go to `out`.
+    /// Adds a physics step's reports; impacts that are over go to `out`. `rebounds`: what was added to the pairs' normal
+    /// impulses, N·s.
     pub(crate) fn settle(
         &mut self,
-        collector: Collector<'_>,
+        (collector, rebounds): (Collector<'_>, &BTreeMap<Pair, f32>),
         tick: u64,
         config: &PhysicsConfig,
         table: &ContactTable,
         out: &mut Vec<ContactEvent>,
     ) {
-        let reports = collector.reports();
+        let mut reports = collector.reports();
+        for group in reports.chunk_by_mut(|a, b| a.pair == b.pair) {
+            if let Some(added) = rebounds.get(&group[0].pair) {
+                let impulse: f32 = group.iter().map(|report| report.impulse).sum();
+                for report in group {
+                    report.scale(1.0 + added / impulse);
+                }
+            }
+        }
+        reports.retain(|report| report.impulse > 0.0);
         let mut hit: Vec<Pair> = Vec::new();
         let dt_s = 1.0 / f64::from(config.physics_rate_hz);
         for group in reports.chunk_by(|a, b| a.pair == b.pair) {
@@ -220,6 +231,16 @@ impl Ongoing {
                 )
             });
         }
+    }
+}
+
+impl Report {
+    /// Makes its normal impulse `times` as strong.
+    fn scale(&mut self, times: f32) {
+        let times = times.max(0.0);
+        self.impulse *= times;
+        self.moment *= times;
+        self.slip *= times;
     }
 }
 

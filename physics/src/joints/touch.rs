@@ -113,7 +113,7 @@ fn of_plane(
     if press <= 0.0 {
         return None;
     }
-    if engine.friction_by_patch() {
+    if engine.friction_kept().by_patch {
         // Each point holds the friction of the whole patch.
         friction /= count;
         twist /= count;

@@ -1,0 +1,79 @@
+//! How two surfaces approach at a point of contact.
+
+use super::motion::Motion;
+use glam::Vec3;
+use rapier3d::dynamics::RigidBodySet;
+use rapier3d::geometry::{ContactManifold, SolverContact};
+
+/// Two surfaces at a contact point, before a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Approach {
+    /// Between the two.
+    pub(super) place: Vec3,
+    /// From the centre of mass of each to its surface, m.
+    pub(super) arms: [Vec3; 2],
+    /// The velocity of the first against the second, m/s.
+    pub(super) relative: Vec3,
+    /// How fast they approach along the normal, m/s; negative when they part.
+    pub(super) speed: f32,
+    /// How fast they approach when they meet, m/s.
+    pub(super) meeting: f32,
+    /// When they meet, from the beginning of the step, s; negative when they met before.
+    pub(super) meets_s: f32,
+}
+
+impl Approach {
+    /// From where the two surfaces stood before the step. `motions`: of the manifold's first and second body.
+    pub(super) fn of(
+        manifold: &ContactManifold,
+        contact: &SolverContact,
+        bodies: &RigidBodySet,
+        (a, b): (&Motion, &Motion),
+    ) -> Self {
+        let normal = manifold.data.normal;
+        let (p, q) = ends_before(manifold, contact, bodies, (a, b));
+        let place = (p + q) * 0.5;
+        let relative = a.at(place) - b.at(place);
+        let speed = relative.dot(normal);
+        let gap = (q - p + b.ahead - a.ahead).dot(normal);
+        let pull = (a.gravity - b.gravity).dot(normal);
+        let meeting = speed_after(speed, pull, gap);
+        Self {
+            place,
+            arms: [p - a.center, q - b.center],
+            relative,
+            speed,
+            meeting,
+            meets_s: 2.0 * gap / (speed + meeting).max(1e-6),
+        }
+    }
+}
+
+/// The speed of what moved with `speed`, after a way in its direction along which it was accelerated; 0 where it turned
+/// before. The way took twice its length over the sum of both speeds.
+pub(super) fn speed_after(speed: f32, acceleration: f32, way_m: f32) -> f32 {
+    (speed * speed + 2.0 * acceleration * way_m).max(0.0).sqrt()
+}
+
+/// Where the two surfaces of a contact point stood before the step.
+fn ends_before(
+    manifold: &ContactManifold,
+    contact: &SolverContact,
+    bodies: &RigidBodySet,
+    (a, b): (&Motion, &Motion),
+) -> (Vec3, Vec3) {
+    let (p, q) = manifold.data.solver_contact_world_points(contact, bodies);
+    // Anchors ride on their bodies, or stand in the world.
+    let before = |now: Vec3, anchor: Vec3, motion: &Motion, in_world: bool| {
+        if motion.awake && !in_world {
+            motion.center + motion.rotation * anchor
+        } else {
+            now
+        }
+    };
+    let dominance = manifold.data.relative_dominance;
+    (
+        before(p, contact.anchor1, a, dominance > 0),
+        before(q, contact.anchor2, b, dominance < 0),
+    )
+}

@@ -1,0 +1,94 @@
+//! How much friction pushed.
+//!
+//! rapier keeps the friction of the last substep alone. What a body's contacts pushed altogether is what its momentum changed
+//! by beyond gravity, and without the normal impulses, which rapier sums over all substeps, that is friction. So a body that one
+//! thing touches tells all of it; where several touch, each is reckoned from the last substep.
+
+use super::collector::Report;
+use crate::engine::points;
+use glam::Vec3;
+use rapier3d::dynamics::RigidBodyHandle;
+use rapier3d::geometry::ContactManifold;
+use std::collections::BTreeSet;
+
+/// How rapier keeps friction in contact points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kept {
+    /// Each point of a plane holds the friction of the whole plane.
+    pub(crate) by_patch: bool,
+    /// rapier runs once in a physics step.
+    pub(crate) once: bool,
+}
+
+impl Kept {
+    /// The friction of a plane in the last substep, N·s, on its first body.
+    pub(super) fn last(self, plane: &ContactManifold) -> Vec3 {
+        let each = points(plane).map(|(_, point)| point.warmstart_tangent_world);
+        if self.by_patch {
+            // A point that is new holds none yet.
+            each.fold(Vec3::ZERO, |most, one| {
+                if one.length_squared() > most.length_squared() {
+                    one
+                } else {
+                    most
+                }
+            })
+        } else {
+            each.sum()
+        }
+    }
+
+    /// The friction of a plane in a run of rapier, N·s, when it was to the normal impulse as in the last substep.
+    pub(super) fn estimate(self, plane: &ContactManifold) -> f32 {
+        let (mut all, mut last) = (0.0, 0.0);
+        for (_, point) in points(plane) {
+            all += point.impulse;
+            last += point.warmstart_impulse;
+        }
+        let substeps = if last > 0.0 {
+            (all / last).max(1.0)
+        } else {
+            1.0
+        };
+        self.last(plane).length() * substeps
+    }
+}
+
+/// Puts the friction that a body's momentum tells in the place of estimates. `reports`: of one run, sorted by pair.
+pub(super) fn whole(reports: &mut [Report]) {
+    // Bodies that more than one thing touches.
+    let (mut touched, mut shared) = (BTreeSet::new(), BTreeSet::new());
+    let number = |(body, _): (RigidBodyHandle, Vec3)| body.into_raw_parts();
+    for group in reports.chunk_by(|a, b| a.pair == b.pair) {
+        let bodies: BTreeSet<(u32, u32)> = group
+            .iter()
+            .flat_map(|report| report.pushed)
+            .flatten()
+            .map(number)
+            .collect();
+        for body in bodies {
+            if !touched.insert(body) {
+                shared.insert(body);
+            }
+        }
+    }
+    for group in reports.chunk_by_mut(|a, b| a.pair == b.pair) {
+        let pressed: Vec3 = group.iter().map(|report| report.pressed).sum();
+        let alone = |side: usize| {
+            let pushed = group[0].pushed[side]?;
+            // All pieces of the pair move with one body.
+            let one = group.iter().all(|report| {
+                report.pushed[side].is_some_and(|other| number(other) == number(pushed))
+            });
+            (one && !shared.contains(&number(pushed))).then_some(pushed.1)
+        };
+        let second = alone(1).map(|pushed| pushed - pressed);
+        let friction = second.or_else(|| alone(0).map(|pushed| pushed + pressed));
+        if let Some(friction) = friction {
+            for report in group.iter_mut() {
+                report.tangential = 0.0;
+            }
+            group[0].tangential = friction.length();
+        }
+    }
+}
