@@ -18,6 +18,8 @@
 //!   of the room's walls; rooms share it through doors as far as those are open;
 //! - materials that glow, unless their thing is switched off.
 //!
+//! Mirrors (metals of a roughness of at most 0.05) show what they reflect; to depth, ids and flat pictures they are surfaces.
+//!
 //! The picture is exposed for the mean light of the camera's room and tone-mapped. The open air has an exposure of its
 //! own, as if photographed apart.
 

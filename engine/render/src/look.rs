@@ -7,6 +7,11 @@ use dwell_scene::{House, Id, Material};
 /// No texture.
 const NONE: u32 = u32::MAX;
 
+/// A mirror is a metal,
+const MIRROR_METALLIC: f32 = 0.9;
+/// and smoother than polished steel.
+const MIRROR_ROUGHNESS: f32 = 0.05;
+
 /// One material, prepared.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
@@ -24,6 +29,8 @@ pub(crate) struct Look {
     plain: Option<[u8; 3]>,
     /// Whether light may pass.
     pub(crate) clear: bool,
+    /// Whether lit pictures show what it reflects.
+    pub(crate) mirror: bool,
 }
 
 impl Look {
@@ -37,6 +44,7 @@ impl Look {
             texels: 0.0,
             plain: None,
             clear: material.opacity < 1.0,
+            mirror: material.metallic >= MIRROR_METALLIC && material.roughness <= MIRROR_ROUGHNESS,
         };
         if let Some(texture) = material.texture {
             if let Some([r, g, b, a]) = textures.uniform(texture) {

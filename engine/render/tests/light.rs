@@ -336,3 +336,44 @@ fn the_open_air_is_blue_by_day_and_black_by_night() {
     assert!(noon[2] > 120 && noon[2] > noon[0], "{noon:?}");
     assert!(night.iter().all(|byte| *byte < 30), "{night:?}");
 }
+
+#[test]
+fn a_mirror_shows_what_stands_behind_the_camera() {
+    let red = Builder::plaster("red").with_srgb([220, 20, 20]);
+    let mut room = Builder::from(&grey_room());
+    let south = room
+        .data
+        .structure
+        .iter()
+        .find(|piece| piece.name == "south")
+        .map(|piece| piece.materials[0])
+        .unwrap();
+    room.data.materials[south].base_color = red.base_color;
+    let pane = quad(Vec2::new(-0.5, -0.5), Vec2::new(0.5, 0.5), 0.0);
+    let place = Pose::from_position(Vec3::new(3.0, 1.5, 0.02));
+    let glass = Builder::plaster("mirror_glass").with_srgb([240, 240, 240]);
+    let mirror = dwell_scene::Material {
+        metallic: 1.0,
+        roughness: 0.02,
+        ..glass
+    };
+    room.add("mirror", pane, mirror, false, place);
+    let world = room.build();
+    let camera = Camera::from_fov(21, 21, 30.0).unwrap();
+    // From 2 m before the mirror the middle of the picture shows the wall 6 m behind it.
+    let mut view = look(camera, Vec3::new(3.0, 1.5, 2.0), Vec3::new(3.0, 1.5, 0.0));
+    view.preset = Preset::Lit;
+    let frame = world.shot(&view);
+    let [r, g, b] = pixel(&frame, &camera, 10, 10);
+    assert!(r > 2 * g && r > 2 * b, "{r} {g} {b}");
+    // A mirror beside the wall that it shows: as bright as the wall seen directly, less what the glass takes.
+    let mut back = look(camera, Vec3::new(3.0, 1.5, 2.0), Vec3::new(3.0, 1.5, 6.0));
+    back.preset = Preset::Lit;
+    let direct = pixel(&world.shot(&back), &camera, 10, 10);
+    assert!(
+        r <= direct[0] && f32::from(r) > 0.85 * f32::from(direct[0]),
+        "{r} {direct:?}"
+    );
+    // Depth and ids tell of the mirror itself.
+    assert!((frame.depth[10 * 21 + 10] - 1.98).abs() < 1e-3);
+}

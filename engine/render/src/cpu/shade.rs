@@ -6,6 +6,7 @@ use super::rays::{COLUMNS, LANES, Packet, Sight};
 use crate::color::Srgb;
 use crate::light::{beside_surface, display, sky};
 use crate::surfaces::SLOW;
+use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::{Entity, EntityId};
 use glam::Vec3;
 
@@ -15,7 +16,9 @@ const LAYERS: usize = 8;
 const OPAQUE: f32 = 1.0 - 1.0 / 512.0;
 /// A ray that goes on starts so far behind the surface that it passed: a length and a part of the depth.
 const GAP: (f32, f32) = (2e-4, 2e-6);
-/// How far off a surface its shadow ray starts, m.
+/// Most mirrors that light meets; one more shows its colour.
+const MIRRORS: u32 = 2;
+/// How far off a surface its shadow ray or reflection starts, m.
 const OFF_SURFACE_M: f32 = 1e-3;
 /// The least cosine at which a pixel's footprint still grows.
 const GRAZING: f32 = 0.05;
@@ -113,7 +116,7 @@ impl Band<'_> {
         if kind != SLOW && self.light.is_none() {
             return [r, g, b];
         }
-        let (light, opacity) = self.surface(renderer, &sight, position, || {
+        let (light, opacity) = self.surface(renderer, &sight, position, MIRRORS, || {
             packet.weights(self.scene, lane)
         });
         if opacity < OPAQUE {
@@ -146,7 +149,7 @@ impl Band<'_> {
                     continue;
                 };
                 let position = renderer.surfaces.position(sight.instance, sight.triangle);
-                let (more, opacity) = self.surface(renderer, &sight, position, || {
+                let (more, opacity) = self.surface(renderer, &sight, position, MIRRORS, || {
                     packet.weights(self.scene, lane)
                 });
                 if opacity >= OPAQUE || layer == LAYERS {
@@ -187,13 +190,14 @@ impl Band<'_> {
 
     /// Light that a surface sends to the camera, and how much of what lies behind it hides.
     ///
-    /// `weights`: of the second and third corner.
+    /// `mirrors`: how many more of them light meets. `weights`: of the second and third corner.
     #[inline]
     fn surface(
         &self,
         renderer: &CpuRenderer,
         sight: &Sight,
         position: usize,
+        mirrors: u32,
         weights: impl FnOnce() -> (f32, f32),
     ) -> (Vec3, f32) {
         let triangle = renderer.surfaces.triangle(position);
@@ -230,6 +234,10 @@ impl Band<'_> {
         } else {
             normal
         };
+        if look.mirror && mirrors > 0 {
+            let light = self.reflected(renderer, sight, facing, mirrors - 1);
+            return (color * light, opacity);
+        }
         let (u, v) = weights();
         let smooth = renderer.surfaces.smooth_normal(position, u, v);
         let smooth = pose
@@ -253,6 +261,51 @@ impl Band<'_> {
             color * brightness + self.glow(renderer, look.emission, sight.id),
             opacity,
         )
+    }
+
+    /// What a mirror shows: the light that comes from where the ray goes on.
+    #[cold]
+    fn reflected(
+        &self,
+        renderer: &CpuRenderer,
+        mirror: &Sight,
+        facing: Vec3,
+        mirrors: u32,
+    ) -> Vec3 {
+        let direction = mirror.direction.reflect(facing).normalize_or(facing);
+        let mut ray = Ray {
+            origin: mirror.point + facing * OFF_SURFACE_M,
+            direction,
+            near_m: 0.0,
+            far_m: f32::INFINITY,
+        };
+        let (mut light, mut rest) = (Vec3::ZERO, 1.0);
+        for layer in 1..=LAYERS {
+            let Some(hit) = self.scene.closest(&ray, RayMask::EYE) else {
+                break;
+            };
+            let distance = hit.distance_m;
+            let sight = Sight {
+                point: ray.origin + direction * distance,
+                direction,
+                // Patterns in a mirror are as fine as if they stood behind it.
+                depth: mirror.depth + distance * mirror.per_length,
+                per_length: mirror.per_length,
+                id: hit.id,
+                instance: hit.instance,
+                triangle: hit.triangle,
+            };
+            let position = renderer.surfaces.position(hit.instance, hit.triangle);
+            let (more, opacity) =
+                self.surface(renderer, &sight, position, mirrors, || (hit.u, hit.v));
+            if opacity >= OPAQUE || layer == LAYERS {
+                return light + more * rest;
+            }
+            light += more * (opacity * rest);
+            rest *= 1.0 - opacity;
+            ray.near_m = distance * (1.0 + GAP.1) + GAP.0;
+        }
+        light + self.sky(renderer, direction) * rest
     }
 
     /// Light of its own, unless it is switched off.
