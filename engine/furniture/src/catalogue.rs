@@ -17,9 +17,16 @@ pub struct Entry {
     pub category: &'static str,
     /// The names of the styles that it suits; empty: all.
     pub styles: &'static [&'static str],
+    /// How many there are in one style: sizes and colours drawn anew.
+    pub variants: u64,
     /// Makes one, its size and colours drawn from the key.
     pub build: fn(&Style, Key) -> Model,
 }
+
+/// Variants of most entries in one style.
+const VARIANTS: u64 = 3;
+/// Variants of what people choose for being unlike others: pictures.
+const MANY: u64 = 16;
 
 const fn entry(
     kind: &'static str,
@@ -30,11 +37,18 @@ const fn entry(
         kind,
         category,
         styles: &[],
+        variants: VARIANTS,
         build,
     }
 }
 
 impl Entry {
+    /// The same entry in many variants.
+    const fn many(mut self) -> Self {
+        self.variants = MANY;
+        self
+    }
+
     /// Whether it may stand in a house of this style.
     pub fn suits(&self, style: &Style) -> bool {
         self.styles.is_empty() || self.styles.contains(&style.name)
@@ -188,8 +202,8 @@ pub fn entries() -> &'static [Entry] {
         entry("curtains", "curtain", walls::curtains),
         entry("blind", "blinds", room_parts::blind),
         entry("wall_mirror", "mirror", bath::wall_mirror),
-        entry("picture", "picture_frame", walls::picture),
-        entry("poster", "picture_frame", walls::poster),
+        entry("picture", "picture_frame", walls::picture).many(),
+        entry("poster", "picture_frame", walls::poster).many(),
         entry("whiteboard", "whiteboard", hobby::whiteboard),
         entry("wall_clock", "clock", walls::wall_clock),
         entry("rug", "rug", living::rug),

@@ -9,8 +9,6 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Looks of one entry in one style: sizes and colours drawn anew.
-pub const VARIANTS: u64 = 3;
 /// What reaches higher is as high as a person, m.
 const HIGH_M: f32 = 1.4;
 /// Positions of a joint at which its part is looked at.
@@ -33,6 +31,8 @@ pub struct Stock {
     pub open_leaves: Vec<Aabb>,
     /// Around everything that is felt, model space.
     pub felt: Aabb,
+    /// What a picture shows.
+    pub motif: Option<&'static str>,
 }
 
 impl Stock {
@@ -76,6 +76,9 @@ impl Stock {
         boxes.shrink_to_fit();
         swings.shrink_to_fit();
         let felt = boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
+        let mut finishes = model.parts.iter().flat_map(|part| &part.finishes);
+        let image = finishes.find(|finish| finish.name == "framed_image");
+        let motif = image.and_then(|image| Some(image.pattern?.recipe));
         Self {
             kind,
             model,
@@ -83,6 +86,7 @@ impl Stock {
             swings,
             open_leaves,
             felt,
+            motif,
         }
     }
 }
@@ -140,7 +144,7 @@ pub fn made_to_measure(settings: String, build: impl FnOnce() -> Model) -> Arc<M
 pub fn stock(kind: &str, style: &Style, key: Key) -> Option<Arc<Stock>> {
     let mut draw = key.stream();
     let (index, entry) = *draw.choose(&entries_of(kind, style))?;
-    let variant = draw.bits() % VARIANTS;
+    let variant = draw.bits() % entry.variants;
     Some(variant_of(index, entry, style, variant))
 }
 

@@ -9,10 +9,21 @@ use crate::models::{bookshelf, decoration, gadgets, lamps, openings};
 use crate::style::Style;
 use dwell_scene::random::Key;
 
+/// What pictures show: recipes of textures.
+const MOTIFS: [&str; 7] = [
+    "shapes",
+    "branch",
+    "landscape",
+    "planets",
+    "fields",
+    "rings",
+    "waves",
+];
+
 /// A printed or painted picture in tones of the style.
 fn image(style: &Style, d: &Draw) -> Finish {
     let tones = ["first", "second", "third"].map(|tone| style.cloth(&mut d.stream(tone)).srgb);
-    let recipe = d.of("motif", ["shapes", "branch", "landscape", "planets"]);
+    let recipe = d.of("motif", MOTIFS);
     let seed = 1 + d.below("seed", 5) as u64;
     let colors = match recipe {
         // Sky, hills, trees; and paper under twigs.

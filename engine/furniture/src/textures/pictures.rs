@@ -82,6 +82,75 @@ pub(super) fn branch(canvas: &mut Canvas, paint: &Paint) {
     });
 }
 
+/// Three soft fields of colour, one over the other.
+pub(super) fn fields(canvas: &mut Canvas, paint: &Paint) {
+    let [a, b, c] = paint.colors;
+    let ground = mix(shade(b, 0.75), [0.9, 0.86, 0.8], 0.35);
+    canvas.fill(|u, v| {
+        let soft = 0.02 + 0.02 * paint.noise.cloud(u, v, 8, 8, 3);
+        let inside = |low: f32, high: f32, x: f32| {
+            smooth_step(low - soft, low + soft, x)
+                * (1.0 - smooth_step(high - soft, high + soft, x))
+        };
+        let mut color = ground;
+        for (low, high, field) in [
+            (0.06, 0.36, a),
+            (0.4, 0.56, c),
+            (0.6, 0.94, mix(a, c, 0.45)),
+        ] {
+            let there = inside(0.09, 0.91, u) * inside(low, high, v);
+            let rubbed = 0.9 + 0.2 * paint.noise.cloud(u, v, 24, 10, 3);
+            color = mix(color, shade(field, rubbed), 0.92 * there);
+        }
+        color
+    });
+}
+
+/// Rings and half rings on a grid of squares.
+pub(super) fn rings(canvas: &mut Canvas, paint: &Paint) {
+    let colors = paint.colors;
+    let paper = [0.94, 0.92, 0.87];
+    canvas.fill(|u, v| {
+        let (x, y) = (u * 3.0, v * 4.0);
+        let (column, row) = (x as i32, y as i32);
+        let pick = paint.noise.cell(column * 5 + 2, row * 9 + 4);
+        let index = (pick * 2.999) as usize;
+        let (dx, dy) = (x - column as f32, y - row as f32);
+        // The middle of the rings: a corner of the square, or the middle of an edge.
+        let (cx, cy) = [(0.0, 0.0), (1.0, 0.0), (0.5, 0.0)][(column + 2 * row) as usize % 3];
+        let radius = ((dx - cx) * (dx - cx) + (dy - cy) * (dy - cy)).sqrt();
+        let band = (radius * 4.0) as usize;
+        match band {
+            0 | 2 => colors[index],
+            1 => paper,
+            3 => shade(colors[(index + 1) % 3], 1.1),
+            _ => shade(paper, 0.96),
+        }
+    });
+}
+
+/// Dunes or waves under a pale sky, each line in front of the last.
+pub(super) fn waves(canvas: &mut Canvas, paint: &Paint) {
+    let [a, b, c] = paint.colors;
+    let sky = mix(c, [0.97, 0.95, 0.9], 0.8);
+    canvas.fill(|u, v| {
+        let mut color = shade(sky, 0.96 + 0.06 * paint.noise.value(u, v, 50, 50));
+        for k in 0..7 {
+            let depth = k as f32 / 6.0;
+            let crest = 0.78 - 0.12 * k as f32
+                + 0.05 * math::sin(TAU * (u * (0.8 + 0.25 * depth) + 0.37 * k as f32))
+                + 0.03 * (paint.noise.cloud(u, 0.13 * k as f32, 3, 1, 2) - 0.5);
+            let tone = shade(mix(a, b, depth), 0.75 + 0.1 * (k % 3) as f32);
+            color = mix(
+                color,
+                tone,
+                1.0 - smooth_step(crest - 0.004, crest + 0.004, v),
+            );
+        }
+        color
+    });
+}
+
 /// A poster for a child: planets on their ways round the sun.
 pub(super) fn planets(canvas: &mut Canvas, paint: &Paint) {
     let [space, a, b] = paint.colors;

@@ -20,11 +20,12 @@ pub(super) fn tile(canvas: &mut Canvas, paint: &Paint) {
     });
 }
 
-/// Bricks in running bond, four courses of two; colours: brick, joint, burnt brick.
+/// Bricks in running bond, six courses of two: on half a metre those of DIN 4172, 25 cm long and twelve to a metre high with
+/// their joints. Colours: brick, joint, burnt brick.
 pub(super) fn brick(canvas: &mut Canvas, paint: &Paint) {
     let [brick, joint, burnt] = paint.colors;
     canvas.fill(|u, v| {
-        let y = v * 4.0;
+        let y = v * 6.0;
         let course = y.floor();
         let x = u * 2.0 + if course as i32 % 2 == 0 { 0.0 } else { 0.5 };
         let (dx, dy) = (x - x.floor(), y - course);
@@ -32,7 +33,7 @@ pub(super) fn brick(canvas: &mut Canvas, paint: &Paint) {
             .noise
             .cell((x.floor() as i32).rem_euclid(2) * 3 + 1, course as i32 * 7);
         let rough = paint.noise.cloud(u, v, 16, 16, 3);
-        let edge = (dx.min(1.0 - dx) * 2.0).min(dy.min(1.0 - dy));
+        let edge = (dx.min(1.0 - dx) * 3.0).min(dy.min(1.0 - dy));
         let body = shade(mix(brick, burnt, 0.6 * tone), 0.85 + 0.3 * rough);
         mix(
             joint,

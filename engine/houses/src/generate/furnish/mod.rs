@@ -13,7 +13,7 @@ use super::plan::{Cells, FloorPlan, metres};
 use super::rooms::RoomKind;
 use super::spec::HouseSpec;
 use crate::building::site::yaw;
-use dwell_furniture::stock::{Stock, VARIANTS, stock};
+use dwell_furniture::stock::{Stock, stock};
 use dwell_furniture::style::Style;
 use dwell_scene::Pose;
 use dwell_scene::random::{Key, Stream};
@@ -26,6 +26,10 @@ use std::sync::Arc;
 const PATHS_M: [f32; 3] = [0.4, 0.35, 0.3];
 /// Places that are tried for one thing.
 const TRIES: usize = 160;
+/// Looks that are tried for one thing.
+const LOOKS: u64 = 3;
+/// Looks that are tried for one that shall be unlike others.
+const UNLIKE_LOOKS: u64 = 24;
 
 /// What stands in one room, heights above its floor.
 pub(crate) struct Furnished {
@@ -181,11 +185,15 @@ impl Furnishing<'_> {
     /// Puts one thing of a rule: the first of its kinds for which there is a place.
     fn put(&mut self, rule: &Rule, anchor: Option<usize>, look: Key, draw: &mut Stream) -> bool {
         for kind in &rule.kinds {
-            for attempt in 0..VARIANTS {
+            let looks = if rule.differ { UNLIKE_LOOKS } else { LOOKS };
+            for attempt in 0..looks {
                 let key = look.child(kind.as_str()).child(attempt);
                 let Some(stock) = stock(kind, self.style, key) else {
                     break;
                 };
+                if rule.differ && self.shows(stock.motif) {
+                    continue;
+                }
                 let host = anchor.map(|k| &self.space.pieces[k]);
                 let ideas = place::ideas(rule, &self.space, &stock, host, draw);
                 for pose in ideas.into_iter().take(TRIES) {
@@ -203,6 +211,12 @@ impl Furnishing<'_> {
             }
         }
         false
+    }
+
+    /// Whether a picture in the room shows this already.
+    fn shows(&self, motif: Option<&'static str>) -> bool {
+        let mut pieces = self.space.pieces.iter();
+        motif.is_some() && pieces.any(|piece| piece.stock.motif == motif)
     }
 
     fn at_windows(&mut self, rule: &Rule, key: Key) -> bool {

@@ -44,7 +44,12 @@ pub(crate) fn ideas(
     let mut ideas: Vec<Idea> = match (rule.place, anchor) {
         (Place::Wall, _) => walls(space, stock, None, false, stream),
         (Place::Corner, _) => walls(space, stock, None, true, stream),
-        (Place::Hung, _) => walls(space, stock, Some(rule.height_m), false, stream),
+        (Place::Hung, None) => walls(space, stock, Some(rule.height_m), false, stream),
+        (Place::Hung, Some(anchor)) => near(
+            walls(space, stock, Some(rule.height_m), false, stream),
+            anchor,
+            rule.gap_m[1],
+        ),
         (Place::Centre, _) => centre(space, stream),
         (Place::Ceiling, anchor) => ceiling(space, anchor),
         (Place::Beside, Some(anchor)) => beside(stock, anchor, rule.gap_m[0], stream),
@@ -99,6 +104,15 @@ fn walls(
         }
     }
     ideas
+}
+
+/// Those places within a hand's reach (`reach_m`) of the middle of an anchor's front, the nearest first.
+fn near(ideas: Vec<Idea>, anchor: &Piece, reach_m: f32) -> Vec<Idea> {
+    let front = Vec3::Z * anchor.stock.felt.max.z;
+    let hand = anchor.pose.transform_point(front).with_y(0.0);
+    let away = |pose: &Pose| pose.position.with_y(0.0).distance(hand);
+    let ideas = ideas.into_iter().map(|(_, pose)| (away(&pose), pose));
+    ideas.filter(|(away, _)| *away <= reach_m).collect()
 }
 
 fn centre(space: &Space, stream: &mut Stream) -> Vec<Idea> {

@@ -28,7 +28,7 @@ pub(crate) enum Place {
     On,
     /// On the wall above its anchor.
     Above,
-    /// On a wall.
+    /// On a wall; with an anchor, as near to its front as can be, and not further than `gap_m`.
     Hung,
     /// On the ceiling.
     Ceiling,
@@ -68,6 +68,9 @@ pub(crate) struct Rule {
     /// Rooms that have one already do not get another.
     #[serde(default)]
     pub(crate) once: bool,
+    /// Whether no two in a room show the same picture.
+    #[serde(default)]
+    pub(crate) differ: bool,
     /// Rooms with less floor do not get it, m².
     #[serde(default)]
     pub(crate) from_m2: f32,
