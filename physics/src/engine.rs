@@ -4,17 +4,18 @@ use crate::config::Settings;
 use crate::contact::Kept;
 use crate::laws::Compliance;
 use crate::softness;
+use crate::workspace::Workspace;
 use glam::Vec3;
 use rapier3d::dynamics::{
-    CCDSolver, FrictionModel, ImpulseJointSet, IntegrationParameters, IslandManager,
-    MultibodyJointSet, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType, SoftBodySet,
+    FrictionModel, ImpulseJointSet, IntegrationParameters, IslandManager, RigidBody,
+    RigidBodyHandle, RigidBodySet, RigidBodyType,
 };
 use rapier3d::geometry::{
     BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, ContactData, ContactManifold,
     ContactPair, NarrowPhase, SolverContact,
 };
 use rapier3d::math::Pose;
-use rapier3d::pipeline::{EventHandler, PhysicsHooks, PhysicsPipeline, QueryFilter, QueryPipeline};
+use rapier3d::pipeline::{EventHandler, PhysicsHooks, QueryFilter, QueryPipeline};
 
 /// Steps of no length until the tree is back.
 const MOST_FLUSHES: usize = 4;
@@ -29,7 +30,8 @@ pub(crate) fn points(
     })
 }
 
-/// The simulation itself. Workspaces that hold nothing between steps are made anew when it is cloned.
+/// The simulation itself.
+#[derive(Clone)]
 pub(crate) struct Engine {
     pub(crate) gravity: Vec3,
     parameters: IntegrationParameters,
@@ -37,37 +39,13 @@ pub(crate) struct Engine {
     runs: u32,
     /// Whether contacts give.
     soft: bool,
-    pipeline: PhysicsPipeline,
-    ccd: CCDSolver,
-    multibodies: MultibodyJointSet,
-    soft_bodies: SoftBodySet,
+    workspace: Workspace,
     pub(crate) islands: IslandManager,
     pub(crate) broad_phase: BroadPhaseBvh,
     pub(crate) narrow_phase: NarrowPhase,
     pub(crate) bodies: RigidBodySet,
     pub(crate) colliders: ColliderSet,
     pub(crate) joints: ImpulseJointSet,
-}
-
-impl Clone for Engine {
-    fn clone(&self) -> Self {
-        Self {
-            gravity: self.gravity,
-            parameters: self.parameters,
-            runs: self.runs,
-            soft: self.soft,
-            pipeline: PhysicsPipeline::new(),
-            ccd: CCDSolver::new(),
-            multibodies: MultibodyJointSet::new(),
-            soft_bodies: SoftBodySet::new(),
-            islands: self.islands.clone(),
-            broad_phase: self.broad_phase.clone(),
-            narrow_phase: self.narrow_phase.clone(),
-            bodies: self.bodies.clone(),
-            colliders: self.colliders.clone(),
-            joints: self.joints.clone(),
-        }
-    }
 }
 
 impl Engine {
@@ -77,10 +55,7 @@ impl Engine {
             parameters: softness::rigid(settings),
             runs: 1,
             soft: false,
-            pipeline: PhysicsPipeline::new(),
-            ccd: CCDSolver::new(),
-            multibodies: MultibodyJointSet::new(),
-            soft_bodies: SoftBodySet::new(),
+            workspace: Workspace::new(),
             islands: IslandManager::new(),
             broad_phase: BroadPhaseBvh::new(),
             narrow_phase: NarrowPhase::new(),
@@ -233,6 +208,7 @@ impl Engine {
             flying.into_iter().partition(hit);
         self.fall(&flew, 0.5);
         self.tighten(&awake);
+        self.workspace.fit(awake.len());
         landed
     }
 
@@ -289,7 +265,8 @@ impl Engine {
         hooks: &dyn PhysicsHooks,
         events: &dyn EventHandler,
     ) {
-        self.pipeline.step(
+        let workspace = &mut self.workspace;
+        workspace.pipeline.step(
             self.gravity,
             parameters,
             &mut self.islands,
@@ -298,9 +275,9 @@ impl Engine {
             &mut self.bodies,
             &mut self.colliders,
             &mut self.joints,
-            &mut self.multibodies,
-            &mut self.soft_bodies,
-            &mut self.ccd,
+            &mut workspace.multibodies,
+            &mut workspace.soft_bodies,
+            &mut workspace.ccd,
             hooks,
             events,
         );

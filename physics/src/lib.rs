@@ -44,6 +44,7 @@ mod snapshot;
 mod softness;
 mod start;
 mod step;
+mod workspace;
 mod world;
 
 pub use actions::{Action, ActionCode, ActionOutcome, Grasp, Notice, Pointed, Target};

@@ -1,4 +1,4 @@
-//! What must hold after every step, and how memory is watched.
+//! What must hold after every step.
 
 use dwell::World;
 use dwell_scene::bvh::{Ray, RayMask};
@@ -7,26 +7,6 @@ use glam::Vec3;
 
 /// How far a thing may be outside of the box around the house: what leans out of a window, m.
 const MARGIN_M: f32 = 1.0;
-
-/// Memory in use, bytes; `None` where the system does not say.
-pub(crate) fn resident_bytes() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
-    let pages: f64 = text.split_whitespace().nth(1)?.parse().ok()?;
-    Some(pages * 4096.0)
-}
-
-/// The growth that a straight line through the last nine tenths of the samples shows over them.
-pub(crate) fn growth(samples: &[f64]) -> f64 {
-    let kept = &samples[samples.len() / 10..];
-    let n = kept.len() as f64;
-    let (mean_x, mean_y) = ((n - 1.0) / 2.0, kept.iter().sum::<f64>() / n);
-    let (mut top, mut bottom) = (0.0, 0.0);
-    for (x, y) in kept.iter().enumerate() {
-        top += (x as f64 - mean_x) * (y - mean_y);
-        bottom += (x as f64 - mean_x).powi(2);
-    }
-    top / bottom * n
-}
 
 /// The most that a snapshot may hold, bytes.
 pub(crate) fn largest_snapshot(world: &World) -> usize {

@@ -1,8 +1,12 @@
-//! What agents and joints are told: mostly with sense.
+//! What agents and joints are told, and what the world is set to: mostly with sense.
 
-use dwell_physics::{Action, AgentControl, Grasp, Target};
+use dwell::World;
+use dwell_physics::{Action, AgentControl, BodyState, Grasp, Target};
 use dwell_scene::random::Stream;
-use dwell_scene::{AgentBody, EntityId, JointCommand, JointId, Locomotion, ObjectId};
+use dwell_scene::{
+    Address, AgentBody, EntityId, JointCommand, JointId, Locomotion, ObjectId, Parameter, PartId,
+    Velocity,
+};
 use glam::Vec3;
 
 /// Mostly forward, now and then anywhere; on legs sometimes faster than any leg, and sometimes low.
@@ -96,4 +100,45 @@ pub(crate) fn command(stream: &mut Stream, joints: usize) -> (JointId, JointComm
         _ => JointCommand::Off,
     };
     (joint, command)
+}
+
+/// Any parameter of the house and of laws: as it was, somewhat off, or no number that can be. A law that is not installed
+/// comes in with a fiftieth of what it may have at most.
+pub(crate) fn setting(stream: &mut Stream, known: &[(Address, Parameter)]) -> (Address, f64) {
+    let (address, was) = &known[stream.below(known.len())];
+    let share = f64::from(stream.range(0.0, 1.0));
+    let value = match stream.below(8) {
+        0..=2 => was.value,
+        3 => f64::NAN,
+        4 => was.high + 1.0,
+        _ if was.value == 0.0 => (0.02 * share * was.high).clamp(was.low, was.high),
+        _ => (was.value * (0.7 + 0.7 * share)).clamp(was.low, was.high),
+    };
+    (address.clone(), value)
+}
+
+/// A part as it is, but thrown; most parts cannot be.
+pub(crate) fn thrown(stream: &mut Stream, world: &World) -> BodyState {
+    let part = PartId(stream.below(world.state().part_pose.len()) as u32);
+    BodyState {
+        part,
+        pose: world.state().part_pose[part],
+        velocity: Velocity {
+            linear: stream.direction() * stream.range(0.0, 4.0),
+            angular: stream.direction() * stream.range(0.0, 10.0),
+        },
+    }
+}
+
+/// A joint with a place and a speed, now and then beyond its limits.
+pub(crate) fn joint(stream: &mut Stream, world: &World) -> (JointId, f32, f32) {
+    let joint = JointId(stream.below(world.house().joints.len()) as u32);
+    let limits = world.house().joints[joint].limits;
+    let [low, high] = limits.unwrap_or([-3.0, 3.0]);
+    let beyond = 0.05 * (high - low);
+    (
+        joint,
+        stream.range(low - beyond, high + beyond),
+        stream.range(-1.0, 1.0),
+    )
 }

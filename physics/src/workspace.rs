@@ -1,0 +1,74 @@
+//! Memory that the solver works in, and nothing else: no step depends on what is in it.
+
+use rapier3d::dynamics::{CCDSolver, MultibodyJointSet, SoftBodySet};
+use rapier3d::pipeline::PhysicsPipeline;
+
+/// Bodies whose memory is not worth giving back.
+const FEW_BODIES: usize = 64;
+/// Steps for which less than a quarter of the memory was asked for before it is given back.
+const PATIENCE_STEPS: u32 = 128;
+
+/// The parts of rapier that hold nothing between steps. They are made anew in a copy.
+pub(crate) struct Workspace {
+    pub(crate) pipeline: PhysicsPipeline,
+    pub(crate) ccd: CCDSolver,
+    pub(crate) multibodies: MultibodyJointSet,
+    pub(crate) soft_bodies: SoftBodySet,
+    /// The most bodies that were awake since the pipeline was made.
+    most: usize,
+    /// Steps since more than a quarter of that were.
+    quiet_steps: u32,
+}
+
+impl Workspace {
+    pub(crate) fn new() -> Self {
+        Self {
+            pipeline: PhysicsPipeline::new(),
+            ccd: CCDSolver::new(),
+            multibodies: MultibodyJointSet::new(),
+            soft_bodies: SoftBodySet::new(),
+            most: 0,
+            quiet_steps: 0,
+        }
+    }
+
+    /// Gives memory back that was needed when far more bodies were awake than now: rapier keeps what its largest step took.
+    pub(crate) fn fit(&mut self, awake: usize) {
+        self.most = self.most.max(awake);
+        self.quiet_steps = if 4 * awake < self.most && self.most > FEW_BODIES {
+            self.quiet_steps + 1
+        } else {
+            0
+        };
+        if self.quiet_steps >= PATIENCE_STEPS {
+            *self = Self::new();
+        }
+    }
+}
+
+impl Clone for Workspace {
+    fn clone(&self) -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FEW_BODIES, PATIENCE_STEPS, Workspace};
+
+    #[test]
+    fn memory_of_a_crowd_is_given_back_after_a_long_quiet_only() {
+        let mut workspace = Workspace::new();
+        workspace.fit(10 * FEW_BODIES);
+        for _ in 0..PATIENCE_STEPS - 1 {
+            workspace.fit(FEW_BODIES);
+        }
+        assert_eq!(workspace.most, 10 * FEW_BODIES);
+        workspace.fit(3 * FEW_BODIES);
+        assert_eq!(workspace.quiet_steps, 0);
+        for _ in 0..PATIENCE_STEPS {
+            workspace.fit(FEW_BODIES);
+        }
+        assert_eq!((workspace.most, workspace.quiet_steps), (0, 0));
+    }
+}

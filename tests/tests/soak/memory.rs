@@ -1,0 +1,69 @@
+//! How memory is watched: every byte that is allocated and freed is counted.
+//!
+//! Agents strew things about, so that ever more pieces of theirs are near each other, and physics keeps the contacts of each
+//! such pair. What is held beyond that may not grow.
+
+use dwell::World;
+use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
+use std::alloc::System;
+
+#[global_allocator]
+static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// What a pair of pieces near each other takes: 2.3 KiB on the mean of the apartment (a node of the graph of contacts, planes
+/// of contact, their points and those of the solver), in vectors that hold up to twice what is in them.
+const PAIR_BYTES: i64 = 4096;
+/// How far the rest may grow from the second tenth of a run to the last ("flat memory").
+const GROWTH_BYTES: i64 = 1024 * 1024;
+/// Looks in a run.
+pub(crate) const LOOKS: usize = 100;
+
+/// What is allocated and not freed, bytes.
+fn in_use() -> i64 {
+    let stats = HEAP.stats();
+    stats.bytes_allocated as i64 - stats.bytes_deallocated as i64
+}
+
+/// Memory over a run.
+pub(crate) struct Watch {
+    /// Before there was a world.
+    empty: i64,
+    /// What was held beyond the pairs, bytes, at each look.
+    rest: Vec<i64>,
+}
+
+impl Watch {
+    pub(crate) fn new() -> Self {
+        Self {
+            empty: in_use(),
+            rest: Vec::with_capacity(LOOKS),
+        }
+    }
+
+    /// Looks at a world, the only one there is; what it holds, bytes.
+    pub(crate) fn look(&mut self, world: &World) -> i64 {
+        let held = in_use() - self.empty;
+        let pairs = world.pair_counts().near as i64;
+        self.rest.push(held - pairs * PAIR_BYTES);
+        held
+    }
+
+    /// The rest did not grow. The least of ten looks counts, since a crowd that is awake takes room to work in for a while.
+    pub(crate) fn check(&self) {
+        let least = |tenth: usize| {
+            let looks = &self.rest[tenth * LOOKS / 10..(tenth + 1) * LOOKS / 10];
+            *looks.iter().min().expect("ten looks")
+        };
+        let tenths: Vec<i64> = (0..10).map(least).collect();
+        let growth = tenths[9] - tenths[1];
+        println!("  memory beyond pairs grew by {growth} bytes: {tenths:?}");
+        assert!(growth <= GROWTH_BYTES, "memory grew by {growth} bytes");
+    }
+}
+
+/// Memory that the system gave, bytes; 0 where it does not say.
+pub(crate) fn resident_bytes() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    let pages = text.split_whitespace().nth(1);
+    pages.map_or(0.0, |pages| pages.parse().unwrap_or(0.0) * 4096.0)
+}
