@@ -88,7 +88,7 @@ pub(crate) fn insert_body(
     plan: &BodyPlan,
     values: Dress<'_>,
     entries: &mut Vec<Entry>,
-    place: BodyPlace,
+    place: BodyPlace<'_>,
 ) -> Body {
     let mut builder = RigidBodyBuilder::new(body_type(place.hold))
         .pose(place.world_from_body)
@@ -104,7 +104,8 @@ pub(crate) fn insert_body(
     for piece in &plan.pieces {
         let surface = values.table.surface(&piece.cover);
         let entry = Entry::new(piece.owner, Some(place.index), surface);
-        let density = density(piece, place.mass_factor, place.inertia.as_ref());
+        let factor = plan.factor_of(piece, place.mass_factors);
+        let density = density(piece, factor, place.inertia.as_ref());
         let builder = ColliderBuilder::new(piece.shape.clone())
             .position(piece.place)
             .density(density)
@@ -127,11 +128,12 @@ pub(crate) fn insert_body(
 
 /// Where and how a body starts.
 #[derive(Clone, Copy)]
-pub(crate) struct BodyPlace {
+pub(crate) struct BodyPlace<'a> {
     pub(crate) index: u32,
     pub(crate) world_from_body: RapierPose,
     pub(crate) hold: Hold,
-    pub(crate) mass_factor: f32,
+    /// What its parts' densities are multiplied with. Shape (part,).
+    pub(crate) mass_factors: &'a [f32],
     /// What a law makes of its mass and inertia.
     pub(crate) inertia: Option<Inertia>,
     pub(crate) sleeping_allowed: bool,
@@ -164,40 +166,45 @@ pub(crate) fn look_anew(collider: &mut Collider) {
     collider.set_solver_groups(groups);
 }
 
-/// What the densities of each body are multiplied with, so that overridden objects weigh what they should. Shape (body,).
-pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<f32> {
+/// What the densities of each body's parts are multiplied with, so that overridden parts and objects weigh what they should. A
+/// part's own factor says how its mass is to the others', and the object's mass, where it is overridden, how much all weigh
+/// together. Shape (body, part).
+pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f32>> {
     let house = &model.house;
-    let total = |object: ObjectId| -> f32 {
-        let bodies = model.bodies.iter().filter(|body| body.object == object);
-        bodies.map(|body| body.mass_kg).sum()
-    };
-    model
-        .bodies
-        .iter()
-        .map(|body| match state.object_mass_kg(house, body.object) {
-            Some(mass) if body.mass_kg > 0.0 => mass / total(body.object),
-            _ => part_factor(house, body, state),
-        })
-        .collect()
-}
-
-/// What a body's densities are multiplied with when parts of it have another mass. Parts that state none share alike in what
-/// is left of the body's.
-fn part_factor(house: &House, body: &BodyPlan, state: &State) -> f32 {
-    let stated = |id: PartId| house.parts[id].mass_kg;
-    let known: f32 = body.parts.iter().filter_map(|(id, _)| stated(*id)).sum();
-    let open = body.parts.iter().filter(|(id, _)| stated(*id).is_none());
-    let share = (body.mass_kg - known).max(0.0) / open.count().max(1) as f32;
-    let more = body.parts.iter().map(|(id, _)| {
-        let factor = state.part_mass_factor(house, *id);
-        stated(*id).unwrap_or(share) * (factor - 1.0)
-    });
-    let more: f32 = more.sum();
-    if more == 0.0 || body.mass_kg <= 0.0 {
-        1.0
-    } else {
-        ((body.mass_kg + more) / body.mass_kg).max(1e-6)
+    if state.overrides.is_empty() {
+        let ones = |body: &BodyPlan| vec![1.0; body.parts.len()];
+        return model.bodies.iter().map(ones).collect();
     }
+    let of_parts = |body: &BodyPlan| -> Vec<f32> {
+        let parts = body.parts.iter();
+        parts
+            .map(|(part, _)| state.part_mass_factor(house, *part))
+            .collect()
+    };
+    let mut factors: Vec<Vec<f32>> = model.bodies.iter().map(of_parts).collect();
+    let mut first = 0;
+    // An object's bodies stand one after the other.
+    while let Some(object) = model.bodies.get(first).map(|body| body.object) {
+        let bodies = &model.bodies[first..];
+        let count = bodies
+            .iter()
+            .take_while(|body| body.object == object)
+            .count();
+        let own = first..first + count;
+        if let Some(mass) = state.object_mass_kg(house, object) {
+            let total: f32 = own
+                .clone()
+                .map(|k| model.bodies[k].mass_kg(&factors[k]))
+                .sum();
+            if total > 0.0 {
+                for factor in factors[own].iter_mut().flatten() {
+                    *factor *= mass / total;
+                }
+            }
+        }
+        first += count;
+    }
+    factors
 }
 
 /// Writes a body's poses and velocities into the state.

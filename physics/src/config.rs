@@ -45,8 +45,6 @@ pub struct PhysicsConfig {
     /// The most events of a control step; 1 to 100,000, default 128. Impacts come before scrapes and rolling, the strongest
     /// first; the others are counted and summed.
     pub max_events_per_step: usize,
-    /// The strongest push of an agent's body, N; 0 to 10,000, default 100.
-    pub push_force_n: f32,
     /// The strongest pull of a hand on a door or drawer, N·m or N; 0 to 10,000, default 40.
     pub hand_effort: f32,
     /// The largest edge of what a hand carries, m; 0.05 to 5, default 1.
@@ -70,7 +68,6 @@ impl Default for PhysicsConfig {
             event_min_impulse_n_s: 1e-3,
             slide_min_speed_m_s: 0.02,
             max_events_per_step: 128,
-            push_force_n: 100.0,
             hand_effort: 40.0,
             max_carry_size_m: 1.0,
             latches: true,
@@ -180,7 +177,6 @@ impl PhysicsConfig {
             1e5,
             "1 to 100000",
         )?;
-        range("push_force_n", self.push_force_n, 0.0, 1e4, "0 to 10000")?;
         range("hand_effort", self.hand_effort, 0.0, 1e4, "0 to 10000")?;
         range(
             "max_carry_size_m",
@@ -214,7 +210,7 @@ mod tests {
         let message = config.check().unwrap_err().to_string();
         assert!(message.contains("physics_rate_hz"), "{message}");
         let config = PhysicsConfig {
-            push_force_n: f32::NAN,
+            hand_effort: f32::NAN,
             ..PhysicsConfig::default()
         };
         assert!(config.check().is_err());

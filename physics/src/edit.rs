@@ -1,4 +1,4 @@
-//! Changes from outside: agents that come and are placed, states that are taken over.
+//! Changes from outside: agents that come, states that are taken over.
 
 use crate::agents::{self, Loose};
 use crate::body::{self, Hold};
@@ -7,7 +7,7 @@ use crate::convert::to_rapier;
 use crate::error::PhysicsError;
 use crate::joints::{self, Stand};
 use crate::world::PhysicsWorld;
-use dwell_scene::{AgentId, AgentState, BaseState, Id, JointId, State, Velocity};
+use dwell_scene::{AgentId, AgentState, Id, JointId, State, Velocity};
 use glam::Vec3;
 
 impl PhysicsWorld {
@@ -60,76 +60,6 @@ impl PhysicsWorld {
         );
         self.agents.push(inserted);
         self.loose.push(Loose::default());
-    }
-
-    /// Puts an agent somewhere, at rest, together with what it holds.
-    ///
-    /// # Errors
-    /// [`PhysicsError::UnknownAgent`], or [`PhysicsError::Range`] for a place that is not finite.
-    pub fn place_agent(
-        &mut self,
-        state: &mut State,
-        agent: AgentId,
-        position: Vec3,
-        yaw_rad: f32,
-    ) -> Result<(), PhysicsError> {
-        self.check_state(state)?;
-        let Some(here) = state.agents.get_mut(agent) else {
-            return Err(PhysicsError::UnknownAgent {
-                index: agent.index(),
-                count: self.agents.len(),
-            });
-        };
-        finite_place(position, yaw_rad)?;
-        here.position = position;
-        here.yaw_rad = dwell_scene::math::wrap_angle(yaw_rad);
-        here.pitch_rad = 0.0;
-        here.velocity = Vec3::ZERO;
-        here.collided = false;
-        here.grounded = true;
-        here.gyro_rad_s = 0.0;
-        here.base = BaseState::default();
-        let stands_up = here.crouched_by_m != 0.0;
-        here.crouched_by_m = 0.0;
-        let here = *here;
-        self.loose[agent.index()] = Loose::default();
-        if let Some(rigid) = self
-            .engine
-            .bodies
-            .get_mut(self.agents[agent.index()].handle)
-        {
-            rigid.set_translation(position, true);
-        }
-        if stands_up {
-            agents::reshape(&mut self.engine, &self.agents[agent.index()], &here);
-        }
-        if let Some(place) = self.grips.iter().position(|grip| grip.agent == agent) {
-            self.bring_held(state, place, &here);
-        }
-        self.flush();
-        self.write_bodies(state);
-        Ok(())
-    }
-
-    /// Brings what an agent holds to where its hand is now: as near to the hand as nothing is in the way, never beyond a
-    /// wall. Where there is no room at all, the agent lets go of it, and it stays where it was.
-    fn bring_held(&mut self, state: &mut State, place: usize, here: &AgentState) {
-        let grip = self.grips[place];
-        let body = grip.body as usize;
-        let hand = to_rapier(&agents::hand_pose(&grip, here));
-        let mut eye = hand;
-        let middle = self.model.bodies[body].bounds(&hand).center();
-        eye.translation += here.eye_position() - middle;
-        let clear = self.clear_between(body, here, &eye, &hand);
-        if clear.is_none() {
-            self.ungrip(state, place);
-        }
-        let handle = self.bodies[body].handle;
-        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
-            rigid.set_position(clear.unwrap_or(*rigid.position()), true);
-            rigid.set_linvel(Vec3::ZERO, true);
-            rigid.set_angvel(Vec3::ZERO, true);
-        }
     }
 
     /// Takes over poses, velocities and joint positions that were set in `state` from outside: what differs from where
@@ -219,7 +149,7 @@ impl PhysicsWorld {
                 shut: self.holds[child] == Hold::Latched,
             };
             let there = joints::read(&self.engine, joint, position.into());
-            let put = !stand.shut && !joints::says_the_same(&stand, there);
+            let put = !stand.shut && !joints::says_the_same(&self.engine, joint, &stand, there);
             if put {
                 for installed in &mut self.laws {
                     installed.law.placed(joint.id, position);
@@ -260,7 +190,7 @@ impl PhysicsWorld {
                 state.joint_position[joint.id].into(),
                 state.joint_velocity[joint.id].into(),
             );
-            if !stand.shut && joints::says_the_same(stand, read) {
+            if !stand.shut && joints::says_the_same(&self.engine, joint, stand, read) {
                 state.joint_position[joint.id] = stand.position;
                 state.joint_velocity[joint.id] = stand.velocity;
             }

@@ -19,10 +19,13 @@ pub(crate) struct Inertia {
 }
 
 impl Inertia {
-    /// What a body's pieces have and its parts state in a world, with densities multiplied by `factor`.
-    pub(crate) fn of(house: &House, plan: &BodyPlan, state: &State, factor: f32) -> Self {
-        let mut all = plan.given_mass(house, state, factor).unwrap_or_default();
+    /// What a body's pieces have and its parts state in a world, with each part's density times its factor. Shape of
+    /// `factors`: (part,).
+    pub(crate) fn of(house: &House, plan: &BodyPlan, state: &State, factors: &[f32]) -> Self {
+        let given = plan.given_mass(house, state, factors);
+        let mut all = given.unwrap_or_default();
         for piece in &plan.pieces {
+            let factor = plan.factor_of(piece, factors);
             let own = piece.shape.mass_properties(piece.density_kg_m3 * factor);
             all += own.transform_by(&piece.place);
         }
@@ -51,21 +54,21 @@ impl Inertia {
 pub(crate) fn altered(
     model: &PhysicsModel,
     state: &State,
-    factors: &[f32],
+    factors: &[Vec<f32>],
     laws: &[Installed],
 ) -> Vec<Option<Inertia>> {
     let bodies = model.bodies.iter().zip(factors).enumerate();
     bodies
         .map(|(index, (plan, factor))| {
-            if laws.is_empty() && plan.given.is_none() {
+            if laws.is_empty() && !plan.states_inertia {
                 return None;
             }
-            let own = Inertia::of(&model.house, plan, state, *factor);
+            let own = Inertia::of(&model.house, plan, state, factor);
             let mut changed = own;
             for installed in laws {
                 installed.law.weigh(index as u32, &mut changed);
             }
-            (changed != own || plan.given.is_some()).then_some(changed)
+            (changed != own || plan.states_inertia).then_some(changed)
         })
         .collect()
 }

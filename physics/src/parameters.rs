@@ -7,7 +7,7 @@ use crate::error::PhysicsError;
 use crate::joints::{self, Stand};
 use crate::laws;
 use crate::world::{PhysicsWorld, Weights};
-use dwell_scene::State;
+use dwell_scene::{AgentId, Id, State};
 use glam::Vec3;
 use rapier3d::dynamics::{MassProperties, RigidBody};
 use rapier3d::geometry::ColliderHandle;
@@ -15,14 +15,16 @@ use rapier3d::geometry::ColliderHandle;
 impl PhysicsWorld {
     /// Takes over the state's overrides and laws: masses, friction and restitution of pairs and materials, gravity,
     /// all that [`State::joint_values`] gives of joints. Everything that sleeps is woken if something changed. Where a link's
-    /// length changed, what hangs on it moves there, in `state` too; a joint beyond a new limit stands at it, at rest.
+    /// length or a joint's axis changed, what hangs on it moves there, in `state` too; a joint beyond a new limit stands at it, at
+    /// rest. Agents have their bodies as the state says.
     ///
     /// # Errors
-    /// [`PhysicsError::Scene`] or [`PhysicsError::LawTarget`] for a law that cannot be installed; nothing has changed
-    /// then.
+    /// [`PhysicsError::Scene`] or [`PhysicsError::LawTarget`] for a law that cannot be installed, [`PhysicsError::Range`] for an
+    /// agent's body that has no room where the agent stands; nothing has changed then.
     pub fn apply_parameters(&mut self, state: &mut State) -> Result<(), PhysicsError> {
         self.check_state(state)?;
         let laws = laws::install(&self.model, state, &self.laws)?;
+        self.check_room(state)?;
         let model = self.model.clone();
         let table = ContactTable::new(&model.house, state);
         let weights = Weights::new(&model, state, &laws);
@@ -46,13 +48,19 @@ impl PhysicsWorld {
         for (index, (piece, body)) in statics.chain(moving).enumerate() {
             self.entries[index].surface = table.surface(&piece.cover);
             let density = body.map(|body| {
-                let altered = weights.altered[body].as_ref();
-                body::density(piece, weights.factors[body], altered)
+                let factor = model.bodies[body].factor_of(piece, &weights.factors[body]);
+                body::density(piece, factor, weights.altered[body].as_ref())
             });
             changed |= self.redress(index, values, density);
         }
         for (index, inertia) in weights.altered.iter().enumerate() {
             if *inertia == self.weights.altered[index] {
+                // Other shares of the parts in the mass move its centre.
+                let uneven = |factors: &[f32]| factors.iter().any(|factor| *factor != factors[0]);
+                let (new, old) = (&weights.factors[index], &self.weights.factors[index]);
+                if new != old && (uneven(new) || uneven(old)) {
+                    shifted.push(index);
+                }
                 continue;
             }
             let properties = inertia.map_or_else(MassProperties::default, |i| i.properties());
@@ -70,11 +78,12 @@ impl PhysicsWorld {
             let entry = self.agents[agent].entry as usize;
             self.entries[entry].surface = table.human();
             changed |= self.redress(entry, values, None);
+            changed |= self.take_body(agent, &state.agents[AgentId::from_index(agent)]);
         }
         for joint in &mut self.joints {
-            let before = joint.values.parent_from_joint;
+            let before = (joint.values.parent_from_joint, joint.values.axis);
             changed |= joints::set_values(&mut self.engine, &model, joint, state);
-            longer |= joint.values.parent_from_joint != before;
+            longer |= (joint.values.parent_from_joint, joint.values.axis) != before;
             let position = state.joint_position[joint.id];
             let within = joint.values.clamp(position);
             if within != position {

@@ -28,7 +28,7 @@ use xxhash_rust::xxh3::xxh3_64;
 /// What a snapshot begins with, and what a moment begins with, which is not packed.
 const MAGIC: &[u8; 4] = b"dwph";
 const MAGIC_OF_MOMENTS: &[u8; 4] = b"dwpm";
-const VERSION: u32 = 9;
+const VERSION: u32 = 10;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.

@@ -72,8 +72,8 @@ pub struct PhysicsWorld {
 /// What bodies weigh in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Weights {
-    /// What densities are multiplied with. Shape (body,).
-    pub(crate) factors: Vec<f32>,
+    /// What densities are multiplied with. Shape (body, part).
+    pub(crate) factors: Vec<Vec<f32>>,
     /// What laws make of mass and inertia. Shape (body,).
     pub(crate) altered: Vec<Option<Inertia>>,
 }
@@ -114,7 +114,7 @@ pub(crate) fn assemble(
             index: index as u32,
             world_from_body,
             hold,
-            mass_factor: weights.factors[index],
+            mass_factors: &weights.factors[index],
             inertia: weights.altered[index],
             sleeping_allowed: settings.config.sleeping,
             event_force_n: settings.event_force_n(),

@@ -121,9 +121,11 @@ def record(
     checked: dict[str, Any] = {}
     for field in dataclasses.fields(kind):  # type: ignore[arg-type] # every kind is a data class
         part, at = getattr(value, field.name), f"{name}.{field.name}"
-        if isinstance(field.default, int):
+        if field.default is None and part is None:
+            checked[field.name] = None
+        elif isinstance(field.default, int):
             checked[field.name] = whole(at, part)
-        elif isinstance(field.default, float):
+        elif field.default is None or isinstance(field.default, float):
             checked[field.name] = finite(at, part)
         else:
             checked[field.name] = choice(at, part, words[field.name])

@@ -45,7 +45,8 @@ class Camera:
     Attributes:
         width: Pixels across, 1 to 8192.
         height: Pixels down.
-        fov_deg: Horizontal field of view, degrees.
+        fov_deg: Horizontal field of view, degrees; ``None``: at an agent's eyes what
+            ``agent/N/camera/fov_deg`` says, elsewhere 90.
         near_m: Nearest distance that is seen, m.
         far_m: Furthest distance, to which depth is clamped, m.
         preset: ``lit`` (lamps and daylight) or ``flat`` (texture times colour).
@@ -53,7 +54,7 @@ class Camera:
 
     width: int = 128
     height: int = 128
-    fov_deg: float = 90.0
+    fov_deg: float | None = None
     near_m: float = 0.05
     far_m: float = 50.0
     preset: Literal["flat", "lit"] = "lit"
@@ -126,8 +127,8 @@ class World:
             house: A house or a HOUSE string.
             agents: How many agents live in it, all of the default body; or a body for each, as a
                 mapping of what differs: ``radius_m``, ``height_m``, ``eye_height_m``,
-                ``step_height_m``, ``max_slope_rad``, ``mass_kg``, ``lift_kg``, ``reach_m`` and
-                ``locomotion``, which is ``{"walking": {...}}`` (``max_speed_m_s``,
+                ``step_height_m``, ``max_slope_rad``, ``mass_kg``, ``lift_kg``, ``reach_m``,
+                ``push_force_n``, ``camera_fov_deg`` and ``locomotion``, which is ``{"walking": {...}}`` (``max_speed_m_s``,
                 ``max_crouched_speed_m_s``, ``crouched_height_m``),
                 ``{"differential_drive": {...}}`` (``wheel_base_m``, ``left_wheel_radius_m``,
                 ``right_wheel_radius_m``, ``max_wheel_speed_rad_s``,
@@ -272,11 +273,57 @@ class World:
         return Outcome._of(json.loads(self._native.act_discrete(agent, number)))
 
     def place_agent(
-        self, position: Sequence[float], yaw_deg: float = 0.0, *, agent: int = 0
+        self,
+        position: Sequence[float],
+        yaw_deg: float = 0.0,
+        *,
+        agent: int = 0,
+        pitch_deg: float = 0.0,
+        linear_m_s: Sequence[float] = (0.0, 0.0, 0.0),
+        yaw_rate_rad_s: float = 0.0,
+        crouched_by_m: float = 0.0,
+        wheel_rad_s: Sequence[float] | None = None,
     ) -> None:
-        """Puts an agent somewhere, at rest. ``position``: the point between its feet, m."""
-        place, yaw_deg = point("position", position), finite("yaw_deg", yaw_deg)
-        self._native.place_agent(whole("agent", agent), place, yaw_deg)
+        """Puts an agent somewhere, moving in any way that its body can; at rest, if nothing is said.
+
+        Legs slide or fly on with a velocity until feet brake them: what they do by their own will
+        they are told in :meth:`step`. Wheels turn as the velocity ahead and the rate of turn ask
+        for. :meth:`agents` reads back what was set.
+
+        Args:
+            position: The point between its feet, m.
+            yaw_deg: Where it faces, degrees, positive to the left.
+            agent: Which one.
+            pitch_deg: Where it looks, degrees, positive up; up to 85 either way.
+            linear_m_s: Its velocity, up to 30 m/s along each axis.
+            yaw_rate_rad_s: Its rate of turn, positive to the left.
+            crouched_by_m: How much lower than its height legs keep it.
+            wheel_rad_s: Speeds of the left and right wheel of a differential drive, instead of a
+                level velocity and a rate of turn.
+
+        Raises:
+            ConfigError: For what is no finite number.
+            UsageError: There is no such agent.
+            DwellError: Its body cannot have the numbers. Nothing has changed then.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment")
+            >>> room = world.house.rooms()[0]
+            >>> world.place_agent(room["stand"], pitch_deg=-20.0, linear_m_s=(0.5, 0.0, 0.0))
+            >>> world.agents()[0]["velocity"]
+            [0.5, 0.0, 0.0]
+        """
+        row = {
+            "position": point("position", position),
+            "yaw_deg": finite("yaw_deg", yaw_deg),
+            "pitch_deg": finite("pitch_deg", pitch_deg),
+            "linear_m_s": triple("linear_m_s", linear_m_s),
+            "yaw_rate_rad_s": finite("yaw_rate_rad_s", yaw_rate_rad_s),
+            "crouched_by_m": finite("crouched_by_m", crouched_by_m),
+            "wheel_rad_s": None if wheel_rad_s is None else pair("wheel_rad_s", wheel_rad_s),
+        }
+        self._native.place_agent(whole("agent", agent), to_json(row))
 
     def agents(self) -> list[dict[str, Any]]:
         """The agents' states."""
@@ -489,7 +536,34 @@ class World:
         that differs from its default installs a law; one whose numbers are all default acts no
         more.
         """
-        self._native.set_parameter(text("address", address), finite(address, value))
+        self.set_parameters({text("address", address): value})
+
+    def set_parameters(self, parameters: Mapping[str, float]) -> None:
+        """Sets parameters together from now on: all of them, or none.
+
+        What bounds each other is checked when all are set: the two limits of a joint, the three
+        moments of inertia of a part, the height and the radius of an agent.
+
+        Args:
+            parameters: Values by address.
+
+        Raises:
+            ConfigError: For what is no finite number.
+            SceneError: An address names nothing or stands there in two spellings, or a value is out
+                of its range beside the others. Nothing has changed then.
+            DwellError: An agent's new body has no room where it stands, or a law cannot act on its
+                target. Nothing has changed then.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment")
+            >>> child = {"height_m": 1.1, "eye_height_m": 0.95, "radius_m": 0.15, "reach_m": 1.0}
+            >>> world.set_parameters({f"agent/0/body/{name}": x for name, x in child.items()})
+            >>> world.agents()[0]["body"]["height_m"]
+            1.1
+        """
+        rows = mapping("parameters", parameters, "values by address").items()
+        self._native.set_parameters([(address, finite(address, value)) for address, value in rows])
 
     def snapshot(self) -> bytes:
         """The whole world as bytes; no mesh is in them."""
@@ -537,7 +611,9 @@ def _thing(name: str, value: object) -> str | int:
 def _camera(name: str, value: object) -> dict[str, Any]:
     """A camera as what its pixels depend on."""
     if isinstance(value, Camera):
-        value = {"width": value.width, "height": value.height, "fov_deg": value.fov_deg}
+        value = {"width": value.width, "height": value.height} | (
+            {} if value.fov_deg is None else {"fov_deg": value.fov_deg}
+        )
     return fields(name, value, {"width": whole, "height": whole, "fov_deg": finite})
 
 

@@ -15,7 +15,7 @@ use serde::Deserialize;
 struct ViewSettings {
     width: u32,
     height: u32,
-    fov_deg: f32,
+    fov_deg: Option<f32>,
     near_m: f32,
     far_m: f32,
     preset: Preset,
@@ -31,7 +31,7 @@ impl Default for ViewSettings {
         Self {
             width: 128,
             height: 128,
-            fov_deg: 90.0,
+            fov_deg: None,
             near_m: 0.05,
             far_m: 50.0,
             preset: Preset::Lit,
@@ -68,9 +68,14 @@ pub(crate) fn render(
     }
     let wanted = |channel: &str| channels.iter().any(|other| other == channel);
     let settings: ViewSettings = serde_json::from_str(view_json)?;
-    let camera = Camera::from_fov(settings.width, settings.height, settings.fov_deg)?;
-    let camera = camera.with_range(settings.near_m, settings.far_m)?;
     let (world_from_camera, hide) = eye(world, &settings)?;
+    let own = settings
+        .agent
+        .map(|agent| world.state().camera_fov_deg(AgentId(agent)));
+    // Away from an agent's eyes a camera has the right angle that they have where nothing else is said.
+    let fov_deg = settings.fov_deg.or(own).unwrap_or(90.0);
+    let camera = Camera::from_fov(settings.width, settings.height, fov_deg)?;
+    let camera = camera.with_range(settings.near_m, settings.far_m)?;
     let view = View {
         preset: settings.preset,
         hide,

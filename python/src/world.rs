@@ -7,7 +7,7 @@ use crate::navigation::PyNavigation;
 use crate::picture;
 use crate::running::Running;
 use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
-use dwell_physics::{AgentControl, BodyState};
+use dwell_physics::{AgentControl, AgentPlacement, BodyState};
 use dwell_render::{Channels, Frame, Map};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
@@ -45,6 +45,19 @@ struct BodyRow {
     rotation: [f32; 4],
     linear_m_s: [f32; 3],
     angular_rad_s: [f32; 3],
+}
+
+/// An agent that is put somewhere, as Python says it.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AgentRow {
+    position: [f32; 3],
+    yaw_deg: f32,
+    pitch_deg: f32,
+    linear_m_s: [f32; 3],
+    yaw_rate_rad_s: f32,
+    crouched_by_m: f32,
+    wheel_rad_s: Option<[f32; 2]>,
 }
 
 fn stopped() -> Fault {
@@ -139,20 +152,20 @@ impl PyWorld {
         })
     }
 
-    fn place_agent(
-        &self,
-        py: Python<'_>,
-        agent: usize,
-        position: [f32; 3],
-        yaw_deg: f32,
-    ) -> PyResult<()> {
+    fn place_agent(&self, py: Python<'_>, agent: usize, place_json: &str) -> PyResult<()> {
         self.with(py, |running| {
-            let agent = running.agent(agent)?;
-            Ok(running.world.place_agent(
-                agent,
-                Vec3::from_array(position),
-                yaw_deg.to_radians(),
-            )?)
+            let row: AgentRow = serde_json::from_str(place_json)?;
+            let placement = AgentPlacement {
+                agent: running.agent(agent)?,
+                position: row.position.into(),
+                yaw_rad: row.yaw_deg.to_radians(),
+                pitch_rad: row.pitch_deg.to_radians(),
+                velocity: row.linear_m_s.into(),
+                yaw_rate_rad_s: row.yaw_rate_rad_s,
+                crouched_by_m: row.crouched_by_m,
+                wheel_rad_s: row.wheel_rad_s,
+            };
+            Ok(running.world.set_agents(&[placement])?)
         })
     }
 
@@ -481,9 +494,13 @@ impl PyWorld {
         })
     }
 
-    fn set_parameter(&self, py: Python<'_>, address: &str, value: f64) -> PyResult<()> {
+    fn set_parameters(&self, py: Python<'_>, values: Vec<(String, f64)>) -> PyResult<()> {
         self.with(py, |running| {
-            Ok(running.world.set_parameter(&address.parse()?, value)?)
+            let values: Vec<(Address, f64)> = values
+                .iter()
+                .map(|(address, value)| Ok((address.parse()?, *value)))
+                .collect::<Result<_, Fault>>()?;
+            Ok(running.world.set_parameters(&values)?)
         })
     }
 

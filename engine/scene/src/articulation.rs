@@ -164,14 +164,7 @@ pub struct Articulation {
 impl Articulation {
     /// The movement of the joint at `position` (rad or m).
     pub fn motion(&self, position: f32) -> Pose {
-        match self.kind {
-            JointKind::Hinge => {
-                let (s, c) = crate::math::sin_cos(position * 0.5);
-                let v = self.axis * s;
-                Pose::new(Vec3::ZERO, Quat::from_xyzw(v.x, v.y, v.z, c))
-            }
-            JointKind::Slide => Pose::from_position(self.axis * position),
-        }
+        motion_along(self.kind, self.axis, position)
     }
 
     /// Where the child stands when the parent stands at `world_from_parent` and the joint at `position`.
@@ -230,6 +223,18 @@ impl Articulation {
     /// The position at which it is open to `fraction` (0 to 1, clamped).
     pub fn position_at(&self, fraction: f32) -> f32 {
         self.closed + (self.open - self.closed) * fraction.clamp(0.0, 1.0)
+    }
+}
+
+/// The movement of a joint with the unit axis `axis` at `position` (rad or m).
+pub(crate) fn motion_along(kind: JointKind, axis: Vec3, position: f32) -> Pose {
+    match kind {
+        JointKind::Hinge => {
+            let (s, c) = crate::math::sin_cos(position * 0.5);
+            let v = axis * s;
+            Pose::new(Vec3::ZERO, Quat::from_xyzw(v.x, v.y, v.z, c))
+        }
+        JointKind::Slide => Pose::from_position(axis * position),
     }
 }
 

@@ -6,11 +6,11 @@ use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::metrics::Progress;
 use crate::requests::{Requests, Results};
-use crate::sensors::{self, Out, Seen, Sensor, SensorSpec, Site};
+use crate::sensors::{self, EyeCamera, Out, Seen, Sensor, SensorSpec, Site};
 use crate::tasks::{self, Task, TaskKind};
 use crate::world::World;
 use dwell_scene::random::Key;
-use dwell_scene::{AgentId, Pose};
+use dwell_scene::{AgentId, Id, Pose};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -157,7 +157,16 @@ impl Env {
                 });
             }
         }
-        let world = World::new(engines, &config.world)?;
+        let mut world_config = config.world.clone();
+        // What `agent/N/camera/fov_deg` reads is what the agent sees with: its first camera.
+        for (k, body) in world_config.agents.iter_mut().enumerate() {
+            let eyes = sensors.iter().filter_map(|sensor| sensor.eye());
+            let own = |eye: &&EyeCamera| eye.agent.index() == k;
+            if let Some(eye) = eyes.clone().find(own) {
+                body.camera_fov_deg = eye.fov_deg;
+            }
+        }
+        let world = World::new(engines, &world_config)?;
         let mut requests = Requests::default();
         for sensor in &sensors {
             sensor.plan(&world, &mut requests);

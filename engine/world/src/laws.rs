@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use dwell_scene::law::ParamInfo;
-use dwell_scene::{Address, LawInfo, LawSpec, Parameter, SceneError, State};
+use dwell_scene::{Address, House, LawInfo, LawSpec, Parameter, SceneError, State};
 
 /// All laws that some engine knows.
 pub fn all() -> impl Iterator<Item = &'static LawInfo> {
@@ -11,11 +11,14 @@ pub fn all() -> impl Iterator<Item = &'static LawInfo> {
         .chain(dwell_acoustics::laws::all())
 }
 
-/// Checks laws and leaves out those at their default: such a law changes nothing, bit for bit.
+/// Checks laws and leaves out those at their default: such a law changes nothing, bit for bit. Their targets are kept in one
+/// spelling ([`LawSpec::canonical_target`]).
 ///
 /// # Errors
-/// [`WorldError::Unknown`] lists the laws there are; [`WorldError::Scene`] names a parameter out of bounds.
-pub fn install(specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldError> {
+/// [`WorldError::Unknown`] lists the laws there are; [`WorldError::Scene`] names a parameter out of bounds, or a target that
+/// is there in two spellings.
+pub fn install(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldError> {
+    LawSpec::check_targets(house, &all().collect::<Vec<_>>(), specs)?;
     let mut installed = Vec::new();
     for spec in specs {
         let Some(info) = all().find(|info| info.id == spec.id) else {
@@ -29,6 +32,8 @@ pub fn install(specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldError> {
         spec.check(info)?;
         if !spec.is_default(info) {
             let mut spec = spec.clone();
+            let target = spec.target.as_deref();
+            spec.target = target.map(|target| LawSpec::canonical_target(house, info, target));
             // One spelling for each law: what is default is not written, as when it is set by its address.
             spec.params.retain(|name, value| {
                 let of = |param: &&ParamInfo| param.name == name;
@@ -47,29 +52,34 @@ pub fn install(specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldError> {
 /// [`SceneError::Address`] says which word is wrong and what is allowed there.
 pub(crate) fn parameter(
     state: &State,
-    house: &dwell_scene::House,
+    house: &House,
     address: &Address,
 ) -> Result<Parameter, SceneError> {
     if address.is_law() {
-        state.law_parameter(&all().collect::<Vec<_>>(), address)
+        state.law_parameter(house, &all().collect::<Vec<_>>(), address)
     } else {
         state.parameter(house, address)
     }
 }
 
-/// Sets what stands at any address.
+/// Sets what stands at any addresses: all of it, or nothing.
 ///
 /// # Errors
-/// As [`parameter`], and for a value out of range.
-pub(crate) fn set_parameter(
+/// As [`parameter`], for a value out of range beside the others, and for a parameter that is there twice.
+pub(crate) fn set_parameters(
     state: &mut State,
-    house: &dwell_scene::House,
-    address: &Address,
-    value: f64,
+    house: &House,
+    values: &[(Address, f64)],
 ) -> Result<(), SceneError> {
-    if address.is_law() {
-        state.set_law_parameter(&all().collect::<Vec<_>>(), address, value)
-    } else {
-        state.set_parameter(house, address, value)
+    let before = (state.overrides.clone(), state.agents.clone());
+    let (laws, scene): (Vec<_>, Vec<_>) = values
+        .iter()
+        .cloned()
+        .partition(|(address, _)| address.is_law());
+    state.set_parameters(house, &scene)?;
+    let set = state.set_law_parameters(house, &all().collect::<Vec<_>>(), &laws);
+    if set.is_err() {
+        (state.overrides, state.agents) = before;
     }
+    set
 }

@@ -44,8 +44,8 @@ pub struct PixelCamera {
     pub width: u32,
     /// Pixels down, default 128.
     pub height: u32,
-    /// Full angle from the left to the right edge, degrees, default 90.
-    pub fov_deg: f32,
+    /// Full angle from the left to the right edge, degrees; by default that of the agent's camera.
+    pub fov_deg: Option<f32>,
 }
 
 impl Default for PixelCamera {
@@ -53,7 +53,7 @@ impl Default for PixelCamera {
         Self {
             width: 128,
             height: 128,
-            fov_deg: 90.0,
+            fov_deg: None,
         }
     }
 }
@@ -189,7 +189,10 @@ impl ActionRequest {
         }
         if let Some([column, row]) = self.pixel {
             let camera = self.camera.unwrap_or_default();
-            let camera = Camera::from_fov(camera.width, camera.height, camera.fov_deg)?;
+            let state = world.state();
+            let own = state.agents.get(agent).map(|_| state.camera_fov_deg(agent));
+            let fov_deg = camera.fov_deg.or(own).unwrap_or(90.0);
+            let camera = Camera::from_fov(camera.width, camera.height, fov_deg)?;
             return world.pixel_target(agent, &camera, [column, row]).map(Some);
         }
         if let Some(direction) = self.direction {

@@ -6,7 +6,6 @@ use crate::error::WorldError;
 use dwell_physics::{PhysicsConfig, PhysicsWorld, StartReport};
 use dwell_scene::{Address, AgentState, House, State};
 use glam::Vec3;
-use std::collections::BTreeSet;
 
 /// The first moment of a world: nothing overlaps, doors are shut, agents stand at the first room's floor. Worlds begin with a
 /// copy of it, and go back to one.
@@ -28,19 +27,13 @@ impl Start {
         for body in &config.agents {
             state.agents.push(AgentState::new(*body, spot, 0.0));
         }
-        state.laws = crate::laws::install(&config.laws)?;
-        let mut set = BTreeSet::new();
-        for (text, value) in &config.parameters {
-            let address: Address = text.parse()?;
-            if !set.insert(state.canonical(house, &address)?) {
-                return Err(WorldError::Config {
-                    field: "parameters",
-                    found: format!("{text} twice, in two spellings"),
-                    allowed: "each parameter once".to_owned(),
-                });
-            }
-            crate::laws::set_parameter(&mut state, house, &address, *value)?;
-        }
+        state.laws = crate::laws::install(house, &config.laws)?;
+        let values: Vec<(Address, f64)> = config
+            .parameters
+            .iter()
+            .map(|(text, value)| Ok((text.parse()?, *value)))
+            .collect::<Result<_, WorldError>>()?;
+        crate::laws::set_parameters(&mut state, house, &values)?;
         let physics_config = PhysicsConfig {
             control_rate_hz: config.control_rate_hz as f32,
             physics_rate_hz: config.physics_rate_hz as f32,

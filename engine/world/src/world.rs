@@ -6,15 +6,16 @@ use crate::error::WorldError;
 use crate::sound::Sound;
 use crate::start::Start;
 use dwell_physics::{
-    Action, ActionOutcome, AgentControl, BodyState, ContactEvent, JointState, PhysicsWorld,
-    StartReport,
+    Action, ActionOutcome, AgentControl, AgentPlacement, BodyState, ContactEvent, JointState,
+    PhysicsWorld, StartReport,
 };
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::packing::{pack, unpack};
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Address, AgentId, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId, Parameter, State,
+    Address, AgentId, AgentState, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId,
+    Parameter, State,
 };
 use glam::Vec3;
 use std::sync::Arc;
@@ -117,6 +118,17 @@ impl World {
         }
         self.physics
             .place_agent(&mut self.state, agent, position, yaw_rad)?;
+        self.rays.update(&self.state);
+        Ok(())
+    }
+
+    /// Puts agents to poses and velocities, at once, together with what they hold.
+    ///
+    /// # Errors
+    /// [`WorldError::Physics`] for an agent that does not exist and for numbers that are not finite or that its body cannot
+    /// have; nothing has changed then.
+    pub fn set_agents(&mut self, placements: &[AgentPlacement]) -> Result<(), WorldError> {
+        self.physics.set_agents(&mut self.state, placements)?;
         self.rays.update(&self.state);
         Ok(())
     }
@@ -225,13 +237,27 @@ impl World {
     ///
     /// # Errors
     /// [`WorldError::Scene`] for an unknown address or a value out of range, [`WorldError::Physics`] for a law that cannot
-    /// act on its target. Nothing has changed then.
+    /// act on its target, or an agent's body that has no room where it stands. Nothing has changed then.
     pub fn set_parameter(&mut self, address: &Address, value: f64) -> Result<(), WorldError> {
+        self.set_parameters(&[(address.clone(), value)])
+    }
+
+    /// Sets parameters together from now on: all of them, or none. What bounds each other (a joint's limits, a part's three
+    /// moments of inertia, an agent's height and radius) is checked when all are set.
+    ///
+    /// # Errors
+    /// As [`World::set_parameter`], and for a parameter that is there twice in two spellings. Nothing has changed then.
+    pub fn set_parameters(&mut self, values: &[(Address, f64)]) -> Result<(), WorldError> {
         let house = self.house().clone();
-        let before = (self.state.overrides.clone(), self.state.laws.clone());
-        crate::laws::set_parameter(&mut self.state, &house, address, value)?;
+        let state = &self.state;
+        let before = (
+            state.overrides.clone(),
+            state.laws.clone(),
+            state.agents.clone(),
+        );
+        crate::laws::set_parameters(&mut self.state, &house, values)?;
         if let Err(error) = self.physics.apply_parameters(&mut self.state) {
-            (self.state.overrides, self.state.laws) = before;
+            (self.state.overrides, self.state.laws, self.state.agents) = before;
             return Err(error.into());
         }
         self.rays.update(&self.state);
@@ -363,12 +389,15 @@ impl World {
         let parts: Parts =
             postcard::from_bytes(&body).map_err(|error| WorldError::Snapshot(error.to_string()))?;
         let mut state = State::from_bytes(self.engines.house(), &parts.state)?;
-        let bodies =
-            |state: &State| -> Vec<_> { state.agents.iter().map(|agent| agent.body).collect() };
-        if bodies(&state) != bodies(&self.state) {
+        // Sizes and strengths of bodies are parameters, which a snapshot has; how they get about is not.
+        let made = |state: &State| -> Vec<_> {
+            let of = |agent: &AgentState| (agent.body.locomotion, agent.body.camera_fov_deg);
+            state.agents.iter().map(of).collect()
+        };
+        if made(&state) != made(&self.state) {
             let (found, allowed) = (state.agents.len(), self.state.agents.len());
             return Err(WorldError::Snapshot(format!(
-                "it has {found} agents, and the world {allowed} or agents with other bodies"
+                "it has {found} agents, and the world {allowed} or agents with other legs, wheels or cameras"
             )));
         }
         let sound = Sound::from_bytes(

@@ -44,7 +44,7 @@ impl PhysicsWorld {
         force_n: Option<f32>,
         way: f32,
     ) -> Told {
-        let most = self.settings.config.push_force_n;
+        let most = actor.body.body.push_force_n;
         let verb = if way > 0.0 { "push" } else { "pull" };
         let (object, aim) = self.aim_at_object(state, actor, target)?;
         let name = self.call(object);

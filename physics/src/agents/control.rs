@@ -6,7 +6,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Furthest an agent looks up or down, rad.
-const STEEPEST_LOOK_RAD: f32 = 1.5;
+pub(crate) const STEEPEST_LOOK_RAD: f32 = 1.5;
 
 /// The highest speed that a body can be told, m/s and rad/s: beyond it squares of speeds are no numbers any more. Bodies go
 /// no faster than their own limits, whatever they are told.

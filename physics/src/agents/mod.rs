@@ -3,21 +3,23 @@
 
 mod carry;
 mod control;
+mod grow;
 mod moving;
 mod probe;
 mod slope;
 mod walk;
 
 pub use control::AgentControl;
+pub(crate) use control::STEEPEST_LOOK_RAD;
 
 pub(crate) use carry::{Grip, carry, hand_pose, release};
 pub(crate) use moving::Way;
 pub(crate) use probe::{Probe, Shell};
-pub(crate) use walk::{Loose, Push, Walk};
+pub(crate) use walk::{FASTEST_FALL_M_S, Loose, Push, Walk};
 
 use crate::contact::{Dress, Entry, Toucher};
 use crate::engine::Engine;
-use dwell_scene::{AgentId, AgentState};
+use dwell_scene::{AgentBody, AgentId, AgentState};
 use glam::Vec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
@@ -29,6 +31,8 @@ const SOLE_M: f32 = 0.05;
 pub(crate) struct Agent {
     pub(crate) handle: RigidBodyHandle,
     pub(crate) entry: u32,
+    /// The body that its capsule has, with the height that it has now.
+    stands: AgentBody,
 }
 
 /// The capsule of an agent as it stands now, and its centre above the feet, m.
@@ -39,8 +43,17 @@ fn capsule(agent: &AgentState) -> (SharedShape, f32) {
     (SharedShape::capsule_y(half, radius), 0.5 * (sole + height))
 }
 
-/// Gives an agent's capsule the height that it has now.
-pub(crate) fn reshape(engine: &mut Engine, agent: &Agent, state: &AgentState) {
+/// An agent's body with the height that it has now.
+fn as_it_stands(state: &AgentState) -> AgentBody {
+    AgentBody {
+        height_m: state.height_m(),
+        ..state.body
+    }
+}
+
+/// Gives an agent's capsule the size that it has now.
+pub(crate) fn reshape(engine: &mut Engine, agent: &mut Agent, state: &AgentState) {
+    agent.stands = as_it_stands(state);
     let (shape, center) = capsule(state);
     // Colliders are inserted in the order of entries and never removed.
     let Some((_, handle)) = engine.colliders.get_unknown_gen(agent.entry) else {
@@ -84,5 +97,6 @@ pub(crate) fn insert(
     Agent {
         handle,
         entry: number as u32,
+        stands: as_it_stands(state),
     }
 }

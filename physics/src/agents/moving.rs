@@ -92,13 +92,23 @@ impl PhysicsWorld {
                 rigid.set_next_kinematic_translation(agent.position);
             }
             for push in pushes {
-                self.push(&push);
+                self.push(&push, agent.body.push_force_n);
             }
         }
     }
 
     /// What surrounds an agent, which has the height it has now.
     fn probe<'a>(&'a self, agent: &AgentState, id: AgentId, others: &'a [Shell]) -> Probe<'a> {
+        self.probe_with(super::as_it_stands(agent), id, others)
+    }
+
+    /// What surrounds an agent with a body as high as it is now.
+    pub(super) fn probe_with<'a>(
+        &'a self,
+        body: AgentBody,
+        id: AgentId,
+        others: &'a [Shell],
+    ) -> Probe<'a> {
         Probe {
             engine: &self.engine,
             model: &self.model,
@@ -108,10 +118,7 @@ impl PhysicsWorld {
             excluded: &self.excluded,
             others,
             agent: id,
-            body: AgentBody {
-                height_m: agent.height_m(),
-                ..agent.body
-            },
+            body,
         }
     }
 
@@ -173,15 +180,15 @@ impl PhysicsWorld {
             return;
         }
         agent.crouched_by_m = wanted;
-        super::reshape(&mut self.engine, &self.agents[id.index()], agent);
+        super::reshape(&mut self.engine, &mut self.agents[id.index()], agent);
     }
 
-    /// Pushes a light body, with no more than the config's force.
-    fn push(&mut self, push: &Push) {
+    /// Pushes a light body, with no more than the agent's force.
+    fn push(&mut self, push: &Push, force_n: f32) {
         let body = push.body as usize;
         let handle = self.bodies[body].handle;
         let dt_s = self.settings.dt_s;
-        let most = self.settings.config.push_force_n * dt_s;
+        let most = force_n * dt_s;
         let jointed = self.model.bodies[body].joint.is_some();
         let Some(rigid) = self.engine.bodies.get(handle) else {
             return;
@@ -217,12 +224,15 @@ impl PhysicsWorld {
             agent.velocity = (agent.position - way.start) / step_s;
             agent.collided = way.made_m + 1e-4 + 1e-3 * way.wanted_m < way.wanted_m;
             let id = AgentId::from_index(index);
-            agent.gyro_rad_s = self
-                .laws
-                .iter()
-                .fold(way.turned_rad / step_s, |rate, installed| {
-                    installed.law.gyro(id, rate)
-                });
+            let rate = way.turned_rad / step_s;
+            // Only bases have gyros that err.
+            agent.gyro_rad_s = match way.locomotion {
+                Locomotion::Walking(_) => rate,
+                _ => self
+                    .laws
+                    .iter()
+                    .fold(rate, |rate, installed| installed.law.gyro(id, rate)),
+            };
         }
     }
 }
@@ -238,7 +248,7 @@ fn stride(agent: &AgentState, gait: &Gait, control: &AgentControl, dt_s: f32) ->
     motion.clamp_length_max(fastest * dt_s)
 }
 
-fn shells(state: &State, except: AgentId) -> Vec<Shell> {
+pub(super) fn shells(state: &State, except: AgentId) -> Vec<Shell> {
     state
         .agents
         .iter_ids()

@@ -202,6 +202,12 @@ impl Probe<'_> {
         hit.map_or(1.0, |hit| hit.fraction)
     }
 
+    /// How far up the cylinder can go, as a fraction of `up_m`.
+    pub(crate) fn rise(&self, feet: Vec3, up_m: f32) -> f32 {
+        let hit = self.cast_kind(feet, Vec3::Y * up_m, false);
+        hit.map_or(1.0, |hit| hit.fraction)
+    }
+
     /// Whether the cylinder can rise by `up_m`.
     pub(crate) fn headroom(&self, feet: Vec3, up_m: f32) -> bool {
         self.cast_kind(feet, Vec3::Y * up_m, false).is_none()
@@ -221,13 +227,27 @@ impl Probe<'_> {
 
     /// Whether the core overlaps something that cannot be pushed.
     pub(crate) fn is_inside_something(&self, feet: Vec3) -> bool {
+        self.overlaps(feet, self.core())
+    }
+
+    /// Whether the whole cylinder overlaps something that cannot be pushed, or another agent.
+    pub(crate) fn is_cramped(&self, feet: Vec3) -> bool {
+        let beside = |shell: &Shell| {
+            let apart = (shell.feet - feet).with_y(0.0).length();
+            apart < self.body.radius_m + shell.radius_m
+                && shell.feet.y < feet.y + self.body.height_m
+                && feet.y < shell.feet.y + shell.height_m
+        };
+        self.others.iter().any(beside) || self.overlaps(feet, self.cylinder(false))
+    }
+
+    fn overlaps(&self, feet: Vec3, (cylinder, center): (Cylinder, f32)) -> bool {
         let predicate = |_: ColliderHandle, collider: &Collider| self.sees(collider) == Seen::Solid;
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));
-        let (core, center) = self.core();
         let place = RapierPose::from_translation(feet + Vec3::Y * center);
-        queries.intersect_shape(place, &core).next().is_some()
+        queries.intersect_shape(place, &cylinder).next().is_some()
     }
 
     /// The push, at most `most_m` long and level, that leads out of what the core overlaps; nothing if a surface lies on

@@ -13,7 +13,7 @@ const SLIDES: usize = 4;
 /// A rise that counts as level ground, m.
 const LEVEL_M: f32 = 1e-3;
 /// Highest speed of a fall, m/s.
-const FASTEST_FALL_M_S: f32 = 30.0;
+pub(crate) const FASTEST_FALL_M_S: f32 = 30.0;
 /// Pieces of one movement, at most.
 const MOST_PIECES: f32 = 256.0;
 /// How far an agent is moved out of something in one step, m.
@@ -24,7 +24,7 @@ const BACK_M: f32 = 1e-4;
 /// The speed that an agent has not by its own will.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Loose {
-    /// Downwards, m/s.
+    /// Downwards, m/s; less than 0 while it rises.
     pub(crate) fall_m_s: f32,
     /// The level part of a slide off a slope, m/s.
     pub(crate) slide_m_s: Vec3,
@@ -179,6 +179,16 @@ impl Walk<'_> {
             return;
         }
         *fall_m_s = (*fall_m_s + self.gravity_m_s2 * self.dt_s).min(FASTEST_FALL_M_S);
+        if *fall_m_s < 0.0 {
+            let up = -*fall_m_s * self.dt_s;
+            let part = self.probe.rise(*feet, up);
+            feet.y += up * part;
+            if part < 1.0 {
+                *fall_m_s = 0.0;
+            }
+            agent.grounded = false;
+            return;
+        }
         let down = *fall_m_s * self.dt_s;
         if let Some(ground) = self.probe.ground(*feet, down) {
             let highest = feet.y + self.probe.body.step_height_m;

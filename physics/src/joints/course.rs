@@ -340,11 +340,12 @@ impl Freedoms<'_> {
                 elements.push(freedom.stop(low.into(), 1.0));
                 elements.push(freedom.stop(high.into(), -1.0));
             }
-            if let Some((leader, multiplier, offset)) = self.tree.follows[*place]
+            if let Some(leader) = self.tree.follows[*place]
+                && let Some(mimic) = &joint.values.mimic
                 && let Some(leader) = self.free.iter().position(|other| *other == leader)
             {
                 let leader = &freedoms[leader];
-                elements.push(freedom.follow(leader, multiplier.into(), offset.into()));
+                elements.push(freedom.follow(leader, mimic.multiplier.into(), mimic.offset.into()));
             }
         }
         elements

@@ -131,10 +131,10 @@ pub(crate) fn advance(
             target,
             max_effort,
             max_velocity: servo.joint_velocity(),
-            feed_forward: if servo.feed_forward && gain != Gain::Effort {
-                1.0
-            } else {
+            feed_forward: if gain == Gain::Effort {
                 0.0
+            } else {
+                values.feed_forward
             },
             gain,
         };

@@ -26,7 +26,7 @@ pub(crate) fn shut(
     body: &Body,
     hold: &mut Hold,
 ) {
-    let place = child_at(engine, joint, articulation, articulation.closed);
+    let place = child_at(engine, joint, articulation.closed);
     if let Some(rigid) = engine.bodies.get_mut(body.handle) {
         rigid.set_position(place, false);
         rigid.set_linvel(glam::Vec3::ZERO, false);

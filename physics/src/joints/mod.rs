@@ -44,7 +44,6 @@ use rapier3d::math::Pose as RapierPose;
 pub(crate) struct Joint {
     pub(crate) id: JointId,
     pub(crate) kind: JointKind,
-    pub(crate) axis: Vec3,
     pub(crate) child: u32,
     handle: ImpulseJointHandle,
     child_handle: RigidBodyHandle,
@@ -62,7 +61,7 @@ pub(crate) struct Joint {
 impl Joint {
     /// In the joint's frame, unit length.
     fn unit_axis(&self) -> DVec3 {
-        self.axis.as_dvec3().normalize_or(DVec3::X)
+        self.values.axis.as_dvec3().normalize_or(DVec3::X)
     }
 }
 
@@ -84,7 +83,7 @@ pub(crate) fn insert(
         let values = state.joint_values(&model.house, id);
         let parent_from_joint = to_rapier(&(body_from_parent * values.parent_from_joint));
         let child_from_joint = to_rapier(&(child_from_part * joint.child_from_joint));
-        let to_x = to_x(joint.axis);
+        let to_x = to_x(values.axis);
         let locked = match joint.kind {
             JointKind::Hinge => JointAxesMask::LOCKED_REVOLUTE_AXES,
             JointKind::Slide => JointAxesMask::LOCKED_PRISMATIC_AXES,
@@ -103,7 +102,6 @@ pub(crate) fn insert(
         joints.push(Joint {
             id,
             kind: joint.kind,
-            axis: joint.axis,
             child,
             handle,
             child_handle,
@@ -191,32 +189,30 @@ pub(crate) fn set_values(
             None => held.data.limit_axes.remove(axis.into()),
         }
     }
+    let turned = values.axis != joint.values.axis;
     joint.values = values;
     let parent_from_joint = to_rapier(&(joint.body_from_parent * values.parent_from_joint));
-    if parent_from_joint != joint.parent_from_joint {
+    if turned || parent_from_joint != joint.parent_from_joint {
         joint.parent_from_joint = parent_from_joint;
+        let child_from_joint = joint.child_from_joint;
         if let Some(held) = engine.joints.get_mut(joint.handle, false) {
-            held.data
-                .set_local_frame1(parent_from_joint * to_x(joint.axis));
+            let to_x = to_x(values.axis);
+            held.data.set_local_frame1(parent_from_joint * to_x);
+            held.data.set_local_frame2(child_from_joint * to_x);
         }
     }
     true
 }
 
 /// Where the child's body stands when the joint is at `position` and its parent where it is.
-pub(crate) fn child_at(
-    engine: &Engine,
-    joint: &Joint,
-    articulation: &Articulation,
-    position: f32,
-) -> RapierPose {
+pub(crate) fn child_at(engine: &Engine, joint: &Joint, position: f32) -> RapierPose {
     let parent = engine
         .bodies
         .get(joint.parent_handle)
         .map_or(RapierPose::IDENTITY, |parent| *parent.position());
     parent
         * joint.parent_from_joint
-        * to_rapier(&articulation.motion(position))
+        * to_rapier(&joint.values.motion(position))
         * joint.child_from_joint.inverse()
 }
 

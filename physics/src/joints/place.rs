@@ -114,9 +114,25 @@ impl Stand {
     }
 }
 
-/// Whether bodies say the same of a joint as the numbers it was told, up to their rounding.
-pub(crate) fn says_the_same(stand: &Stand, found: (f64, f64)) -> bool {
-    stand.says(found, [4.0 * ROUNDING, 32.0 * ROUNDING])
+/// Whether bodies say the same of a joint as the numbers it was told, up to their rounding. A slide's numbers are differences
+/// of places and velocities in the world, and round as those do.
+pub(crate) fn says_the_same(
+    engine: &Engine,
+    joint: &Joint,
+    stand: &Stand,
+    found: (f64, f64),
+) -> bool {
+    let (mut place, mut speed) = (1.0_f32, 1.0_f32);
+    if joint.kind == JointKind::Slide {
+        for handle in [joint.parent_handle, joint.child_handle] {
+            if let Some(body) = engine.bodies.get(handle) {
+                let at = body.position().translation.abs().max_element();
+                place = place.max(at);
+                speed = speed.max(body.linvel().length() + body.angvel().length() * at);
+            }
+        }
+    }
+    stand.says(found, [4.0 * ROUNDING * place, 32.0 * ROUNDING * speed])
 }
 
 #[cfg(test)]

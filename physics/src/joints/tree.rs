@@ -16,8 +16,8 @@ pub(crate) struct Tree {
     pub(crate) joints: Vec<usize>,
     /// For each, the place in this tree of the joint that moves its parent. Shape (joint,).
     pub(super) parents: Vec<Option<usize>>,
-    /// For each, the place in this tree of the joint that it follows, with multiplier and offset. Shape (joint,).
-    pub(super) follows: Vec<Option<(usize, f32, f32)>>,
+    /// For each, the place in this tree of the joint that it follows. Shape (joint,).
+    pub(super) follows: Vec<Option<usize>>,
 }
 
 impl Tree {
@@ -86,8 +86,7 @@ pub(crate) fn trees(joints: &[Joint], model: &PhysicsModel, anchor: RigidBodyHan
             .iter()
             .map(|k| {
                 let mimic = house.joints[joints[*k].id].mimic?;
-                let leader = place(&|other| other.id == mimic.leader)?;
-                Some((leader, mimic.multiplier, mimic.offset))
+                place(&|other| other.id == mimic.leader)
             })
             .collect();
         let first = &joints[order[0]];

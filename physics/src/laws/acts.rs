@@ -81,10 +81,10 @@ pub(crate) trait Acts: Debug + Send + Sync {
     /// with and what loads it fit.
     fn resist(&self, _joint: JointId, _load: &JointLoad, _resistance: &mut Resistance) {}
 
-    /// Changes how the wheels of an agent's base roll in one physics step.
+    /// Changes how the two wheels of an agent's differential drive roll in one physics step.
     fn roll(&self, _agent: AgentId, _rolling: &mut Rolling) {}
 
-    /// What an agent's gyro reads when it turns with `rate_rad_s`.
+    /// What the gyro of an agent's base reads when it turns with `rate_rad_s`.
     fn gyro(&self, _agent: AgentId, rate_rad_s: f32) -> f32 {
         rate_rad_s
     }

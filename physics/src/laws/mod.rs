@@ -98,6 +98,7 @@ pub(crate) fn install(
     state: &State,
     before: &[Installed],
 ) -> Result<Vec<Installed>, PhysicsError> {
+    LawSpec::check_targets(&model.house, &all().iter().collect::<Vec<_>>(), &state.laws)?;
     let mut installed: Vec<Installed> = Vec::new();
     for spec in &state.laws {
         let Some(law) = LAWS.iter().find(|law| law.info.id == spec.id) else {

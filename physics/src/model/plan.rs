@@ -57,10 +57,10 @@ pub(crate) struct BodyPlan {
     pub(crate) pieces: Vec<Piece>,
     /// The joint that moves it, if it is not free.
     pub(crate) joint: Option<JointId>,
-    /// Mass without overrides, kg.
-    pub(crate) mass_kg: f32,
-    /// Mass, centre of mass and inertia of parts that state them; their pieces then have no density.
-    pub(crate) given: Option<MassProperties>,
+    /// Mass of each part without overrides, kg. Shape (part,).
+    pub(crate) part_mass_kg: Vec<f32>,
+    /// Whether some of its parts state mass, centre of mass and inertia; their pieces then have no density.
+    pub(crate) states_inertia: bool,
 }
 
 /// A mesh's shape, and the mesh's triangle for each of its triangles.
@@ -203,23 +203,22 @@ fn weigh_part(pieces: &mut [Piece], part: &Part) {
     }
 }
 
-/// What the parts of a body state of their mass, in the body's frame. `inertial`: where each part's mass sits.
+/// What a part of a body states of its mass, in the body's frame: its mass and moments times `factor`. `inertial`: where its
+/// mass sits.
 fn given(
     house: &House,
-    parts: &[(PartId, Pose)],
-    inertial: impl Fn(PartId) -> Option<Inertial>,
+    (id, body_from_part): &(PartId, Pose),
+    inertial: Option<Inertial>,
+    factor: f32,
 ) -> Option<MassProperties> {
-    let stated = parts.iter().filter_map(|(id, body_from_part)| {
-        let (inertial, mass_kg) = (inertial(*id)?, house.parts[*id].mass_kg?);
-        let frame = *body_from_part * inertial.part_from_principal;
-        Some(MassProperties::with_principal_inertia_frame(
-            frame.position,
-            mass_kg,
-            inertial.moments,
-            frame.rotation,
-        ))
-    });
-    stated.reduce(|all, one| all + one)
+    let (inertial, mass_kg) = (inertial?, house.parts[*id].mass_kg?);
+    let frame = *body_from_part * inertial.part_from_principal;
+    Some(MassProperties::with_principal_inertia_frame(
+        frame.position,
+        mass_kg * factor,
+        inertial.moments * factor,
+        frame.rotation,
+    ))
 }
 
 fn weigh(pieces: &mut [Piece], mass_kg: Option<f32>, density_kg_m3: f32) {
@@ -285,8 +284,8 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
                 parts: vec![(id, Pose::IDENTITY)],
                 pieces,
                 joint,
-                mass_kg: 0.0,
-                given: None,
+                part_mass_kg: Vec::new(),
+                states_inertia: false,
             });
         }
         for body in &mut bodies[first_body..] {
@@ -294,10 +293,18 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
                 body.pieces = stand_in_pieces(&house, &mut meshes, body);
                 stand_ins.push(object_id);
             }
-            let mass = |piece: &Piece| piece.shape.mass_properties(piece.density_kg_m3).mass();
-            body.given = given(&house, &body.parts, |part| house.parts[part].inertial);
-            body.mass_kg = body.pieces.iter().map(mass).sum::<f32>()
-                + body.given.map_or(0.0, |given| given.mass());
+            let stated =
+                |part: &(PartId, Pose)| given(&house, part, house.parts[part.0].inertial, 1.0);
+            let mass = |part: &(PartId, Pose)| {
+                let own = body
+                    .pieces
+                    .iter()
+                    .filter(|piece| piece.owner.part() == Some(part.0));
+                let own = own.map(|piece| piece.shape.mass_properties(piece.density_kg_m3).mass());
+                own.sum::<f32>() + stated(part).map_or(0.0, |given| given.mass())
+            };
+            body.part_mass_kg = body.parts.iter().map(mass).collect();
+            body.states_inertia = body.parts.iter().any(|part| stated(part).is_some());
         }
     }
     stand_ins.dedup();
@@ -429,27 +436,34 @@ impl BodyPlan {
         })
     }
 
-    /// What its parts state of their mass in a world, times a factor.
+    /// What its parts state of their mass in a world, each times its factor. Shape of `factors`: (part,).
     pub(crate) fn given_mass(
         &self,
         house: &House,
         state: &State,
-        factor: f32,
+        factors: &[f32],
     ) -> Option<MassProperties> {
-        let stated = if state.overrides.is_empty() {
-            self.given
-        } else {
-            self.given
-                .and_then(|_| given(house, &self.parts, |part| state.part_inertial(house, part)))
-        };
-        stated.map(|given| {
-            MassProperties::with_principal_inertia_frame(
-                given.local_com,
-                given.mass() * factor,
-                given.principal_inertia() * factor,
-                given.principal_inertia_local_frame,
-            )
-        })
+        let parts = self.parts.iter().zip(factors);
+        let stated = parts.filter_map(|(part, factor)| {
+            given(house, part, state.part_inertial(house, part.0), *factor)
+        });
+        stated.reduce(|all, one| all + one)
+    }
+
+    /// Mass with the densities of its parts multiplied, kg. Shape of `factors`: (part,).
+    pub(crate) fn mass_kg(&self, factors: &[f32]) -> f32 {
+        let parts = self.part_mass_kg.iter().zip(factors);
+        parts.map(|(mass, factor)| mass * factor).sum()
+    }
+
+    /// The factor of a piece: that of its part. Shape of `factors`: (part,).
+    pub(crate) fn factor_of(&self, piece: &Piece, factors: &[f32]) -> f32 {
+        let owner = piece.owner.part();
+        let place = self.parts.iter().position(|(id, _)| Some(*id) == owner);
+        place
+            .and_then(|place| factors.get(place))
+            .copied()
+            .unwrap_or(1.0)
     }
 
     /// A number that orders bodies: that of the first part.

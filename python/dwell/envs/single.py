@@ -20,7 +20,7 @@ from dwell.settings import Laws
 from dwell.world import Camera
 
 #: The image that ``render()`` gives.
-RENDER_CAMERA = Camera(width=320, height=240, fov_deg=90.0)
+RENDER_CAMERA = Camera(width=320, height=240)
 
 
 class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
@@ -184,7 +184,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """What the agent sees, (240, 320, 3) uint8; ``None`` without a render mode."""
         if self.render_mode is None:
             return None
-        camera = {key: getattr(RENDER_CAMERA, key) for key in ("width", "height", "fov_deg")}
+        camera = {key: getattr(RENDER_CAMERA, key) for key in ("width", "height")}
         image: NDArray[np.uint8] = self._runner.batch.render(0, to_json(camera))
         return image
 

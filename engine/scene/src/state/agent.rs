@@ -1,94 +1,10 @@
 //! Agents as the engines see them.
 
-use super::Locomotion;
+use super::AgentBody;
 use crate::ids::ObjectId;
 use crate::space::{Pose, rotation_from_yaw_pitch};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
-
-/// The body of an agent: a capsule with an eye and two ears.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct AgentBody {
-    /// Radius of the capsule, m; 0.05 to 1.
-    pub radius_m: f32,
-    /// Height of the capsule, m; at least twice the radius, at most 3.
-    pub height_m: f32,
-    /// Height of eyes and ears above the feet, m; at most the height.
-    pub eye_height_m: f32,
-    /// The highest step it climbs, m.
-    pub step_height_m: f32,
-    /// The steepest slope it walks up, rad.
-    pub max_slope_rad: f32,
-    /// Mass, kg.
-    pub mass_kg: f32,
-    /// The heaviest thing it lifts, kg.
-    pub lift_kg: f32,
-    /// How far from its eye its hand reaches, m.
-    pub reach_m: f32,
-    /// How it gets about; default: it walks.
-    pub locomotion: Locomotion,
-}
-
-impl Default for AgentBody {
-    /// A small adult: 0.2 m radius, 1.5 m tall, eyes at 1.25 m, climbs 0.2 m, lifts 10 kg, reaches 1.5 m.
-    fn default() -> Self {
-        Self {
-            radius_m: 0.2,
-            height_m: 1.5,
-            eye_height_m: 1.25,
-            step_height_m: 0.2,
-            max_slope_rad: 0.785,
-            mass_kg: 60.0,
-            lift_kg: 10.0,
-            reach_m: 1.5,
-            locomotion: Locomotion::default(),
-        }
-    }
-}
-
-impl AgentBody {
-    /// Checks every range.
-    ///
-    /// # Errors
-    /// [`crate::SceneError::Range`] names the field.
-    pub fn check(&self) -> Result<(), crate::SceneError> {
-        let range =
-            |field: &'static str, value: f32, low: f32, high: f32, allowed: &'static str| {
-                if (low..=high).contains(&value) {
-                    return Ok(());
-                }
-                let (at, found) = ("agent body".to_owned(), value.to_string());
-                Err(crate::SceneError::Range {
-                    at,
-                    field,
-                    found,
-                    allowed,
-                })
-            };
-        range("radius_m", self.radius_m, 0.05, 1.0, "0.05 to 1")?;
-        range(
-            "height_m",
-            self.height_m,
-            2.0 * self.radius_m,
-            3.0,
-            "twice the radius to 3",
-        )?;
-        range(
-            "eye_height_m",
-            self.eye_height_m,
-            0.0,
-            self.height_m,
-            "0 to the height",
-        )?;
-        range("step_height_m", self.step_height_m, 0.0, 1.0, "0 to 1")?;
-        range("max_slope_rad", self.max_slope_rad, 0.0, 1.4, "0 to 1.4")?;
-        range("mass_kg", self.mass_kg, 1.0, 500.0, "1 to 500")?;
-        range("lift_kg", self.lift_kg, 0.0, 500.0, "0 to 500")?;
-        range("reach_m", self.reach_m, 0.1, 5.0, "0.1 to 5")?;
-        self.locomotion.check()
-    }
-}
 
 /// What a base's wheels do, and what the base makes of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,14 +1,23 @@
 //! What is in force at a joint: the house's values with the state's overrides.
 
 use super::{Address, State};
-use crate::articulation::{Articulation, Servo};
+use crate::articulation::{Articulation, JointKind, Mimic, Servo, motion_along};
+use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::JointId;
 use crate::space::Pose;
+use glam::Vec3;
+
+/// The shortest axis that says a direction.
+const SHORTEST_AXIS: f32 = 1e-3;
 
 /// What is in force at a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointValues {
+    /// Turning or sliding.
+    pub kind: JointKind,
+    /// The axis in joint space, unit length.
+    pub axis: Vec3,
     /// The joint's frame on the parent; its distance from the parent's origin is `length_m`.
     pub parent_from_joint: Pose,
     /// Coulomb friction, N·m or N.
@@ -19,6 +28,11 @@ pub struct JointValues {
     pub armature: f32,
     /// The motor.
     pub servo: Option<Servo>,
+    /// The share of what hangs on the joint whose weight the motor's controller carries besides; 1 in a house whose motor
+    /// has [`Servo::feed_forward`].
+    pub feed_forward: f32,
+    /// How it follows another joint, if it does.
+    pub mimic: Option<Mimic>,
     /// Lowest and highest position, rad or m; `None`: it turns or slides without end.
     pub limits: Option<[f32; 2]>,
 }
@@ -29,6 +43,11 @@ impl JointValues {
         // Limits are only set in order.
         self.limits
             .map_or(position, |[low, high]| position.max(low).min(high))
+    }
+
+    /// The movement of the joint at `position` (rad or m).
+    pub fn motion(&self, position: f32) -> Pose {
+        motion_along(self.kind, self.axis, position)
     }
 }
 
@@ -41,7 +60,7 @@ pub(super) struct Field {
 }
 
 /// The fields of a joint that have an address.
-pub(super) const FIELDS: [Field; 12] = [
+pub(super) const FIELDS: [Field; 18] = [
     Field {
         name: "friction",
         unit: "N m or N",
@@ -117,7 +136,48 @@ pub(super) const FIELDS: [Field; 12] = [
         range: [1e-6, 1e6],
         get: |joint| joint.servo.map(|servo| servo.gear),
     },
+    Field {
+        name: "axis_x",
+        unit: "1",
+        range: [-2.0, 2.0],
+        get: |joint| Some(joint.axis.x),
+    },
+    Field {
+        name: "axis_y",
+        unit: "1",
+        range: [-2.0, 2.0],
+        get: |joint| Some(joint.axis.y),
+    },
+    Field {
+        name: "axis_z",
+        unit: "1",
+        range: [-2.0, 2.0],
+        get: |joint| Some(joint.axis.z),
+    },
+    Field {
+        name: "mimic_multiplier",
+        unit: "rad or m per rad or m",
+        range: [-1e3, 1e3],
+        get: |joint| joint.mimic.map(|mimic| mimic.multiplier),
+    },
+    Field {
+        name: "mimic_offset",
+        unit: "rad or m",
+        range: [-1e4, 1e4],
+        get: |joint| joint.mimic.map(|mimic| mimic.offset),
+    },
+    Field {
+        name: "feed_forward",
+        unit: "1",
+        range: [0.0, 2.0],
+        get: |joint| joint.servo.map(|servo| carried(&servo)),
+    },
 ];
+
+/// The share of the weight that a motor of the house carries.
+fn carried(servo: &Servo) -> f32 {
+    f32::from(u8::from(servo.feed_forward))
+}
 
 impl State {
     /// The range of a joint's field: a limit stays on its side of the other one.
@@ -134,16 +194,21 @@ impl State {
     pub fn joint_values(&self, house: &House, id: JointId) -> JointValues {
         let joint = &house.joints[id];
         let mut values = JointValues {
+            kind: joint.kind,
+            axis: joint.axis,
             parent_from_joint: joint.parent_from_joint,
             friction: joint.friction,
             damping: joint.damping,
             armature: joint.armature,
             servo: joint.servo,
+            feed_forward: joint.servo.as_ref().map_or(0.0, carried),
+            mimic: joint.mimic,
             limits: joint.limits,
         };
         if self.overrides.is_empty() {
             return values;
         }
+        let mut turned = false;
         for field in &FIELDS {
             let address = Address::of_joint(id, field.name);
             let Some(value) = self.overrides.get(&address).map(|value| *value as f32) else {
@@ -168,8 +233,26 @@ impl State {
                 ("max_effort", Some(servo)) => servo.max_effort = value,
                 ("max_velocity", Some(servo)) => servo.max_velocity = Some(value),
                 ("gear", Some(servo)) => servo.gear = value,
+                ("feed_forward", _) => values.feed_forward = value,
+                ("axis_x" | "axis_y" | "axis_z", _) => {
+                    turned = true;
+                    let place = usize::from(field.name.as_bytes()[5] - b'x');
+                    values.axis[place] = value;
+                }
+                ("mimic_multiplier" | "mimic_offset", _) => {
+                    if let Some(mimic) = &mut values.mimic {
+                        if field.name == "mimic_offset" {
+                            mimic.offset = value;
+                        } else {
+                            mimic.multiplier = value;
+                        }
+                    }
+                }
                 _ => {}
             }
+        }
+        if turned {
+            values.axis = values.axis.normalize_or(joint.axis);
         }
         if let (Some(now), Some(before)) = (&values.servo, &joint.servo) {
             let share = now.gear / before.gear;
@@ -186,10 +269,38 @@ impl State {
         world_from_parent: &Pose,
         position: f32,
     ) -> Pose {
-        let joint = &house.joints[id];
+        let values = self.joint_values(house, id);
         *world_from_parent
-            * self.joint_values(house, id).parent_from_joint
-            * joint.motion(position)
-            * joint.child_from_joint.inverse()
+            * values.parent_from_joint
+            * values.motion(position)
+            * house.joints[id].child_from_joint.inverse()
+    }
+
+    /// Refuses an axis of a joint without a direction. The three numbers of an axis may have any length but 0: only their
+    /// direction counts, so that each of them can be set alone.
+    pub(super) fn check_axis(&self, house: &House, canonical: &Address) -> Result<(), SceneError> {
+        let ["joint", id, "axis_x" | "axis_y" | "axis_z"] = canonical.words()[..] else {
+            return Ok(());
+        };
+        let Some((id, joint)) = id
+            .parse()
+            .ok()
+            .map(JointId)
+            .and_then(|id| Some((id, house.joints.get(id)?)))
+        else {
+            return Ok(());
+        };
+        let number = |field, base| self.scalar(&Address::of_joint(id, field), base);
+        let axis = Vec3::new(
+            number("axis_x", joint.axis.x),
+            number("axis_y", joint.axis.y),
+            number("axis_z", joint.axis.z),
+        );
+        if axis.length() >= SHORTEST_AXIS {
+            return Ok(());
+        }
+        Err(canonical.fault(format!(
+            "the joint's axis would be {axis}, which has no direction; allowed is a length of at least {SHORTEST_AXIS}"
+        )))
     }
 }

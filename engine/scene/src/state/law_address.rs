@@ -2,19 +2,20 @@
 //!
 //! `ID` alone is the law without a target, `ID@TARGET` the one on that target; neither need be installed: the first number
 //! that differs from its default installs it behind the others, and a law whose numbers are all default acts no more. `N`
-//! counts [`State::laws`] from 0, for laws that are installed twice on one target. Values stand in [`State::laws`] and
-//! nowhere else, so that they are in snapshot and hash.
+//! counts [`State::laws`] from 0, for laws that are installed twice on one target. A target has one spelling, in which it is kept ([`LawSpec::canonical_target`]): no law acts
+//! twice on a thing that has two names. Values stand in [`State::laws`] and nowhere else, so that they are in snapshot and hash.
 
 use super::{Address, Parameter, State};
 use crate::error::SceneError;
+use crate::house::House;
 use crate::law::{LawInfo, LawSpec, ParamInfo};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What an address names.
 struct Named<'a> {
     info: &'a LawInfo,
     param: &'a ParamInfo,
-    target: Option<&'a str>,
+    target: Option<String>,
     /// Its place in [`State::laws`]; `None` for a law that is not installed.
     place: Option<usize>,
 }
@@ -39,6 +40,7 @@ impl Address {
 impl State {
     fn find_law<'a>(
         &self,
+        house: &House,
         known: &[&'a LawInfo],
         address: &'a Address,
     ) -> Result<Named<'a>, SceneError> {
@@ -67,12 +69,29 @@ impl State {
                 None => (name, None),
             };
             let info = info_of(id)?;
-            let is = |spec: &LawSpec| spec.id == id && spec.target.as_deref() == target;
+            let target = target.map(|target| LawSpec::canonical_target(house, info, target));
+            let is = |spec: &LawSpec| {
+                spec.id == id
+                    && match (&spec.target, &target) {
+                        (None, None) => true,
+                        (Some(a), Some(b)) => LawSpec::is_same_target(house, info, a, b),
+                        _ => false,
+                    }
+            };
             let mut places = (0..self.laws.len()).filter(|place| is(&self.laws[*place]));
             let place = places.next();
             if let (Some(first), Some(second)) = (place, places.next()) {
                 return Err(address.fault(format!(
                     "this law is installed more than once; say which by its number: law/{first}/{param}, law/{second}/{param}"
+                )));
+            }
+            let installed = place.and_then(|place| self.laws[place].target.as_deref());
+            if let (Some(there), Some(asked)) = (installed, &target)
+                && there.contains('~')
+                && there != asked
+            {
+                return Err(address.fault(format!(
+                    "this law is installed as law/{id}@{there}: the surface stands first"
                 )));
             }
             (info, target, place)
@@ -100,10 +119,11 @@ impl State {
     /// [`SceneError::Address`] says which word is wrong and what is allowed there.
     pub fn law_parameter(
         &self,
+        house: &House,
         known: &[&LawInfo],
         address: &Address,
     ) -> Result<Parameter, SceneError> {
-        let named = self.find_law(known, address)?;
+        let named = self.find_law(house, known, address)?;
         let value = named
             .place
             .and_then(|place| self.laws[place].params.get(named.param.name).copied());
@@ -122,11 +142,62 @@ impl State {
     /// [`SceneError::Address`] for an address that names nothing or a value out of bounds.
     pub fn set_law_parameter(
         &mut self,
+        house: &House,
         known: &[&LawInfo],
         address: &Address,
         value: f64,
     ) -> Result<(), SceneError> {
-        let named = self.find_law(known, address)?;
+        self.set_law_parameters(house, known, &[(address.clone(), value)])
+    }
+
+    /// Sets parameters of laws together: all of them, or none.
+    ///
+    /// # Errors
+    /// As [`State::set_law_parameter`], and for a parameter that is there twice, in whatever spelling. Nothing has changed then.
+    pub fn set_law_parameters(
+        &mut self,
+        house: &House,
+        known: &[&LawInfo],
+        values: &[(Address, f64)],
+    ) -> Result<(), SceneError> {
+        let before = self.laws.clone();
+        let set = self.try_set_laws(house, known, values);
+        if set.is_err() {
+            self.laws = before;
+        }
+        set
+    }
+
+    fn try_set_laws(
+        &mut self,
+        house: &House,
+        known: &[&LawInfo],
+        values: &[(Address, f64)],
+    ) -> Result<(), SceneError> {
+        let mut there = BTreeSet::new();
+        for (address, _) in values {
+            let named = self.find_law(house, known, address)?;
+            let target = named.target.filter(|_| named.place.is_none());
+            if !there.insert((named.place, named.info.id, target, named.param.name)) {
+                return Err(address.fault(
+                    "it is set twice at once, in one or two spellings; allowed is each parameter once",
+                ));
+            }
+        }
+        for (address, value) in values {
+            self.put_law(house, known, address, *value)?;
+        }
+        Ok(())
+    }
+
+    fn put_law(
+        &mut self,
+        house: &House,
+        known: &[&LawInfo],
+        address: &Address,
+        value: f64,
+    ) -> Result<(), SceneError> {
+        let named = self.find_law(house, known, address)?;
         let param = named.param;
         address.check_range(value, param.low, param.high, param.unit)?;
         let place = named.place.unwrap_or(self.laws.len());
@@ -134,7 +205,7 @@ impl State {
             self.laws.push(LawSpec {
                 id: named.info.id.to_owned(),
                 version: named.info.version,
-                target: named.target.map(str::to_owned),
+                target: named.target,
                 params: BTreeMap::new(),
             });
         }
@@ -154,29 +225,36 @@ impl State {
         Ok(())
     }
 
-    /// The addresses of all parameters of laws: of those that are installed, in order, then of the others without target.
+    /// The addresses of all parameters of laws: of those that are installed, in order, then of the others without target. A law
+    /// whose target has no place in an address (too many words, an empty one) is listed by its number.
+    ///
+    /// # Panics
+    /// Never: laws' ids and their parameters' names are words.
     pub fn law_addresses(&self, known: &[&LawInfo]) -> Vec<Address> {
-        let mut addresses = Vec::new();
-        let mut list = |name: &str, info: &LawInfo| {
+        let named = |name: &str, info: &LawInfo| -> Option<Vec<Address>> {
             let of = |param: &ParamInfo| format!("law/{name}/{}", param.name).parse().ok();
-            addresses.extend(info.params.iter().filter_map(of));
+            info.params.iter().map(of).collect()
         };
+        let certain = "laws' ids, their numbers and their parameters' names are words";
+        let mut addresses = Vec::new();
         let same = |a: &LawSpec, b: &LawSpec| a.id == b.id && a.target == b.target;
         for (place, spec) in self.laws.iter().enumerate() {
             let Some(info) = known.iter().find(|info| info.id == spec.id) else {
                 continue;
             };
             let twice = self.laws.iter().filter(|other| same(other, spec)).count() > 1;
-            match &spec.target {
-                _ if twice => list(&place.to_string(), info),
-                Some(target) => list(&format!("{}@{target}", spec.id), info),
-                None => list(&spec.id, info),
-            }
+            let by_name = match &spec.target {
+                _ if twice => None,
+                Some(target) => named(&format!("{}@{target}", spec.id), info),
+                None => named(&spec.id, info),
+            };
+            let by_number = || named(&place.to_string(), info);
+            addresses.extend(by_name.or_else(by_number).expect(certain));
         }
         for info in known {
             let plain = |spec: &LawSpec| spec.id == info.id && spec.target.is_none();
             if !self.laws.iter().any(plain) {
-                list(info.id, info);
+                addresses.extend(named(info.id, info).expect(certain));
             }
         }
         addresses
@@ -219,18 +297,23 @@ mod tests {
     };
 
     fn empty() -> State {
-        State::new(&House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap())
+        State::new(&room())
+    }
+
+    fn room() -> House {
+        House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap()
     }
 
     fn set(state: &mut State, address: &str, value: f64) -> Result<(), String> {
         let address = address.parse().unwrap();
-        let set = state.set_law_parameter(&[&DRAG, &LAG], &address, value);
+        let set = state.set_law_parameter(&room(), &[&DRAG, &LAG], &address, value);
         set.map_err(|error| error.to_string())
     }
 
     fn get(state: &State, address: &str) -> f64 {
         let address = address.parse().unwrap();
-        state.law_parameter(&[&DRAG, &LAG], &address).unwrap().value
+        let there = state.law_parameter(&room(), &[&DRAG, &LAG], &address);
+        there.unwrap().value
     }
 
     #[test]
@@ -292,8 +375,36 @@ mod tests {
         );
         let known: &[&LawInfo] = &[&DRAG, &LAG];
         for address in state.law_addresses(known) {
-            state.law_parameter(known, &address).unwrap();
+            state.law_parameter(&room(), known, &address).unwrap();
         }
         assert_eq!(state.law_addresses(known).len(), 4);
+    }
+
+    /// What used to happen: an address of more than five words was left out of the list without a word.
+    #[test]
+    fn no_installed_law_is_missing_from_the_list() {
+        let mut state = empty();
+        let known: &[&LawInfo] = &[&DRAG, &LAG];
+        for target in [
+            "plain",
+            "a/b",
+            "a/very/long/name/of/some/thing",
+            "a//b",
+            "tab\t",
+        ] {
+            state.laws = vec![LawSpec {
+                id: "drag".to_owned(),
+                version: 3,
+                target: Some(target.to_owned()),
+                params: BTreeMap::from([("c_d".to_owned(), 0.5)]),
+            }];
+            let listed = state.law_addresses(known);
+            assert_eq!(listed.len(), 2 + 2 + 1, "{target}: {listed:?}");
+            let read = |address: &Address| {
+                let there = state.law_parameter(&room(), known, address);
+                there.unwrap().value
+            };
+            assert_eq!((read(&listed[0]), read(&listed[1])), (0.5, 1.2), "{target}");
+        }
     }
 }

@@ -32,6 +32,9 @@ impl State {
             texts.extend(here.map(|field| format!("joint/{}/{}", id.0, field.name)));
         }
         for (id, agent) in self.agents.iter_ids() {
+            let fields = agent.body.parameters();
+            let fields = fields.iter();
+            texts.extend(fields.map(|(field, _)| format!("agent/{}/body/{field}", id.index())));
             let fields = agent.body.locomotion.parameters();
             let fields = fields.iter();
             texts.extend(fields.map(|(field, _)| format!("agent/{}/base/{field}", id.index())));
@@ -88,6 +91,7 @@ mod tests {
             "world/gravity_m_s2",
             "material/floor/absorption/1000",
             "agent/0/base/max_speed_m_s",
+            "agent/0/body/radius_m",
         ] {
             assert!(addresses.iter().any(|a| a.as_str() == wanted), "{wanted}");
         }

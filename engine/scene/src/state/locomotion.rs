@@ -2,6 +2,7 @@
 //! `agent/N/base/FIELD` says what is true in a world.
 
 use super::Parameter;
+use super::numbers::{Number, number, parameters, set};
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
 
@@ -102,27 +103,6 @@ impl Default for HolonomicBase {
     }
 }
 
-/// One number of a way to get about: name, unit, range, and where it stands.
-struct Number<T> {
-    name: &'static str,
-    unit: &'static str,
-    range: [f32; 2],
-    get: fn(&T) -> f32,
-    set: fn(&mut T, f32),
-}
-
-macro_rules! number {
-    ($name:ident, $unit:literal, $low:literal to $high:literal) => {
-        Number {
-            name: stringify!($name),
-            unit: $unit,
-            range: [$low, $high],
-            get: |of| of.$name,
-            set: |of, value| of.$name = value,
-        }
-    };
-}
-
 const GAIT: &[Number<Gait>] = &[
     number!(max_speed_m_s, "m/s", 0.0 to 100.0),
     number!(max_crouched_speed_m_s, "m/s", 0.0 to 100.0),
@@ -144,27 +124,6 @@ const HOLONOMIC: &[Number<HolonomicBase>] = &[
     number!(max_acceleration_m_s2, "m/s2", 0.01 to 1e4),
     number!(max_yaw_acceleration_rad_s2, "rad/s2", 0.01 to 1e4),
 ];
-
-fn parameters<T>(numbers: &[Number<T>], of: &T) -> Vec<(&'static str, Parameter)> {
-    let parameter = |number: &Number<T>| Parameter {
-        value: f64::from((number.get)(of)),
-        unit: number.unit,
-        low: f64::from(number.range[0]),
-        high: f64::from(number.range[1]),
-    };
-    numbers
-        .iter()
-        .map(|number| (number.name, parameter(number)))
-        .collect()
-}
-
-fn set<T>(numbers: &[Number<T>], of: &mut T, value_of: impl Fn(&str) -> Option<f32>) {
-    for number in numbers {
-        if let Some(value) = value_of(number.name) {
-            (number.set)(of, value);
-        }
-    }
-}
 
 impl Locomotion {
     /// Its numbers by name, with units and ranges: the fields of the address `agent/N/base/FIELD`.
@@ -202,7 +161,7 @@ impl Locomotion {
     /// [`SceneError::Range`] names the field.
     pub fn check(&self) -> Result<(), SceneError> {
         for (name, parameter) in self.parameters() {
-            if !(parameter.low..=parameter.high).contains(&parameter.value) {
+            if !parameter.admits(parameter.value) {
                 return Err(SceneError::Range {
                     at: format!("agent body, {}", self.name()),
                     field: name,

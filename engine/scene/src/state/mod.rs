@@ -2,21 +2,29 @@
 
 mod address;
 mod agent;
+mod agent_address;
+mod body;
 mod canonical;
 mod joint;
 mod law_address;
+mod law_target;
 mod listing;
 mod locomotion;
 mod mass;
 mod names;
+mod numbers;
+mod overrides;
+mod parameter;
 mod part;
 mod relations;
 mod snapshot;
 
-pub use address::{Address, Parameter};
-pub use agent::{AgentBody, AgentState, BaseState};
+pub use address::Address;
+pub use agent::{AgentState, BaseState};
+pub use body::AgentBody;
 pub use joint::JointValues;
 pub use locomotion::{DifferentialDrive, Gait, HolonomicBase, Locomotion};
+pub use parameter::Parameter;
 pub use relations::{Contact, Rest};
 
 use crate::articulation::JointCommand;

@@ -6,7 +6,7 @@ use crate::house::House;
 use xxhash_rust::xxh3::xxh3_64;
 
 const MAGIC: &[u8; 4] = b"dwst";
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const HEADER: usize = 4 + 4 + 8 + 8;
 
 impl State {
@@ -65,6 +65,16 @@ impl State {
             if state.canonical(house, address)? != *address {
                 return refuse(format!(
                     "its parameter {address} has another spelling in this build"
+                ));
+            }
+        }
+        for agent in &state.agents {
+            agent.body.check()?;
+            let most = agent.body.height_m - 2.0 * agent.body.radius_m;
+            if !(0.0..=most.max(0.0)).contains(&agent.crouched_by_m) {
+                let found = agent.crouched_by_m;
+                return refuse(format!(
+                    "an agent in it crouches by {found} m; its body can by 0 to {most}"
                 ));
             }
         }

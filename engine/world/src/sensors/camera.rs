@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use dwell_render::{Camera, Preset};
-use dwell_scene::{AgentId, State};
+use dwell_scene::{AgentBody, AgentId, State};
 use serde::{Deserialize, Serialize};
 
 /// A camera at an agent's eyes.
@@ -15,8 +15,8 @@ pub struct CameraConfig {
     pub width: u32,
     /// Pixels down; 1 to 8,192, default 128.
     pub height: u32,
-    /// Horizontal field of view, degrees; 1 to 170, default 90.
-    pub fov_deg: f32,
+    /// Horizontal field of view, degrees; 1 to 170; by default that of the agent's body, 90 if nothing else is said.
+    pub fov_deg: Option<f32>,
     /// Nearest distance that is seen, m; default 0.05.
     pub near_m: f32,
     /// Furthest distance, to which depth is clamped, m; default 50.
@@ -31,7 +31,7 @@ impl Default for CameraConfig {
             agent: 0,
             width: 128,
             height: 128,
-            fov_deg: State::CAMERA_FOV_DEG,
+            fov_deg: None,
             near_m: 0.05,
             far_m: 50.0,
             preset: "lit".to_owned(),
@@ -46,14 +46,17 @@ pub struct EyeCamera {
     pub agent: AgentId,
     /// The camera.
     pub camera: Camera,
+    /// Its horizontal field of view, degrees.
+    pub fov_deg: f32,
     /// Flat or lit.
     pub preset: Preset,
 }
 
 impl EyeCamera {
-    /// The camera as a world's parameters have it: `agent/N/camera/fov_deg` goes before its own field of view.
+    /// The camera as a world's parameters have it: once `agent/N/camera/fov_deg` is set it goes before its own
+    /// field of view.
     pub fn camera_in(&self, state: &State) -> Camera {
-        let Some(fov_deg) = state.camera_fov_deg(self.agent) else {
+        let Some(fov_deg) = state.overridden_fov_deg(self.agent) else {
             return self.camera;
         };
         let own = &self.camera;
@@ -68,15 +71,16 @@ impl CameraConfig {
     ///
     /// # Errors
     /// [`WorldError::Config`] or [`WorldError::Render`] names the field.
-    pub fn build(&self, agent_count: usize) -> Result<EyeCamera, WorldError> {
-        if self.agent as usize >= agent_count {
+    pub fn build(&self, agents: &[AgentBody]) -> Result<EyeCamera, WorldError> {
+        let Some(body) = agents.get(self.agent as usize) else {
+            let agent_count = agents.len();
             let allowed = format!("below the number of agents, {agent_count}");
             return Err(WorldError::Config {
                 field: "agent",
                 found: self.agent.to_string(),
                 allowed,
             });
-        }
+        };
         let preset = match self.preset.as_str() {
             "flat" => Preset::Flat,
             "lit" => Preset::Lit,
@@ -89,11 +93,13 @@ impl CameraConfig {
                 });
             }
         };
-        let camera = Camera::from_fov(self.width, self.height, self.fov_deg)?
+        let fov_deg = self.fov_deg.unwrap_or(body.camera_fov_deg);
+        let camera = Camera::from_fov(self.width, self.height, fov_deg)?
             .with_range(self.near_m, self.far_m)?;
         Ok(EyeCamera {
             agent: AgentId(self.agent),
             camera,
+            fov_deg,
             preset,
         })
     }

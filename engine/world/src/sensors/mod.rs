@@ -102,6 +102,11 @@ pub trait Sensor: Debug + Send + Sync {
     /// Shape, type, unit and range of the observation.
     fn spec(&self) -> SensorSpec;
 
+    /// Its camera, if it has one.
+    fn eye(&self) -> Option<&EyeCamera> {
+        None
+    }
+
     /// Says what the engines must compute; most sensors that read the state need nothing.
     fn plan(&self, _world: &World, _requests: &mut Requests) {}
 

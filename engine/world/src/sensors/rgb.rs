@@ -22,7 +22,7 @@ struct Rgb {
 
 fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let config: CameraConfig = settings(value)?;
-    let eye = config.build(site.config.agents.len())?;
+    let eye = config.build(&site.config.agents)?;
     Ok(Box::new(Rgb { config, eye }))
 }
 
@@ -37,6 +37,10 @@ impl Sensor for Rgb {
             high: 255.0,
             about: ABOUT,
         }
+    }
+
+    fn eye(&self) -> Option<&EyeCamera> {
+        Some(&self.eye)
     }
 
     fn plan(&self, _world: &World, requests: &mut Requests) {

@@ -1,5 +1,5 @@
 //! Laws of wheeled bases and of agents' gyros. Their target is an agent's number, counted from 0; without one they act on
-//! every agent that has what they need; agents on legs have none of it.
+//! every agent that has what they need, those that come later too; agents on legs have none of it.
 
 pub(super) mod gyro_bias_scale;
 pub(super) mod unequal_wheels;
@@ -34,9 +34,10 @@ impl Needs {
     }
 }
 
-/// The agents that a spec acts on; `None`: all, in a world that has none yet.
+/// The agents that a spec acts on; `None`: all that have what it needs, whenever they come. Agents without it are never
+/// asked about: only driven wheels roll, and only bases have a gyro.
 #[derive(Clone, Debug)]
-struct Riders(Option<Vec<AgentId>>);
+struct Riders(Option<AgentId>);
 
 impl Riders {
     fn of(
@@ -56,11 +57,12 @@ impl Riders {
         };
         let fits = |agent: &AgentId| needs.are_met_by(&state.agents[*agent].body.locomotion);
         let Some(target) = &spec.target else {
-            let able: Vec<AgentId> = state.agents.ids().filter(fits).collect();
-            return match state.agents.ids().next() {
-                None => Ok(Self(None)),
-                Some(first) if able.is_empty() => Err(unfit("any agent".to_owned(), first)),
-                Some(_) => Ok(Self(Some(able))),
+            let first = state.agents.ids().next();
+            return match first {
+                Some(first) if !state.agents.ids().any(|agent| fits(&agent)) => {
+                    Err(unfit("any agent".to_owned(), first))
+                }
+                _ => Ok(Self(None)),
             };
         };
         let found = target
@@ -76,11 +78,10 @@ impl Riders {
         if !fits(&agent) {
             return Err(unfit(format!("agent {index}"), agent));
         }
-        Ok(Self(Some(vec![agent])))
+        Ok(Self(Some(agent)))
     }
 
     fn holds(&self, agent: AgentId) -> bool {
-        let named = self.0.as_ref();
-        named.is_none_or(|named| named.contains(&agent))
+        self.0.is_none_or(|named| named == agent)
     }
 }

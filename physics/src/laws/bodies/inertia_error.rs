@@ -83,7 +83,7 @@ fn install(
         products: of(["xy", "yz", "zx"]),
     };
     for (index, plan) in plans {
-        let mut inertia = Inertia::of(&model.house, plan, state, 1.0);
+        let mut inertia = Inertia::of(&model.house, plan, state, &vec![1.0; plan.parts.len()]);
         // A link without mass of its own has no inertia that could be wrong.
         if !inertia.is_positive() {
             continue;

@@ -10,10 +10,15 @@ fn known() -> Vec<&'static LawInfo> {
 }
 
 fn set(run: &mut Run, info: &LawInfo, name: &str, value: f64) {
-    let address = format!("law/{}/{name}", info.id).parse().unwrap();
+    let (house, address) = (
+        run.house.clone(),
+        format!("law/{}/{name}", info.id).parse().unwrap(),
+    );
     let state = &mut run.state;
-    state.set_law_parameter(&known(), &address, value).unwrap();
-    let there = state.law_parameter(&known(), &address).unwrap();
+    state
+        .set_law_parameter(&house, &known(), &address, value)
+        .unwrap();
+    let there = state.law_parameter(&house, &known(), &address).unwrap();
     assert_eq!(there.value, value);
     run.world.apply_parameters(state).unwrap();
 }

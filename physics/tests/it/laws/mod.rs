@@ -9,6 +9,7 @@ mod floating;
 mod friction;
 mod links;
 mod loads;
+mod targets;
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{PhysicsConfig, laws};

@@ -1,0 +1,155 @@
+//! The body of an agent: fixed while nobody changes it, and every number of it can be set at run time under
+//! `agent/N/body/FIELD`. It stands in the agent's state and nowhere else.
+
+use super::numbers::{Number, number, parameters, set};
+use super::{Locomotion, Parameter};
+use crate::error::SceneError;
+use serde::{Deserialize, Serialize};
+
+/// The body of an agent: a capsule with an eye and two ears.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AgentBody {
+    /// Radius of the capsule, m; 0.05 to 1.
+    pub radius_m: f32,
+    /// Height of the capsule, m; at least twice the radius, at most 3.
+    pub height_m: f32,
+    /// Height of eyes and ears above the feet, m; at most the height.
+    pub eye_height_m: f32,
+    /// The highest step it climbs, m.
+    pub step_height_m: f32,
+    /// The steepest slope it walks up, rad.
+    pub max_slope_rad: f32,
+    /// Mass, kg.
+    pub mass_kg: f32,
+    /// The heaviest thing it lifts, kg.
+    pub lift_kg: f32,
+    /// How far from its eye its hand reaches, m.
+    pub reach_m: f32,
+    /// The force with which it pushes what is in its way and what its hand pushes and pulls, N.
+    pub push_force_n: f32,
+    /// The horizontal field of view of the cameras at its eyes that state none of their own, degrees; 1 to 170, default 90.
+    /// In a world it is what `agent/N/camera/fov_deg` reads until that is set.
+    pub camera_fov_deg: f32,
+    /// How it gets about; default: it walks.
+    pub locomotion: Locomotion,
+}
+
+impl Default for AgentBody {
+    /// A small adult: 0.2 m radius, 1.5 m tall, eyes at 1.25 m, climbs 0.2 m, lifts 10 kg, reaches 1.5 m, pushes with 100 N.
+    fn default() -> Self {
+        Self {
+            radius_m: 0.2,
+            height_m: 1.5,
+            eye_height_m: 1.25,
+            step_height_m: 0.2,
+            max_slope_rad: 0.785,
+            mass_kg: 60.0,
+            lift_kg: 10.0,
+            reach_m: 1.5,
+            push_force_n: 100.0,
+            camera_fov_deg: 90.0,
+            locomotion: Locomotion::default(),
+        }
+    }
+}
+
+/// The numbers with an address `agent/N/body/FIELD`.
+const BODY: &[Number<AgentBody>] = &[
+    number!(radius_m, "m", 0.05 to 1.0),
+    number!(height_m, "m", 0.1 to 3.0),
+    number!(eye_height_m, "m", 0.0 to 3.0),
+    number!(step_height_m, "m", 0.0 to 1.0),
+    number!(max_slope_rad, "rad", 0.0 to 1.4),
+    number!(mass_kg, "kg", 1.0 to 500.0),
+    number!(lift_kg, "kg", 0.0 to 500.0),
+    number!(reach_m, "m", 0.1 to 5.0),
+    number!(push_force_n, "N", 0.0 to 1e4),
+];
+
+impl AgentBody {
+    /// The range of the field of view of cameras at an agent's eyes, degrees.
+    pub(super) const FOV_DEG: [f64; 2] = [1.0, 170.0];
+
+    /// Its numbers by name, with units and the ranges that they have beside each other: it is at least twice as high as its
+    /// radius, and its eyes are not above it. The fields of the address `agent/N/body/FIELD`.
+    pub fn parameters(&self) -> Vec<(&'static str, Parameter)> {
+        let mut all = parameters(BODY, self);
+        for (name, parameter) in &mut all {
+            match *name {
+                "radius_m" => parameter.high = parameter.high.min(f64::from(0.5 * self.height_m)),
+                "height_m" => {
+                    let least = f64::from((2.0 * self.radius_m).max(self.eye_height_m));
+                    parameter.low = parameter.low.max(least);
+                }
+                "eye_height_m" => parameter.high = parameter.high.min(f64::from(self.height_m)),
+                _ => {}
+            }
+        }
+        all
+    }
+
+    /// Sets the number called `field`, whatever it is; [`AgentBody::check`] says what is allowed.
+    pub(super) fn set(&mut self, field: &str, value: f32) {
+        set(BODY, self, |name| (name == field).then_some(value));
+    }
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`crate::SceneError::Range`] names the field.
+    pub fn check(&self) -> Result<(), SceneError> {
+        let refuse = |field: &'static str, found: String| {
+            Err(SceneError::Range {
+                at: "agent body".to_owned(),
+                field,
+                found,
+                allowed: "a value within its range",
+            })
+        };
+        for (field, parameter) in self.parameters() {
+            if !parameter.admits(parameter.value) {
+                let Parameter {
+                    value,
+                    low,
+                    high,
+                    unit,
+                } = parameter;
+                return refuse(field, format!("{value} (range {low} to {high} {unit})"));
+            }
+        }
+        let [low, high] = Self::FOV_DEG;
+        if !(low..=high).contains(&f64::from(self.camera_fov_deg)) {
+            let found = format!("{} (range {low} to {high} deg)", self.camera_fov_deg);
+            return refuse("camera_fov_deg", found);
+        }
+        self.locomotion.check()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_holds_together_whichever_number_is_looked_at() {
+        let body = AgentBody::default();
+        body.check().unwrap();
+        for (field, value) in [
+            ("radius_m", 0.76),
+            ("height_m", 0.39),
+            ("height_m", 1.2),
+            ("eye_height_m", 1.51),
+            ("push_force_n", f32::NAN),
+            ("camera_fov_deg", 171.0),
+        ] {
+            let mut other = body;
+            other.set(field, value);
+            if field == "camera_fov_deg" {
+                other.camera_fov_deg = value;
+            }
+            let message = other.check().unwrap_err().to_string();
+            assert!(message.contains("agent body"), "{field}: {message}");
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! One spelling for what a law acts on.
+//!
+//! A joint has a number, a name, and a name beside its object's; the part of a thing moves with all the others that no
+//! joint holds; two substances that touch have two orders. A law on one of them must not act twice because it was asked for in two
+//! spellings.
+
+use crate::error::SceneError;
+use crate::house::House;
+use crate::ids::{Id, JointId, PartId};
+use crate::law::{LawInfo, LawSpec};
+
+impl LawSpec {
+    /// The one spelling of a target of a law. A joint is `OBJECT/JOINT`, or its number where those names are not its own; a name
+    /// that several joints have stays, as it means all of them. An object's part is the object where all of it moves as one,
+    /// else the first part that moves with it. An agent is its number. What names nothing stays as it is.
+    pub fn canonical_target(house: &House, info: &LawInfo, target: &str) -> String {
+        let found = match info.acts_on {
+            "joint" => joint(house, target),
+            "object" => body(house, target),
+            "agent" => target.parse::<u32>().ok().map(|agent| agent.to_string()),
+            _ => None,
+        };
+        found.unwrap_or_else(|| target.to_owned())
+    }
+
+    /// Whether two targets of a law name the same: in two spellings, or as a pair of substances in two orders.
+    pub fn is_same_target(house: &House, info: &LawInfo, a: &str, b: &str) -> bool {
+        let [a, b] = [a, b].map(|target| Self::canonical_target(house, info, target));
+        let turned = || {
+            let (one, other) = a.split_once('~')?;
+            Some(format!("{other}~{one}") == b)
+        };
+        a == b || (info.acts_on == "contact" && turned() == Some(true))
+    }
+
+    /// Refuses two laws of one kind on one target in two spellings: whoever wrote them meant two things, or one thing once. Two in
+    /// one spelling are two laws one after the other, such as two lags. `known`: the laws to look at; others are left out.
+    ///
+    /// # Errors
+    /// [`SceneError::Range`] names the law and the two spellings.
+    pub fn check_targets(
+        house: &House,
+        known: &[&LawInfo],
+        laws: &[Self],
+    ) -> Result<(), SceneError> {
+        for (k, spec) in laws.iter().enumerate() {
+            let Some(info) = known.iter().find(|info| info.id == spec.id) else {
+                continue;
+            };
+            let same = |other: &&Self| {
+                other.id == spec.id
+                    && match (&other.target, &spec.target) {
+                        (Some(a), Some(b)) => a != b && Self::is_same_target(house, info, a, b),
+                        _ => false,
+                    }
+            };
+            if let Some(other) = laws[..k].iter().find(same) {
+                let name = |spec: &Self| spec.target.clone().unwrap_or_default();
+                return Err(SceneError::Range {
+                    at: format!("law {}", spec.id),
+                    field: "target",
+                    found: format!(
+                        "{:?} beside {:?}, which is the same",
+                        name(spec),
+                        name(other)
+                    ),
+                    allowed: "one spelling for one target",
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn joint(house: &House, target: &str) -> Option<String> {
+    let own = |id: JointId| {
+        let joint = &house.joints[id];
+        format!("{}/{}", house.objects[joint.object].name, joint.name)
+    };
+    let named = |target: &str| {
+        let joints = house.joints.iter_ids();
+        let is = |id: JointId, name: &str| {
+            target == name || target == own(id) || target == id.index().to_string()
+        };
+        let mut found = joints.filter(|(id, joint)| is(*id, &joint.name));
+        let (first, more) = (found.next(), found.next().is_some());
+        first.filter(|_| !more).map(|(id, _)| id)
+    };
+    // +3 is 3.
+    let number = |target: &str| {
+        let id = JointId(target.parse().ok()?);
+        house.joints.get(id).map(|_| id)
+    };
+    let id = named(target).or_else(|| {
+        let any = house.joints.iter().any(|joint| joint.name == target);
+        number(target).filter(|_| !any)
+    })?;
+    [own(id), id.index().to_string()]
+        .into_iter()
+        .find(|spelling| named(spelling) == Some(id))
+}
+
+fn body(house: &House, target: &str) -> Option<String> {
+    let mut found = house.objects.iter().filter_map(|object| {
+        let part = target.strip_prefix(&object.name)?.strip_prefix('/')?;
+        let id = object.parts().find(|id| house.parts[*id].name == part)?;
+        Some((object, id))
+    });
+    let (object, part) = found.next()?;
+    let names = |name: &str| {
+        house
+            .objects
+            .iter()
+            .filter(|other| other.name == name)
+            .count()
+    };
+    if found.next().is_some() || names(target) > 0 || names(&object.name) > 1 {
+        return None;
+    }
+    let on_joint = |id: PartId| house.joints.iter().any(|joint| joint.child == id);
+    if on_joint(part) {
+        return (object.part_count == 1).then(|| object.name.clone());
+    }
+    let mut alike = object
+        .parts()
+        .filter(|id| !on_joint(*id) && !house.parts[*id].fixed);
+    let first = alike.next()?;
+    if object.parts().any(on_joint) {
+        return Some(format!("{}/{}", object.name, house.parts[first].name));
+    }
+    Some(object.name.clone())
+}
