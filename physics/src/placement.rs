@@ -57,13 +57,13 @@ impl AgentPlacement {
     fn refuse<T>(
         &self,
         field: &'static str,
-        found: impl ToString,
+        found: impl std::fmt::Display,
         allowed: &'static str,
     ) -> Result<T, PhysicsError> {
         Err(PhysicsError::Range {
             at: format!("agent {}", self.agent.index()),
             field,
-            found: found.to_string(),
+            found: format!("{found}"),
             allowed,
         })
     }
@@ -184,20 +184,17 @@ impl AgentPlacement {
         truth: &DifferentialDrive,
     ) -> Result<Vec3, PhysicsError> {
         let wheels = Wheels::from(truth);
-        let rates = match self.wheel_rad_s {
-            Some(rates) => {
-                if self.velocity.with_y(0.0) != Vec3::ZERO || self.yaw_rate_rad_s != 0.0 {
-                    let found = format!("{rates:?}");
-                    let allowed =
-                        "either wheel speeds or a level velocity and a rate of turn, not both";
-                    return self.refuse("wheel_rad_s", found, allowed);
-                }
-                rates.map(f64::from)
+        let rates = if let Some(rates) = self.wheel_rad_s {
+            if self.velocity.with_y(0.0) != Vec3::ZERO || self.yaw_rate_rad_s != 0.0 {
+                let found = format!("{rates:?}");
+                let allowed =
+                    "either wheel speeds or a level velocity and a rate of turn, not both";
+                return self.refuse("wheel_rad_s", found, allowed);
             }
-            None => {
-                let twist = self.twist();
-                wheels.rates(twist.forward_m_s, twist.yaw_rate_rad_s)
-            }
+            rates.map(f64::from)
+        } else {
+            let twist = self.twist();
+            wheels.rates(twist.forward_m_s, twist.yaw_rate_rad_s)
         };
         let fastest = f64::from(truth.max_wheel_speed_rad_s);
         if !rates.iter().all(|rate| rate.abs() <= fastest) {

@@ -50,14 +50,14 @@ fn any_pose_and_velocity_of_an_agent_reads_back() {
     for round in 0..RESETS {
         let key = Key::root(41).child(round);
         let place = |agent: AgentId| {
-            let key = key.child(agent.0 as u64 + 100);
+            let key = key.child(u64::from(agent.0) + 100);
             AgentPlacement {
                 pitch_rad: 1.5 * unit(key.child("pitch")),
                 yaw_rate_rad_s: 2.0 * unit(key.child("rate")),
                 ..AgentPlacement::at_rest(
                     agent,
                     Vec3::new(4.0, 1.4, 4.0) + vector(key.child("at"), 1.3),
-                    3.14 * unit(key.child("yaw")),
+                    3.1 * unit(key.child("yaw")),
                 )
             }
         };
