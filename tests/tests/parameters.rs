@@ -192,3 +192,138 @@ fn a_field_of_view_set_at_run_time_is_what_the_camera_sees() {
     // Rays that differ by rounding may pass an edge on either side.
     assert!(off[off.len() * 98 / 100] < 1e-4, "{:?}", off.last());
 }
+
+/// What used to happen: the address read 90 whatever the agent's sensor had.
+#[test]
+fn the_field_of_view_that_is_read_is_the_sensors_and_setting_it_changes_the_picture() {
+    let rgb = serde_json::json!({"width": 24, "height": 16, "fov_deg": 60.0, "preset": "flat"});
+    let config = EnvConfig {
+        sensors: Some(vec![SensorConfig {
+            kind: "rgb".to_owned(),
+            settings: rgb,
+        }]),
+        ..EnvConfig::default()
+    };
+    let env = Env::new(dwell_tests::apartment(), &config).unwrap();
+    let mut batch = Batch::new(vec![env], Threads::ONE).unwrap();
+    batch.reset(&[Some(3)]).unwrap();
+    let mut look = |batch: &mut Batch| {
+        let mut seen = vec![0_u8; 24 * 16 * 3];
+        batch
+            .observe(&[true], &mut [Out::Uint8(&mut seen)])
+            .unwrap();
+        let world = batch.env(0).unwrap().world();
+        (seen, get(world, "agent/0/camera/fov_deg"), world.hash())
+    };
+    let (first, fov, hash) = look(&mut batch);
+    assert_eq!(fov, 60.0);
+    let before = batch.env(0).unwrap().world().snapshot();
+    set(
+        batch.env_mut(0).unwrap().world_mut(),
+        "agent/0/camera/fov_deg",
+        100.0,
+    )
+    .unwrap();
+    let (wide, fov, other) = look(&mut batch);
+    assert_eq!(fov, 100.0);
+    assert_ne!(hash, other);
+    let differ = first.iter().zip(&wide).filter(|(a, b)| a != b).count();
+    assert!(differ > first.len() / 10, "{differ} bytes differ");
+    let after = batch.env(0).unwrap().world().snapshot();
+    batch
+        .env_mut(0)
+        .unwrap()
+        .world_mut()
+        .restore(&before)
+        .unwrap();
+    assert!(look(&mut batch) == (first, 60.0, hash));
+    batch
+        .env_mut(0)
+        .unwrap()
+        .world_mut()
+        .restore(&after)
+        .unwrap();
+    assert!(look(&mut batch) == (wide, 100.0, other));
+}
+
+/// Numbers of the scene, of laws and of bodies together: all of them, or none.
+#[test]
+fn a_set_of_numbers_is_taken_whole_or_not_at_all() {
+    let mut world = world();
+    let before = world.hash();
+    let rows = |pairs: &[(&str, f64)]| -> Vec<_> {
+        let row = |(address, value): &(&str, f64)| (address.parse().unwrap(), *value);
+        pairs.iter().map(row).collect()
+    };
+    let good = [
+        ("world/gravity_m_s2", 1.62),
+        ("agent/0/body/height_m", 1.1),
+        ("agent/0/body/eye_height_m", 1.0),
+        ("law/drag/c_d", 0.5),
+    ];
+    for (bad, part) in [
+        (("agent/0/body/radius_m", 0.9), "0.05 to 0.55"),
+        (("law/drag/area_m2", -1.0), "law/drag/area_m2"),
+        (("law/drag@nothing/c_d", 1.0), "nothing"),
+        (("agent/0/body/step_height_m", f64::INFINITY), "0 to 1"),
+    ] {
+        let mut all = good.to_vec();
+        all.insert(1, bad);
+        let message = world.set_parameters(&rows(&all)).unwrap_err().to_string();
+        assert!(message.contains(part), "{message}");
+        assert_eq!(world.hash(), before, "{message}");
+    }
+    world.set_parameters(&rows(&good)).unwrap();
+    for (address, value) in good {
+        assert_eq!(get(&world, address) as f32, value as f32, "{address}");
+    }
+    // A fresh world takes the smaller body with the snapshot, and goes on alike.
+    let saved = world.snapshot();
+    let end = steps(&mut world, 4);
+    let mut fork = self::world();
+    fork.restore(&saved).unwrap();
+    assert_eq!(get(&fork, "agent/0/body/height_m") as f32, 1.1);
+    assert_eq!(steps(&mut fork, 4), end);
+    fork.reset(dwell_scene::random::Key::root(0)).unwrap();
+    assert_eq!(get(&fork, "agent/0/body/height_m"), 1.5);
+    // Settings are such a set, too: the order of their names does not matter.
+    let config = WorldConfig {
+        parameters: good
+            .map(|(address, value)| (address.to_owned(), value))
+            .into(),
+        ..WorldConfig::default()
+    };
+    assert_eq!(
+        get(&world_with(&config), "agent/0/body/height_m") as f32,
+        1.1
+    );
+}
+
+/// An agent that would grow into what is around it does not, and nothing else has changed.
+#[test]
+fn an_agent_does_not_grow_into_a_wall() {
+    let mut world = world();
+    steps(&mut world, 2);
+    let before = world.hash();
+    let wide = [("height_m", 2.0), ("radius_m", 1.0)];
+    let rows: Vec<_> = wide
+        .iter()
+        .map(|(field, value)| (format!("agent/0/body/{field}").parse().unwrap(), *value))
+        .collect();
+    let house = world.house().clone();
+    let corner = house.rooms.iter().next().unwrap();
+    let at = world.state().agents[dwell_scene::AgentId(0)].position;
+    let corners = corner.footprint.iter().flatten();
+    let near = corners
+        .min_by(|a, b| a.x.total_cmp(&b.x))
+        .map(|corner| Vec3::new(corner.x + 0.4, at.y, at.z))
+        .unwrap();
+    world
+        .place_agent(dwell_scene::AgentId(0), near, 0.0)
+        .unwrap();
+    let placed = world.hash();
+    assert_ne!(placed, before);
+    let message = world.set_parameters(&rows).unwrap_err().to_string();
+    assert!(message.contains("move the agent first"), "{message}");
+    assert_eq!(world.hash(), placed);
+}

@@ -60,13 +60,23 @@ impl Batch {
             .ok_or_else(|| WorldError::Usage(format!("no environment {index}; there are {count}")))
     }
 
+    /// One environment, to change its world between steps.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for an environment that does not exist.
+    pub fn env_mut(&mut self, index: usize) -> Result<&mut Env, WorldError> {
+        let count = self.envs.len();
+        self.envs
+            .get_mut(index)
+            .ok_or_else(|| WorldError::Usage(format!("no environment {index}; there are {count}")))
+    }
+
     /// Goes to a snapshot of one environment.
     ///
     /// # Errors
     /// [`WorldError::Usage`] for an environment that does not exist, and those of [`Env::restore`].
     pub fn restore(&mut self, index: usize, bytes: &[u8]) -> Result<(), WorldError> {
-        self.env(index)?;
-        self.envs[index].restore(bytes)
+        self.env_mut(index)?.restore(bytes)
     }
 
     /// What the scripted expert would do now in each environment.
