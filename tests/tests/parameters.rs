@@ -207,7 +207,7 @@ fn the_field_of_view_that_is_read_is_the_sensors_and_setting_it_changes_the_pict
     let env = Env::new(dwell_tests::apartment(), &config).unwrap();
     let mut batch = Batch::new(vec![env], Threads::ONE).unwrap();
     batch.reset(&[Some(3)]).unwrap();
-    let mut look = |batch: &mut Batch| {
+    let look = |batch: &mut Batch| {
         let mut seen = vec![0_u8; 24 * 16 * 3];
         batch
             .observe(&[true], &mut [Out::Uint8(&mut seen)])
