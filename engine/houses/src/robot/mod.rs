@@ -52,6 +52,10 @@ pub fn open_robot(path: &Path) -> Result<(Robot, Report), HousesError> {
 /// A house with a robot in it. `name` must be free; `fixed_base` holds its base for good, else the base is a body that
 /// stands and falls. Meshes are shared with the house.
 ///
+/// Links that are fixed to each other are one part, by the name of the one nearest to the base: it has the mass, centre and inertia of
+/// all of them together, and these have addresses (`part/ROBOT/LINK/mass_kg`); those behind the fixed joints have none of their own.
+/// What they are made of stays apart: each shape keeps its material, whose friction is set by pair.
+///
 /// # Errors
 /// [`HousesError::Scene`] for a name that is taken, a pose that is not rigid, or a robot out of the scene's ranges.
 pub fn with_robot(
