@@ -54,7 +54,8 @@ pub fn open_robot(path: &Path) -> Result<(Robot, Report), HousesError> {
 ///
 /// Links that are fixed to each other are one part, by the name of the one nearest to the base: it has the mass, centre and inertia of
 /// all of them together, and these have addresses (`part/ROBOT/LINK/mass_kg`); those behind the fixed joints have none of their own.
-/// What they are made of stays apart: each shape keeps its material, whose friction is set by pair.
+/// Nor have they a friction of their own: what touches any of its collision shapes touches the part's first material, that of the first
+/// shape that is seen of the named link, or of the next that has one.
 ///
 /// # Errors
 /// [`HousesError::Scene`] for a name that is taken, a pose that is not rigid, or a robot out of the scene's ranges.
