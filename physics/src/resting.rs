@@ -21,8 +21,8 @@ const SKIN_M: f32 = 1e-3;
 const RAPIER_SKIN: f32 = 0.04;
 /// A box this much wider than need be is left as it is, m.
 const WIDE_ENOUGH_M: f32 = 2.0 * SKIN_M;
-/// Physics steps after which room is given back: a minute, so that a copy of a millisecond costs nothing.
-const TICKS_BETWEEN_COPIES: u64 = 8192;
+/// Physics steps after which room is given back: a quarter of a minute, so that a copy of a millisecond costs nothing.
+const TICKS_BETWEEN_COPIES: u64 = 2048;
 
 /// How many pairs of colliders a world keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

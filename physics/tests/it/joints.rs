@@ -49,7 +49,7 @@ fn a_pendulum_has_its_period() {
     );
 }
 
-/// The bar's end stays on its circle, and its energy does not grow.
+/// The bar's end stays on its circle, and its energy within 0.2 % of what it was for 5 s.
 #[test]
 fn a_swinging_pendulum_keeps_its_length_and_gains_no_energy() {
     let (mut run, joint, object) = pendulum(1.5);
@@ -61,14 +61,16 @@ fn a_swinging_pendulum_keeps_its_length_and_gains_no_energy() {
         0.5 / 3.0 * v * v + gravity() * 0.5 * (1.0 - q.cos())
     };
     let start = energy(&run);
+    let mut worst = 0.0_f32;
     for _ in 0..100 {
         run.steps(1);
+        worst = worst.max((energy(&run) / start - 1.0).abs());
         let pose = run.state.part_pose[run.root(object)];
         let end = pose.transform_point(Vec3::new(0.0, 0.5, 0.0));
         assert!((end - Vec3::new(2.0, 3.0, 2.0)).length() < 2e-3, "{end}");
-        assert!(energy(&run) < start * 1.01, "{} {start}", energy(&run));
     }
-    assert!(energy(&run) > 0.8 * start, "{} {start}", energy(&run));
+    println!("  off by {worst} of its energy");
+    assert!(worst < 0.002, "{worst}");
 }
 
 #[test]

@@ -195,3 +195,69 @@ fn nothing_falls_for_ever() {
     );
     assert_eq!(run.house.objects[lost].mobility, Mobility::Movable);
 }
+
+/// A tall box that stands a little in two others beside it cannot leave by itself; they make way for it.
+#[test]
+fn what_stands_around_makes_way() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let half = Vec3::new(0.1, 0.4, 0.1);
+    let mut tall =
+        |name: &str, x: f32| build.movable(name, Piece::cuboid(half, Vec3::new(x, 0.4, 3.0)));
+    let (left, right) = (tall("left", 1.0), tall("right", 1.372));
+    let middle = tall("middle", 1.186);
+    // What stands behind and before leaves no way out that is shorter.
+    for (name, z) in [("behind", 2.7), ("before", 3.3)] {
+        let wide = Vec3::new(1.0, 0.4, 0.19);
+        build.fixed(name, Piece::cuboid(wide, Vec3::new(1.186, 0.4, z)));
+    }
+    let run = build.run();
+    assert!(run.report.frozen.is_empty(), "{:?}", run.report.frozen);
+    let moved: Vec<_> = run.report.moved.iter().map(|moved| moved.object).collect();
+    assert!(moved.contains(&left) && moved.contains(&right), "{moved:?}");
+    for moved in &run.report.moved {
+        assert!(moved.distance_m < 0.03, "{moved:?}");
+    }
+    let apart = |a, b| run.position(b).x - run.position(a).x;
+    assert!(apart(left, middle) > 0.197 && apart(middle, right) > 0.197);
+}
+
+/// What is stuck in a ceiling comes down, and what a wall is too near to goes beside, but never behind the wall.
+#[test]
+fn what_is_stuck_comes_down_or_aside_but_through_no_wall() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let half = Vec3::splat(0.1);
+    let lamp = build.movable("lamp", Piece::cuboid(half, Vec3::new(3.0, 2.95, 3.0)));
+    // A chair that a script put on a table, into a ceiling that it did not know of.
+    let top = Vec3::new(0.4, 0.02, 0.4);
+    build.fixed("table", Piece::cuboid(top, Vec3::new(3.0, 2.2, 1.0)));
+    let chair = build.movable(
+        "chair",
+        Piece::cuboid(Vec3::new(0.2, 0.45, 0.2), Vec3::new(3.1, 2.7, 1.0)),
+    );
+    // A cupboard in a wall, and too little room before it; behind the wall there would be some.
+    build.fixed(
+        "shaft",
+        Piece::cuboid(Vec3::new(0.3, 1.5, 3.0), Vec3::new(0.7, 1.5, 3.0)),
+    );
+    let cupboard = build.movable(
+        "cupboard",
+        Piece::cuboid(Vec3::new(0.25, 0.5, 0.5), Vec3::new(0.1, 0.5, 3.0)),
+    );
+    let run = build.run_with(PhysicsConfig {
+        max_start_shift_m: 0.8,
+        ..PhysicsConfig::default()
+    });
+    let frozen: Vec<_> = run.report.frozen.iter().map(|one| one.object).collect();
+    assert_eq!(frozen, [cupboard]);
+    let at = run.position(lamp);
+    assert!(at.y < 2.901 && at.y > 2.8, "{at}");
+    let at = run.position(chair);
+    assert!(
+        (at.x - 1.0).abs() > 0.59 || (at.z - 1.0).abs() > 0.59,
+        "{at}"
+    );
+    assert!(
+        at.y + 0.45 < 3.001 && at.y > 2.4,
+        "beside, below the ceiling: {at}"
+    );
+}

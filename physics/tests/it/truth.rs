@@ -455,7 +455,7 @@ fn bar(damping: f32, friction: f32, level: bool) -> (Run, dwell_scene::JointId, 
 }
 
 /// `T = 2 pi sqrt(I / (m g d)) (1 + a^2 / 16 + 11 a^4 / 3072)` for swings of 0.2 to 1.4 rad, within 0.5 %, with the mean `a` of
-/// the swings that are timed: the solver of joints takes up to 2 % of the energy in each second.
+/// the swings that are timed, which fall by less than 1 %.
 #[test]
 fn wide_swings_of_a_pendulum_take_longer() {
     for amplitude in [0.2_f32, 0.8, 1.4] {
@@ -485,12 +485,11 @@ fn wide_swings_of_a_pendulum_take_longer() {
             (found / expected - 1.0).abs() < 0.005,
             "{amplitude} rad: {found} s, expected {expected} s"
         );
-        assert!(tops[4] > 0.9 * amplitude, "{tops:?}");
+        assert!(tops[4] > 0.99 * amplitude, "{tops:?}");
     }
 }
 
-/// With viscous damping the swings fall as `exp(-c t / (2 I))`, within 1.2 % for each second: the solver of joints takes a
-/// little besides.
+/// With viscous damping the swings fall as `exp(-c t / (2 I))`, within 0.6 % over 8 s, as far as three samples of a top tell.
 #[test]
 fn a_damped_pendulum_loses_the_same_share_in_each_second() {
     let (mut run, joint, _, inertia) = bar(0.05, 0.0, false);
@@ -516,8 +515,9 @@ fn a_damped_pendulum_loses_the_same_share_in_each_second() {
     assert!(tops.len() > 6);
     for (t, top) in tops {
         let expected = 0.2 * (-0.05 * t / (2.0 * inertia)).exp();
+        println!("  {t} s: {}", top / expected - 1.0);
         assert!(
-            (top / expected - 1.0).abs() < 0.012 * t + 0.005,
+            (top / expected - 1.0).abs() < 0.006,
             "{t} s: {top}, expected {expected}"
         );
     }

@@ -139,6 +139,8 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
     if let Some(boxes) = &options.boxes {
         opened = boxed(&opened, boxes)?;
         config.physics_rate_hz = boxes.physics_rate_hz;
+        // As the scripts, which put a box on others until it is free, without a ceiling over it.
+        config.max_start_shift_m = 1.0;
     }
     config.control_rate_hz = config.physics_rate_hz / STEPS_PER_CONTROL as f32;
     let house = Arc::new(opened);

@@ -1,0 +1,154 @@
+//! Overlaps at the start: found on the collision pieces, resolved by small moves, or frozen, and reported.
+
+mod free;
+mod overlap;
+mod passing;
+
+use crate::body::{Body, Hold};
+use crate::config::Settings;
+use crate::contact::Entry;
+use crate::engine::Engine;
+use crate::model::PhysicsModel;
+use crate::report::{FrozenObject, MovedObject, StartReport};
+use dwell_scene::{Aabb, ObjectId};
+use overlap::Overlap;
+use rapier3d::math::Pose as RapierPose;
+use std::collections::BTreeMap;
+
+/// Gap that a resolved overlap is left with, m.
+const CLEARANCE_M: f32 = 5e-4;
+
+/// A thing that stands where it is while others are resolved.
+#[derive(Clone, Copy)]
+struct Placed {
+    body: u32,
+    bounds: Aabb,
+    place: RapierPose,
+}
+
+pub(crate) struct Start<'a> {
+    pub(crate) engine: &'a Engine,
+    pub(crate) model: &'a PhysicsModel,
+    pub(crate) entries: &'a [Entry],
+    pub(crate) bodies: &'a [Body],
+    pub(crate) settings: &'a Settings,
+}
+
+/// Where a body ends up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Resolved {
+    pub(crate) place: RapierPose,
+    pub(crate) hold: Hold,
+}
+
+impl Start<'_> {
+    fn place(&self, body: usize) -> RapierPose {
+        let handle = self.bodies[body].handle;
+        self.engine
+            .bodies
+            .get(handle)
+            .map_or(RapierPose::IDENTITY, |rigid| *rigid.position())
+    }
+
+    /// Frees every body from what it overlaps, from the lowest up.
+    pub(crate) fn resolve(&self, report: &mut StartReport) -> Vec<Resolved> {
+        let mut resolved: Vec<Resolved> = (0..self.bodies.len())
+            .map(|body| Resolved {
+                place: self.place(body),
+                hold: Hold::Free,
+            })
+            .collect();
+        let bounds = |body: usize| self.model.bodies[body].bounds(&resolved[body].place);
+        let mut order: Vec<(f32, usize)> = Vec::new();
+        let mut placed = Vec::new();
+        for (index, plan) in self.model.bodies.iter().enumerate() {
+            if plan.joint.is_some() {
+                placed.push(self.placed(index, &resolved[index]));
+            } else {
+                order.push((bounds(index).min.y, index));
+            }
+        }
+        order.sort_by(|a, b| {
+            let by_number = || {
+                self.model.bodies[a.1]
+                    .order()
+                    .cmp(&self.model.bodies[b.1].order())
+            };
+            a.0.total_cmp(&b.0).then_with(by_number)
+        });
+        let mut deepest: BTreeMap<usize, Overlap> = BTreeMap::new();
+        for (_, index) in order {
+            let plan = &self.model.bodies[index];
+            let start = resolved[index].place;
+            let found = self.overlap(plan, &start, &placed);
+            if let Some(overlap) = found.filter(|overlap| self.counts(overlap)) {
+                report.overlaps += 1;
+                deepest.insert(index, overlap);
+                if let Some(place) = self.free(plan, start, &placed) {
+                    resolved[index].place = place;
+                } else if let Some(others) = self.make_way(index, &mut resolved, &placed) {
+                    for (other, overlap) in others {
+                        deepest.entry(other).or_insert(overlap);
+                        let again = |one: &&mut Placed| one.body as usize == other;
+                        if let Some(one) = placed.iter_mut().find(again) {
+                            *one = self.placed(other, &resolved[other]);
+                        }
+                    }
+                } else if let Some(place) = self
+                    .search(plan, start, &placed)
+                    .or_else(|| self.raise(plan, start, &placed))
+                {
+                    resolved[index].place = place;
+                } else {
+                    resolved[index].hold = Hold::Frozen;
+                }
+            }
+            placed.push(self.placed(index, &resolved[index]));
+        }
+        self.tell(&deepest, &resolved, report);
+        resolved
+    }
+
+    fn placed(&self, body: usize, at: &Resolved) -> Placed {
+        Placed {
+            body: body as u32,
+            bounds: self.model.bodies[body].bounds(&at.place),
+            place: at.place,
+        }
+    }
+
+    /// What became of the bodies that overlapped something.
+    fn tell(
+        &self,
+        deepest: &BTreeMap<usize, Overlap>,
+        resolved: &[Resolved],
+        report: &mut StartReport,
+    ) {
+        let mut moved: BTreeMap<ObjectId, MovedObject> = BTreeMap::new();
+        for (index, overlap) in deepest {
+            let object = self.model.bodies[*index].object;
+            if resolved[*index].hold == Hold::Frozen {
+                report.frozen.push(FrozenObject {
+                    object,
+                    overlap_m: overlap.depth_m,
+                    with: overlap.other.name(&self.model.house),
+                });
+                continue;
+            }
+            let entry = moved.entry(object).or_insert(MovedObject {
+                object,
+                overlap_m: 0.0,
+                distance_m: 0.0,
+            });
+            entry.overlap_m = entry.overlap_m.max(overlap.depth_m);
+            let way = resolved[*index].place.translation - self.place(*index).translation;
+            entry.distance_m = entry.distance_m.max(way.length());
+        }
+        report.moved = moved.into_values().collect();
+        report.frozen.sort_by_key(|frozen| frozen.object);
+    }
+
+    fn counts(&self, overlap: &Overlap) -> bool {
+        overlap.depth_m > self.settings.config.overlap_tolerance_m
+    }
+}

@@ -1,0 +1,124 @@
+//! How deep a body is in others.
+
+use super::{Placed, Start};
+use crate::contact::{Toucher, entry_index};
+use crate::model::{BodyPlan, Owner, Piece, shapes};
+use glam::Vec3;
+use rapier3d::math::Pose as RapierPose;
+use rapier3d::parry::query;
+use rapier3d::pipeline::QueryFilter;
+
+/// The deepest overlap of a body somewhere.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Overlap {
+    pub(super) depth_m: f32,
+    /// Away from the other thing.
+    pub(super) normal: Vec3,
+    pub(super) other: Owner,
+}
+
+impl Start<'_> {
+    /// The deepest overlap of a body under a pose with static pieces and with bodies that have their place.
+    pub(super) fn overlap(
+        &self,
+        plan: &BodyPlan,
+        place: &RapierPose,
+        placed: &[Placed],
+    ) -> Option<Overlap> {
+        let mut found = Vec::new();
+        let is_static = |_, collider: &rapier3d::geometry::Collider| {
+            self.entries[entry_index(collider)].body.is_none()
+        };
+        let queries = self
+            .engine
+            .queries(QueryFilter::default().predicate(&is_static));
+        for piece in &plan.pieces {
+            let at = *place * piece.place;
+            let bounds = shapes::bounds(&piece.shape, &at);
+            let aabb = rapier3d::geometry::Aabb::new(bounds.min, bounds.max);
+            let mut near: Vec<_> = queries.intersect_aabb_conservative(aabb).collect();
+            near.sort_by_key(|(_, collider)| collider.user_data);
+            for (_, collider) in near {
+                if !is_static(rapier3d::geometry::ColliderHandle::invalid(), collider) {
+                    continue;
+                }
+                let owner = self.owner(entry_index(collider));
+                found.extend(depth(
+                    collider.position(),
+                    collider.shape(),
+                    &at,
+                    &*piece.shape,
+                    owner,
+                ));
+            }
+        }
+        for other in placed {
+            found.extend(self.overlap_of_two(plan, place, other));
+        }
+        deepest(found.into_iter())
+    }
+
+    /// The deepest overlap of a body under a pose with another one.
+    pub(super) fn overlap_of_two(
+        &self,
+        plan: &BodyPlan,
+        place: &RapierPose,
+        other: &Placed,
+    ) -> Option<Overlap> {
+        let obstacles = &self.model.bodies[other.body as usize];
+        // A lid may lie on its own pot, and a robot's trunk is not moved away from its own links.
+        if obstacles.object == plan.object || !other.bounds.intersects(&plan.bounds(place)) {
+            return None;
+        }
+        let of_piece = |piece: &Piece| {
+            let at = *place * piece.place;
+            let bounds = shapes::bounds(&piece.shape, &at);
+            if !other.bounds.intersects(&bounds) {
+                return None;
+            }
+            let of_obstacle = |obstacle: &Piece| {
+                let there = other.place * obstacle.place;
+                depth(&there, &*obstacle.shape, &at, &*piece.shape, obstacle.owner)
+            };
+            deepest(obstacles.pieces.iter().filter_map(of_obstacle))
+        };
+        deepest(plan.pieces.iter().filter_map(of_piece))
+    }
+
+    pub(super) fn owner(&self, entry: usize) -> Owner {
+        match self.entries[entry].toucher {
+            Some(Toucher::Structure(id)) => Owner::Structure(id),
+            Some(Toucher::Part(id)) => Owner::Part(id),
+            _ => Owner::LastBox,
+        }
+    }
+}
+
+/// The first of the deepest.
+fn deepest(overlaps: impl Iterator<Item = Overlap>) -> Option<Overlap> {
+    overlaps.reduce(|worst, one| {
+        if one.depth_m > worst.depth_m {
+            one
+        } else {
+            worst
+        }
+    })
+}
+
+/// How deep a piece is in an obstacle.
+pub(super) fn depth(
+    there: &RapierPose,
+    obstacle: &dyn rapier3d::geometry::Shape,
+    at: &RapierPose,
+    piece: &dyn rapier3d::geometry::Shape,
+    other: Owner,
+) -> Option<Overlap> {
+    let contact = query::contact(there, obstacle, at, piece, 0.0)
+        .ok()
+        .flatten()?;
+    (contact.dist < 0.0 && contact.normal1.is_finite()).then_some(Overlap {
+        depth_m: -contact.dist,
+        normal: contact.normal1,
+        other,
+    })
+}
