@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import os
 
@@ -134,6 +135,81 @@ def test_laws_have_addresses(apartment: dwell.House) -> None:
             world.set_parameter(address, value)
     everything = world.parameters()
     assert {"world/gravity_m_s2", "joint/0/friction", "agent/0/camera/fov_deg"} <= set(everything)
+
+
+def test_numbers_that_bound_each_other_are_set_together(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    before = world.state_hash()
+    child = {"height_m": 0.35, "eye_height_m": 0.3, "radius_m": 0.1}
+    numbers = {f"agent/0/body/{name}": value for name, value in child.items()}
+    for name, value in numbers.items():
+        if "height_m" in name and "eye" not in name:
+            with pytest.raises(dwell.SceneError, match="out of range"):
+                world.set_parameter(name, value)
+    for bad, match in [
+        ({"agent/0/body/radius_m": 0.2}, "radius_m.*0.175"),
+        ({"world/gravity": 1.0}, "known are"),
+        ({"world/gravity_m_s2": "x"}, "world/gravity_m_s2"),
+        ({"law/drag@nothing/c_d": 1.0}, "nothing"),
+    ]:
+        with pytest.raises(dwell.DwellError, match=match):
+            world.set_parameters({**numbers, **bad})
+        assert world.state_hash() == before
+    world.set_parameters(numbers)
+    assert world.agents()[0]["body"]["height_m"] == pytest.approx(0.35)
+    assert world.parameter("agent/0/body/radius_m")["value"] == pytest.approx(0.1)
+    other = dwell.World(apartment, parameters=numbers)
+    other.restore(world.snapshot())
+    assert other.agents() == world.agents()
+    with pytest.raises(dwell.ConfigError, match="parameters is"):
+        world.set_parameters([("world/gravity_m_s2", 1.0)])  # type: ignore[arg-type]
+
+
+def test_the_field_of_view_of_an_agent_reaches_its_pictures(apartment: dwell.House) -> None:
+    world = dwell.World(apartment, agents=[{"camera_fov_deg": 70.0}])
+    room = apartment.rooms()[0]
+    world.place_agent(room["stand"], room["yaw_deg"])
+    address = "agent/0/camera/fov_deg"
+    assert world.parameter(address)["value"] == pytest.approx(70.0)
+
+    def look(fov_deg: float | None) -> np.ndarray:
+        camera = dwell.Camera(32, 24, fov_deg=fov_deg, preset="flat")
+        return np.asarray(world.render(camera=camera)["rgb"])
+
+    first = look(None)
+    np.testing.assert_array_equal(first, look(70.0))
+    world.set_parameter(address, 110.0)
+    wide = look(None)
+    assert np.mean(np.any(first != wide, axis=2)) > 0.1
+    np.testing.assert_array_equal(wide, look(110.0))
+    np.testing.assert_array_equal(first, look(70.0))
+
+
+def test_agents_are_put_on_the_move(shoebox: dwell.House) -> None:
+    robot = {"locomotion": {"differential_drive": {}}}
+    world = dwell.World(shoebox, agents=[{}, robot])
+    world.place_agent(
+        (3.0, 0.0, 2.0),
+        pitch_deg=-30.0,
+        linear_m_s=(1.0, 2.0, 0.0),
+        yaw_rate_rad_s=0.5,
+        crouched_by_m=0.4,
+    )
+    walker = world.agents()[0]
+    assert walker["velocity"] == [1.0, 2.0, 0.0]
+    assert walker["pitch_rad"] == pytest.approx(math.radians(-30.0))
+    assert walker["crouched_by_m"] == pytest.approx(0.4)
+    assert walker["gyro_rad_s"] == 0.5
+    world.place_agent((2.0, 0.0, 2.0), agent=1, wheel_rad_s=(4.0, 6.0))
+    base = world.agents()[1]
+    assert base["base"]["wheel_rad_s"] == [4.0, 6.0]
+    assert base["velocity"] == pytest.approx([0.0, 0.0, -0.25])
+    before = world.state_hash()
+    with pytest.raises(dwell.DwellError, match="no such wheels"):
+        world.place_agent((2.0, 0.0, 2.0), wheel_rad_s=(1.0, 1.0))
+    with pytest.raises(dwell.ConfigError, match="wheel_rad_s"):
+        world.place_agent((2.0, 0.0, 2.0), agent=1, wheel_rad_s=(1.0,))
+    assert world.state_hash() == before
 
 
 def test_things_are_set_to_any_pose_and_velocity(apartment: dwell.House) -> None:

@@ -14,7 +14,7 @@ use dwell_scene::packing::{pack, unpack};
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Address, AgentId, AgentState, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId,
+    Address, AgentBody, AgentId, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId,
     Parameter, State,
 };
 use glam::Vec3;
@@ -360,6 +360,7 @@ impl World {
             physics: self.physics.moment(),
             sound: self.sound.to_bytes(),
             key: self.key,
+            agents: self.config.agents.clone(),
         };
         let body =
             postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory");
@@ -378,7 +379,7 @@ impl World {
         let refuse = |why: &str| WorldError::Snapshot(why.to_owned());
         let packed = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwworld2\""))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwworld3\""))?;
         let (sum, packed) = packed
             .split_first_chunk::<8>()
             .ok_or_else(|| refuse("it is too short"))?;
@@ -389,15 +390,11 @@ impl World {
         let parts: Parts =
             postcard::from_bytes(&body).map_err(|error| WorldError::Snapshot(error.to_string()))?;
         let mut state = State::from_bytes(self.engines.house(), &parts.state)?;
-        // Sizes and strengths of bodies are parameters, which a snapshot has; how they get about is not.
-        let made = |state: &State| -> Vec<_> {
-            let of = |agent: &AgentState| (agent.body.locomotion, agent.body.camera_fov_deg);
-            state.agents.iter().map(of).collect()
-        };
-        if made(&state) != made(&self.state) {
+        // Bodies as they were made: what was set since is in the state.
+        if parts.agents != self.config.agents || state.agents.len() != self.state.agents.len() {
             let (found, allowed) = (state.agents.len(), self.state.agents.len());
             return Err(WorldError::Snapshot(format!(
-                "it has {found} agents, and the world {allowed} or agents with other legs, wheels or cameras"
+                "it has {found} agents, and the world {allowed} or agents with other bodies"
             )));
         }
         let sound = Sound::from_bytes(
@@ -417,7 +414,7 @@ impl World {
 }
 
 /// What a world's snapshot begins with: its kind and version.
-const MAGIC: &[u8] = b"dwworld2";
+const MAGIC: &[u8] = b"dwworld3";
 
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Parts {
@@ -425,4 +422,6 @@ struct Parts {
     physics: Vec<u8>,
     sound: Vec<u8>,
     key: Key,
+    /// The agents' bodies as the world was made with them.
+    agents: Vec<AgentBody>,
 }
