@@ -128,8 +128,9 @@ class World:
             agents: How many agents live in it, all of the default body; or a body for each, as a
                 mapping of what differs: ``radius_m``, ``height_m``, ``eye_height_m``,
                 ``step_height_m``, ``max_slope_rad``, ``mass_kg``, ``lift_kg``, ``reach_m``,
-                ``push_force_n``, ``camera_fov_deg`` and ``locomotion``, which is ``{"walking": {...}}`` (``max_speed_m_s``,
-                ``max_crouched_speed_m_s``, ``crouched_height_m``),
+                ``push_force_n``, ``camera_fov_deg`` and ``locomotion``, which is
+                ``{"walking": {...}}`` (``max_speed_m_s``, ``max_crouched_speed_m_s``,
+                ``crouched_height_m``),
                 ``{"differential_drive": {...}}`` (``wheel_base_m``, ``left_wheel_radius_m``,
                 ``right_wheel_radius_m``, ``max_wheel_speed_rad_s``,
                 ``max_wheel_acceleration_rad_s2``) or ``{"holonomic": {...}}``
@@ -284,7 +285,7 @@ class World:
         crouched_by_m: float = 0.0,
         wheel_rad_s: Sequence[float] | None = None,
     ) -> None:
-        """Puts an agent somewhere, moving in any way that its body can; at rest, if nothing is said.
+        """Puts an agent somewhere, moving in any way that its body can; at rest by default.
 
         Legs slide or fly on with a velocity until feet brake them: what they do by their own will
         they are told in :meth:`step`. Wheels turn as the velocity ahead and the rate of turn ask
