@@ -6,9 +6,10 @@ use dwell::sensors::Out;
 use dwell::{Batch, Env, EnvConfig, SensorConfig, World, WorldConfig};
 use dwell_physics::BodyState;
 use dwell_scene::parallel::Threads;
-use dwell_scene::{LawSpec, Mobility, PartId, Pose, Velocity};
+use dwell_scene::{AgentId, House, LawSpec, Mobility, PartId, Pose, ShoeboxMaterials, Velocity};
 use glam::Vec3;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 fn world_with(config: &WorldConfig) -> World {
     World::new(dwell_tests::apartment(), config).unwrap()
@@ -302,28 +303,22 @@ fn a_set_of_numbers_is_taken_whole_or_not_at_all() {
 /// An agent that would grow into what is around it does not, and nothing else has changed.
 #[test]
 fn an_agent_does_not_grow_into_a_wall() {
-    let mut world = world();
-    steps(&mut world, 2);
-    let before = world.hash();
+    let house = House::shoebox([4.0, 3.0, 4.0], &ShoeboxMaterials::default()).unwrap();
+    let engines = dwell::Engines::new(Arc::new(house));
+    let mut world = World::new(engines, &WorldConfig::default()).unwrap();
+    let beside = Vec3::new(0.5, 0.0, 2.0);
+    world.place_agent(AgentId(0), beside, 0.0).unwrap();
+    let placed = world.hash();
     let wide = [("height_m", 2.0), ("radius_m", 1.0)];
     let rows: Vec<_> = wide
         .iter()
         .map(|(field, value)| (format!("agent/0/body/{field}").parse().unwrap(), *value))
         .collect();
-    let house = world.house().clone();
-    let corner = house.rooms.iter().next().unwrap();
-    let at = world.state().agents[dwell_scene::AgentId(0)].position;
-    let corners = corner.footprint.iter().flatten();
-    let near = corners
-        .min_by(|a, b| a.x.total_cmp(&b.x))
-        .map(|corner| Vec3::new(corner.x + 0.4, at.y, at.z))
-        .unwrap();
-    world
-        .place_agent(dwell_scene::AgentId(0), near, 0.0)
-        .unwrap();
-    let placed = world.hash();
-    assert_ne!(placed, before);
     let message = world.set_parameters(&rows).unwrap_err().to_string();
     assert!(message.contains("move the agent first"), "{message}");
     assert_eq!(world.hash(), placed);
+    let away = Vec3::new(2.0, 0.0, 2.0);
+    world.place_agent(AgentId(0), away, 0.0).unwrap();
+    world.set_parameters(&rows).unwrap();
+    assert_eq!(get(&world, "agent/0/body/radius_m"), 1.0);
 }
