@@ -353,3 +353,82 @@ fn lamps_shine_as_bright_and_where_they_stand() {
             .any(|node| node.light().unwrap().intensity() > 0.0)
     );
 }
+
+#[test]
+fn rooms_storeys_and_sky_come_back_from_our_own_glb() {
+    let (house, _) = open("seed:2?home=house&storeys=2&clutter=0").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.glb");
+    gltf::write(&house, &path).unwrap();
+    let (again, report) = open(&path.to_string_lossy()).unwrap();
+    assert_eq!(again.sky, house.sky);
+    let names = |house: &House| -> Vec<String> {
+        house
+            .levels
+            .iter()
+            .map(|level| level.name.clone())
+            .collect()
+    };
+    assert_eq!(names(&again), names(&house));
+    let about = |house: &House| -> Vec<_> {
+        let rooms = house.rooms.iter().map(|room| {
+            let heights = (room.floor_y, room.ceiling_y);
+            let place = (room.level, heights, room.footprint.clone());
+            (room.name.clone(), room.kinds.clone(), place)
+        });
+        rooms.collect()
+    };
+    assert_eq!(about(&again), about(&house), "{report}");
+    // Walls, floors and ceilings are what they were, each in its room and storey.
+    let pieces = |house: &House| -> Vec<_> {
+        let pieces = house.structure.iter();
+        let mut pieces: Vec<_> = pieces
+            .map(|piece| (piece.name.clone(), piece.kind, piece.room, piece.level))
+            .collect();
+        pieces.sort_by(|a, b| a.0.cmp(&b.0));
+        pieces
+    };
+    assert_eq!(pieces(&again), pieces(&house));
+    // So is furniture of one part.
+    for object in house.objects.iter().filter(|object| object.part_count == 1) {
+        let twin = again.objects.iter().find(|twin| twin.name == object.name);
+        let twin = twin.unwrap_or_else(|| panic!("no {}", object.name));
+        assert_eq!(
+            (twin.room, twin.level),
+            (object.room, object.level),
+            "{}",
+            object.name
+        );
+    }
+}
+
+#[test]
+fn rooms_that_cannot_be_are_reported_and_passed_over() {
+    let room = |footprint: &str, ceiling: &str, place: &str| {
+        let nodes = format!(
+            r#"[{{"name": "level_0", "children": [1]}},
+            {{"name": "den", "children": [2] {place}, "extras": {{"dwell": {{"room": "den", "kinds": ["den"],
+              "floor_y": 0.0, "ceiling_y": {ceiling}, "footprint": {footprint}}}}}}},
+            {{"mesh": 0, "name": "chair"}}]"#
+        );
+        open_text(&text(&nodes, "")).unwrap()
+    };
+    let floor = "[[[0, 0], [2, 0], [2, 2]]]";
+    let (house, report) = room(floor, "2.5", "");
+    assert_eq!(house.rooms.len(), 1, "{report}");
+    assert_eq!(
+        house.objects.as_slice()[0].room,
+        Some(dwell_scene::RoomId(0))
+    );
+    for (footprint, ceiling, place) in [
+        (floor, "-1.0", ""),
+        (floor, "1e30", ""),
+        ("[[[0, 0], [2, 0]]]", "2.5", ""),
+        ("7", "2.5", ""),
+        (floor, "2.5", r#", "translation": [1, 0, 0]"#),
+    ] {
+        let (house, report) = room(footprint, ceiling, place);
+        assert!(house.rooms.is_empty(), "{footprint} {ceiling} {place}");
+        assert_eq!(report.count(|d| matches!(d, Damage::Simplified { .. })), 1);
+    }
+}

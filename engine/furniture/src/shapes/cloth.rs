@@ -13,7 +13,7 @@ const CLOTH_M: f32 = 0.004;
 /// A curtain that hangs in folds from y = 0 down to `-height_m`, `width_m` wide about x = 0, folds `depth_m` deep about z = 0.
 /// It collides as the box around it.
 pub fn curtain(width_m: f32, height_m: f32, depth_m: f32, folds: usize) -> Solid {
-    let (columns, rows) = (folds * 6 + 1, 4);
+    let (columns, rows) = (folds * 4 + 1, 3);
     let half = 0.5 * (depth_m - CLOTH_M);
     let sheet = |i: usize, j: usize| {
         let (across, up) = (

@@ -2,8 +2,9 @@
 
 use super::Solid;
 use super::grid::add_face;
+use super::polygon::triangulate;
 use dwell_scene::{Collider, Mesh};
-use glam::{Vec2, Vec3};
+use glam::{DVec2, Vec2, Vec3};
 
 /// The prism over a simple polygon in the (x, y) plane, corners counter-clockwise, from z = 0 to `depth_m`. It collides as
 /// the hull of its corners: give a polygon that is not convex its own pieces.
@@ -11,7 +12,9 @@ pub fn extrude(polygon: &[[f32; 2]], depth_m: f32) -> Solid {
     let corners: Vec<Vec2> = polygon.iter().map(|p| Vec2::from(*p)).collect();
     let lift = |p: Vec2, z: f32| p.extend(z);
     let mut mesh = Mesh::default();
-    for [a, b, c] in triangulate(&corners) {
+    let exact: Vec<DVec2> = corners.iter().map(|p| p.as_dvec2()).collect();
+    for triangle in triangulate(&exact) {
+        let [a, b, c] = triangle.map(|k| corners[k]);
         add_face(&mut mesh, &[a, b, c].map(|p| lift(p, depth_m)), Vec3::X);
         add_face(&mut mesh, &[a, c, b].map(|p| lift(p, 0.0)), Vec3::NEG_X);
     }
@@ -35,40 +38,4 @@ pub fn extrude(polygon: &[[f32; 2]], depth_m: f32) -> Solid {
         .flat_map(|p| [lift(*p, 0.0), lift(*p, depth_m)])
         .collect();
     Solid::new(mesh, vec![Collider::Hull { points }])
-}
-
-/// Triangles of a simple polygon, by cutting ears.
-fn triangulate(polygon: &[Vec2]) -> Vec<[Vec2; 3]> {
-    let mut rest = polygon.to_vec();
-    let mut triangles = Vec::with_capacity(polygon.len());
-    let turn = |a: Vec2, b: Vec2, c: Vec2| (b - a).perp_dot(c - a);
-    while rest.len() > 3 {
-        let count = rest.len();
-        let ear = (0..count).find(|&k| {
-            let (a, b, c) = (
-                rest[(k + count - 1) % count],
-                rest[k],
-                rest[(k + 1) % count],
-            );
-            let holds = |p: &Vec2| {
-                ![a, b, c].contains(p)
-                    && turn(a, b, *p) >= 0.0
-                    && turn(b, c, *p) >= 0.0
-                    && turn(c, a, *p) >= 0.0
-            };
-            turn(a, b, c) > 0.0 && !rest.iter().any(holds)
-        });
-        // A polygon that crosses itself has no ear left: what was cut so far is all there is.
-        let Some(k) = ear else { return triangles };
-        triangles.push([
-            rest[(k + count - 1) % count],
-            rest[k],
-            rest[(k + 1) % count],
-        ]);
-        rest.remove(k);
-    }
-    if let [a, b, c] = rest[..] {
-        triangles.push([a, b, c]);
-    }
-    triangles
 }

@@ -4,15 +4,14 @@ mod components;
 mod looks;
 mod names;
 mod pieces;
-mod polygon;
 mod scene;
 mod textures;
 
 pub(crate) use components::{Component, components, submesh};
+pub(crate) use dwell_furniture::shapes::triangulate;
 pub(crate) use dwell_furniture::tables::{CategoryRow, category, room_kind, substance_of};
 pub(crate) use looks::{Look, LookTable};
 pub(crate) use names::Names;
 pub(crate) use pieces::convex_pieces;
-pub(crate) use polygon::triangulate;
-pub(crate) use scene::{Scene, Thing, category_of, structure_kind};
+pub(crate) use scene::{FileRoom, Role, Scene, Thing, category_of, structure_kind};
 pub(crate) use textures::{decode, encode_png, read_images, texture_name};

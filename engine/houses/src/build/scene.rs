@@ -1,16 +1,16 @@
 //! Named meshes of a general format into a house.
 //!
 //! Formats such as OBJ and glTF know meshes and names, nothing of rooms and doors. What a name says is used: walls,
-//! floors and ceilings become structure, one room lies over the floors, everything else is an object of the category
-//! that its name means.
+//! floors and ceilings become structure, one room lies over the floors (unless the file names its rooms), everything else
+//! is an object of the category that its name means.
 
 use std::sync::Arc;
 
 use dwell_scene::{
-    Aabb, Category, Collider, House, HouseData, Level, LevelId, Mesh, Mobility, Object, ObjectId,
-    Part, PartId, Room, RoomId, Structure, StructureKind, Texture, space,
+    Aabb, Category, Collider, House, HouseData, Id, Level, LevelId, Mesh, Mobility, Object,
+    ObjectId, Part, PartId, Room, RoomId, Sky, Structure, StructureKind, Texture, space,
 };
-use glam::{Affine3A, Vec2};
+use glam::{Affine3A, Vec2, Vec3};
 
 use super::CategoryRow;
 use super::{LookTable, Names, category, convex_pieces};
@@ -27,6 +27,44 @@ pub(crate) struct Thing {
     pub(crate) mesh: Arc<Mesh>,
     pub(crate) world_from_mesh: Affine3A,
     pub(crate) materials: Vec<dwell_scene::MaterialId>,
+    /// The storey and the room in which the file puts it, as positions in [`Scene`].
+    pub(crate) level: Option<usize>,
+    pub(crate) room: Option<usize>,
+    pub(crate) role: Role,
+}
+
+/// What a file says of a thing.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) enum Role {
+    /// Nothing: its name may mean something.
+    #[default]
+    Unsaid,
+    /// A piece of the building.
+    Building(StructureKind),
+    /// Something that stands in it.
+    Object,
+}
+
+impl Thing {
+    fn structure_kind(&self) -> Option<StructureKind> {
+        match self.role {
+            Role::Unsaid => structure_kind(&self.name),
+            Role::Building(kind) => Some(kind),
+            Role::Object => None,
+        }
+    }
+}
+
+/// A room that a file names.
+pub(crate) struct FileRoom {
+    pub(crate) name: String,
+    /// Its storey, as a position in [`Scene::levels`].
+    pub(crate) level: usize,
+    pub(crate) kinds: Vec<String>,
+    /// Triangles of (x, z), m.
+    pub(crate) footprint: Vec<[Vec2; 3]>,
+    pub(crate) floor_y: f32,
+    pub(crate) ceiling_y: f32,
 }
 
 /// A scene of named meshes.
@@ -36,6 +74,11 @@ pub(crate) struct Scene {
     pub(crate) things: Vec<Thing>,
     pub(crate) looks: LookTable,
     pub(crate) textures: Vec<Arc<Texture>>,
+    /// Storeys that the file names; empty: one.
+    pub(crate) levels: Vec<String>,
+    /// Rooms that the file names; empty: one over all floors.
+    pub(crate) rooms: Vec<FileRoom>,
+    pub(crate) sky: Option<Sky>,
 }
 
 impl Scene {
@@ -59,29 +102,38 @@ impl Scene {
             source: self.source.to_owned(),
             materials: self.looks.into_materials(),
             textures: self.textures.into(),
+            sky: self.sky,
             ..HouseData::default()
         };
         let mut builder = Builder {
             data,
             names: Names::default(),
             structure_names: Names::default(),
+            room_names: Names::default(),
             bounds: Vec::new(),
             meshes: Vec::new(),
         };
-        builder.data.levels.push(Level {
-            name: "0".to_owned(),
-            bounds: Aabb::EMPTY,
-        });
+        let one = (self.levels.is_empty()).then(|| "0".to_owned());
+        for name in one.into_iter().chain(self.levels) {
+            let bounds = Aabb::EMPTY;
+            builder.data.levels.push(Level { name, bounds });
+        }
+        let named = !self.rooms.is_empty();
+        for room in self.rooms {
+            builder.named_room(room);
+        }
         let (structure, objects): (Vec<_>, Vec<_>) = self
             .things
             .into_iter()
             .filter(|thing| !thing.mesh.triangles.is_empty())
-            .partition(|t| structure_kind(&t.name).is_some());
+            .partition(|thing| thing.structure_kind().is_some());
         let alone = structure.is_empty() && objects.len() == 1;
         for thing in structure {
             builder.structure(thing);
         }
-        builder.room();
+        if !named {
+            builder.room();
+        }
         for thing in objects {
             builder.object(thing, alone, at, report);
         }
@@ -90,12 +142,17 @@ impl Scene {
     }
 }
 
-/// What part of a building a name means, if it means one: `Wall_3`, `WallInside#0_0_1`, `floor`.
+/// What part of a building a name means, if it means one: `Wall_3`, `WallInside#0_0_1`, `floor`; not `wall_lamp_1`.
 pub(crate) fn structure_kind(name: &str) -> Option<StructureKind> {
     let lower = name.to_ascii_lowercase();
-    let word = lower
-        .split(|c: char| !c.is_ascii_alphabetic())
-        .find(|word| !word.is_empty())?;
+    let words = lower.split(|c: char| !c.is_ascii_alphabetic());
+    let mut words = words.filter(|word| !word.is_empty());
+    let word = words.next()?;
+    if let Some(second) = words.next()
+        && category([format!("{word}_{second}").as_str()]).is_some()
+    {
+        return None;
+    }
     match word {
         "wall" | "walls" | "wallinside" | "walloutside" => Some(StructureKind::Wall),
         "floor" | "floors" => Some(StructureKind::Floor),
@@ -124,6 +181,8 @@ struct Builder {
     data: HouseData,
     names: Names,
     structure_names: Names,
+    /// Names of rooms that the file gives.
+    room_names: Names,
     /// The box of each object.
     bounds: Vec<Aabb>,
     /// Meshes already part of the house.
@@ -133,23 +192,47 @@ struct Builder {
 const LEVEL: LevelId = LevelId(0);
 
 impl Builder {
-    fn grow(&mut self, bounds: &Aabb) {
-        self.data.levels[LEVEL].bounds = self.data.levels[LEVEL].bounds.union(bounds);
+    fn grow(&mut self, level: LevelId, bounds: &Aabb) {
+        self.data.levels[level].bounds = self.data.levels[level].bounds.union(bounds);
+    }
+
+    /// The storey of a thing.
+    fn level(&self, thing: &Thing) -> LevelId {
+        let known = thing.level.filter(|k| *k < self.data.levels.len());
+        known.map_or(LEVEL, |k| LevelId(k as u32))
+    }
+
+    fn named_room(&mut self, room: FileRoom) {
+        let mut bounds = Aabb::EMPTY;
+        for p in room.footprint.iter().flatten() {
+            bounds.add_point(Vec3::new(p.x, room.floor_y, p.y));
+            bounds.add_point(Vec3::new(p.x, room.ceiling_y, p.y));
+        }
+        self.data.rooms.push(Room {
+            name: self.room_names.unique(&room.name),
+            level: LevelId(room.level as u32),
+            kinds: room.kinds,
+            footprint: room.footprint,
+            floor_y: room.floor_y,
+            ceiling_y: room.ceiling_y,
+            bounds,
+        });
     }
 
     fn structure(&mut self, thing: Thing) {
-        let Some(kind) = structure_kind(&thing.name) else {
+        let Some(kind) = thing.structure_kind() else {
             return;
         };
+        let level = self.level(&thing);
         let mesh = thing.mesh.transformed(&thing.world_from_mesh);
-        self.grow(&mesh.bounds());
+        self.grow(level, &mesh.bounds());
         let name = self.structure_names.unique(&thing.name);
         let mesh = self.data.meshes.push(Arc::new(mesh));
         self.data.structure.push(Structure {
             name,
             kind,
-            room: None,
-            level: LEVEL,
+            room: thing.room.map(|k| RoomId(k as u32)),
+            level,
             mesh,
             materials: thing.materials,
         });
@@ -213,7 +296,8 @@ impl Builder {
                 .iter()
                 .map(|p| world_from_mesh.transform_point3(*p)),
         );
-        self.grow(&bounds);
+        let level = self.level(&thing);
+        self.grow(level, &bounds);
         self.bounds.push(bounds);
         let row = category_of(&thing.name);
         let moves = alone || row.is_some_and(|row| row.is_movable() && !row.is_mounted());
@@ -255,13 +339,10 @@ impl Builder {
         let first_part = PartId(self.data.parts.len() as u32 - 1);
         let handy = bounds.size().max_element() <= 0.6 && box_m3 <= 0.05;
         let center = bounds.center();
-        let in_room = |room: &Room| room.contains_xz(Vec2::new(center.x, center.z));
-        let room = self
-            .data
-            .rooms
-            .iter()
-            .position(in_room)
-            .map(|k| RoomId(k as u32));
+        let in_room =
+            |room: &Room| room.level == level && room.contains_xz(Vec2::new(center.x, center.z));
+        let over = || self.data.rooms.iter().position(in_room);
+        let room = thing.room.or_else(over).map(|k| RoomId(k as u32));
         self.data.objects.push(Object {
             name: self.names.unique(&thing.name),
             source_id: thing.name.clone(),
@@ -271,7 +352,7 @@ impl Builder {
                 coarse: row.name.clone(),
                 nyu40: row.nyu40_name.clone(),
             }),
-            level: LEVEL,
+            level,
             room,
             mobility: if moves {
                 Mobility::Movable
@@ -287,13 +368,12 @@ impl Builder {
 
     /// Fixes movable things that hang in the air: they would only fall.
     fn settle(&mut self, alone: bool) {
-        let floor_y = self
-            .data
-            .rooms
-            .iter()
-            .map(|room| room.floor_y)
-            .reduce(f32::max);
-        let ground = floor_y.unwrap_or(self.data.levels[LEVEL].bounds.min.y);
+        let floor_of = |level: LevelId| {
+            let rooms = self.data.rooms.iter().filter(|room| room.level == level);
+            let floor_y = rooms.map(|room| room.floor_y).reduce(f32::max);
+            floor_y.unwrap_or(self.data.levels[level].bounds.min.y)
+        };
+        let grounds: Vec<f32> = self.data.levels.ids().map(floor_of).collect();
         for (k, object) in self.data.objects.iter_mut().enumerate() {
             let own = self.bounds[k];
             let foot = own.center().with_y(own.min.y);
@@ -306,7 +386,7 @@ impl Builder {
             if object.mobility == Mobility::Movable
                 && !alone
                 && !stands
-                && (foot.y - ground).abs() > GAP_M
+                && (foot.y - grounds[object.level.index()]).abs() > GAP_M
             {
                 object.mobility = Mobility::Fixed;
                 object.pickable = false;

@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 
 use super::accessor::{floats, indices};
 use super::buffers::Buffers;
-use super::nodes::instances;
+use super::nodes::tree;
 use super::surface::{images, materials};
 use crate::build::{LookTable, Scene, Thing, texture_name};
 use crate::damage::Damage;
@@ -55,7 +55,8 @@ pub(super) fn convert(
     let material_ids = materials(json, &images, &mut looks);
     let mut meshes: Vec<Option<(Arc<Mesh>, Vec<MaterialId>)>> = vec![None; json.meshes.len()];
     let mut things = Vec::new();
-    for instance in instances(json, &at, report) {
+    let tree = tree(json, &at, report);
+    for instance in tree.instances {
         let Some(mesh) = json.meshes.get(instance.mesh) else {
             continue;
         };
@@ -85,6 +86,9 @@ pub(super) fn convert(
             mesh,
             world_from_mesh: instance.world_from_mesh,
             materials,
+            level: instance.level,
+            room: instance.room,
+            role: instance.role,
         });
     }
     Ok(Scene {
@@ -93,6 +97,9 @@ pub(super) fn convert(
         things,
         looks,
         textures: images.textures,
+        levels: tree.levels,
+        rooms: tree.rooms,
+        sky: tree.sky,
     })
 }
 

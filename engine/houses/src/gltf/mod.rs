@@ -34,7 +34,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 
 /// Opens a `.glb` or `.gltf` file. Every node with a mesh is a thing; names mean structure or a category.
 ///
-/// Animations, skins and cameras are not read and reported once each; lights and extras are passed over.
+/// Animations, skins and cameras are not read and reported once each; lights are passed over, and of
+/// `extras.dwell` all but rooms, what is the building, and the sky.
 ///
 /// # Errors
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no valid glTF 2.0,

@@ -1,8 +1,11 @@
-//! The node tree, flattened.
+//! The node tree, flattened; and what `extras.dwell` of our own files says of it.
 
-use ::gltf::json::{Index, Root};
-use glam::{Affine3A, Mat4, Quat, Vec3};
+use ::gltf::json::{Index, Node, Root};
+use dwell_scene::{Sky, StructureKind};
+use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
+use serde::Deserialize;
 
+use crate::build::{FileRoom, Role};
 use crate::damage::Damage;
 use crate::report::{At, Report};
 
@@ -11,10 +14,63 @@ pub(super) struct Instance {
     pub(super) name: String,
     pub(super) mesh: usize,
     pub(super) world_from_mesh: Affine3A,
+    /// The storey and the room that its node stands in, as positions in [`Tree`].
+    pub(super) level: Option<usize>,
+    pub(super) room: Option<usize>,
+    pub(super) role: Role,
 }
 
-/// All nodes with meshes of the default scene (of all scenes when none is the default), parents first.
-pub(super) fn instances(json: &Root, at: &At, report: &mut Report) -> Vec<Instance> {
+/// All that nodes say.
+#[derive(Default)]
+pub(super) struct Tree {
+    pub(super) instances: Vec<Instance>,
+    /// Names of storeys that have rooms.
+    pub(super) levels: Vec<String>,
+    pub(super) rooms: Vec<FileRoom>,
+    pub(super) sky: Option<Sky>,
+}
+
+/// A node's `extras`.
+#[derive(Default, Deserialize)]
+struct Extras {
+    #[serde(default)]
+    dwell: Known,
+}
+
+/// A node's `extras.dwell`, as far as it is read; `docs/formats/glb.md` has all of it.
+#[derive(Default, Deserialize)]
+struct Known {
+    #[serde(default)]
+    room: Option<String>,
+    #[serde(default)]
+    kinds: Vec<String>,
+    #[serde(default)]
+    floor_y: f32,
+    #[serde(default)]
+    ceiling_y: f32,
+    #[serde(default)]
+    footprint: Vec<[Vec2; 3]>,
+    #[serde(default)]
+    structure: Option<StructureKind>,
+    #[serde(default)]
+    object: Option<String>,
+    #[serde(default)]
+    sky: Option<Sky>,
+}
+
+/// A node on the way down.
+struct Open {
+    node: usize,
+    world_from_parent: Affine3A,
+    /// The name of the topmost node above, which is a storey's in our files.
+    top: Option<usize>,
+    room: Option<usize>,
+    /// Whether it is a part of an object.
+    of_object: bool,
+}
+
+/// All nodes of the default scene (of all scenes when none is the default), parents first.
+pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
     let scenes: Vec<_> = match json.scene.and_then(|scene| json.scenes.get(scene.value())) {
         Some(scene) => vec![scene],
         None => json.scenes.iter().collect(),
@@ -22,14 +78,30 @@ pub(super) fn instances(json: &Root, at: &At, report: &mut Report) -> Vec<Instan
     let roots = scenes
         .iter()
         .flat_map(|scene| scene.nodes.iter().map(Index::value));
-    let mut open: Vec<(usize, Affine3A)> = roots.map(|node| (node, Affine3A::IDENTITY)).collect();
+    let root = |node: usize| Open {
+        node,
+        world_from_parent: Affine3A::IDENTITY,
+        top: None,
+        room: None,
+        of_object: false,
+    };
+    let mut open: Vec<Open> = roots.map(root).collect();
     if json.scenes.is_empty() {
-        open.extend((0..json.nodes.len()).map(|node| (node, Affine3A::IDENTITY)));
+        open.extend((0..json.nodes.len()).map(root));
     }
     open.reverse();
     let mut seen = vec![false; json.nodes.len()];
-    let mut found = Vec::new();
-    while let Some((index, world_from_parent)) = open.pop() {
+    let mut found = Tree::default();
+    // Storeys by their nodes, in the order of their first rooms.
+    let mut tops: Vec<usize> = Vec::new();
+    while let Some(Open {
+        node: index,
+        world_from_parent,
+        top,
+        room,
+        of_object,
+    }) = open.pop()
+    {
         let Some(node) = json.nodes.get(index) else {
             continue;
         };
@@ -54,6 +126,32 @@ pub(super) fn instances(json: &Root, at: &At, report: &mut Report) -> Vec<Instan
             report.warn(node_at, Damage::BadTransform { reason });
             continue;
         }
+        let known = known(node, &node_at, report);
+        found.sky = found.sky.or(known.sky);
+        let own = file_room(
+            known.room.as_deref(),
+            &known,
+            world_from_mesh,
+            &node_at,
+            report,
+        );
+        let top = top.unwrap_or(index);
+        let of_object = of_object || known.object.is_some();
+        let room = own.map_or(room, |mut own| {
+            own.level = tops
+                .iter()
+                .position(|other| *other == top)
+                .unwrap_or_else(|| {
+                    tops.push(top);
+                    let name = json.nodes.get(top).and_then(|node| node.name.as_deref());
+                    let name = name.map_or_else(|| top.to_string(), ToOwned::to_owned);
+                    let plain = name.strip_prefix("level_").unwrap_or(&name).to_owned();
+                    found.levels.push(plain);
+                    tops.len() - 1
+                });
+            found.rooms.push(own);
+            Some(found.rooms.len() - 1)
+        });
         if let Some(mesh) = node.mesh {
             let of_mesh = || {
                 json.meshes
@@ -66,10 +164,17 @@ pub(super) fn instances(json: &Root, at: &At, report: &mut Report) -> Vec<Instan
                 .or_else(of_mesh)
                 .filter(|name| !name.is_empty());
             let name = name.unwrap_or_else(|| format!("node_{index}"));
-            found.push(Instance {
+            found.instances.push(Instance {
                 name,
                 mesh: mesh.value(),
                 world_from_mesh,
+                level: Some(top),
+                room,
+                role: match known.structure {
+                    Some(kind) => Role::Building(kind),
+                    None if of_object => Role::Object,
+                    None => Role::Unsaid,
+                },
             });
         }
         if node.skin.is_some() {
@@ -77,7 +182,62 @@ pub(super) fn instances(json: &Root, at: &At, report: &mut Report) -> Vec<Instan
             report.warn(node_at, Damage::Simplified { what });
         }
         let children = node.children.iter().flatten().rev();
-        open.extend(children.map(|child| (child.value(), world_from_mesh)));
+        open.extend(children.map(|child| Open {
+            node: child.value(),
+            world_from_parent: world_from_mesh,
+            top: Some(top),
+            room,
+            of_object,
+        }));
+    }
+    for instance in &mut found.instances {
+        instance.level = tops.iter().position(|top| Some(*top) == instance.level);
     }
     found
+}
+
+/// What a node says of itself in our words; nothing where `extras` are not ours.
+fn known(node: &Node, at: &At, report: &mut Report) -> Known {
+    let Some(text) = node.extras.as_ref().map(|extras| extras.get()) else {
+        return Known::default();
+    };
+    if !text.contains("\"dwell\"") {
+        return Known::default();
+    }
+    serde_json::from_str(text).map_or_else(
+        |error| {
+            let what = format!("extras.dwell is not read: {error}");
+            report.warn(at.field("extras"), Damage::Simplified { what });
+            Known::default()
+        },
+        |extras: Extras| extras.dwell,
+    )
+}
+
+/// The room that a node is; its numbers count in the world, so that a node that is moved is none.
+fn file_room(
+    name: Option<&str>,
+    known: &Known,
+    world_from_node: Affine3A,
+    at: &At,
+    report: &mut Report,
+) -> Option<FileRoom> {
+    let name = name?;
+    let points = || known.footprint.iter().flatten();
+    let finite = points().all(|p| p.is_finite())
+        && (known.floor_y..1e4).contains(&known.ceiling_y)
+        && known.floor_y > -1e4;
+    if world_from_node != Affine3A::IDENTITY || !finite {
+        let what = "a room that is moved, or without floor and ceiling, is not read".to_owned();
+        report.warn(at.field("extras.dwell"), Damage::Simplified { what });
+        return None;
+    }
+    Some(FileRoom {
+        name: name.to_owned(),
+        level: 0,
+        kinds: known.kinds.clone(),
+        footprint: known.footprint.clone(),
+        floor_y: known.floor_y,
+        ceiling_y: known.ceiling_y,
+    })
 }

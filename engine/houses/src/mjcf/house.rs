@@ -8,9 +8,9 @@ use std::sync::Arc;
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{
     Aabb, Category, House, HouseData, Level, LevelId, Material, MaterialId, Mobility, ObjectId,
-    Pose, Room, State, Structure, StructureKind, units,
+    Pose, Room, RoomId, Structure, StructureKind, units,
 };
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use mjcf_rs::BodyId;
 
 use super::geoms::Piece;
@@ -374,23 +374,36 @@ fn kind_words(name: &str) -> Option<String> {
 
 /// Rooms of objects and the storey's box, by where things stand; what is small and loose can be taken.
 fn place(data: &mut HouseData) {
-    let Ok(house) = House::new(data.clone()) else {
-        return;
-    };
-    let state = State::new(&house);
     for k in 0..data.objects.len() {
         let id = ObjectId(k as u32);
-        let bounds = house.object_bounds(&state, id);
+        let parts = data.objects[id].parts().map(|part| &data.parts[part]);
+        let bounds = parts.fold(Aabb::EMPTY, |all, part| {
+            let map = part.world_from_part.to_affine() * part.part_from_mesh;
+            let points = data.meshes[part.mesh].positions.iter();
+            all.union(&Aabb::from_points(points.map(|p| map.transform_point3(*p))))
+        });
         if bounds.is_empty() {
             continue;
         }
+        let room = room_at(data, bounds.center());
         let level = &mut data.levels[LEVEL].bounds;
         *level = level.union(&bounds);
         let object = &mut data.objects[id];
-        object.room = house.room_at(bounds.center());
+        object.room = room;
         let loose = object.mobility == Mobility::Movable;
         object.pickable = loose && bounds.size().max_element() <= HANDY_M;
     }
+}
+
+/// The room of the one storey over whose floor a point lies, the smallest where several do.
+fn room_at(data: &HouseData, point: Vec3) -> Option<RoomId> {
+    let holds = |room: &Room| {
+        (room.floor_y - 0.3..=room.ceiling_y + 0.3).contains(&point.y)
+            && room.contains_xz(Vec2::new(point.x, point.z))
+    };
+    let rooms = data.rooms.iter_ids().filter(|(_, room)| holds(room));
+    let smallest = rooms.min_by(|(_, a), (_, b)| a.area_m2().total_cmp(&b.area_m2()));
+    smallest.map(|(id, _)| id)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use super::file::Run;
 use super::load::{MeshFiles, read_mesh};
 use super::read_obj;
 use super::shape::{PartShape, Slots, shape_of};
-use crate::build::{Look, LookTable, Scene, Thing, read_images, substance_of, texture_name};
+use crate::build::{Look, LookTable, Role, Scene, Thing, read_images, substance_of, texture_name};
 use crate::error::HousesError;
 use crate::report::{At, Report};
 use crate::root::DataRoot;
@@ -83,6 +83,9 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
                 mesh: Arc::new(mesh),
                 world_from_mesh: Affine3A::IDENTITY,
                 materials: materials.clone(),
+                level: None,
+                room: None,
+                role: Role::Unsaid,
             }
         })
         .collect();
@@ -93,6 +96,9 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         things,
         looks,
         textures,
+        levels: Vec::new(),
+        rooms: Vec::new(),
+        sky: None,
     }
     .into_house(&at, &mut report)?;
     Ok((house, report))

@@ -5,8 +5,8 @@ use dwell_scene::{Dome, Sky, math};
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// What the ground outside throws back: grass, of the usual albedo of 0.2 (B. Y. H. Liu, R. C. Jordan, Solar Energy 7 (1963)).
-const GROUND: Vec3 = Vec3::new(0.19, 0.21, 0.12);
+/// What the ground outside throws back: grey-brown, of the usual albedo of 0.2 (B. Y. H. Liu, R. C. Jordan, Solar Energy 7 (1963)).
+const GROUND: Vec3 = Vec3::new(0.2, 0.2, 0.165);
 /// Steps of the sum over the sky: of elevation and of azimuth.
 const STEPS: [u32; 2] = [16, 32];
 

@@ -57,7 +57,7 @@ pub fn write(house: &House, path: &Path) -> Result<Vec<Loss>, HousesError> {
 fn losses(house: &HouseData) -> Vec<Loss> {
     let mut losses = Losses::default();
     losses.add(
-        "rooms; named nodes, read back as one room over all floors",
+        "rooms; named nodes, listed in extras, which our reader reads",
         house.rooms.len(),
     );
     losses.add(

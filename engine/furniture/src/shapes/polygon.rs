@@ -7,7 +7,7 @@ use glam::DVec2;
 ///
 /// # Source
 /// G. H. Meisters, American Mathematical Monthly 82, 648 (1975): every simple polygon has two ears.
-pub(crate) fn triangulate(points: &[DVec2]) -> Vec<[usize; 3]> {
+pub fn triangulate(points: &[DVec2]) -> Vec<[usize; 3]> {
     let turn =
         |a: usize, b: usize, c: usize| (points[b] - points[a]).perp_dot(points[c] - points[a]);
     let area: f64 = (0..points.len())
