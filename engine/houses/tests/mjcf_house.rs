@@ -168,3 +168,66 @@ fn broken_houses_say_what_is_wrong() {
         "{report}"
     );
 }
+
+/// A floor of a mesh with texture coordinates under an image of four colours, and a box of the same material.
+#[test]
+fn materials_show_their_images_on_meshes_with_texture_coordinates() {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    let obj = "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+    put("meshes/floor.obj", obj.as_bytes());
+    let image = image::RgbaImage::from_fn(2, 2, |x, y| {
+        image::Rgba([200 * x as u8, 100 * y as u8, 50, 255])
+    });
+    let mut png = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    put("images/boards.png", png.get_ref());
+    let text = r#"<mujoco model="den"><compiler meshdir="meshes" texturedir="images"/>
+      <asset><mesh name="floor" file="floor.obj"/>
+        <texture name="boards" type="2d" file="boards.png"/><texture name="gone" type="2d" file="gone.png"/>
+        <material name="oak" texture="boards"/><material name="lost" texture="gone" rgba="1 0 0 1"/></asset>
+      <worldbody>
+        <body name="floor_kitchen"><geom type="mesh" mesh="floor" material="oak"/></body>
+        <body name="floor_office" pos="5 0 0"><geom type="mesh" mesh="floor" material="lost"/></body>
+        <body name="rug_1" pos="1 1 0.1"><freejoint/><geom type="mesh" mesh="floor" material="oak" mass="1"/></body>
+        <body name="box_1" pos="1 1 1"><freejoint/><geom type="box" size="0.1 0.1 0.1" material="oak"/></body>
+      </worldbody></mujoco>"#;
+    let path = put("scene.xml", text.as_bytes());
+    let (house, report) = open(&path.to_string_lossy()).unwrap();
+    assert_eq!(house.textures.len(), 1, "{report}");
+    let texture = &house.textures.as_slice()[0];
+    assert_eq!((texture.name.as_str(), texture.width), ("boards", 2));
+    let floor = |name: &str| {
+        let piece = house.structure.iter().find(|p| p.name == name).unwrap();
+        (
+            &house.materials[piece.materials[0]],
+            &house.meshes[piece.mesh],
+        )
+    };
+    let (material, mesh) = floor("floor_kitchen");
+    assert!(material.texture.is_some() && material.base_color == [1.0; 3]);
+    // The corner at the file's (4, 3) shows the image's upper right corner.
+    let corner = mesh
+        .positions
+        .iter()
+        .position(|p| p.abs_diff_eq(ours(4.0, 3.0, 0.0), 1e-5));
+    assert_eq!(mesh.uvs[corner.unwrap()], glam::Vec2::ONE);
+    let part = |name: &str| &house.parts[object(&house, name).1.first_part];
+    let shown = |name: &str| house.materials[part(name).materials[0]].texture.is_some();
+    assert!(shown("rug_1") && !shown("box_1"));
+    assert!(!house.meshes[part("rug_1").mesh].uvs.is_empty());
+    // A missing image is told of; the colour stays.
+    let (material, _) = floor("floor_office");
+    assert!(
+        material.texture.is_none() && material.base_color[0] > 0.9 && material.base_color[1] < 0.1
+    );
+    assert_eq!(
+        report.count(|d| matches!(d, Damage::UnreadableTexture { .. })),
+        1
+    );
+}

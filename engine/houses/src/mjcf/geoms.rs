@@ -10,7 +10,8 @@ use crate::error::HousesError;
 use crate::report::{At, Report};
 use crate::robot::{Files, Shape, Solid, Weight};
 use crate::root::folder_of;
-use dwell_scene::Pose;
+use dwell_scene::{Pose, Texture};
+use std::sync::Arc;
 
 /// The density of a geom that states none, kg/m³ (MuJoCo's).
 const USUAL_DENSITY_KG_M3: f64 = 1000.0;
@@ -139,17 +140,50 @@ fn shape(
         }
     };
     let material = geom.material.clone().unwrap_or_default();
-    let of_material = model
-        .assets
-        .material(&material)
-        .and_then(|material| material.rgba);
-    let rgba = geom.rgba.or(of_material);
+    let asset = model.assets.material(&material);
+    let rgba = geom.rgba.or(asset.and_then(|asset| asset.rgba));
+    let image = match &solid {
+        Solid::Mesh { mesh, .. } if !mesh.uvs.is_empty() => {
+            let name = asset.and_then(|asset| asset.texture.as_deref());
+            name.and_then(|name| image(model, name, files, at, report))
+        }
+        _ => None,
+    };
     Ok(Some(Shape {
         link_from_shape,
         solid,
         rgba: rgba.map(|rgba| rgba.map(|x| x as f32)),
         material,
+        image,
     }))
+}
+
+/// The image of a texture that lies flat on meshes; cubes, skies and those without a file have none.
+fn image(
+    model: &Model,
+    name: &str,
+    files: &mut Files,
+    at: &At,
+    report: &mut Report,
+) -> Option<Arc<Texture>> {
+    let texture = model.assets.texture(name)?;
+    if texture.type_.as_deref() != Some("2d") {
+        return None;
+    }
+    let file = texture.file.as_deref()?;
+    let inside = match (&model.compiler.texture_dir, &model.compiler.asset_dir) {
+        (Some(folder), _) | (None, Some(folder)) => format!("{folder}/{file}"),
+        (None, None) => file.to_owned(),
+    };
+    let at = at.field("material.texture");
+    match files.resolve(folder_of(&files.file), &inside, &at) {
+        Ok(path) => files.image(&path, &at, report),
+        Err(error) => {
+            let (path, reason) = (inside, error.to_string());
+            report.warn(at, Damage::UnreadableTexture { path, reason });
+            None
+        }
+    }
 }
 
 /// The mass of a body out of its geoms; `None` for a body without one.
@@ -223,6 +257,7 @@ mod tests {
             },
             rgba: None,
             material: String::new(),
+            image: None,
         };
         let (volume, center, inertia) = moments(&shape);
         assert!((volume - 0.048).abs() < 1e-6);

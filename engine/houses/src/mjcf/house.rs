@@ -158,6 +158,9 @@ impl Reader {
             let place = self.world_from_file * file_from_body * piece.shape.link_from_shape;
             let mut mesh = piece.shape.solid.surface().transformed(&place.to_affine());
             mesh.slots = Vec::new();
+            if piece.shape.image.is_none() {
+                mesh.uvs = Vec::new();
+            }
             let bounds = mesh.bounds();
             self.data.levels[LEVEL].bounds = self.data.levels[LEVEL].bounds.union(&bounds);
             let mesh = self.data.meshes.push(Arc::new(mesh));
@@ -197,6 +200,11 @@ impl Reader {
             &piece.shape.material
         };
         let mut material = Material::of(word.replace(['/', '\\'], "-"), substance);
+        let image = piece.shape.image.as_ref();
+        material.texture = image.map(|image| robot::texture(&mut self.data, image));
+        if material.texture.is_some() {
+            material.base_color = [1.0; 3];
+        }
         if let Some([r, g, b, opacity]) = piece.shape.rgba {
             let clean = |x: f32| {
                 if x.is_finite() {

@@ -6,7 +6,7 @@ use dwell_scene::material::library;
 use dwell_scene::{
     Aabb, Articulation, Category, House, HouseData, JointId, JointKind, Level, LevelId, Material,
     MaterialId, Mesh, Mimic, Mobility, Object, ObjectId, Part, PartId, Pose, Structure,
-    StructureKind, units,
+    StructureKind, Texture, TextureId, units,
 };
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 
@@ -121,6 +121,7 @@ pub(crate) fn add(
         } else {
             shapes(|link| &link.collisions).collect()
         };
+        let with_images = seen.iter().any(|(shape, _)| shape.image.is_some());
         for (shape, place) in seen {
             let material = looks.material(data, shape, name);
             let known = materials.iter().position(|other| *other == material);
@@ -133,6 +134,11 @@ pub(crate) fn add(
                 .positions
                 .iter_mut()
                 .for_each(|p| *p = place.transform_point(*p));
+            if with_images {
+                surface.uvs.resize(surface.positions.len(), Vec2::ZERO);
+            } else {
+                surface.uvs.clear();
+            }
             surface.slots = vec![0; surface.triangles.len()];
             mesh.append(&surface, slot as u16);
         }
@@ -189,12 +195,17 @@ pub(crate) fn add(
 /// Materials that the robot has already brought.
 #[derive(Default)]
 struct Looks {
-    known: Vec<([u32; 4], String, MaterialId)>,
+    known: Vec<([u32; 4], String, Option<TextureId>, MaterialId)>,
 }
 
 impl Looks {
     fn material(&mut self, data: &mut HouseData, shape: &Shape, robot: &str) -> MaterialId {
-        let rgba = shape.rgba.unwrap_or([0.6, 0.6, 0.62, 1.0]);
+        let texture = shape.image.as_ref().map(|image| texture(data, image));
+        let usual = match texture {
+            Some(_) => [1.0; 4],
+            None => [0.6, 0.6, 0.62, 1.0],
+        };
+        let rgba = shape.rgba.unwrap_or(usual);
         let rgba = rgba.map(|value| {
             if value.is_finite() {
                 value.clamp(0.0, 1.0)
@@ -203,10 +214,11 @@ impl Looks {
             }
         });
         let bits = rgba.map(f32::to_bits);
-        let same = |(known, name, _): &&([u32; 4], String, MaterialId)| {
-            *known == bits && *name == shape.material
-        };
-        if let Some((_, _, id)) = self.known.iter().find(same) {
+        let same =
+            |(known, name, image, _): &&([u32; 4], String, Option<TextureId>, MaterialId)| {
+                *known == bits && *name == shape.material && *image == texture
+            };
+        if let Some((_, _, _, id)) = self.known.iter().find(same) {
             return *id;
         }
         let substance =
@@ -224,12 +236,20 @@ impl Looks {
         let id = data.materials.push(Material {
             base_color: [r, g, b].map(units::linear_from_srgb),
             opacity,
+            texture,
             metallic: 0.0,
             ..Material::of(name, substance)
         });
-        self.known.push((bits, shape.material.clone(), id));
+        self.known.push((bits, shape.material.clone(), texture, id));
         id
     }
+}
+
+/// The place of an image among the house's; a shared one is there once.
+pub(crate) fn texture(data: &mut HouseData, image: &Arc<Texture>) -> TextureId {
+    let same = |(id, other): (TextureId, &Arc<Texture>)| Arc::ptr_eq(other, image).then_some(id);
+    let known = data.textures.iter_ids().find_map(same);
+    known.unwrap_or_else(|| data.textures.push(image.clone()))
 }
 
 /// A house that holds nothing but a robot on a ground.

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use dwell_scene::parallel::Threads;
-use dwell_scene::{House, Mesh};
+use dwell_scene::{House, Mesh, Texture};
 
 use super::stl;
+use crate::build::{decode, texture_name};
+use crate::damage::Damage;
 use crate::error::HousesError;
-use crate::limits::{MAX_MESH_BYTES, MAX_TEXT_BYTES};
+use crate::limits::{MAX_IMAGE_BYTES, MAX_MESH_BYTES, MAX_TEXT_BYTES};
 use crate::obj;
 use crate::report::{At, Report};
 use crate::root::{DataRoot, folder_of};
@@ -23,6 +25,8 @@ pub(crate) struct Files {
     /// The robot's file, relative to the root.
     pub(crate) file: String,
     meshes: BTreeMap<String, Arc<Mesh>>,
+    /// `None` for those that cannot be read, which is reported once.
+    images: BTreeMap<String, Option<Arc<Texture>>>,
 }
 
 impl Files {
@@ -47,6 +51,7 @@ impl Files {
             root: DataRoot::new(root)?,
             file: words.join("/"),
             meshes: BTreeMap::new(),
+            images: BTreeMap::new(),
         })
     }
 
@@ -85,6 +90,31 @@ impl Files {
             ""
         };
         DataRoot::resolve(start, inside).map_err(leaves)
+    }
+
+    /// The image at a path inside the root; one that cannot be read is reported and absent.
+    pub(crate) fn image(
+        &mut self,
+        path: &str,
+        at: &At,
+        report: &mut Report,
+    ) -> Option<Arc<Texture>> {
+        if let Some(known) = self.images.get(path) {
+            return known.clone();
+        }
+        let bytes = self.root.read(path, MAX_IMAGE_BYTES);
+        let bytes = bytes.map_err(|error| error.reason());
+        let image = bytes.and_then(|bytes| decode(&texture_name(path), &bytes));
+        let image = match image {
+            Ok(image) => Some(Arc::new(image)),
+            Err(reason) => {
+                let path = path.to_owned();
+                report.warn(at.clone(), Damage::UnreadableTexture { path, reason });
+                None
+            }
+        };
+        self.images.insert(path.to_owned(), image.clone());
+        image
     }
 
     /// The mesh at a path inside the root, without its materials.
@@ -149,10 +179,11 @@ impl Files {
     }
 }
 
-/// Positions and triangles alone.
+/// Positions, triangles and texture coordinates alone.
 fn bare(mesh: Mesh) -> Mesh {
     Mesh {
         positions: mesh.positions,
+        uvs: mesh.uvs,
         triangles: mesh.triangles,
         ..Mesh::default()
     }

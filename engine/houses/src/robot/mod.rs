@@ -14,7 +14,7 @@ mod stl;
 
 pub use model::Robot;
 
-pub(crate) use assemble::{add, alone, ours_from_robot};
+pub(crate) use assemble::{add, alone, ours_from_robot, texture};
 pub(crate) use check::check;
 pub(crate) use files::Files;
 pub(crate) use model::{Joint, Link, Motion, Shape, Solid, Weight};

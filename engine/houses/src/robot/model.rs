@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dwell_scene::{Mesh, Pose, Servo};
+use dwell_scene::{Mesh, Pose, Servo, Texture};
 use glam::{DMat3, DVec3, Vec3};
 
 /// A robot: links and the joints between them, checked to be a tree. Made by [`open_robot`](crate::open_robot).
@@ -52,6 +52,8 @@ pub(crate) struct Shape {
     pub(crate) rgba: Option<[f32; 4]>,
     /// What the file calls its material.
     pub(crate) material: String,
+    /// The image of its material, for meshes with texture coordinates.
+    pub(crate) image: Option<Arc<Texture>>,
 }
 
 /// What a shape is; cylinders and capsules stand along their Z.

@@ -291,6 +291,7 @@ impl Reader<'_> {
             solid,
             rgba: None,
             material: String::new(),
+            image: None,
         };
         if let Some(material) = first(node, "material") {
             self.material(material)?;
