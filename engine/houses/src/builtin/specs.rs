@@ -16,7 +16,7 @@ pub(super) struct Fixed {
 pub(super) const FIXED: &[Fixed] = &[
     Fixed {
         name: "studio",
-        seed: 2,
+        seed: 6,
         home: HomeKind::Studio,
         storeys: 1,
         style: "nordic",
