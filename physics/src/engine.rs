@@ -163,12 +163,13 @@ impl Engine {
                     let away = two.0 + two.1.cross(point.solver_dp2);
                     let parting = away - one.0 - one.1.cross(point.solver_dp1);
                     let parting = parting.dot(plane.data.normal);
-                    let (p, q) = plane
-                        .data
-                        .solver_contact_world_points(contact, &self.bodies);
-                    let gap = (q - p).dot(plane.data.normal);
+                    let gap = || {
+                        let data = &plane.data;
+                        let (p, q) = data.solver_contact_world_points(contact, &self.bodies);
+                        (q - p).dot(data.normal)
+                    };
                     (point.impulse > 0.0 && parting < slow)
-                        || parting * parting + 2.0 * pull * gap < slow * slow
+                        || parting * parting + 2.0 * pull * gap() < slow * slow
                 })
             })
         })
