@@ -147,7 +147,7 @@ def test_numbers_that_bound_each_other_are_set_together(apartment: dwell.House) 
             with pytest.raises(dwell.SceneError, match="out of range"):
                 world.set_parameter(name, value)
     for bad, match in [
-        ({"agent/0/body/radius_m": 0.2}, "radius_m.*0.175"),
+        ({"agent/0/body/radius_m": 0.2}, "height_m.*0.4 to 3"),
         ({"world/gravity": 1.0}, "known are"),
         ({"world/gravity_m_s2": "x"}, "world/gravity_m_s2"),
         ({"law/drag@nothing/c_d": 1.0}, "nothing"),
