@@ -127,7 +127,7 @@ fn weights(run: &Run, angles: &[f64; 6], payload_kg: f32) -> [f64; 6] {
     torques
 }
 
-fn angles(state: &State) -> [f64; 6] {
+pub(crate) fn angles(state: &State) -> [f64; 6] {
     std::array::from_fn(|k| f64::from(state.joint_position[JointId(k as u32)]))
 }
 
@@ -509,73 +509,6 @@ fn a_stated_inertia_is_the_one_that_swings() {
     }
     // Two periods; 3 % of the swing.
     assert!(worst < 1.5e-3, "{worst}");
-}
-
-/// A joint that follows another stands at its multiple, also under load.
-#[test]
-fn a_follower_keeps_to_its_leader() {
-    let mut build = arm(1.0, Some(STRONG));
-    let follower = &mut build.data.joints[JointId(2)];
-    follower.servo = None;
-    follower.mimic = Some(dwell_scene::Mimic {
-        leader: JointId(1),
-        multiplier: -0.5,
-        offset: 0.1,
-    });
-    follower.initial = 0.1;
-    let mut run = build.run_with(awake());
-    for k in [0, 1, 3, 4, 5] {
-        run.state.joint_command[JointId(k)] = JointCommand::Position(0.6);
-    }
-    run.steps(80);
-    let q = angles(&run.state);
-    assert!((q[1] - 0.6).abs() < 0.02, "{q:?}");
-    assert!((q[2] - (0.1 - 0.5 * q[1])).abs() < 2e-3, "{q:?}");
-}
-
-/// A follower that is set elsewhere than its leader asks, comes there together with it: a tenth of what they are apart in a physics
-/// step, so that 0.9^6 of it is left after a control step, and not beyond.
-#[test]
-fn a_linkage_that_was_set_apart_comes_together() {
-    let mut build = arm(1.0, Some(STRONG));
-    let follower = &mut build.data.joints[JointId(2)];
-    follower.servo = None;
-    follower.mimic = Some(dwell_scene::Mimic {
-        leader: JointId(1),
-        multiplier: -0.5,
-        offset: 0.1,
-    });
-    follower.initial = 0.1;
-    let mut run = build.run_with(awake());
-    for k in [0, 1, 3, 4, 5] {
-        run.state.joint_command[JointId(k)] = JointCommand::Position(0.0);
-    }
-    run.steps(5);
-    let apart = dwell_physics::JointState {
-        joint: JointId(2),
-        position: 0.4,
-        velocity: 0.0,
-    };
-    run.world.set_joints(&mut run.state, &[apart]).unwrap();
-    let off = |run: &Run| {
-        let q = angles(&run.state);
-        q[2] - (0.1 - 0.5 * q[1])
-    };
-    let mut left = off(&run);
-    assert!((left - 0.3).abs() < 0.02, "{left}");
-    for step in 0..12 {
-        run.steps(1);
-        let now = off(&run);
-        println!("{step}: {now:.2e} rad off");
-        // Within a twentieth, for the weight that both move under meanwhile.
-        let expected = 0.9_f64.powi(6) * left;
-        assert!(
-            (now - expected).abs() < 0.05 * left + 2e-5,
-            "{step}: {now} {expected}"
-        );
-        left = now;
-    }
-    assert!(left.abs() < 2e-4, "{left}");
 }
 
 /// Links that no joint joins stop at each other, as users of URDF expect: an arm that is told to fold onto itself comes to

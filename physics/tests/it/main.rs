@@ -27,6 +27,7 @@ mod houses;
 mod joints;
 mod laws;
 mod letting_go;
+mod linkages;
 mod motion;
 mod numbers;
 mod parameters;
