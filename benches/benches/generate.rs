@@ -1,20 +1,24 @@
-//! Houses of seeds: how many a second, in memory, on one thread; and how much memory they take while they are kept.
+//! Houses of seeds: how many a second, in memory, on one thread; and how many bytes they take while they are kept.
 //!
 //! `cargo bench --profile dev -p dwell-benches --bench generate` makes 200 houses; without `--bench`, 3.
 
 #![expect(clippy::print_stdout, reason = "a program tells by printing")]
 
-use dwell_houses::generate::{HomeKind, HouseSpec, generate};
+use dwell_houses::generate::{HomeKind, HouseSpec, RoomKind, generate};
 use dwell_scene::House;
+use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
+use std::alloc::System;
 use std::time::Instant;
 
 const MIB: f64 = 1024.0 * 1024.0;
 
-/// Memory in use, MiB; `None` where the system does not say.
-fn resident_mib() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
-    let pages: f64 = text.split_whitespace().nth(1)?.parse().ok()?;
-    Some(pages * 4096.0 / MIB)
+#[global_allocator]
+static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// What is allocated and not freed, MiB.
+fn in_use_mib() -> f64 {
+    let stats = HEAP.stats();
+    (stats.bytes_allocated - stats.bytes_deallocated) as f64 / MIB
 }
 
 /// Time that a processor worked for this process, s: what others do on the machine does not count; 0 where the system does not
@@ -40,22 +44,34 @@ fn main() {
         home: Some(HomeKind::Apartment),
         ..HouseSpec::default()
     };
+    let six_rooms = HouseSpec {
+        rooms: vec![
+            RoomKind::LivingRoom,
+            RoomKind::Kitchen,
+            RoomKind::Bedroom,
+            RoomKind::ChildRoom,
+            RoomKind::Bathroom,
+        ],
+        furniture_density: 0.6,
+        clutter: 0.4,
+        ..HouseSpec::default()
+    };
     for (name, spec) in [
+        ("five rooms and a hallway", six_rooms),
         ("all homes", HouseSpec::default()),
         ("apartments", apartment),
     ] {
-        // Only the first time: afterwards memory that was given back is used again.
-        let before = resident_mib().filter(|_| name == "all homes");
+        let before = in_use_mib();
         let (began, worked) = (Instant::now(), processor_s());
         let mut kept: Vec<House> = Vec::new();
-        let mut after_first = None;
+        let mut first = before;
         for seed in 0..count {
             match generate(seed, &spec) {
                 Ok(generated) => kept.push(generated.house),
                 Err(error) => println!("seed {seed}: {error}"),
             }
             if seed == 0 {
-                after_first = resident_mib();
+                first = in_use_mib();
             }
         }
         let ms = began.elapsed().as_secs_f64() * 1e3 / count as f64;
@@ -69,12 +85,10 @@ fn main() {
             rooms as f64 / houses,
             objects as f64 / houses
         );
-        if let (Some(before), Some(first), Some(now)) = (before, after_first, resident_mib()) {
-            println!(
-                "  memory: {:.1} MiB for the first, {:.2} MiB for each further one",
-                first - before,
-                (now - first) / (houses - 1.0).max(1.0)
-            );
-        }
+        println!(
+            "  memory: {:.1} MiB for the first, {:.2} MiB for each further one",
+            first - before,
+            (in_use_mib() - first) / (houses - 1.0).max(1.0)
+        );
     }
 }

@@ -29,20 +29,22 @@ from dwell._native import (
 
 if TYPE_CHECKING:
     from dwell.acoustics import AcousticScene
+    from dwell.actions import Outcome, Pointed
     from dwell.calibration import calibrate
+    from dwell.camera import Camera
     from dwell.envs import register_envs
     from dwell.house import House
     from dwell.navigation import Navigation, Walker
-    from dwell.world import Camera, Outcome, Pointed, World
+    from dwell.world import World
 
 # Imported at first use, so that the command line starts fast.
 _LAZY = {
     "AcousticScene": "dwell.acoustics",
-    "Camera": "dwell.world",
+    "Camera": "dwell.camera",
     "House": "dwell.house",
     "Navigation": "dwell.navigation",
-    "Outcome": "dwell.world",
-    "Pointed": "dwell.world",
+    "Outcome": "dwell.actions",
+    "Pointed": "dwell.actions",
     "Walker": "dwell.navigation",
     "World": "dwell.world",
     "calibrate": "dwell.calibration",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
+from dwell.actions import Outcome, action_json
 from dwell.arguments import (
     bodies,
     fields,
@@ -27,82 +27,15 @@ from dwell.arguments import (
     unit_quaternion,
     whole,
 )
+from dwell.camera import Camera, Channel
 from dwell.house import House
 from dwell.navigation import Navigation, Walker, walker_json
 from dwell.settings import Laws, world_settings
 
-Channel = Literal["rgb", "depth", "instance", "semantic"]
 #: Ids have 32 bits.
 _MOST_IDS = 2**32 - 1
 
 JointCommand = Literal["off", "position", "velocity", "effort"]
-
-
-@dataclasses.dataclass(frozen=True)
-class Camera:
-    """A pinhole camera.
-
-    Attributes:
-        width: Pixels across, 1 to 8192.
-        height: Pixels down.
-        fov_deg: Horizontal field of view, degrees; ``None``: at an agent's eyes what
-            ``agent/N/camera/fov_deg`` says, elsewhere 90.
-        near_m: Nearest distance that is seen, m.
-        far_m: Furthest distance, to which depth is clamped, m.
-        preset: ``lit`` (lamps and daylight) or ``flat`` (texture times colour).
-    """
-
-    width: int = 128
-    height: int = 128
-    fov_deg: float | None = None
-    near_m: float = 0.05
-    far_m: float = 50.0
-    preset: Literal["flat", "lit"] = "lit"
-
-
-@dataclasses.dataclass(frozen=True)
-class Pointed:
-    """What an agent points at.
-
-    Attributes:
-        id: The id that instance images show.
-        kind: ``object``, ``structure`` or ``agent``.
-        name: The name in the house; an agent's number.
-        point: Where, m.
-        distance_m: From the eye, m.
-    """
-
-    id: int
-    kind: str
-    name: str
-    point: tuple[float, float, float]
-    distance_m: float
-
-
-@dataclasses.dataclass(frozen=True)
-class Outcome:
-    """What came of an action.
-
-    Attributes:
-        success: Whether it worked, or began to.
-        code: Why, in one word.
-        sentence: The same for a person, with what to do about it.
-        object: The name of the object it was about.
-        pointed: What was pointed at, after ``point``.
-    """
-
-    success: bool
-    code: str
-    sentence: str
-    object: str | None
-    pointed: Pointed | None = None
-
-    @classmethod
-    def _of(cls, told: Mapping[str, Any]) -> Outcome:
-        pointed = told.get("pointed")
-        if pointed is not None:
-            pointed = Pointed(**{**pointed, "point": tuple(pointed["point"])})
-        return cls(**{**told, "pointed": pointed})
 
 
 class World:
@@ -257,7 +190,7 @@ class World:
         if object is not None:
             request["object"] = object
         agent = whole("agent", agent)
-        return Outcome._of(json.loads(self._native.act(agent, _action_json(request))))
+        return Outcome._of(json.loads(self._native.act(agent, action_json(request))))
 
     def notices(self) -> list[tuple[int | None, Outcome]]:
         """What became, in the last step, of actions that take time: who began it, and its end."""
@@ -603,26 +536,7 @@ def _controls(controls: object) -> NDArray[np.float32] | list[dict[str, Any]]:
     return np.ascontiguousarray(array, np.float32)
 
 
-def _thing(name: str, value: object) -> str | int:
-    if isinstance(value, str):
-        return value
-    return whole(name, value, low=-(2**31), high=2**31 - 1)
-
-
-def _camera(name: str, value: object) -> dict[str, Any]:
-    """A camera as what its pixels depend on."""
-    if isinstance(value, Camera):
-        value = {"width": value.width, "height": value.height} | (
-            {} if value.fov_deg is None else {"fov_deg": value.fov_deg}
-        )
-    return fields(name, value, {"width": whole, "height": whole, "fov_deg": finite})
-
-
-def _grasp(name: str, value: object) -> str | dict[str, Any]:
-    return value if isinstance(value, str) else mapping(name, value, "text or a mapping")
-
-
-#: The fields of a control and of an action, and what they may be.
+#: The fields of a control, and what they may be.
 _CONTROL = {
     "forward_m_s": finite,
     "right_m_s": finite,
@@ -631,25 +545,6 @@ _CONTROL = {
     "wheel_rad_s": pair,
     "crouch": flag,
 }
-_ACTION = {
-    "kind": text,
-    "object": _thing,
-    "part": text,
-    "pixel": pair,
-    "camera": _camera,
-    "origin": point,
-    "direction": point,
-    "point": point,
-    "speed_m_s": finite,
-    "force_n": finite,
-    "fraction": finite,
-    "grasp": _grasp,
-}
-
-
-def _action_json(request: Mapping[str, Any]) -> str:
-    """An action as the native half reads it."""
-    return to_json(fields("", request, _ACTION))
 
 
 def actions() -> list[str]:

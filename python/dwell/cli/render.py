@@ -34,8 +34,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Renders, writes PNG (pictures) and NPY (exact depth and ids), and names the files."""
+    from dwell.camera import Camera, Channel
     from dwell.house import House
-    from dwell.world import Camera, Channel, World
+    from dwell.world import World
 
     channels = args.sensors.split(",")
     if unknown := [name for name in channels if name not in _SENSORS]:

@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import DwellError
+from dwell.actions import Outcome
+from dwell.camera import Camera
 from dwell.demo.film import save_film
 from dwell.demo.spectrogram import save_spectrogram
 from dwell.house import House
 from dwell.sounds import write_wav
-from dwell.world import Camera, Outcome, World, actions
+from dwell.world import World, actions
 
 _CAMERA = Camera(256, 192)
 _SAMPLES = 800

@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from dwell.camera import Camera, Channel
 from dwell.house import House
 from dwell.pictures import picture
-from dwell.world import Camera, Channel, World
+from dwell.world import World
 
 _CHANNELS: tuple[Channel, ...] = ("rgb", "depth", "instance")
 

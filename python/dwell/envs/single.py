@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import mapping, to_json, whole
+from dwell.camera import Camera
 from dwell.envs.config import Houses, HouseShelf, Sensors, env_json
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.spaces import action_space, observation_space
 from dwell.settings import Laws
-from dwell.world import Camera
 
 #: The image that ``render()`` gives.
 RENDER_CAMERA = Camera(width=320, height=240)
