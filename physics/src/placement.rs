@@ -18,7 +18,7 @@ const FASTEST_TURN_RAD_S: f32 = 100.0;
 /// What a body does by its own will is for its controls: an agent on legs that is given a velocity slides on (feet brake it) or
 /// flies on, and its rate of turn is what its gyro reads in this moment. The wheels of a differential drive turn as its speed
 /// ahead and its rate of turn ask for, unless they are given, and it slides with what is left; a holonomic base has all of it, within
-/// its limits.
+/// its limits. What flies on wheels keeps its velocity until it lands, and then has that of its wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AgentPlacement {
     /// The agent.
@@ -160,7 +160,13 @@ impl AgentPlacement {
                     );
                     return self.refuse("velocity", found, "what its base's limits allow");
                 }
-                agent.base.twist = [forward, left, self.yaw_rate_rad_s];
+                // In the air its wheels turn as fast as they can, and the body flies on.
+                let within = |speed: f32, most: f32| speed.clamp(-most, most);
+                agent.base.twist = [
+                    within(forward, base.max_forward_m_s),
+                    within(left, base.max_sideways_m_s),
+                    within(self.yaw_rate_rad_s, base.max_yaw_rate_rad_s),
+                ];
                 slide = Vec3::ZERO;
             }
             _ => {}

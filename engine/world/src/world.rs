@@ -394,7 +394,7 @@ impl World {
         if parts.agents != self.config.agents || state.agents.len() != self.state.agents.len() {
             let (found, allowed) = (state.agents.len(), self.state.agents.len());
             return Err(WorldError::Snapshot(format!(
-                "it has {found} agents, and the world {allowed} or agents with other bodies"
+                "it has {found} agents, and the world {allowed}; their number and the bodies they were made with must be the same"
             )));
         }
         let sound = Sound::from_bytes(

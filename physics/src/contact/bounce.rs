@@ -3,7 +3,7 @@
 //! rapier gives back a share of the speed that a body had when the step began in which it hits: without what gravity adds on
 //! the last bit of the way, half a step's on the mean at every rebound, and with what it added beyond the surface to a body
 //! that was stopped there. A body that flew into something leaves it as fast as it met it, times the restitution, at the
-//! surface.
+//! surface. What hangs on a joint counts as standing: a leaf that gives way takes a part of the rebound.
 
 use super::approach::{Approach, speed_after};
 use super::entry::{Entry, Toucher, entry_index};

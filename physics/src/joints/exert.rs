@@ -6,7 +6,7 @@
 //! holds joints together after the fact, which costs energy.
 
 use super::Joint;
-use super::course::{Course, Freedoms};
+use super::course::{AT_REST, Course, Freedoms};
 use super::element::Pull;
 use super::place;
 use super::reading::{Reading, is_untouched};
@@ -143,17 +143,22 @@ pub(crate) fn settle(
     for (going, now) in course.iter().zip(&standing.readings) {
         near[going.joint] = now.position;
     }
-    if !moves && !loose {
+    let free = |going: &Going| is_untouched(engine, &joints[going.joint]);
+    let untouched = course.iter().all(free);
+    let pairs = before.iter().zip(&standing.readings);
+    let struck = || {
+        let mut ways = pairs.clone().map(|(b, now)| b.way(engine, now.velocity));
+        !untouched && ways.any(|way| way.abs() > AT_REST)
+    };
+    if !moves && !loose && !struck() {
         return false;
     }
-    let pairs = before.iter().zip(&standing.readings);
     let came_true: Vec<bool> = course
         .iter()
         .zip(pairs)
         .map(|(going, (before, now))| going.came_true(engine, before, now))
         .collect();
-    let free = |going: &Going| is_untouched(engine, &joints[going.joint]);
-    if !loose && came_true.iter().all(|came| *came) && course.iter().all(free) {
+    if !loose && untouched && came_true.iter().all(|came| *came) {
         for going in &course {
             let joint = &joints[going.joint];
             near[going.joint] = going.positions[1];

@@ -265,7 +265,7 @@ fn any_pose_and_velocity_reads_back() {
 }
 
 /// A double pendulum of two bars of 0.5 m that hangs from (2, 3, 2), turned by these angles, with these speeds.
-fn double_pendulum(servo: Option<Servo>, angles: [f32; 2], speeds: [f32; 2]) -> Run {
+pub(crate) fn double_pendulum(servo: Option<Servo>, angles: [f32; 2], speeds: [f32; 2]) -> Run {
     let mut build = Build::room([4.0, 6.0, 4.0]);
     let at = Vec3::new(2.0, 3.0, 2.0);
     let bar = |at: Vec3| Piece {

@@ -3,7 +3,7 @@
 //! Turns were once counted from control step to control step: a wheel at 100 rad/s, which makes most of a turn in 50 ms, read any
 //! angle, and stops beyond half a turn came too early or too late.
 
-use crate::arms::awake;
+use crate::arms::{awake, double_pendulum};
 use crate::common::{Build, Piece, Run};
 use dwell_physics::JointState;
 use dwell_scene::{Articulation, JointCommand, JointId, JointKind, Mobility, PartId, Pose, Servo};
@@ -124,6 +124,23 @@ fn stops_after_several_turns_hold_at_any_speed() {
             assert!(beyond < 1e-3, "{floats} {speed}: {beyond}");
             // It came there, and did not begin another turn on the way.
             assert!(seen > 20.0 - 1e-2, "{floats} {speed}: {seen}");
+        }
+    }
+}
+
+/// Two bars that whirl as fast as may be set: whatever becomes of their energy, numbers stay numbers, and the world goes on.
+#[test]
+fn a_chain_that_whirls_stays_finite() {
+    let speeds = [-1000.0_f32, -600.0, -180.0, 125.0, 200.0, 400.0, 1000.0];
+    for (first, second) in speeds.iter().flat_map(|a| speeds.map(|b| (*a, b))) {
+        for bend in [0.0, 1.0] {
+            let mut run = double_pendulum(None, [0.3, bend], [first, second]);
+            run.steps(20);
+            let joints = &run.state.joint_velocity;
+            assert!(
+                joints.iter().all(|speed| speed.is_finite()),
+                "{first} {second} {bend}"
+            );
         }
     }
 }

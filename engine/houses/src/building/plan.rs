@@ -10,6 +10,8 @@ use glam::{Vec2, Vec3};
 pub(crate) const CEILING_M: f32 = 2.6;
 /// Usual thickness of slabs, m.
 pub(crate) const SLAB_M: f32 = 0.2;
+/// Strips of floor that are narrower come of rounding, m.
+const THIN_M: f32 = 1e-3;
 
 /// A rectangle of the plan: x from, z from, x to, z to, m.
 pub(crate) type Rect = [f32; 4];
@@ -48,11 +50,13 @@ impl RoomPlan {
             bounds.add_point(Vec3::new(*x0, self.floor_m, *z0));
             bounds.add_point(Vec3::new(*x1, self.floor_m + CEILING_M, *z1));
         }
+        let wide = |[x0, z0, x1, z1]: &Rect| x1 - x0 > THIN_M && z1 - z0 > THIN_M;
+        let floor = self.floor.iter().copied().filter(wide);
         let id = assembly.data.rooms.push(Room {
             name: self.name.clone(),
             level: assembly.level,
             kinds: self.kinds.iter().map(|kind| (*kind).to_owned()).collect(),
-            footprint: self.floor.iter().copied().flat_map(triangles).collect(),
+            footprint: floor.flat_map(triangles).collect(),
             floor_y: self.floor_m,
             ceiling_y: self.floor_m + CEILING_M,
             bounds,

@@ -16,9 +16,11 @@ impl Room {
             .sum()
     }
 
-    /// Whether the point (x, z) lies over the floor, border included.
+    /// Whether the point (x, z) lies over the floor, border included. Triangles without area hold nothing.
     pub fn contains_xz(&self, point: Vec2) -> bool {
-        self.footprint.iter().any(|[a, b, c]| {
+        let flat = |[a, b, c]: &[Vec2; 3]| (b - a).perp_dot(c - a) == 0.0;
+        let mut triangles = self.footprint.iter().filter(|triangle| !flat(triangle));
+        triangles.any(|[a, b, c]| {
             let turn = |p: Vec2, q: Vec2| (q - p).perp_dot(point - p);
             let (s, t, u) = (turn(*a, *b), turn(*b, *c), turn(*c, *a));
             (s >= 0.0 && t >= 0.0 && u >= 0.0) || (s <= 0.0 && t <= 0.0 && u <= 0.0)
@@ -168,5 +170,27 @@ impl House {
                     .map(|part| self.meshes[part.mesh].triangles.len()),
             )
             .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{House, RoomId, ShoeboxMaterials};
+    use glam::Vec2;
+
+    /// A line has every point of itself on its border, and a point all of space on that of its three sides.
+    #[test]
+    fn triangles_without_area_hold_nothing() {
+        let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
+        let mut room = house.rooms[RoomId(0)].clone();
+        let (inside, outside) = (Vec2::new(1.0, 1.0), Vec2::new(9.0, 0.0));
+        let before = [inside, outside].map(|point| room.contains_xz(point));
+        assert_eq!(before, [true, false]);
+        let [a, b] = [Vec2::ZERO, Vec2::new(4.0, 0.0)];
+        room.footprint.insert(0, [a, a, a]);
+        room.footprint.insert(0, [a, b, b]);
+        room.footprint.insert(0, [a, b, b * 0.5]);
+        let after = [inside, outside].map(|point| room.contains_xz(point));
+        assert_eq!(after, before);
     }
 }

@@ -187,6 +187,14 @@ impl State {
         for (address, value) in values {
             self.put_law(house, known, address, *value)?;
         }
+        // Only now: the numbers of laws count those that were there before.
+        let idle = |spec: &LawSpec| {
+            let info = known.iter().find(|info| info.id == spec.id);
+            info.is_some_and(|info| spec.is_default(info))
+        };
+        while self.laws.last().is_some_and(idle) {
+            self.laws.pop();
+        }
         Ok(())
     }
 
@@ -214,13 +222,6 @@ impl State {
             params.remove(param.name);
         } else {
             params.insert(param.name.to_owned(), value);
-        }
-        let idle = |spec: &LawSpec| {
-            let info = known.iter().find(|info| info.id == spec.id);
-            info.is_some_and(|info| spec.is_default(info))
-        };
-        while self.laws.last().is_some_and(idle) {
-            self.laws.pop();
         }
         Ok(())
     }
@@ -314,6 +315,37 @@ mod tests {
         let address = address.parse().unwrap();
         let there = state.law_parameter(&room(), &[&DRAG, &LAG], &address);
         there.unwrap().value
+    }
+
+    /// The third law goes and another one comes in the same call: the second one's number still means the second one.
+    #[test]
+    fn numbers_of_laws_count_those_that_were_there_before() {
+        let mut state = empty();
+        for (target, value) in [("a", 0.1), ("b", 0.2), ("c", 0.3)] {
+            set(&mut state, &format!("law/drag@{target}/c_d"), value).unwrap();
+        }
+        set(&mut state, "law/1/c_d", 0.0).unwrap();
+        let values = [
+            ("law/2/c_d", 0.0),
+            ("law/drag@d/c_d", 0.9),
+            ("law/1/c_d", 0.4),
+        ]
+        .map(|(address, value)| (address.parse().unwrap(), value));
+        state
+            .set_law_parameters(&room(), &[&DRAG, &LAG], &values)
+            .unwrap();
+        let there =
+            ["a", "b", "c", "d"].map(|target| get(&state, &format!("law/drag@{target}/c_d")));
+        assert_eq!(there, [0.1, 0.4, 0.0, 0.9]);
+        let both = [("law/1/c_d", 0.0), ("law/1/density", 2.0)];
+        for order in [both, [both[1], both[0]]] {
+            let mut state = state.clone();
+            let values = order.map(|(address, value)| (address.parse().unwrap(), value));
+            state
+                .set_law_parameters(&room(), &[&DRAG, &LAG], &values)
+                .unwrap();
+            assert_eq!(get(&state, "law/1/density"), 2.0);
+        }
     }
 
     #[test]
