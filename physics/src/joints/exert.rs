@@ -144,11 +144,11 @@ pub(crate) fn settle(
         near[going.joint] = now.position;
     }
     let free = |going: &Going| is_untouched(engine, &joints[going.joint]);
-    let untouched = course.iter().all(free);
+    let untouched = || course.iter().all(free);
     let pairs = before.iter().zip(&standing.readings);
     let struck = || {
         let mut ways = pairs.clone().map(|(b, now)| b.way(engine, now.velocity));
-        !untouched && ways.any(|way| way.abs() > AT_REST)
+        ways.any(|way| way.abs() > AT_REST) && !untouched()
     };
     if !moves && !loose && !struck() {
         return false;
@@ -158,7 +158,7 @@ pub(crate) fn settle(
         .zip(pairs)
         .map(|(going, (before, now))| going.came_true(engine, before, now))
         .collect();
-    if !loose && untouched && came_true.iter().all(|came| *came) {
+    if !loose && came_true.iter().all(|came| *came) && untouched() {
         for going in &course {
             let joint = &joints[going.joint];
             near[going.joint] = going.positions[1];

@@ -6,7 +6,7 @@ use dwell_physics::JointState;
 use dwell_scene::{JointCommand, JointId, Mimic};
 
 /// An arm whose third joint follows its second; the motors of the others are told to go to `position`, rad.
-fn linked(position: f32) -> Run {
+pub(crate) fn linked(position: f32) -> Run {
     let mut build = arm(1.0, Some(STRONG));
     let follower = &mut build.data.joints[JointId(2)];
     follower.servo = None;

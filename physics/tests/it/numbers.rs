@@ -1,12 +1,13 @@
 //! Every number of bodies, joints and agents, set while a world runs: together where they bound each other, and with the
 //! consequences that mechanics says they have.
 
-use crate::arms::{STRONG, arm, awake};
+use crate::arms::{STRONG, awake};
 use crate::common::{Build, Piece, Run, forward};
+use crate::linkages::linked;
 use dwell_physics::{AgentPlacement, BodyState, JointState};
 use dwell_scene::{
-    Address, AgentBody, AgentId, DifferentialDrive, Inertial, JointCommand, JointId, JointKind,
-    Locomotion, Mobility, ObjectId, Pose, State, Velocity,
+    Address, AgentBody, AgentId, DifferentialDrive, Inertial, JointId, JointKind, Locomotion,
+    Mobility, ObjectId, Pose, State, Velocity,
 };
 use glam::Vec3;
 
@@ -259,19 +260,7 @@ fn an_axis_that_turns_takes_what_hangs_on_it_along() {
 /// stiffness.
 #[test]
 fn linkages_and_carried_weights_change_at_run_time() {
-    let mut build = arm(1.0, Some(STRONG));
-    let follower = &mut build.data.joints[JointId(2)];
-    follower.servo = None;
-    follower.mimic = Some(dwell_scene::Mimic {
-        leader: JointId(1),
-        multiplier: -0.5,
-        offset: 0.1,
-    });
-    follower.initial = 0.1;
-    let mut run = build.run_with(awake());
-    for k in [0, 1, 3, 4, 5] {
-        run.state.joint_command[JointId(k)] = JointCommand::Position(0.6);
-    }
+    let mut run = linked(0.6);
     let follows = |run: &Run, multiplier: f32, offset: f32| {
         let q = |k| run.state.joint_position[JointId(k)];
         (q(2) - multiplier * q(1) - offset).abs()

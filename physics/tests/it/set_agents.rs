@@ -34,10 +34,8 @@ fn wheels() -> Locomotion {
     Locomotion::DifferentialDrive(DifferentialDrive::default())
 }
 
-/// The promise of issue 3 for agents: 10,000 poses and velocities of legs, of two wheels and of a holonomic base, each with all
-/// that its body has, read back; and once in a while what follows is a step like any other.
-#[test]
-fn any_pose_and_velocity_of_an_agent_reads_back() {
+/// A room with an agent on legs, one on two wheels and one on a holonomic base.
+fn one_of_each() -> (Run, [AgentId; 3]) {
     let mut run = Build::room([8.0, 3.0, 8.0]).run();
     let legs = agent_of(&mut run, Locomotion::default(), 2.0);
     let drive = agent_of(&mut run, wheels(), 4.0);
@@ -46,6 +44,14 @@ fn any_pose_and_velocity_of_an_agent_reads_back() {
         Locomotion::Holonomic(HolonomicBase::default()),
         6.0,
     );
+    (run, [legs, drive, base])
+}
+
+/// The promise of issue 3 for agents: 10,000 poses and velocities of legs, of two wheels and of a holonomic base, each with all
+/// that its body has, read back; and once in a while what follows is a step like any other.
+#[test]
+fn any_pose_and_velocity_of_an_agent_reads_back() {
+    let (mut run, [legs, drive, base]) = one_of_each();
     let mut worst = 0.0_f32;
     for round in 0..RESETS {
         let key = Key::root(41).child(round);
@@ -303,14 +309,7 @@ fn wheels_go_on_from_the_speed_they_are_given() {
 
 #[test]
 fn what_a_body_cannot_have_is_refused_and_changes_nothing() {
-    let mut run = Build::room([8.0, 3.0, 8.0]).run();
-    let legs = agent_of(&mut run, Locomotion::default(), 2.0);
-    let drive = agent_of(&mut run, wheels(), 4.0);
-    let base = agent_of(
-        &mut run,
-        Locomotion::Holonomic(HolonomicBase::default()),
-        6.0,
-    );
+    let (mut run, [legs, drive, base]) = one_of_each();
     let before = run.hash();
     let at = |agent| AgentPlacement::at_rest(agent, Vec3::new(3.0, 0.0, 3.0), 0.0);
     let fast = Vec3::X * 31.0;
