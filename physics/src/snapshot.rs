@@ -91,7 +91,7 @@ impl PhysicsWorld {
     /// # Panics
     /// Never: writing plain data to memory cannot fail.
     pub fn snapshot(&self) -> Vec<u8> {
-        self.with_header(MAGIC, &pack(&self.body()))
+        self.with_header(MAGIC, &pack(&self.body(), &[]))
     }
 
     /// As [`PhysicsWorld::snapshot`], but not packed: some three times as large and many times as fast, to go back within
@@ -301,7 +301,7 @@ impl PhysicsWorld {
         if !packed {
             return Ok(Cow::Borrowed(body));
         }
-        Ok(Cow::Owned(unpack(body)?))
+        Ok(Cow::Owned(unpack(body, &[])?))
     }
 }
 

@@ -16,6 +16,7 @@ pub mod laws;
 pub mod metrics;
 mod request;
 mod requests;
+mod saving;
 pub mod sensors;
 mod sound;
 mod start;

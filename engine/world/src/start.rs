@@ -3,9 +3,11 @@
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
+use crate::saving::Base;
 use dwell_physics::{PhysicsConfig, PhysicsWorld, StartReport};
 use dwell_scene::{Address, AgentState, House, State};
 use glam::Vec3;
+use std::sync::OnceLock;
 
 /// The first moment of a world: nothing overlaps, doors are shut, agents stand at the first room's floor. Worlds begin with a
 /// copy of it, and go back to one.
@@ -14,9 +16,15 @@ pub(crate) struct Start {
     pub(crate) state: State,
     pub(crate) physics: PhysicsWorld,
     pub(crate) report: StartReport,
+    base: OnceLock<Base>,
 }
 
 impl Start {
+    /// What snapshots are packed beside, made when the first one asks.
+    pub(crate) fn base(&self, engines: &Engines, config: &WorldConfig) -> &Base {
+        self.base.get_or_init(|| Base::of(engines, config))
+    }
+
     /// # Errors
     /// [`WorldError`] names the setting, parameter or law that is wrong.
     pub(crate) fn new(engines: &Engines, config: &WorldConfig) -> Result<Self, WorldError> {
@@ -45,6 +53,7 @@ impl Start {
             state,
             physics,
             report,
+            base: OnceLock::new(),
         })
     }
 }

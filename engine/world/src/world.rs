@@ -10,12 +10,10 @@ use dwell_physics::{
     PhysicsWorld, StartReport,
 };
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::packing::{pack, unpack};
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Address, AgentBody, AgentId, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId,
-    Parameter, State,
+    Address, AgentId, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId, Parameter, State,
 };
 use glam::Vec3;
 use std::sync::Arc;
@@ -24,16 +22,16 @@ use xxhash_rust::xxh3::xxh3_64;
 /// A world over a shared house.
 #[derive(Debug)]
 pub struct World {
-    engines: Arc<Engines>,
-    config: WorldConfig,
-    state: State,
-    physics: PhysicsWorld,
-    rays: RayScene,
-    sound: Sound,
-    events: Vec<ContactEvent>,
-    key: Key,
+    pub(crate) engines: Arc<Engines>,
+    pub(crate) config: WorldConfig,
+    pub(crate) state: State,
+    pub(crate) physics: PhysicsWorld,
+    pub(crate) rays: RayScene,
+    pub(crate) sound: Sound,
+    pub(crate) events: Vec<ContactEvent>,
+    pub(crate) key: Key,
     /// What [`World::reset`] goes back to; worlds of one config share it.
-    start: Arc<Start>,
+    pub(crate) start: Arc<Start>,
 }
 
 impl World {
@@ -349,79 +347,4 @@ impl World {
         bytes.extend_from_slice(&postcard::to_stdvec(&self.key).unwrap_or_default());
         xxh3_64(&bytes)
     }
-
-    /// The whole world as bytes: state, physics with its contact caches, sound queues and the key of the episode; packed.
-    ///
-    /// # Panics
-    /// Never: plain bytes can always be written to memory.
-    pub fn snapshot(&self) -> Vec<u8> {
-        let parts = Parts {
-            state: self.state.to_bytes(self.house()),
-            physics: self.physics.moment(),
-            sound: self.sound.to_bytes(),
-            key: self.key,
-            agents: self.config.agents.clone(),
-        };
-        let body =
-            postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory");
-        let packed = pack(&body);
-        let mut bytes = MAGIC.to_vec();
-        bytes.extend_from_slice(&xxh3_64(&packed).to_le_bytes());
-        bytes.extend_from_slice(&packed);
-        bytes
-    }
-
-    /// Goes to where [`World::snapshot`] was taken; the next steps give the same bits as they did then.
-    ///
-    /// # Errors
-    /// [`WorldError`] with the reason; the world is then as it was before.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
-        let refuse = |why: &str| WorldError::Snapshot(why.to_owned());
-        let packed = bytes
-            .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwworld3\""))?;
-        let (sum, packed) = packed
-            .split_first_chunk::<8>()
-            .ok_or_else(|| refuse("it is too short"))?;
-        if u64::from_le_bytes(*sum) != xxh3_64(packed) {
-            return Err(refuse("its check sum does not fit: it is damaged"));
-        }
-        let body = unpack(packed)?;
-        let parts: Parts =
-            postcard::from_bytes(&body).map_err(|error| WorldError::Snapshot(error.to_string()))?;
-        let mut state = State::from_bytes(self.engines.house(), &parts.state)?;
-        // Bodies as they were made: what was set since is in the state.
-        if parts.agents != self.config.agents || state.agents.len() != self.state.agents.len() {
-            let (found, allowed) = (state.agents.len(), self.state.agents.len());
-            return Err(WorldError::Snapshot(format!(
-                "it has {found} agents, and the world {allowed}; their number and the bodies they were made with must be the same"
-            )));
-        }
-        let sound = Sound::from_bytes(
-            &self.config,
-            &self.engines,
-            parts.key.child("sound"),
-            &parts.sound,
-        )?;
-        self.physics.restore(&mut state, &parts.physics)?;
-        self.state = state;
-        self.sound = sound;
-        self.key = parts.key;
-        self.events.clear();
-        self.rays.update(&self.state);
-        Ok(())
-    }
-}
-
-/// What a world's snapshot begins with: its kind and version.
-const MAGIC: &[u8] = b"dwworld3";
-
-#[derive(serde::Serialize, serde::Deserialize)]
-struct Parts {
-    state: Vec<u8>,
-    physics: Vec<u8>,
-    sound: Vec<u8>,
-    key: Key,
-    /// The agents' bodies as the world was made with them.
-    agents: Vec<AgentBody>,
 }

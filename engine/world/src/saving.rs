@@ -1,0 +1,176 @@
+//! Worlds as bytes.
+//!
+//! A world begins like all worlds of its house and agents; most of it stays as it was. Its bytes are packed beside those of the
+//! beginning, which who restores it has as well: what has not changed since takes next to nothing.
+
+use crate::config::WorldConfig;
+use crate::engines::Engines;
+use crate::error::WorldError;
+use crate::sound::Sound;
+use crate::start::Start;
+use crate::world::World;
+use dwell_physics::PhysicsWorld;
+use dwell_scene::packing::{pack, unpack};
+use dwell_scene::random::Key;
+use dwell_scene::{AgentBody, House, State};
+use std::collections::BTreeMap;
+use xxhash_rust::xxh3::xxh3_64;
+
+/// What a world's snapshot begins with: its kind and version.
+const MAGIC: &[u8] = b"dwworld4";
+
+/// What is told before the rest is unpacked.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Head {
+    /// The house's fingerprint.
+    house: u64,
+    /// The agents' bodies as the world was made with them.
+    agents: Vec<AgentBody>,
+    /// Of the bytes of the beginning.
+    base: u64,
+}
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Parts {
+    state: Vec<u8>,
+    physics: Vec<u8>,
+    sound: Vec<u8>,
+    key: Key,
+}
+
+/// The bytes of worlds' common beginning.
+#[derive(Debug)]
+pub(crate) struct Base {
+    bytes: Vec<u8>,
+    sum: u64,
+}
+
+impl Base {
+    /// Of worlds with the same house, agents and rates: with whatever parameters and laws.
+    pub(crate) fn of(engines: &Engines, config: &WorldConfig) -> Self {
+        let plain = WorldConfig {
+            parameters: BTreeMap::new(),
+            laws: Vec::new(),
+            ..config.clone()
+        };
+        // Never refused, since one with more to refuse was possible.
+        let start = Start::new(engines, &plain);
+        let bytes = start.map_or_else(
+            |_| Vec::new(),
+            |start| {
+                body(
+                    engines.house(),
+                    &start.state,
+                    &start.physics,
+                    Vec::new(),
+                    Key::root(0),
+                )
+            },
+        );
+        let sum = xxh3_64(&bytes);
+        Self { bytes, sum }
+    }
+}
+
+fn body(house: &House, state: &State, physics: &PhysicsWorld, sound: Vec<u8>, key: Key) -> Vec<u8> {
+    let parts = Parts {
+        state: state.to_bytes(house),
+        physics: physics.moment(),
+        sound,
+        key,
+    };
+    postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory")
+}
+
+impl World {
+    /// The whole world as bytes: state, physics with its contact caches, sound queues and the key of the episode; packed.
+    ///
+    /// # Panics
+    /// Never: plain bytes can always be written to memory.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let base = self.base();
+        let head = Head {
+            house: self.house().fingerprint(),
+            agents: self.config().agents.clone(),
+            base: base.sum,
+        };
+        let mut told =
+            postcard::to_stdvec(&head).expect("plain bytes can always be written to memory");
+        let (state, physics) = (self.state(), &self.physics);
+        let body = body(
+            self.house(),
+            state,
+            physics,
+            self.sound.to_bytes(),
+            self.key,
+        );
+        told.extend_from_slice(&pack(&body, &base.bytes));
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend_from_slice(&xxh3_64(&told).to_le_bytes());
+        bytes.extend_from_slice(&told);
+        bytes
+    }
+
+    /// Goes to where [`World::snapshot`] was taken; the next steps give the same bits as they did then.
+    ///
+    /// # Errors
+    /// [`WorldError`] with the reason; the world is then as it was before.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        let refuse = |why: String| WorldError::Snapshot(why);
+        let told = bytes
+            .strip_prefix(MAGIC)
+            .ok_or_else(|| refuse("it does not begin with \"dwworld4\"".to_owned()))?;
+        let (sum, told) = told
+            .split_first_chunk::<8>()
+            .ok_or_else(|| refuse("it is too short".to_owned()))?;
+        if u64::from_le_bytes(*sum) != xxh3_64(told) {
+            return Err(refuse(
+                "its check sum does not fit: it is damaged".to_owned(),
+            ));
+        }
+        let (head, packed): (Head, &[u8]) =
+            postcard::take_from_bytes(told).map_err(|error| refuse(error.to_string()))?;
+        if head.house != self.house().fingerprint() {
+            let name = &self.house().name;
+            return Err(refuse(format!("it belongs to another house than {name:?}")));
+        }
+        // Bodies as they were made: what was set since is in the state.
+        if head.agents != self.config().agents {
+            let (found, allowed) = (head.agents.len(), self.config().agents.len());
+            return Err(refuse(format!(
+                "it has {found} agents, and the world {allowed}; their number and the bodies they were made with must be the same"
+            )));
+        }
+        let base = self.base();
+        if head.base != base.sum {
+            return Err(refuse(
+                "its world began otherwise: with other rates, or on another kind of machine"
+                    .to_owned(),
+            ));
+        }
+        let body = unpack(packed, &base.bytes)?;
+        let parts: Parts =
+            postcard::from_bytes(&body).map_err(|error| refuse(error.to_string()))?;
+        let mut state = State::from_bytes(self.house(), &parts.state)?;
+        if state.agents.len() != head.agents.len() {
+            return Err(refuse("its state has other agents than it says".to_owned()));
+        }
+        let sound = Sound::from_bytes(
+            &self.config,
+            &self.engines,
+            parts.key.child("sound"),
+            &parts.sound,
+        )?;
+        self.physics.restore(&mut state, &parts.physics)?;
+        self.state = state;
+        self.sound = sound;
+        self.key = parts.key;
+        self.events.clear();
+        self.rays.update(&self.state);
+        Ok(())
+    }
+
+    fn base(&self) -> &Base {
+        self.start.base(&self.engines, &self.config)
+    }
+}
