@@ -91,6 +91,11 @@ impl Engine {
         }
     }
 
+    /// Whether rapier runs several times in a physics step; contacts then tell of the last run.
+    pub(crate) fn runs_often(&self) -> bool {
+        self.runs > 1
+    }
+
     /// Solver substeps in a physics step.
     pub(crate) fn substeps(&self) -> u32 {
         self.runs * self.parameters.num_solver_iterations as u32

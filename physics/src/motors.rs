@@ -33,8 +33,8 @@ impl PhysicsWorld {
             if articulation.servo.is_none() {
                 continue;
             }
-            let (position, velocity) = joints::read(&self.engine, &joint, self.near[index]);
-            let (position, velocity) = (position as f32, velocity as f32);
+            let now = joints::stands(&self.engine, &joint, self.near[index]);
+            let (position, velocity) = (now.position as f32, now.velocity as f32);
             let motor = MotorStep {
                 joint: joint.id,
                 position,

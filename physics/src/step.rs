@@ -9,7 +9,7 @@ use crate::error::PhysicsError;
 use crate::joints::{self, Drive, Drivers, Outlook, Progress};
 use crate::laws::{Acts, JointLoad, LinkStep, Push, Resistance, Stage};
 use crate::motors;
-use crate::world::PhysicsWorld;
+use crate::world::{PhysicsWorld, said};
 use dwell_scene::{Aabb, AgentState, JointCommand, JointId, State};
 use glam::Vec3;
 
@@ -44,11 +44,8 @@ impl PhysicsWorld {
         self.notices.clear();
         let first_event = events.len();
         let asleep = self.engine.islands.num_active_bodies() == 0;
-        let stand = self
-            .joints
-            .iter()
-            .map(|joint| state.joint_position[joint.id]);
-        self.near = stand.map(f64::from).collect();
+        let joints = self.joints.iter();
+        self.near = joints.map(|joint| said(state, joint.id)).collect();
         self.drive_joints(state);
         let mut ways = Way::all(state);
         let mut placed = false;
@@ -75,7 +72,8 @@ impl PhysicsWorld {
         // What slept all the time stands as it was written.
         if !asleep || self.engine.islands.num_active_bodies() > 0 {
             for (joint, near) in self.joints.iter().zip(&self.near) {
-                state.joint_position[joint.id] = *near as f32;
+                state.joint_position[joint.id] = near.position as f32;
+                state.joint_velocity[joint.id] = near.velocity as f32;
             }
             self.write_bodies(state);
             self.write_contacts(state);
@@ -147,21 +145,25 @@ impl PhysicsWorld {
             self.engine.friction_kept(),
         );
         let landed = self.engine.step(flying, &hooks, &collector);
+        let mut placed = false;
+        for (tree, outlook) in self.trees.iter().zip(outlooks) {
+            let (engine, near) = (&mut self.engine, &mut self.near);
+            placed |= match outlook {
+                Some(outlook) => joints::settle(engine, tree, &self.joints, outlook, near),
+                None => joints::settle_woken(engine, tree, &self.joints, near),
+            };
+        }
         let rebounds = Rebounds {
             motions: &self.motion,
             entries: &self.entries,
+            trees: &self.trees,
+            joints: &self.joints,
             dt_s: self.settings.dt_s,
         };
-        let rebounds = rebounds.correct(&mut self.engine, &landed);
-        let mut placed = false;
-        for (tree, outlook) in self.trees.iter().zip(outlooks) {
-            if let Some(outlook) = outlook {
-                let (engine, near) = (&mut self.engine, &mut self.near);
-                placed |= joints::settle(engine, tree, &self.joints, outlook, near);
-            }
-        }
+        let rebounds = rebounds.correct(&mut self.engine, &landed, &mut self.near);
+        placed |= rebounds.placed;
         self.ongoing.settle(
-            (collector, &rebounds),
+            (collector, &rebounds.added),
             self.tick,
             config,
             &self.table,
@@ -205,8 +207,7 @@ impl PhysicsWorld {
             return;
         }
         for (joint, near) in self.joints.iter().zip(&self.near) {
-            let (position, _) = joints::read(&self.engine, joint, *near);
-            let position = position as f32;
+            let position = joints::stands(&self.engine, joint, *near).position as f32;
             for installed in &mut self.laws {
                 installed.law.follow(joint.id, position);
             }

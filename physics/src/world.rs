@@ -11,13 +11,13 @@ use crate::convert::{from_rapier, to_rapier};
 use crate::engine::Engine;
 use crate::error::PhysicsError;
 use crate::inertia::{self, Inertia};
-use crate::joints::{self, Drives, Joint, Pull, Tree};
+use crate::joints::{self, Coordinate, Drives, Joint, Pull, Tree};
 use crate::laws::{self, Installed};
 use crate::model::PhysicsModel;
 use crate::report::StartReport;
 use crate::start::Start;
 use dwell_scene::material::PairContact;
-use dwell_scene::{Address, AgentId, AgentState, House, State};
+use dwell_scene::{Address, AgentId, AgentState, House, JointId, State};
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Pose as RapierPose;
 use std::collections::BTreeMap;
@@ -45,9 +45,9 @@ pub struct PhysicsWorld {
     pub(crate) joints: Vec<Joint>,
     /// Joints that act on each other.
     pub(crate) trees: Vec<Tree>,
-    /// About where each joint stands within a control step, rad or m: the turns of hinges are counted here. Between control
-    /// steps the state has them. Shape (joint,).
-    pub(crate) near: Vec<f64>,
+    /// Each joint's numbers within a control step; the turns of hinges are counted here. Between control steps the state has
+    /// them. Shape (joint,).
+    pub(crate) near: Vec<Coordinate>,
     /// What pulls at each joint during this control step.
     pub(crate) pulls: Vec<Option<Pull>>,
     pub(crate) agents: Vec<Agent>,
@@ -365,9 +365,8 @@ impl PhysicsWorld {
             body::write_parts(&self.engine, plan, body, state);
         }
         for joint in &self.joints {
-            let near = state.joint_position[joint.id].into();
-            let (position, velocity) = joints::stands(&self.engine, joint, near);
-            let (position, velocity) = (position as f32, velocity as f32);
+            let now = joints::stands(&self.engine, joint, said(state, joint.id));
+            let (position, velocity) = (now.position as f32, now.velocity as f32);
             // A door that is shut stands at its closed position, whatever rounding says.
             let shut = self.holds[joint.child as usize] == Hold::Latched;
             let closed = self.model.house.joints[joint.id].closed;
@@ -385,6 +384,14 @@ impl PhysicsWorld {
             self.settings.config.touch_distance_m,
             &mut state.contacts,
         );
+    }
+}
+
+/// A joint's numbers as the state has them.
+pub(crate) fn said(state: &State, joint: JointId) -> Coordinate {
+    Coordinate {
+        position: state.joint_position[joint].into(),
+        velocity: state.joint_velocity[joint].into(),
     }
 }
 

@@ -74,7 +74,7 @@ impl PhysicsWorld {
                 state.agents[id] = agent;
                 continue;
             }
-            let before = agent.position;
+            let (before, flew) = (agent.position, !agent.grounded);
             let pushes = self.walk(state, id, &mut agent, motion);
             let length = motion.length();
             if length > 0.0 {
@@ -84,6 +84,14 @@ impl PhysicsWorld {
             }
             if let Some(motion) = &driven {
                 motion.settle(&mut agent, before);
+                let loose = &mut self.loose[index];
+                if !agent.grounded {
+                    // In the air its velocity is one whole.
+                    loose.slide_m_s = Vec3::ZERO;
+                } else if flew {
+                    // Where it lands its wheels slip, and friction brakes it until they roll.
+                    loose.slide_m_s = motion.slips_m_s;
+                }
             }
             state.agents[id] = agent;
             if agent.position != before

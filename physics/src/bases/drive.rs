@@ -14,6 +14,8 @@ pub(crate) struct Motion {
     pub(crate) displacement: Vec3,
     /// rad to the left.
     pub(crate) turn_rad: f32,
+    /// How fast it would slip over the ground if its wheels touched it now, level, m/s.
+    pub(crate) slips_m_s: Vec3,
 }
 
 /// Turns the wheels for one physics step, counts them, and says where they move the body. `truth`: the base's numbers
@@ -57,26 +59,28 @@ pub(crate) fn drive(
     };
     let odometry = PlanarPose::from_array(agent.base.odometry).advanced(&believed, seconds);
     agent.base.odometry = odometry.to_array();
+    let here = PlanarPose {
+        heading_rad: f64::from(agent.yaw_rad),
+        ..PlanarPose::default()
+    };
+    let there = here.advanced(&true_twist, seconds);
     if !agent.grounded {
         let level = Vec3::new(agent.velocity.x, 0.0, agent.velocity.z);
         agent.base.kept_back = [0.0; 3];
         return Some(Motion {
             displacement: level * dt_s,
             turn_rad: 0.0,
+            slips_m_s: level - there.displacement() / dt_s,
         });
     }
     if true_twist == Twist::default() {
         return Some(Motion::default());
     }
-    let here = PlanarPose {
-        heading_rad: f64::from(agent.yaw_rad),
-        ..PlanarPose::default()
-    };
-    let there = here.advanced(&true_twist, seconds);
     let [x, z, yaw] = agent.base.kept_back;
     Some(Motion {
         displacement: there.displacement() + Vec3::new(x, 0.0, z),
         turn_rad: (there.heading_rad - here.heading_rad) as f32 + yaw,
+        slips_m_s: Vec3::ZERO,
     })
 }
 

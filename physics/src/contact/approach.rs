@@ -65,7 +65,7 @@ fn ends_before(
     let (p, q) = manifold.data.solver_contact_world_points(contact, bodies);
     // Anchors ride on their bodies, or stand in the world.
     let before = |now: Vec3, anchor: Vec3, motion: &Motion, in_world: bool| {
-        if motion.awake && !in_world {
+        if motion.known && !in_world {
             motion.center + motion.rotation * anchor
         } else {
             now

@@ -3,12 +3,14 @@
 //! rapier gives back a share of the speed that a body had when the step began in which it hits: without what gravity adds on
 //! the last bit of the way, half a step's on the mean at every rebound, and with what it added beyond the surface to a body
 //! that was stopped there. A body that flew into something leaves it as fast as it met it, times the restitution, at the
-//! surface. What hangs on a joint counts as standing: a leaf that gives way takes a part of the rebound.
+//! surface. What hangs on joints gives way as its joints do, and takes its part of the blow: it is looked at after its tree was
+//! put together again.
 
 use super::approach::{Approach, speed_after};
 use super::entry::{Entry, Toucher, entry_index};
 use super::motion::{Motion, before};
 use crate::engine::{Engine, points};
+use crate::joints::{Coordinate, Joint, Point, Struck, Tree};
 use glam::Vec3;
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::{Collider, ColliderHandle, ContactManifold, ContactPair};
@@ -25,11 +27,7 @@ const ROUNDING: f32 = 1e-5;
 struct Hit {
     pair: (Toucher, Toucher),
     /// The first and the second body.
-    bodies: [Option<RigidBodyHandle>; 2],
-    /// From the second to the first.
-    normal: Vec3,
-    /// From their centres of mass to where they hit, m: as rapier has them, at the beginning of the step.
-    arms: [Vec3; 2],
+    sides: [Side; 2],
     /// What moves with 1 m/s after 1 N·s along the normal, kg.
     mass_kg: f32,
     /// How fast the two are to part, m/s.
@@ -38,6 +36,34 @@ struct Hit {
     pushed: f32,
     /// What has been added, N·s; negative where rapier gave too much.
     added: f32,
+}
+
+/// One of two bodies at a point where they hit.
+struct Side {
+    body: Option<RigidBodyHandle>,
+    /// From its centre of mass to the point, m: as rapier has it, at the beginning of the step.
+    arm: Vec3,
+    /// The direction in which it is pushed.
+    way: Vec3,
+    /// Where joints move it.
+    joined: Option<Joined>,
+}
+
+/// A point of a tree at which it is struck.
+struct Joined {
+    /// The place of the tree among those that are struck.
+    tree: usize,
+    point: Point,
+    /// Where rapier pushed at it.
+    pushed_at: Point,
+}
+
+/// What a step's rebounds came to.
+pub(crate) struct Corrected {
+    /// What was added to the pairs' normal impulses, N·s.
+    pub(crate) added: BTreeMap<(Toucher, Toucher), f32>,
+    /// Whether bodies of trees were put anew.
+    pub(crate) placed: bool,
 }
 
 /// What a body that flew has hit.
@@ -53,30 +79,39 @@ pub(crate) struct Rebounds<'a> {
     /// Before the step.
     pub(crate) motions: &'a [Motion],
     pub(crate) entries: &'a [Entry],
+    pub(crate) trees: &'a [Tree],
+    pub(crate) joints: &'a [Joint],
     /// Length of the step, s.
     pub(crate) dt_s: f32,
 }
 
 impl Rebounds<'_> {
-    /// Corrects how bodies bounce that flew freely into something in the last step. Returns what was added to the pairs' normal
-    /// impulses, N·s.
+    /// Corrects how bodies bounce that flew freely into something in the last step. `near`: the numbers of each of the world's
+    /// joints.
     pub(crate) fn correct(
         &self,
         engine: &mut Engine,
         landed: &[RigidBodyHandle],
-    ) -> BTreeMap<(Toucher, Toucher), f32> {
+        near: &mut [Coordinate],
+    ) -> Corrected {
         let mut added = BTreeMap::new();
+        let mut struck: Vec<Struck> = Vec::new();
         for (index, body) in landed.iter().enumerate() {
             // Of two that flew into each other the second one counts the points.
-            let Some(mut landing) = self.landing(engine, *body, &landed[index + 1..]) else {
+            let later = &landed[index + 1..];
+            let Some(mut landing) = self.landing(engine, *body, later, (&mut struck, near)) else {
                 continue;
             };
-            landing.solve(engine);
+            landing.solve(engine, &mut struck);
             for hit in landing.hits {
                 *added.entry(hit.pair).or_insert(0.0) += hit.added;
             }
         }
-        added
+        let mut placed = false;
+        for tree in struck {
+            placed |= tree.write(engine, self.trees, self.joints, near);
+        }
+        Corrected { added, placed }
     }
 
     /// What a body hit, apart from those `later`; `None` where nothing bounces.
@@ -85,6 +120,7 @@ impl Rebounds<'_> {
         engine: &Engine,
         body: RigidBodyHandle,
         later: &[RigidBodyHandle],
+        (struck, near): (&mut Vec<Struck>, &[Coordinate]),
     ) -> Option<Landing> {
         let rigid = engine.bodies.get(body)?;
         let (mut hits, mut stands) = (Vec::new(), true);
@@ -97,7 +133,7 @@ impl Rebounds<'_> {
                 continue;
             }
             let before = hits.len();
-            self.add_hits(engine, pair, &mut hits);
+            self.add_hits(engine, pair, (&mut *struck, near), &mut hits);
             let moves = other.and_then(|other| engine.bodies.get(other));
             stands &= hits.len() == before || moves.is_none_or(|other| !other.is_moving());
         }
@@ -110,7 +146,13 @@ impl Rebounds<'_> {
         })
     }
 
-    fn add_hits(&self, engine: &Engine, pair: &ContactPair, hits: &mut Vec<Hit>) {
+    fn add_hits(
+        &self,
+        engine: &Engine,
+        pair: &ContactPair,
+        (struck, near): (&mut Vec<Struck>, &[Coordinate]),
+        hits: &mut Vec<Hit>,
+    ) {
         let toucher = |collider: ColliderHandle| {
             let entry = self
                 .entries
@@ -126,19 +168,36 @@ impl Rebounds<'_> {
             let normal = -plane.data.normal;
             for (contact, point) in points(plane).filter(|(_, point)| point.impulse > 0.0) {
                 let approach = Approach::of(plane, contact, &engine.bodies, (&one, &two));
-                let yields: f32 = bodies
-                    .into_iter()
-                    .zip(approach.arms)
-                    .filter_map(|(body, arm)| Some(yields(engine, body?, arm.cross(normal))))
-                    .sum();
+                let meets_s = approach.meets_s.clamp(0.0, self.dt_s);
+                let sides = [(0, &two), (1, &one)].map(|(side, other)| {
+                    let way = if side == 0 { normal } else { -normal };
+                    // Where the other one is when they meet; rapier pushed where it was when the step began.
+                    let ahead = other.center_after(meets_s) - other.center;
+                    let joined = bodies[side].and_then(|body| {
+                        let tree = self.struck(engine, body, (&mut *struck, near))?;
+                        let tree_of = &struck[tree];
+                        let [point, pushed_at] = [ahead, Vec3::ZERO]
+                            .map(|ahead| tree_of.point(body, approach.place + ahead, way));
+                        Some(Joined {
+                            tree,
+                            point: point?,
+                            pushed_at: pushed_at?,
+                        })
+                    });
+                    Side {
+                        body: bodies[side],
+                        arm: approach.arms[side],
+                        way,
+                        joined,
+                    }
+                });
+                let yields: f32 = sides.iter().map(|side| side.yields(engine)).sum();
                 if yields <= 0.0 {
                     continue;
                 }
                 hits.push(Hit {
                     pair: (a.min(b), a.max(b)),
-                    bodies,
-                    arms: approach.arms,
-                    normal,
+                    sides,
                     mass_kg: yields.recip(),
                     parting: self.parting(
                         engine,
@@ -151,6 +210,23 @@ impl Rebounds<'_> {
                 });
             }
         }
+    }
+
+    /// The place of a body's tree among those that are struck; `None` for a body that hangs on no joint.
+    fn struck(
+        &self,
+        engine: &Engine,
+        body: RigidBodyHandle,
+        (struck, near): (&mut Vec<Struck>, &[Coordinate]),
+    ) -> Option<usize> {
+        engine.joints.attached_joints(body).next()?;
+        let tree = Struck::tree_of(self.trees, self.joints, body)?;
+        let known = struck.iter().position(|known| known.tree() == tree);
+        known.or_else(|| {
+            let found = Struck::of(engine, (self.trees, tree), self.joints, near)?;
+            struck.push(found);
+            Some(struck.len() - 1)
+        })
     }
 
     /// How fast two surfaces part where they stand after the step, m/s; 0 for those that had not been apart.
@@ -170,7 +246,7 @@ impl Rebounds<'_> {
         // What gravity takes on the way from where they met, however far rapier let them go on.
         let [one, two] = bodies.map(|(body, motion)| {
             body.and_then(|body| engine.bodies.get(body))
-                .filter(|_| motion.awake)
+                .filter(|_| motion.known)
                 .map_or(Vec3::ZERO, |body| {
                     body.center_of_mass() - motion.center_after(approach.meets_s)
                 })
@@ -187,12 +263,14 @@ impl Landing {
     /// # Source
     /// T. R. Kane, D. A. Levinson, Dynamics: Theory and Applications (1985), on collisions with friction under Newton's law of
     /// restitution.
-    fn solve(&mut self, engine: &mut Engine) {
+    fn solve(&mut self, engine: &mut Engine, struck: &mut [Struck]) {
         let Some(rigid) = engine.bodies.get(self.body) else {
             return;
         };
         let (linear, angular) = (rigid.linvel(), rigid.angvel());
-        self.part(engine, 1.0);
+        self.shift(struck);
+        let trees: Vec<Vec<f64>> = struck.iter().map(Struck::velocities).collect();
+        self.part(engine, struck, 1.0);
         let Some(most_j) = self.most_j else {
             return;
         };
@@ -205,6 +283,9 @@ impl Landing {
                 rigid.set_linvel(linear, false);
                 rigid.set_angvel(angular, false);
             }
+            for (tree, before) in struck.iter_mut().zip(&trees) {
+                tree.go_back(before);
+            }
             for hit in &mut self.hits {
                 hit.added = 0.0;
             }
@@ -214,7 +295,7 @@ impl Landing {
             } else {
                 0.5 * (low + high)
             };
-            self.part(engine, share);
+            self.part(engine, struck, share);
             if self.energy_j(engine) <= most_j {
                 low = share;
             } else {
@@ -223,11 +304,22 @@ impl Landing {
         }
     }
 
+    /// Moves what rapier pushed at trees to where they were struck.
+    fn shift(&self, struck: &mut [Struck]) {
+        for hit in self.hits.iter().filter(|hit| hit.parting > 0.0) {
+            for joined in hit.sides.iter().filter_map(|side| side.joined.as_ref()) {
+                let pushed = f64::from(hit.pushed);
+                struck[joined.tree].push(&joined.point, pushed);
+                struck[joined.tree].push(&joined.pushed_at, -pushed);
+            }
+        }
+    }
+
     /// Sweeps over the points until they part with a share of their speeds.
-    fn part(&mut self, engine: &mut Engine, share: f32) {
+    fn part(&mut self, engine: &mut Engine, struck: &mut [Struck], share: f32) {
         for _ in 0..SWEEPS {
             for hit in &mut self.hits {
-                hit.solve(engine, share);
+                hit.solve(engine, struck, share);
             }
         }
     }
@@ -242,15 +334,9 @@ impl Landing {
 
 impl Hit {
     /// Gives the two bodies a share of the speed at which they are to part.
-    fn solve(&mut self, engine: &mut Engine, share: f32) {
-        let velocity = |side: usize| {
-            let body = self.bodies[side].and_then(|body| engine.bodies.get(body));
-            body.map_or(Vec3::ZERO, |body| {
-                body.linvel() + body.angvel().cross(self.arms[side])
-            })
-        };
-        let (one, two) = (velocity(0), velocity(1));
-        let lacks = self.parting * share - (one - two).dot(self.normal);
+    fn solve(&mut self, engine: &mut Engine, struck: &mut [Struck], share: f32) {
+        let [one, two] = [0, 1].map(|side: usize| self.sides[side].speed(engine, struck));
+        let lacks = self.parting * share - (one + two);
         // A point that does not bounce is kept from sinking in, and not held.
         let least = if self.parting > 0.0 {
             -self.pushed
@@ -258,15 +344,45 @@ impl Hit {
             0.0
         };
         let added = (self.added + self.mass_kg * lacks).max(least);
-        let push = self.normal * (added - self.added);
+        let push = added - self.added;
         self.added = added;
-        for (side, push) in [push, -push].into_iter().enumerate() {
-            if let Some(body) = self.bodies[side].filter(|body| moves(engine, *body))
-                && let Some(body) = engine.bodies.get_mut(body)
-            {
-                body.apply_impulse(push, false);
-                body.apply_torque_impulse(self.arms[side].cross(push), false);
-            }
+        for side in &self.sides {
+            side.push(engine, struck, push);
+        }
+    }
+}
+
+impl Side {
+    /// How fast it goes in its direction, m/s.
+    fn speed(&self, engine: &Engine, struck: &[Struck]) -> f32 {
+        if let Some(joined) = &self.joined {
+            return struck[joined.tree].speed(&joined.point) as f32;
+        }
+        let body = self.body.and_then(|body| engine.bodies.get(body));
+        body.map_or(0.0, |body| {
+            (body.linvel() + body.angvel().cross(self.arm)).dot(self.way)
+        })
+    }
+
+    /// How fast it goes after 1 N·s in its direction, m/s.
+    fn yields(&self, engine: &Engine) -> f32 {
+        match (&self.joined, self.body) {
+            (Some(joined), _) => joined.point.yields() as f32,
+            (None, Some(body)) => yields(engine, body, self.arm.cross(self.way)),
+            (None, None) => 0.0,
+        }
+    }
+
+    /// Pushes it in its direction, N·s.
+    fn push(&self, engine: &mut Engine, struck: &mut [Struck], impulse: f32) {
+        if let Some(joined) = &self.joined {
+            struck[joined.tree].push(&joined.point, impulse.into());
+        } else if let Some(body) = self.body.filter(|body| moves(engine, *body))
+            && let Some(body) = engine.bodies.get_mut(body)
+        {
+            let push = self.way * impulse;
+            body.apply_impulse(push, false);
+            body.apply_torque_impulse(self.arm.cross(push), false);
         }
     }
 }

@@ -8,7 +8,8 @@ use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 /// Where a body is and how it moves before the step, at its centre of mass.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Motion {
-    pub(super) awake: bool,
+    /// Whether it is known: of what is awake, and of what sleeps where something that flies may wake it.
+    pub(super) known: bool,
     pub(super) linear: Vec3,
     pub(super) angular: Vec3,
     pub(super) center: Vec3,
@@ -34,7 +35,7 @@ impl Motion {
         let rest = free - (body.center_of_mass() - self.center);
         let kept_speed = (body.linvel() - fell).length_squared() < 1e-4 * fell.length_squared();
         let stopped = rest.length_squared() > 1e-3 * free.length_squared();
-        (self.awake && kept_speed && stopped).then_some(rest)
+        (self.known && kept_speed && stopped).then_some(rest)
     }
 
     /// The energy of a body in free flight, J, of a mass in kg: kinetic, and potential over the origin. It is that where
@@ -61,7 +62,16 @@ pub(super) fn before(motions: &[Motion], body: Option<RigidBodyHandle>) -> Motio
         .unwrap_or_default()
 }
 
-/// Notes the motion of all bodies that are awake before a step. `flying`: those in free flight.
+/// Where the motion of a body is kept.
+fn at(motions: &mut Vec<Motion>, body: RigidBodyHandle) -> &mut Motion {
+    let index = body.into_raw_parts().0 as usize;
+    if motions.len() <= index {
+        motions.resize(index + 1, Motion::default());
+    }
+    &mut motions[index]
+}
+
+/// Notes the motion of all bodies that are awake before a step, and where those stand that sleep. `flying`: those in free flight.
 pub(crate) fn note_motion(
     engine: &Engine,
     ongoing: &Ongoing,
@@ -69,6 +79,18 @@ pub(crate) fn note_motion(
     out: &mut Vec<Motion>,
 ) {
     out.clear();
+    if !flying.is_empty() {
+        for (handle, body) in engine.bodies.iter() {
+            if body.is_dynamic() && body.is_sleeping() {
+                *at(out, handle) = Motion {
+                    known: true,
+                    center: body.center_of_mass(),
+                    rotation: *body.rotation(),
+                    ..Motion::default()
+                };
+            }
+        }
+    }
     let mut flying = flying.iter().peekable();
     for handle in engine.islands.active_bodies() {
         let Some(body) = engine.bodies.get(handle) else {
@@ -76,9 +98,6 @@ pub(crate) fn note_motion(
         };
         let flies = flying.next_if_eq(&&handle).is_some();
         let index = handle.into_raw_parts().0 as usize;
-        if out.len() <= index {
-            out.resize(index + 1, Motion::default());
-        }
         let ahead = ongoing.held_back.get(&(index as u32)).copied();
         let (linear, angular) = (body.linvel(), body.angvel());
         let falls = if body.is_dynamic() {
@@ -88,8 +107,8 @@ pub(crate) fn note_motion(
         };
         let gravity = engine.gravity * falls;
         let free = body.is_dynamic() && engine.joints.attached_joints(handle).next().is_none();
-        out[index] = Motion {
-            awake: true,
+        *at(out, handle) = Motion {
+            known: true,
             linear,
             angular,
             center: body.center_of_mass(),

@@ -9,7 +9,7 @@ use super::Joint;
 use super::course::{AT_REST, Course, Freedoms};
 use super::element::Pull;
 use super::place;
-use super::reading::{Reading, is_untouched};
+use super::reading::{Coordinate, Reading, is_untouched};
 use super::standing::Standing;
 use super::tree::Tree;
 use crate::engine::Engine;
@@ -26,8 +26,8 @@ pub(crate) struct Drivers<'a> {
     pub(crate) joints: &'a [Joint],
     /// What pulls at each. Shape (joint,).
     pub(crate) pulls: &'a [Option<Pull>],
-    /// About where each stands, rad or m: picks the turn of hinges. Shape (joint,).
-    pub(crate) near: &'a [f64],
+    /// The numbers of each, as the last step left them. Shape (joint,).
+    pub(crate) near: &'a [Coordinate],
     /// How laws change what a joint resists with; `None`: no law does.
     pub(crate) resist: Option<&'a Resist<'a>>,
     /// How laws push at the bodies that joints move; `None`: no law does.
@@ -66,7 +66,7 @@ pub(crate) struct Outlook {
 
 /// Gives rapier the efforts of a tree for the next step. `None` for a tree that is asleep or shut.
 pub(crate) fn exert(engine: &mut Engine, tree: &Tree, drivers: &Drivers<'_>) -> Option<Outlook> {
-    let standing = Standing::of(engine, tree, drivers)?;
+    let standing = Standing::of(engine, tree, drivers.joints, drivers.near)?;
     let (positions, velocities) = (standing.positions(), standing.velocities());
     let joints = standing.joints(tree, drivers.joints);
     let freedoms = Freedoms {
@@ -125,13 +125,16 @@ impl Going {
 }
 
 /// Puts a tree that nothing touched in the step where its joints went, and holds one together that something did; `near` then
-/// says where its joints stand. Returns whether it was moved.
+/// has its joints' numbers. Returns whether it was moved.
+///
+/// What nothing touched goes its course however far rapier had it elsewhere: its rows brake a bar that turns fast about its
+/// end. Only where rapier runs several times in a step may something have touched it in between and left no trace.
 pub(crate) fn settle(
     engine: &mut Engine,
     tree: &Tree,
     joints: &[Joint],
     outlook: Outlook,
-    near: &mut [f64],
+    near: &mut [Coordinate],
 ) -> bool {
     let Outlook {
         mut standing,
@@ -141,7 +144,7 @@ pub(crate) fn settle(
     } = outlook;
     let before = standing.again(engine, tree, joints);
     for (going, now) in course.iter().zip(&standing.readings) {
-        near[going.joint] = now.position;
+        near[going.joint] = now.coordinate();
     }
     let free = |going: &Going| is_untouched(engine, &joints[going.joint]);
     let untouched = || course.iter().all(free);
@@ -153,17 +156,17 @@ pub(crate) fn settle(
     if !moves && !loose && !struck() {
         return false;
     }
+    if !loose && !engine.runs_often() && untouched() {
+        follow(engine, joints, &course, near);
+        return true;
+    }
     let came_true: Vec<bool> = course
         .iter()
         .zip(pairs)
         .map(|(going, (before, now))| going.came_true(engine, before, now))
         .collect();
     if !loose && came_true.iter().all(|came| *came) && untouched() {
-        for going in &course {
-            let joint = &joints[going.joint];
-            near[going.joint] = going.positions[1];
-            place::put(engine, joint, (going.positions[1], going.velocity), false);
-        }
+        follow(engine, joints, &course, near);
         return true;
     }
     let ends = course.iter().zip(&came_true);
@@ -173,6 +176,30 @@ pub(crate) fn settle(
             (*came && (to - from).abs() > OFF_COURSE.0).then_some(to)
         })
         .collect();
+    standing.project(engine, tree, joints, &ends, near);
+    true
+}
+
+/// Puts the bodies of a tree where its joints go.
+fn follow(engine: &mut Engine, joints: &[Joint], course: &[Going], near: &mut [Coordinate]) {
+    for going in course {
+        let ([_, position], velocity) = (going.positions, going.velocity);
+        near[going.joint] = Coordinate { position, velocity };
+        place::put(engine, &joints[going.joint], (position, velocity), false);
+    }
+}
+
+/// Holds a tree together that slept when the step began and was woken in it. Returns whether it was moved.
+pub(crate) fn settle_woken(
+    engine: &mut Engine,
+    tree: &Tree,
+    joints: &[Joint],
+    near: &mut [Coordinate],
+) -> bool {
+    let Some(standing) = Standing::of(engine, tree, joints, near) else {
+        return false;
+    };
+    let ends = vec![None; standing.free.len()];
     standing.project(engine, tree, joints, &ends, near);
     true
 }

@@ -15,16 +15,18 @@ mod place;
 mod project;
 mod reading;
 mod standing;
+mod struck;
 mod support;
 mod touch;
 mod tree;
 
 pub(crate) use drive::{Drive, Drives, Progress, advance};
 pub(crate) use element::{Gain, Pull};
-pub(crate) use exert::{Drivers, Outlook, exert, relax, settle};
+pub(crate) use exert::{Drivers, Outlook, exert, relax, settle, settle_woken};
 pub(crate) use latch::{release, shut, stands_shut, tolerance};
 pub(crate) use place::{Stand, place, says_the_same};
-pub(crate) use reading::{read, stands};
+pub(crate) use reading::{Coordinate, read, stands};
+pub(crate) use struck::{Point, Struck};
 pub(crate) use tree::{Tree, trees};
 
 use crate::body::Body;
@@ -62,6 +64,12 @@ impl Joint {
     /// In the joint's frame, unit length.
     fn unit_axis(&self) -> DVec3 {
         self.values.axis.as_dvec3().normalize_or(DVec3::X)
+    }
+
+    /// How far the joint's frame is from the origins of the bodies that it holds, m.
+    fn reach_m(&self) -> f32 {
+        let [parent, child] = [self.parent_from_joint, self.child_from_joint];
+        parent.translation.length() + child.translation.length()
     }
 }
 

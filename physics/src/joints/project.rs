@@ -13,6 +13,7 @@ use super::convex::{Element, Inertia, Problem};
 use super::floating::Floating;
 use super::motion::{Motion, Wrench};
 use super::place;
+use super::reading::Coordinate;
 use super::standing::Standing;
 use super::tree::Tree;
 use crate::engine::Engine;
@@ -23,14 +24,15 @@ const RIGID: f64 = 1e6;
 
 impl Standing {
     /// Puts the bodies of a tree where its joints stand after a step, with velocities that its joints allow. `ends`: where a joint
-    /// that went its way undisturbed comes to, if it moved; the middle of all mass stays where it is. `near`: where each of the world's joints stands; rad or m.
+    /// that went its way undisturbed comes to, if it moved; the middle of all mass stays where it is. `near`: the numbers of each
+    /// of the world's joints.
     pub(super) fn project(
         mut self,
         engine: &mut Engine,
         tree: &Tree,
         joints: &[Joint],
         ends: &[Option<f64>],
-        near: &mut [f64],
+        near: &mut [Coordinate],
     ) {
         self.chain.follow_root(engine, tree);
         let (positions, velocities) = (self.positions(), self.velocities());
@@ -76,7 +78,7 @@ impl Standing {
         for ((joint, k), (position, velocity)) in joints.iter().zip(&self.free).zip(states) {
             let [low, high] = stops(joint);
             let position = position.max(low).min(high);
-            near[tree.joints[*k]] = position;
+            near[tree.joints[*k]] = Coordinate { position, velocity };
             place::put(engine, joint, (position, velocity), false);
         }
     }

@@ -14,6 +14,20 @@ use glam::DVec3;
 use rapier3d::dynamics::RigidBody;
 use std::f64::consts::TAU;
 
+/// The numbers that physics goes on from at a joint: where it stands and how it moves. Bodies hold the same as places and
+/// velocities in the world, rounded to f32 where they are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Coordinate {
+    /// rad or m.
+    pub(crate) position: f64,
+    /// rad/s or m/s.
+    pub(crate) velocity: f64,
+}
+
+/// How much more than the spacing of f32 a joint's numbers may differ from what its bodies say of it: each is a difference of
+/// a few rounded ones.
+const ROUNDINGS: f64 = 8.0;
+
 /// A joint at one moment.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reading {
@@ -31,10 +45,35 @@ pub(crate) fn read(engine: &Engine, joint: &Joint, near: f64) -> (f64, f64) {
     (reading.position, reading.velocity)
 }
 
-/// The same, of a joint that is said to stand at `near`: there, where bodies differ from it by no more than their rounding.
-pub(crate) fn stands(engine: &Engine, joint: &Joint, near: f64) -> (f64, f64) {
-    let reading = Reading::before(engine, joint, near);
-    (reading.position, reading.velocity)
+/// The numbers that physics goes on from at a joint that is said to have those of `near`: the same, where bodies differ from
+/// them by no more than their rounding.
+pub(crate) fn stands(engine: &Engine, joint: &Joint, near: Coordinate) -> Coordinate {
+    Reading::before(engine, joint, near).coordinate()
+}
+
+/// By how much bodies may misstate a joint's position and velocity because they are f32: rad or m, and per second. A place
+/// is rounded as far as it is from the world's origin, a velocity as the bodies' own.
+fn rounding(engine: &Engine, joint: &Joint) -> [f64; 2] {
+    let grain = ROUNDINGS * f64::from(f32::EPSILON);
+    let mut sizes = [1.0_f64, 0.0];
+    let child = engine.bodies.get(joint.child_handle);
+    let at = child.map(RigidBody::center_of_mass);
+    for handle in [joint.child_handle, joint.parent_handle] {
+        let (Some(body), Some(at)) = (engine.bodies.get(handle), at) else {
+            continue;
+        };
+        let spin = f64::from(body.angvel().length());
+        sizes[1] += match joint.kind {
+            JointKind::Hinge => spin,
+            JointKind::Slide => {
+                let place = body.translation().abs().max_element();
+                sizes[0] = sizes[0].max(place.into());
+                let arm = (at - body.center_of_mass()).length() + joint.reach_m();
+                f64::from(body.linvel().length()) + spin * f64::from(arm)
+            }
+        };
+    }
+    sizes.map(|size| grain * size)
 }
 
 /// How many substeps a physics step has, and how long each is, s.
@@ -49,28 +88,29 @@ fn velocity_at(body: &RigidBody, at: DVec3) -> DVec3 {
 }
 
 impl Reading {
+    pub(super) fn coordinate(&self) -> Coordinate {
+        Coordinate {
+            position: self.position,
+            velocity: self.velocity,
+        }
+    }
+
     pub(super) fn of(engine: &Engine, joint: &Joint, near: f64) -> Self {
         Self::with(engine, joint, |_, _| (near, 0.0))
     }
 
-    /// The joint before a step. Where bodies differ from `near` by no more than their rounding, it stands there: what was put at a
-    /// stop is at the stop.
-    pub(super) fn before(engine: &Engine, joint: &Joint, near: f64) -> Self {
-        let reading = Self::of(engine, joint, near);
-        let coordinate = engine.bodies.get(joint.child_handle).map_or(0.0, |body| {
-            f64::from(body.translation().abs().max_element())
-        });
-        let rounding = match joint.kind {
-            JointKind::Hinge => 8.0 * f64::from(f32::EPSILON),
-            JointKind::Slide => 2.0 * f64::from(f32::EPSILON) * coordinate.max(1.0),
+    /// The joint before a step. Where bodies differ from `near` by no more than their rounding, it has those numbers: what was
+    /// put at a stop is at the stop, and a slide far from the origin goes on as finely as one near it.
+    pub(super) fn before(engine: &Engine, joint: &Joint, near: Coordinate) -> Self {
+        let reading = Self::of(engine, joint, near.position);
+        let [place, speed] = rounding(engine, joint);
+        let held = |told: f64, found: f64, within: f64| {
+            let same = (found - told).abs() <= within;
+            if same { told } else { found }
         };
-        let off = (reading.position - near).abs();
         Self {
-            position: if off <= rounding {
-                near
-            } else {
-                reading.position
-            },
+            position: held(near.position, reading.position, place),
+            velocity: held(near.velocity, reading.velocity, speed),
             ..reading
         }
     }

@@ -1,9 +1,9 @@
 //! The joints of a tree that may move, as a step finds them and as it leaves them.
 
+use super::Joint;
 use super::chain::Chain;
-use super::reading::Reading;
+use super::reading::{Coordinate, Reading};
 use super::tree::Tree;
-use super::{Drivers, Joint};
 use crate::engine::Engine;
 
 /// A tree in a step: made before it, and used again after it.
@@ -17,10 +17,15 @@ pub(crate) struct Standing {
 }
 
 impl Standing {
-    /// `None` for a tree that is asleep or shut.
-    pub(super) fn of(engine: &Engine, tree: &Tree, drivers: &Drivers<'_>) -> Option<Self> {
+    /// `near`: the numbers of each of the world's joints. `None` for a tree that is asleep or shut.
+    pub(super) fn of(
+        engine: &Engine,
+        tree: &Tree,
+        joints: &[Joint],
+        near: &[Coordinate],
+    ) -> Option<Self> {
         let moves = |k: &usize| {
-            let child = drivers.joints[tree.joints[*k]].child_handle;
+            let child = joints[tree.joints[*k]].child_handle;
             let body = engine.bodies.get(child);
             body.is_some_and(|body| body.is_dynamic() && !body.is_sleeping())
         };
@@ -30,11 +35,11 @@ impl Standing {
         }
         let read = |k: &usize| {
             let place = tree.joints[*k];
-            Reading::before(engine, &drivers.joints[place], drivers.near[place])
+            Reading::before(engine, &joints[place], near[place])
         };
         Some(Self {
             readings: free.iter().map(read).collect(),
-            chain: Chain::of(engine, tree, &free, drivers.joints),
+            chain: Chain::of(engine, tree, &free, joints),
             free,
         })
     }

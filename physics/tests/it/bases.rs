@@ -8,14 +8,14 @@ use glam::Vec3;
 use std::f64::consts::TAU;
 
 /// Wheels that have their speed almost at once: on the way to 10 rad/s they lose `w^2 / (2 a)` = 5e-5 rad.
-fn quick() -> DifferentialDrive {
+pub(crate) fn quick() -> DifferentialDrive {
     DifferentialDrive {
         max_wheel_acceleration_rad_s2: 1e6,
         ..DifferentialDrive::default()
     }
 }
 
-fn robot(locomotion: Locomotion) -> AgentBody {
+pub(crate) fn robot(locomotion: Locomotion) -> AgentBody {
     AgentBody {
         radius_m: 0.18,
         height_m: 0.5,

@@ -7,14 +7,14 @@ use dwell_scene::{JointKind, ObjectId};
 use glam::{Quat, Vec3};
 
 /// Every physics step is a control step, so that each is seen.
-fn each_step() -> PhysicsConfig {
+pub(crate) fn each_step() -> PhysicsConfig {
     PhysicsConfig {
         control_rate_hz: 120.0,
         ..PhysicsConfig::default()
     }
 }
 
-fn set_pair(run: &mut Run, a: &str, b: &str, values: [(&str, f64); 2]) {
+pub(crate) fn set_pair(run: &mut Run, a: &str, b: &str, values: [(&str, f64); 2]) {
     for (field, value) in values {
         let address = format!("pair/{a}~{b}/{field}").parse().unwrap();
         run.state

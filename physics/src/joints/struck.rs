@@ -1,0 +1,274 @@
+//! Trees that are struck: how fast points of their bodies go, and how their joints answer an impulse.
+//!
+//! A leaf that is struck beside its hinge gives way about the hinge and nowhere else. Rebounds that took its body for a loose
+//! one, or for one that stands, would part too fast or too slowly.
+//!
+//! # Source
+//! R. Featherstone, Rigid Body Dynamics Algorithms (2008), 11.7: impulsive dynamics in joint space.
+
+use super::convex::Inertia;
+use super::floating::{Floating, dot};
+use super::motion::{Axis, Moving};
+use super::place;
+use super::reading::Coordinate;
+use super::standing::Standing;
+use super::{Joint, Tree};
+use crate::engine::Engine;
+use glam::{DVec3, Vec3};
+use rapier3d::dynamics::RigidBodyHandle;
+
+/// How near to a stop a joint stands at it, rad or m.
+const AT_STOP: f64 = 1e-4;
+/// How much heavier than it is a joint seems that gives way to nothing.
+const RIGID: f64 = 1e6;
+
+/// A tree after a step, as impulses change how it moves.
+pub(crate) struct Struck {
+    /// Its place among the world's trees.
+    tree: usize,
+    /// The joints that may move, by their places in the tree. Shape (freedom,).
+    free: Vec<usize>,
+    /// rad or m. Shape (freedom,).
+    positions: Vec<f64>,
+    /// Whether each stands at its lower and at its upper stop. Shape (freedom,).
+    at_stop: Vec<[bool; 2]>,
+    axes: Vec<Axis>,
+    /// The bodies that the joints move. Shape (freedom,).
+    bodies: Vec<RigidBodyHandle>,
+    root_body: RigidBodyHandle,
+    root: Moving,
+    root_velocity: DVec3,
+    floating: Option<Floating>,
+    /// What the joints resist with, and a free root's six freedoms.
+    inertia: Inertia,
+    /// Of the joints, and of a free root's six freedoms.
+    velocities: Vec<f64>,
+    moved: bool,
+}
+
+/// A point of a tree's bodies and a direction in which it may be pushed.
+pub(crate) struct Point {
+    /// How fast it goes that way for each unit of the tree's velocities.
+    row: Vec<f64>,
+    /// What 1 N·s that way adds to the tree's velocities.
+    answer: Vec<f64>,
+    /// How fast a root that is led takes it that way, m/s.
+    led: f64,
+}
+
+impl Point {
+    /// How fast the point goes after 1 N·s, m/s.
+    pub(crate) fn yields(&self) -> f64 {
+        dot(&self.row, &self.answer)
+    }
+}
+
+impl Struck {
+    /// Which of the world's trees a body is of.
+    pub(crate) fn tree_of(
+        trees: &[Tree],
+        joints: &[Joint],
+        body: RigidBodyHandle,
+    ) -> Option<usize> {
+        let of = |tree: &Tree| {
+            let moved = tree.joints.iter().map(|k| joints[*k].child_handle);
+            tree.root == body || moved.into_iter().any(|child| child == body)
+        };
+        trees.iter().position(of)
+    }
+
+    /// The tree as it moves now; `None` where it sleeps or is shut.
+    pub(crate) fn of(
+        engine: &Engine,
+        (trees, tree): (&[Tree], usize),
+        joints: &[Joint],
+        near: &[Coordinate],
+    ) -> Option<Self> {
+        let number = tree;
+        let tree = &trees[number];
+        let standing = Standing::of(engine, tree, joints, near)?;
+        let own = standing.joints(tree, joints);
+        let positions = standing.positions();
+        let mut velocities = standing.velocities();
+        let motion = standing.chain.at(&positions, &velocities, None);
+        let floating = motion.floating();
+        let n = own.len();
+        let mut inertia = motion.held_inertia();
+        for (k, joint) in own.iter().enumerate() {
+            inertia.add(k, k, f64::from(joint.values.armature).max(0.0));
+        }
+        link(&mut inertia, tree, &standing.free, &own);
+        if let Some(floating) = &floating {
+            inertia = with_root(&inertia, floating, n);
+            velocities.extend(floating.before(&motion.root, motion.root_velocity));
+        }
+        let at_stop = |(joint, position): (&&Joint, &f64)| {
+            joint.values.limits.map_or([false; 2], |[low, high]| {
+                let (low, high) = (f64::from(low), f64::from(high));
+                [*position <= low + AT_STOP, *position >= high - AT_STOP]
+            })
+        };
+        let at_stop = own.iter().zip(&positions).map(at_stop).collect();
+        let bodies = own.iter().map(|joint| joint.child_handle).collect();
+        let (axes, root, root_velocity) = (motion.axes, motion.root, motion.root_velocity);
+        Some(Self {
+            tree: number,
+            free: standing.free,
+            positions,
+            at_stop,
+            axes,
+            bodies,
+            root_body: tree.root,
+            root,
+            root_velocity,
+            floating,
+            inertia,
+            velocities,
+            moved: false,
+        })
+    }
+
+    /// Its place among the world's trees.
+    pub(crate) fn tree(&self) -> usize {
+        self.tree
+    }
+
+    /// A point of a body where it may be pushed in a direction; `None` for a body that does not give way.
+    pub(crate) fn point(&self, body: RigidBodyHandle, at: Vec3, direction: Vec3) -> Option<Point> {
+        let (at, direction) = (at.as_dvec3(), direction.as_dvec3());
+        let mut link = self.bodies.iter().position(|own| *own == body);
+        if link.is_none() && (body != self.root_body || self.floating.is_none()) {
+            return None;
+        }
+        let mut row = vec![0.0; self.velocities.len()];
+        while let Some(k) = link {
+            row[k] = self.axes[k].moves(at).0.dot(direction);
+            link = self.axes[k].parent;
+        }
+        let mut led = 0.0;
+        if let Some(floating) = &self.floating {
+            let turn = (at - floating.whole.center).cross(direction);
+            let six = direction.to_array().into_iter().chain(turn.to_array());
+            for (entry, value) in row.iter_mut().skip(self.axes.len()).zip(six) {
+                *entry = value;
+            }
+        } else {
+            let arm = at - self.root.center;
+            led = (self.root_velocity + self.root.angular.cross(arm)).dot(direction);
+        }
+        let answer = self.answer(&row);
+        Some(Point { row, answer, led })
+    }
+
+    /// What 1 N·s adds to the velocities. Joints at a stop are not pushed through it.
+    fn answer(&self, row: &[f64]) -> Vec<f64> {
+        let mut inertia = self.inertia.clone();
+        let mut answer = inertia.factor().solve(row);
+        let mut held = vec![false; self.at_stop.len()];
+        for _ in 0..held.len() {
+            let mut found = false;
+            for (k, [low, high]) in self.at_stop.iter().enumerate() {
+                if !held[k] && ((*low && answer[k] < 0.0) || (*high && answer[k] > 0.0)) {
+                    inertia.add(k, k, RIGID * inertia.get(k, k));
+                    (held[k], found) = (true, true);
+                }
+            }
+            if !found {
+                break;
+            }
+            answer = inertia.factor().solve(row);
+        }
+        answer
+    }
+
+    /// How fast a point goes in its direction, m/s.
+    pub(crate) fn speed(&self, point: &Point) -> f64 {
+        dot(&point.row, &self.velocities) + point.led
+    }
+
+    /// Pushes at a point in its direction, N·s.
+    pub(crate) fn push(&mut self, point: &Point, impulse: f64) {
+        for (velocity, answer) in self.velocities.iter_mut().zip(&point.answer) {
+            *velocity += impulse * answer;
+        }
+        self.moved |= impulse != 0.0;
+    }
+
+    /// How it moves, to be given back to [`Struck::go_back`].
+    pub(crate) fn velocities(&self) -> Vec<f64> {
+        self.velocities.clone()
+    }
+
+    /// Lets it move as it did.
+    pub(crate) fn go_back(&mut self, velocities: &[f64]) {
+        self.velocities.copy_from_slice(velocities);
+    }
+
+    /// Gives the bodies what became of their velocities; `near`: the numbers of each of the world's joints. Returns whether
+    /// anything was changed.
+    pub(crate) fn write(
+        &self,
+        engine: &mut Engine,
+        trees: &[Tree],
+        joints: &[Joint],
+        near: &mut [Coordinate],
+    ) -> bool {
+        if !self.moved {
+            return false;
+        }
+        let n = self.axes.len();
+        if let (Some(floating), Some(body)) =
+            (&self.floating, engine.bodies.get_mut(self.root_body))
+        {
+            let six = &self.velocities[n..];
+            let angular = DVec3::new(six[3], six[4], six[5]);
+            let arm = self.root.center - floating.whole.center;
+            let linear = DVec3::new(six[0], six[1], six[2]) + angular.cross(arm);
+            body.set_linvel(linear.as_vec3(), false);
+            body.set_angvel(angular.as_vec3(), false);
+        }
+        for (k, free) in self.free.iter().enumerate() {
+            let (position, velocity) = (self.positions[k], self.velocities[k]);
+            let joint = trees[self.tree].joints[*free];
+            near[joint] = Coordinate { position, velocity };
+            place::put(engine, &joints[joint], (position, velocity), false);
+        }
+        true
+    }
+}
+
+/// Joins the joints of linkages: those that follow move only as their leaders do.
+fn link(inertia: &mut Inertia, tree: &Tree, free: &[usize], joints: &[&Joint]) {
+    for (k, (joint, place)) in joints.iter().zip(free).enumerate() {
+        if let Some(leader) = tree.follows[*place]
+            && let Some(mimic) = &joint.values.mimic
+            && let Some(leader) = free.iter().position(|other| *other == leader)
+        {
+            let share = f64::from(mimic.multiplier);
+            let strength = RIGID * inertia.get(k, k);
+            inertia.add(k, k, strength);
+            inertia.add(k, leader, -strength * share);
+            inertia.add(leader, leader, strength * share * share);
+        }
+    }
+}
+
+/// The inertia of `n` joints and of a root that is free.
+fn with_root(joints: &Inertia, floating: &Floating, n: usize) -> Inertia {
+    let mut all = Inertia::zero(n + 6);
+    for k in 0..n {
+        for j in 0..=k {
+            all.set(k, j, joints.get(k, j));
+        }
+        for (j, share) in floating.columns[k].iter().enumerate() {
+            all.set(n + j, k, *share);
+        }
+    }
+    let root = floating.inertia();
+    for k in 0..6 {
+        for j in 0..=k {
+            all.set(n + k, n + j, root.get(k, j));
+        }
+    }
+    all
+}

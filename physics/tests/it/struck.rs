@@ -1,0 +1,294 @@
+//! Blows against what hangs on joints: it takes its part of them.
+
+use crate::bounces::{each_step, set_pair};
+use crate::common::{Build, Piece, Run};
+use dwell_physics::{JointState, PhysicsConfig};
+use dwell_scene::{JointId, JointKind, Mobility, ObjectId};
+use glam::{DVec3, Vec3};
+
+const DENSITY: f32 = 500.0;
+const RADIUS: f32 = 0.1;
+const HALF: Vec3 = Vec3::new(0.4, 0.8, 0.02);
+const AXIS: Vec3 = Vec3::new(2.0, 0.0, 2.0);
+
+fn ball_kg() -> f64 {
+    f64::from(DENSITY) * 4.0 / 3.0 * std::f64::consts::PI * f64::from(RADIUS).powi(3)
+}
+
+/// How a blow is made.
+#[derive(Clone, Copy, Debug)]
+struct Blow {
+    kind: JointKind,
+    /// The leaf's mass over the ball's.
+    times: f32,
+    restitution: f64,
+    friction: f64,
+    /// How the ball goes and where it begins.
+    throw: Vec3,
+    from: Vec3,
+    /// How the leaf moves along its joint.
+    leaf: f32,
+    sleeping: bool,
+}
+
+/// Ball and leaf before or after a blow.
+struct Seen {
+    /// The ball's velocity, m/s, and the place of its middle against a point of the hinge, m.
+    velocity: DVec3,
+    at: DVec3,
+    /// Of the joint: rad or m, and per second.
+    position: f64,
+    speed: f64,
+    energy: f64,
+    /// Along the slide, or about the hinge: the ball's spin and the leaf.
+    turning: f64,
+}
+
+/// Where ball and leaf meet.
+struct Meeting {
+    /// The place of the ball's middle against the hinge, m.
+    at: DVec3,
+    /// Of the leaf.
+    normal: DVec3,
+    /// How fast the leaf goes against it there for each unit of the joint's speed.
+    lever: f64,
+}
+
+impl Meeting {
+    /// How fast ball and leaf part, m/s.
+    fn parts(&self, seen: &Seen) -> f64 {
+        seen.velocity.dot(self.normal) + seen.speed * self.lever
+    }
+}
+
+impl Blow {
+    fn build(&self) -> (Run, ObjectId, JointId) {
+        let mut build = Build::room([6.0, 4.0, 6.0]);
+        let density = self.times * ball_kg() as f32 / (8.0 * HALF.element_product());
+        let leaf = Piece::cuboid(HALF, Vec3::new(2.4, 1.0, 2.0)).density(density);
+        let gate = build.object("gate", Mobility::Articulated, &[leaf]);
+        let axis = match self.kind {
+            JointKind::Hinge => Vec3::Y,
+            JointKind::Slide => Vec3::Z,
+        };
+        let hinge = build.joint(gate, self.kind, axis, AXIS, [-1.5, 1.5]);
+        let joint = &mut build.data.joints[hinge];
+        (joint.friction, joint.damping, joint.armature) = (0.0, 0.0, 0.0);
+        let ball = Piece::ball(RADIUS, self.from).density(DENSITY);
+        let ball = build.movable("ball", ball);
+        let mut run = build.run_with(PhysicsConfig {
+            latches: false,
+            sleeping: self.sleeping,
+            ..each_step()
+        });
+        let weightless = "world/gravity_m_s2".parse().unwrap();
+        let house = run.house.clone();
+        run.state.set_parameter(&house, &weightless, 0.0).unwrap();
+        let values = [
+            ("restitution", self.restitution),
+            ("friction", self.friction),
+        ];
+        set_pair(&mut run, "wood", "wood", values);
+        if self.sleeping {
+            run.steps(400);
+        } else {
+            let set = JointState {
+                joint: hinge,
+                position: 0.0,
+                velocity: self.leaf,
+            };
+            run.world.set_joints(&mut run.state, &[set]).unwrap();
+        }
+        run.throw(ball, self.throw);
+        (run, ball, hinge)
+    }
+
+    fn look(&self, run: &Run, ball: ObjectId, joint: JointId) -> Seen {
+        let mass = ball_kg();
+        let root = run.root(ball);
+        let velocity = run.state.part_velocity[root];
+        let (v, spin) = (velocity.linear.as_dvec3(), velocity.angular.as_dvec3());
+        let at = run.position(ball).as_dvec3() - AXIS.as_dvec3();
+        let q = f64::from(run.state.joint_position[joint]);
+        let speed = f64::from(run.state.joint_velocity[joint]);
+        let own = 0.4 * mass * f64::from(RADIUS).powi(2);
+        let kinetic = 0.5 * mass * v.length_squared() + 0.5 * own * spin.length_squared();
+        let leaf = f64::from(self.times) * mass;
+        let inertia = match self.kind {
+            JointKind::Slide => leaf,
+            JointKind::Hinge => leaf * ((0.8 * 0.8 + 0.04 * 0.04) / 12.0 + 0.16),
+        };
+        let spin = match self.kind {
+            JointKind::Slide => 0.0,
+            JointKind::Hinge => own * spin.y,
+        };
+        Seen {
+            velocity: v,
+            at,
+            position: q,
+            speed,
+            energy: kinetic + 0.5 * inertia * speed * speed,
+            turning: spin + inertia * speed,
+        }
+    }
+
+    /// Momentum along the slide, or angular momentum about the hinge, with the ball's middle at a place.
+    fn momentum(&self, seen: &Seen, at: DVec3) -> f64 {
+        let ball = match self.kind {
+            JointKind::Slide => seen.velocity.z,
+            JointKind::Hinge => at.cross(seen.velocity).y,
+        };
+        ball_kg() * ball + seen.turning
+    }
+
+    /// Where they meet that move on like this.
+    fn meeting(&self, seen: &Seen) -> Meeting {
+        if self.kind == JointKind::Slide {
+            return Meeting {
+                at: seen.at,
+                normal: DVec3::Z,
+                lever: -1.0,
+            };
+        }
+        // The leaf lies along (cos q, 0, -sin q), and faces (sin q, 0, cos q).
+        let at = |time_s: f64| {
+            let (sin, cos) = (seen.position + seen.speed * time_s).sin_cos();
+            let normal = DVec3::new(sin, 0.0, cos);
+            let ball = seen.at + seen.velocity * time_s;
+            let gap = ball.dot(normal) - f64::from(RADIUS + HALF.z);
+            let lever = ball.dot(DVec3::new(cos, 0.0, -sin));
+            let meeting = Meeting {
+                at: ball,
+                normal,
+                lever,
+            };
+            (meeting, gap)
+        };
+        let (mut low, mut high) = (0.0, 1.0 / 120.0);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if at(middle).1 > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        at(low).0
+    }
+
+    /// Restitution, the energy over what it was, and what is missing of the momentum as a share of the ball's, of the one blow.
+    fn made(&self) -> [f64; 3] {
+        let (mut run, ball, joint) = self.build();
+        let mut before = self.look(&run, ball, joint);
+        let mut steps = 0;
+        let after = loop {
+            run.steps(1);
+            let after = self.look(&run, ball, joint);
+            if (after.velocity - before.velocity).length() > 1e-3 {
+                break after;
+            }
+            before = after;
+            steps += 1;
+            assert!(steps < 400, "{self:?}: no blow");
+        };
+        let meeting = self.meeting(&before);
+        let brought = ball_kg() * before.velocity.length() * meeting.lever.abs();
+        // And it was the only one.
+        run.steps(1);
+        let later = self.look(&run, ball, joint);
+        assert!(
+            (later.velocity - after.velocity).length() < 1e-3,
+            "{self:?}"
+        );
+        [
+            -meeting.parts(&after) / meeting.parts(&before),
+            after.energy / before.energy,
+            (self.momentum(&after, meeting.at) - self.momentum(&before, meeting.at)) / brought,
+        ]
+    }
+}
+
+const SLIDE: Blow = Blow {
+    kind: JointKind::Slide,
+    times: 1.0,
+    restitution: 1.0,
+    friction: 0.0,
+    throw: Vec3::new(0.0, 0.0, -3.0),
+    from: Vec3::new(2.4, 1.0, 2.6),
+    leaf: 0.0,
+    sleeping: false,
+};
+
+/// A ball against a slide that is lighter, as heavy, or heavier, at rest, asleep, receding and coming towards it, in its middle
+/// and beside it: they part with `e` times the speed at which they met, and momentum along the slide is kept.
+#[test]
+fn a_slide_parts_with_restitution_and_keeps_momentum() {
+    for restitution in [1.0, 0.5] {
+        for times in [0.2_f32, 1.0, 20.0] {
+            for (leaf, sleeping) in [(0.0, false), (0.0, true), (-0.7, false), (0.4, false)] {
+                for (aside, friction) in [(0.0, 0.0), (0.15, 0.0), (0.15, 0.3)] {
+                    let blow = Blow {
+                        restitution,
+                        times,
+                        leaf,
+                        sleeping,
+                        friction,
+                        from: SLIDE.from + Vec3::new(aside, aside, 0.0),
+                        ..SLIDE
+                    };
+                    let [parts, energy, momentum] = blow.made();
+                    println!(
+                        "{restitution} {times} {leaf} {sleeping} {aside} {friction}: {parts:.5} {energy:.5} {momentum:.5}"
+                    );
+                    assert!(
+                        (parts - restitution).abs() < 0.01 * restitution,
+                        "{blow:?}: {parts}"
+                    );
+                    assert!(momentum.abs() < 1e-3, "{blow:?}: {momentum}");
+                    assert!(energy < 1.001, "{blow:?}: {energy}");
+                }
+            }
+        }
+    }
+}
+
+/// A ball against a free leaf, at several distances from its hinge, straight and askew: restitution within 1 %, angular momentum
+/// about the hinge within 0.1 %, and no energy from nowhere.
+#[test]
+fn a_leaf_parts_with_restitution_and_keeps_angular_momentum() {
+    for restitution in [1.0, 0.5] {
+        for times in [0.2_f32, 1.0, 20.0] {
+            for (leaf, sleeping) in [(0.0, false), (0.0, true), (0.8, false), (-0.3, false)] {
+                for (x, askew, friction) in [
+                    (2.6, 0.0, 0.0),
+                    (2.3, 0.0, 0.3),
+                    (2.6, 1.0, 0.0),
+                    (2.5, -1.0, 0.3),
+                ] {
+                    let blow = Blow {
+                        kind: JointKind::Hinge,
+                        restitution,
+                        times,
+                        leaf,
+                        sleeping,
+                        friction,
+                        from: Vec3::new(x - 0.16 * askew, 1.0, 2.6),
+                        throw: Vec3::new(askew, 0.0, -3.0),
+                    };
+                    let [parts, energy, momentum] = blow.made();
+                    println!(
+                        "{restitution} {times} {leaf} {sleeping} {x} {askew} {friction}: {parts:.5} {energy:.5} {momentum:.5}"
+                    );
+                    assert!(
+                        (parts - restitution).abs() < 0.01 * restitution,
+                        "{blow:?}: {parts}"
+                    );
+                    // Where the leaf turns in the step of the blow, friction acts a little beside it.
+                    let within = if friction > 0.0 { 3e-3 } else { 1e-3 };
+                    assert!(momentum.abs() < within, "{blow:?}: {momentum}");
+                    assert!(energy < 1.001, "{blow:?}: {energy}");
+                }
+            }
+        }
+    }
+}
