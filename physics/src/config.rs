@@ -14,7 +14,7 @@ pub enum ContactFriction {
     Point,
 }
 
-/// Rates, tolerances and strengths of a physics world. Every field has a default; unknown fields are refused.
+/// Rates and tolerances of a physics world. What agents can do stands in their bodies ([`dwell_scene::AgentBody`]). Every field has a default; unknown fields are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PhysicsConfig {
@@ -45,10 +45,6 @@ pub struct PhysicsConfig {
     /// The most events of a control step; 1 to 100,000, default 128. Impacts come before scrapes and rolling, the strongest
     /// first; the others are counted and summed.
     pub max_events_per_step: usize,
-    /// The strongest pull of a hand on a door or drawer, N·m or N; 0 to 10,000, default 40.
-    pub hand_effort: f32,
-    /// The largest edge of what a hand carries, m; 0.05 to 5, default 1.
-    pub max_carry_size_m: f32,
     /// Whether doors and drawers of the building stay shut at their closed position until they are opened; default true.
     pub latches: bool,
 }
@@ -68,8 +64,6 @@ impl Default for PhysicsConfig {
             event_min_impulse_n_s: 1e-3,
             slide_min_speed_m_s: 0.02,
             max_events_per_step: 128,
-            hand_effort: 40.0,
-            max_carry_size_m: 1.0,
             latches: true,
         }
     }
@@ -176,14 +170,6 @@ impl PhysicsConfig {
             1.0,
             1e5,
             "1 to 100000",
-        )?;
-        range("hand_effort", self.hand_effort, 0.0, 1e4, "0 to 10000")?;
-        range(
-            "max_carry_size_m",
-            self.max_carry_size_m,
-            0.05,
-            5.0,
-            "0.05 to 5",
         )
     }
 
@@ -210,7 +196,7 @@ mod tests {
         let message = config.check().unwrap_err().to_string();
         assert!(message.contains("physics_rate_hz"), "{message}");
         let config = PhysicsConfig {
-            hand_effort: f32::NAN,
+            touch_distance_m: f32::NAN,
             ..PhysicsConfig::default()
         };
         assert!(config.check().is_err());

@@ -55,7 +55,7 @@ pub use contact::{ContactEvent, ContactKind, ContactPhase, MergedEvents, Toucher
 pub use error::PhysicsError;
 pub use model::PhysicsModel;
 pub use placement::AgentPlacement;
-pub use report::{FrozenObject, MovedObject, PassingJoint, StartReport};
+pub use report::{FrozenObject, MovedAgent, MovedObject, PassingJoint, StartReport};
 pub use reset::{BodyState, JointState};
 pub use resting::PairCounts;
 pub use world::PhysicsWorld;

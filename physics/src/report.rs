@@ -1,6 +1,6 @@
 //! What was found and done when a world started.
 
-use dwell_scene::{JointId, ObjectId};
+use dwell_scene::{AgentId, JointId, ObjectId};
 use serde::Serialize;
 
 /// An object that overlapped something at the start and was moved free.
@@ -34,6 +34,15 @@ pub struct PassingJoint {
     pub through: Vec<String>,
 }
 
+/// An agent that would have stood in something at the start and was put where its body has room.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MovedAgent {
+    /// The agent.
+    pub agent: AgentId,
+    /// How far it was moved, m.
+    pub distance_m: f32,
+}
+
 /// What was found and done when a world started.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StartReport {
@@ -53,4 +62,6 @@ pub struct StartReport {
     pub passing: Vec<PassingJoint>,
     /// Moving objects that came without collision pieces and have convex pieces of what is seen.
     pub stand_ins: Vec<ObjectId>,
+    /// Agents that were put where they have room.
+    pub agents: Vec<MovedAgent>,
 }

@@ -46,6 +46,7 @@ impl PhysicsWorld {
         let asleep = self.engine.islands.num_active_bodies() == 0;
         let joints = self.joints.iter();
         self.near = joints.map(|joint| said(state, joint.id)).collect();
+        self.drop_too_heavy(state);
         self.drive_joints(state);
         let mut ways = Way::all(state);
         let mut placed = false;
@@ -240,7 +241,6 @@ impl PhysicsWorld {
     fn drive_joints(&mut self, state: &mut State) {
         let house = self.model.house.clone();
         let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
-        let effort = self.settings.config.hand_effort;
         let by_laws = motors::are_driven(&self.laws);
         for index in 0..self.joints.len() {
             let joint = self.joints[index];
@@ -270,6 +270,9 @@ impl PhysicsWorld {
                 self.drives.remove(&joint.id);
             }
             let hand = self.drives.get_mut(&joint.id);
+            let puller = hand.as_ref().and_then(|hand| hand.agent);
+            let puller = puller.and_then(|agent| state.agents.get(agent));
+            let effort = puller.map_or_else(|| state.hand_effort(), |agent| agent.body.hand_effort);
             let limits = (step_s, effort);
             let (pull, progress) =
                 joints::advance(joint.kind, &joint.values, command, hand, now, limits);

@@ -137,10 +137,11 @@ pub(crate) fn assemble(
 
 impl PhysicsWorld {
     /// Makes the bodies of a house where `state` has its parts. Things that overlap are moved free by small steps, in
-    /// `state` too, or frozen; the report says which.
+    /// `state` too, or frozen; an agent that would stand in something is put where it has room, at the nearest place on a
+    /// room's floor. The report says which.
     ///
     /// # Errors
-    /// [`PhysicsError::Range`] for a setting out of range, [`PhysicsError::ForeignState`] for another house's state,
+    /// [`PhysicsError::Range`] for a setting out of range and for an agent's body that has room nowhere in the house, [`PhysicsError::ForeignState`] for another house's state,
     /// [`PhysicsError::LawTarget`] for a law without its target.
     #[expect(
         clippy::needless_pass_by_value,
@@ -208,13 +209,17 @@ impl PhysicsWorld {
             notices: Vec::new(),
             motion: Vec::new(),
         };
-        let report = world.begin(state, assembly.anchor);
+        let mut report = world.begin(state, assembly.anchor);
         let agents: Vec<AgentState> = state.agents.iter().copied().collect();
         for agent in agents {
             agent.body.check()?;
             world.insert_agent(&agent);
         }
         world.flush();
+        report.agents = world.give_agents_room(state)?;
+        if !report.agents.is_empty() {
+            world.flush();
+        }
         world.write_bodies(state);
         world.write_contacts(state);
         Ok((world, report))

@@ -312,3 +312,14 @@ def test_laws_list_what_docs_and_calibration_need() -> None:
         assert law["source"]
         for param in law["params"]:
             assert param["low"] <= param["default"] <= param["high"]
+
+
+def test_a_body_that_begins_too_large_is_refused_with_a_sentence() -> None:
+    house = dwell.House.shoebox((4.0, 2.5, 2.0))
+    for given in (
+        {"agents": [{"radius_m": 1.0, "height_m": 2.2}]},
+        {"parameters": {"agent/0/body/height_m": 2.9}},
+    ):
+        with pytest.raises(dwell.DwellError, match=r"agent 0.*no room of the house"):
+            dwell.World(house, **given)
+    dwell.World(house, agents=[{"radius_m": 0.8, "height_m": 2.2}])

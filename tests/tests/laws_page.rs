@@ -19,8 +19,8 @@ of it) or `NAME~NAME` (those between the two, in either order; the surface is th
 piece of the structure or of a substance of the materials library. No target means everything that they can act on: agents on
 legs have neither wheels nor gyro, and are refused by laws of these. Agents that come later are among everything, and not among
 those that a target names. Laws on the *world* take none. A target is kept in one spelling (a joint as `OBJECT/JOINT`), so that a
-law set under a joint's number and under its name is one law; a list that names one thing in two spellings is refused, and one that
-has the same words twice is two laws one after the other.
+law set under a joint's number and under its name is one law; a list that names one thing in two spellings is refused (a name that
+several joints have, beside another name of one of them, too), and one that has the same words twice is two laws one after the other.
 
 Every parameter has an address, under which it is read and set while the world runs: `law/ID/PARAM` for the law without target,
 `law/ID@TARGET/PARAM` for the one on a target (`law/latency@arm/elbow/delay_s`), `law/N/PARAM` for the law in place N of those

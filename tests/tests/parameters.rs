@@ -6,7 +6,9 @@ use dwell::sensors::Out;
 use dwell::{Batch, Env, EnvConfig, SensorConfig, World, WorldConfig};
 use dwell_physics::BodyState;
 use dwell_scene::parallel::Threads;
-use dwell_scene::{AgentId, House, LawSpec, Mobility, PartId, Pose, ShoeboxMaterials, Velocity};
+use dwell_scene::{
+    AgentBody, AgentId, House, LawSpec, Mobility, PartId, Pose, ShoeboxMaterials, Velocity,
+};
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -129,6 +131,91 @@ fn laws_that_cannot_act_are_refused_and_change_nothing() {
         assert!(message.contains(part), "{message}");
         assert_eq!(world.hash(), before, "{address}");
     }
+}
+
+/// What used to happen: a body that was too large was refused only when it grew while the world ran.
+#[test]
+fn a_body_that_begins_too_large_is_refused_and_one_in_the_way_put_aside() {
+    let house = House::shoebox([4.0, 2.5, 2.0], &ShoeboxMaterials::default()).unwrap();
+    let engines = dwell::Engines::new(Arc::new(house));
+    let body = |radius_m, height_m| AgentBody {
+        radius_m,
+        height_m,
+        ..AgentBody::default()
+    };
+    let of = |agents, numbers: &[(&str, f64)]| {
+        let numbers = numbers.iter();
+        let config = WorldConfig {
+            agents,
+            parameters: numbers
+                .map(|(at, value)| ((*at).to_owned(), *value))
+                .collect(),
+            ..WorldConfig::default()
+        };
+        World::new(engines.clone(), &config)
+    };
+    for (agents, numbers) in [
+        (vec![body(1.0, 2.2)], vec![]),
+        (vec![body(0.2, 1.5), body(0.2, 2.9)], vec![]),
+        (vec![body(0.2, 1.5)], vec![("agent/0/body/height_m", 2.9)]),
+        (vec![body(0.2, 2.2)], vec![("agent/0/body/radius_m", 1.0)]),
+    ] {
+        let message = of(agents, &numbers).unwrap_err().to_string();
+        for part in ["agent ", "radius ", "no room of the house"] {
+            assert!(message.contains(part), "{message}");
+        }
+    }
+    // The middle of the floor's first half is 0.67 m from a wall.
+    let world = of(vec![body(0.8, 2.2), body(0.2, 1.5)], &[]).unwrap();
+    let agents = &world.state().agents;
+    let z = agents[AgentId(0)].position.z;
+    assert!((0.8..=1.2).contains(&z), "{z}");
+    let moved: Vec<AgentId> = world
+        .start_report()
+        .agents
+        .iter()
+        .map(|a| a.agent)
+        .collect();
+    assert_eq!(moved, [AgentId(0)]);
+}
+
+/// Every number that is listed, of the scene and of laws, set to another value and set back before anything moves: gone without a
+/// trace in the state. In physics too, where it does not touch what things weigh or how joints hang: those look at all contacts
+/// anew and wake what sleeps.
+#[test]
+fn what_is_set_and_set_back_leaves_no_trace() {
+    let mut world = world();
+    let (state, whole) = (world.state().hash(), world.hash());
+    let mut quiet = 0;
+    let start = world.snapshot();
+    for (address, there) in world.parameters() {
+        let [low, high] = [there.low, there.high].map(|bound| bound.clamp(-1e3, 1e3));
+        let aim = if high - there.value > there.value - low {
+            high
+        } else {
+            low
+        };
+        let other = there.value + 0.01 * (aim - there.value);
+        if !(there.low..=there.high).contains(&there.value) || there.value == other {
+            continue;
+        }
+        // Laws of wheels refuse agents on legs, and some laws need a target.
+        if set(&mut world, address.as_str(), other).is_err() {
+            assert_eq!(world.hash(), whole, "{address}");
+            continue;
+        }
+        assert_ne!(world.state().hash(), state, "{address}");
+        set(&mut world, address.as_str(), there.value).unwrap();
+        assert_eq!(world.state().hash(), state, "{address}");
+        let calm = ["world/", "agent/", "law/"];
+        if calm.iter().any(|kind| address.as_str().starts_with(kind)) {
+            assert_eq!(world.hash(), whole, "{address}");
+            quiet += 1;
+        } else {
+            world.restore(&start).unwrap();
+        }
+    }
+    assert!(quiet > 40, "{quiet}");
 }
 
 /// Every address that is listed can be read; laws of all engines are among them.

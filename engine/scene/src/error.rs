@@ -94,3 +94,23 @@ pub enum SceneError {
         what: String,
     },
 }
+
+/// Refuses what is out of its range; `at`: where it stands.
+pub(crate) fn range(
+    at: &str,
+    field: &'static str,
+    ok: bool,
+    found: impl std::fmt::Display,
+    allowed: &'static str,
+) -> Result<(), SceneError> {
+    if ok {
+        Ok(())
+    } else {
+        Err(SceneError::Range {
+            at: at.to_owned(),
+            field,
+            found: found.to_string(),
+            allowed,
+        })
+    }
+}

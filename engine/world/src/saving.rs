@@ -53,7 +53,7 @@ impl Base {
             laws: Vec::new(),
             ..config.clone()
         };
-        // Never refused, since one with more to refuse was possible.
+        // Bodies that only the world's own parameters make small enough have no such beginning: theirs has no bytes.
         let start = Start::new(engines, &plain);
         let bytes = start.map_or_else(
             |_| Vec::new(),

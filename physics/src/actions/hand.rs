@@ -2,13 +2,14 @@
 
 use super::outcome::{ActionCode, ActionOutcome, done, fail};
 use super::request::{Grasp, Target};
-use super::{Actor, Told};
+use super::{Actor, Notice, Told};
 use crate::agents::{Grip, hand_pose, release};
 use crate::body::Hold;
 use crate::convert::{from_rapier, to_rapier};
 use crate::world::PhysicsWorld;
 use dwell_scene::{AgentId, AgentState, Mobility, ObjectId, State};
 use glam::Vec3;
+use rapier3d::dynamics::RigidBody;
 use rapier3d::math::Pose as RapierPose;
 
 /// Places between the hand and where a thing lies that are tried for it when it is taken.
@@ -72,7 +73,7 @@ impl PhysicsWorld {
             .bounds(&place)
             .size()
             .max_element();
-        let most = self.settings.config.max_carry_size_m;
+        let most = holder.body.max_carry_size_m;
         if size > most {
             let sentence = format!(
                 "The {name} is {size:.1} m long; you carry up to {most:.1} m. Choose something smaller."
@@ -153,6 +154,38 @@ impl PhysicsWorld {
         self.ungrip(state, place);
         let sentence = format!("You let go of the {}.", self.call(object));
         done(ActionCode::Done, sentence, Some(object))
+    }
+
+    /// Opens hands that hold more than they lift: since they took it they have become weaker, or it heavier.
+    pub(crate) fn drop_too_heavy(&mut self, state: &mut State) {
+        let mut place = 0;
+        while place < self.grips.len() {
+            let Grip {
+                body,
+                agent,
+                object,
+                ..
+            } = self.grips[place];
+            let handle = self.bodies[body as usize].handle;
+            let mass = self.engine.bodies.get(handle).map_or(0.0, RigidBody::mass);
+            let lift = state.agents[agent].body.lift_kg;
+            if mass <= lift {
+                place += 1;
+                continue;
+            }
+            self.ungrip(state, place);
+            let name = self.call(object);
+            self.notices.push(Notice {
+                agent: Some(agent),
+                outcome: fail(
+                    ActionCode::TooHeavy,
+                    format!(
+                        "The {name} weighs {mass:.1} kg and you lift {lift:.1} kg now: it fell from your hand."
+                    ),
+                    Some(object),
+                ),
+            });
+        }
     }
 
     /// Opens the hand that holds the grip at `place` of the list.

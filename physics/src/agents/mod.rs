@@ -1,6 +1,7 @@
 //! Agents' bodies: they walk or drive, turn, look, crouch, climb steps, slide off slopes, fall, push light things and
 //! carry one.
 
+mod arrive;
 mod carry;
 mod control;
 mod grow;

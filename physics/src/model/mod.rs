@@ -3,6 +3,7 @@
 mod decompose;
 mod plan;
 pub(crate) mod shapes;
+mod substance;
 
 pub(crate) use plan::{BodyPlan, Cover, Owner, Piece};
 

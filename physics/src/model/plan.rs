@@ -3,6 +3,7 @@
 use super::PhysicsModel;
 use super::decompose;
 use super::shapes::{self, Shaped};
+use super::substance;
 use crate::contact::rolling;
 use crate::convert::to_rapier;
 use dwell_scene::{
@@ -158,6 +159,7 @@ fn part_pieces(house: &House, meshes: &mut Meshes, id: PartId, density: f32) -> 
             pieces.push(solid(house, id, shaped, density));
         }
     }
+    substance::cover_pieces(house, id, &mut pieces);
     pieces
 }
 
@@ -359,11 +361,12 @@ fn stand_in_pieces(house: &House, meshes: &mut Meshes, body: &BodyPlan) -> Vec<P
                     part_from_shape,
                     triangles: Vec::new(),
                 };
-                moved(solid(house, *id, shaped, part.density_kg_m3), &place)
+                solid(house, *id, shaped, part.density_kg_m3)
             })
             .collect();
         weigh_part(&mut own, part);
-        pieces.append(&mut own);
+        substance::cover_pieces(house, *id, &mut own);
+        pieces.extend(own.into_iter().map(|piece| moved(piece, &place)));
     }
     if pieces.is_empty() {
         // Nothing to see and nothing to touch: a crumb, so that it has a weight.

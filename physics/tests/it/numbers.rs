@@ -365,7 +365,104 @@ fn every_listed_number_is_set_read_back_and_restored() {
         run.state = start.0.clone();
         run.world.restore(&mut run.state, &start.1).unwrap();
         assert!(run.hash() == start.2, "{address}");
+        // What used to happen: an override that says what the house says stayed, and with it another hash.
+        run.state.set_parameter(&house, address, value).unwrap();
+        let back = run.state.set_parameter(&house, address, there.value);
+        back.unwrap();
+        assert_eq!(run.state.hash(), start.2.0, "{address} set back");
     }
+    let fov = run.state.overridden_fov_deg(AgentId(0));
+    assert_eq!(fov, None);
+}
+
+/// Gravity as people write it, 9.80665, is what the house has, though its nearest f32 is another f64.
+#[test]
+fn a_number_that_stands_there_anyway_is_not_kept() {
+    let mut run = Build::room([4.0, 3.0, 4.0]).run();
+    let agent = run.agent(Vec3::new(2.0, 0.0, 2.0), 0.0);
+    let before = run.hash();
+    for (address, other, own) in [
+        ("world/gravity_m_s2", 1.62, 9.80665),
+        ("agent/0/camera/fov_deg", 60.0, 90.0),
+        ("agent/0/base/max_speed_m_s", 0.3, f64::NAN),
+    ] {
+        let own = if own.is_nan() {
+            get(&run, address)
+        } else {
+            own
+        };
+        set(&mut run, &[(address, other)]).unwrap();
+        assert!(run.hash() != before, "{address}");
+        set(&mut run, &[(address, own)]).unwrap();
+        assert!(run.hash() == before, "{address}");
+        assert!(run.state.overrides.is_empty(), "{address}");
+    }
+    assert_eq!(run.state.overridden_fov_deg(agent), None);
+}
+
+/// What used to happen: a hand that had become too weak, and one whose thing had become too heavy, went on holding.
+#[test]
+fn what_is_too_heavy_now_falls_from_the_hand() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    // 4 kg of 500 kg/m3.
+    let cube = Piece::cuboid(Vec3::splat(0.1), Vec3::new(3.0, 0.1, 2.0));
+    let cube = build.movable("cube", cube);
+    let mut run = build.run();
+    let agent = run.agent(Vec3::new(3.0, 0.0, 3.0), 0.0);
+    run.steps(2);
+    assert!(run.act(agent, dwell_physics::Action::pick(cube)).success);
+    run.steps(20);
+    let id = run.house.entity_of_object(cube).0;
+    let heavier = format!("object/{id}/mass_kg");
+    for (address, number) in [("agent/0/body/lift_kg", 3.9), (heavier.as_str(), 10.1)] {
+        let mut run = run.clone();
+        let held_at = run.position(cube).y;
+        assert!(held_at > 0.5 && run.state.agents[agent].holding == Some(cube));
+        set(&mut run, &[(address, number)]).unwrap();
+        run.walk(1, &[]);
+        let told = run.world.notices().first().expect("it is told").clone();
+        assert_eq!(told.agent, Some(agent));
+        assert_eq!(told.outcome.code, dwell_physics::ActionCode::TooHeavy);
+        assert!(told.outcome.sentence.contains("fell from your hand"));
+        assert_eq!(run.state.agents[agent].holding, None);
+        assert_eq!(run.state.held_by[cube], None);
+        run.steps(40);
+        assert!(run.position(cube).y < held_at - 0.3, "{address}");
+    }
+    // As heavy as it lifts it holds on.
+    set(&mut run, &[("agent/0/body/lift_kg", 4.001)]).unwrap();
+    run.steps(20);
+    assert_eq!(run.state.agents[agent].holding, Some(cube));
+}
+
+/// A door with 0.5 N m of friction and as much damping is opened by 40 N m and not by 0.3: an agent's hand has its own number, and
+/// commands that no agent gives have one of the world.
+#[test]
+fn a_hand_that_is_too_weak_opens_no_door() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    let (door, joint) = build.wall_with_door(3.0, 6.0);
+    let mut run = build.run();
+    let agent = run.agent(Vec3::new(2.7, 0.0, 4.2), 0.0);
+    run.steps(2);
+    let opened = |run: &Run, address: &str, effort: f64, by_agent: bool| {
+        let mut run = run.clone();
+        set(&mut run, &[(address, effort)]).unwrap();
+        if by_agent {
+            let told = run.act(agent, dwell_physics::Action::open(door));
+            assert!(told.success, "{}", told.sentence);
+        } else {
+            run.state.joint_command[joint] = dwell_scene::JointCommand::Position(0.8);
+        }
+        run.steps(60);
+        run.state.joint_position[joint]
+    };
+    let (own, world) = ("agent/0/body/hand_effort", "world/hand_effort");
+    assert!(opened(&run, own, 40.0, true) > 0.7);
+    assert!(opened(&run, own, 0.3, true) < 0.05);
+    assert!(opened(&run, world, 0.3, true) > 0.7);
+    assert!(opened(&run, world, 40.0, false) > 0.7);
+    assert!(opened(&run, world, 0.3, false) < 0.05);
+    assert!(opened(&run, own, 0.3, false) > 0.7);
 }
 
 #[test]
@@ -437,7 +534,11 @@ fn what_an_agent_can_do_follows_its_numbers() {
             .success
     };
     assert!(picks(&mut run));
-    for (field, little) in [("reach_m", 0.8), ("lift_kg", 1.0)] {
+    for (field, little) in [
+        ("reach_m", 0.8),
+        ("lift_kg", 1.0),
+        ("max_carry_size_m", 0.19),
+    ] {
         let address = format!("agent/0/body/{field}");
         let own = get(&run, &address);
         set(&mut run, &[(&address, little)]).unwrap();

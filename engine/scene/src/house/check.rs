@@ -3,7 +3,7 @@
 use super::data::{HouseData, Mobility};
 use crate::articulation::Articulation;
 use crate::collider::Collider;
-use crate::error::SceneError;
+use crate::error::{SceneError, range};
 use crate::ids::{Id, IdVec, JointId, MaterialId, MeshId};
 use std::collections::BTreeSet;
 
@@ -25,25 +25,6 @@ fn exists<I: Id, T>(
         index: id.index(),
         count: items.len(),
     })
-}
-
-fn range(
-    at: &str,
-    field: &'static str,
-    ok: bool,
-    found: impl std::fmt::Display,
-    allowed: &'static str,
-) -> Result<(), SceneError> {
-    if ok {
-        Ok(())
-    } else {
-        Err(SceneError::Range {
-            at: at.to_owned(),
-            field,
-            found: found.to_string(),
-            allowed,
-        })
-    }
 }
 
 fn unique<'a>(table: &str, names: impl Iterator<Item = &'a str>) -> Result<(), SceneError> {

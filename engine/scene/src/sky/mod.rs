@@ -5,11 +5,14 @@ mod sun;
 
 pub use dome::Dome;
 
-use crate::error::SceneError;
+use crate::error::{SceneError, range};
 use crate::math;
 use crate::space;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
+
+/// Where its numbers stand, for errors.
+const AT: &str = "sky";
 
 /// What the sky is like.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -128,20 +131,29 @@ impl Sky {
     pub(crate) fn check(&self) -> Result<(), SceneError> {
         let unit = |v: Vec3| (v.length() - 1.0).abs() < 1e-3;
         range(
+            AT,
             "north",
             unit(self.north) && self.north.y.abs() < 1e-3,
             self.north,
             "a level unit vector",
         )?;
-        range("to_sun", unit(self.to_sun), self.to_sun, "a unit vector")?;
+        range(
+            AT,
+            "to_sun",
+            unit(self.to_sun),
+            self.to_sun,
+            "a unit vector",
+        )?;
         let lx = 0.0..=200_000.0;
         range(
+            AT,
             "sun_lx",
             self.sun_lx.iter().all(|x| lx.contains(x)),
             format!("{:?}", self.sun_lx),
             "0 to 200000",
         )?;
         range(
+            AT,
             "diffuse_lx",
             lx.contains(&self.diffuse_lx),
             self.diffuse_lx,
@@ -156,6 +168,7 @@ impl Weather {
         match self {
             Self::Overcast => Ok(()),
             Self::Clear { turbidity } => range(
+                AT,
                 "weather.turbidity",
                 (2.0..=10.0).contains(&turbidity),
                 turbidity,
@@ -168,34 +181,17 @@ impl Weather {
 impl Daytime {
     fn check(&self) -> Result<(), SceneError> {
         let hour = self.hour_h;
-        range("hour_h", (0.0..=24.0).contains(&hour), hour, "0 to 24")?;
+        range(AT, "hour_h", (0.0..=24.0).contains(&hour), hour, "0 to 24")?;
         let day = self.day;
-        range("day", (1..=366).contains(&day), day, "1 to 366")?;
+        range(AT, "day", (1..=366).contains(&day), day, "1 to 366")?;
         let latitude = self.latitude_deg;
         let ok = (-90.0..=90.0).contains(&latitude);
-        range("latitude_deg", ok, latitude, "-90 to 90")?;
+        range(AT, "latitude_deg", ok, latitude, "-90 to 90")?;
         let yaw = self.north_yaw_deg;
         let ok = (-360.0..=360.0).contains(&yaw);
-        range("north_yaw_deg", ok, yaw, "-360 to 360")?;
+        range(AT, "north_yaw_deg", ok, yaw, "-360 to 360")?;
         self.weather.check()
     }
-}
-
-fn range(
-    field: &'static str,
-    ok: bool,
-    found: impl std::fmt::Display,
-    allowed: &'static str,
-) -> Result<(), SceneError> {
-    if ok {
-        return Ok(());
-    }
-    Err(SceneError::Range {
-        at: "sky".to_owned(),
-        field,
-        found: found.to_string(),
-        allowed,
-    })
 }
 
 #[cfg(test)]

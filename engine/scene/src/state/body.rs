@@ -20,14 +20,16 @@ pub struct AgentBody {
     pub step_height_m: f32,
     /// The steepest slope it walks up, rad.
     pub max_slope_rad: f32,
-    /// Mass, kg.
-    pub mass_kg: f32,
-    /// The heaviest thing it lifts, kg.
+    /// The heaviest thing it lifts, kg. What weighs more falls from its hand with the next step.
     pub lift_kg: f32,
     /// How far from its eye its hand reaches, m.
     pub reach_m: f32,
     /// The force with which it pushes what is in its way and what its hand pushes and pulls, N.
     pub push_force_n: f32,
+    /// The strongest pull of its hand on a door or drawer, N·m or N.
+    pub hand_effort: f32,
+    /// The largest edge of what it carries, m.
+    pub max_carry_size_m: f32,
     /// The horizontal field of view of the cameras at its eyes that state none of their own, degrees; 1 to 170, default 90.
     /// In a world it is what `agent/N/camera/fov_deg` reads until that is set.
     pub camera_fov_deg: f32,
@@ -36,7 +38,8 @@ pub struct AgentBody {
 }
 
 impl Default for AgentBody {
-    /// A small adult: 0.2 m radius, 1.5 m tall, eyes at 1.25 m, climbs 0.2 m, lifts 10 kg, reaches 1.5 m, pushes with 100 N.
+    /// A small adult: 0.2 m radius, 1.5 m tall, eyes at 1.25 m, climbs 0.2 m, lifts 10 kg, reaches 1.5 m, pushes with 100 N, pulls
+    /// at doors with 40 N·m, carries what is up to 1 m long.
     fn default() -> Self {
         Self {
             radius_m: 0.2,
@@ -44,10 +47,11 @@ impl Default for AgentBody {
             eye_height_m: 1.25,
             step_height_m: 0.2,
             max_slope_rad: 0.785,
-            mass_kg: 60.0,
             lift_kg: 10.0,
             reach_m: 1.5,
             push_force_n: 100.0,
+            hand_effort: Self::HAND_EFFORT,
+            max_carry_size_m: 1.0,
             camera_fov_deg: 90.0,
             locomotion: Locomotion::default(),
         }
@@ -61,13 +65,17 @@ const BODY: &[Number<AgentBody>] = &[
     number!(eye_height_m, "m", 0.0 to 3.0),
     number!(step_height_m, "m", 0.0 to 1.0),
     number!(max_slope_rad, "rad", 0.0 to 1.4),
-    number!(mass_kg, "kg", 1.0 to 500.0),
     number!(lift_kg, "kg", 0.0 to 500.0),
     number!(reach_m, "m", 0.1 to 5.0),
     number!(push_force_n, "N", 0.0 to 1e4),
+    number!(hand_effort, "N m or N", 0.0 to 1e4),
+    number!(max_carry_size_m, "m", 0.05 to 5.0),
 ];
 
 impl AgentBody {
+    /// The strongest pull of an ordinary hand on a door or drawer, N·m or N.
+    pub(super) const HAND_EFFORT: f32 = 40.0;
+
     /// The range of the field of view of cameras at an agent's eyes, degrees.
     pub(super) const FOV_DEG: [f64; 2] = [1.0, 170.0];
 

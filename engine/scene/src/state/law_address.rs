@@ -139,7 +139,8 @@ impl State {
     /// default are taken off it, so that what was set and set back is as it was before.
     ///
     /// # Errors
-    /// [`SceneError::Address`] for an address that names nothing or a value out of bounds.
+    /// [`SceneError::Address`] for an address that names nothing or a value out of bounds, [`SceneError::Range`] for a law
+    /// on a joint on which the same law acts under another name.
     pub fn set_law_parameter(
         &mut self,
         house: &House,
@@ -195,7 +196,7 @@ impl State {
         while self.laws.last().is_some_and(idle) {
             self.laws.pop();
         }
-        Ok(())
+        LawSpec::check_targets(house, known, &self.laws)
     }
 
     fn put_law(

@@ -33,8 +33,9 @@ impl LawSpec {
         a == b || (info.acts_on == "contact" && turned() == Some(true))
     }
 
-    /// Refuses two laws of one kind on one target in two spellings: whoever wrote them meant two things, or one thing once. Two in
-    /// one spelling are two laws one after the other, such as two lags. `known`: the laws to look at; others are left out.
+    /// Refuses two laws of one kind on one target in two spellings: whoever wrote them meant two things, or one thing once. A name
+    /// that several joints have means each of them, and is refused beside another name of one of them. Two in one spelling are
+    /// two laws one after the other, such as two lags. `known`: the laws to look at; others are left out.
     ///
     /// # Errors
     /// [`SceneError::Range`] names the law and the two spellings.
@@ -50,7 +51,11 @@ impl LawSpec {
             let same = |other: &&Self| {
                 other.id == spec.id
                     && match (&other.target, &spec.target) {
-                        (Some(a), Some(b)) => a != b && Self::is_same_target(house, info, a, b),
+                        (Some(a), Some(b)) => {
+                            a != b
+                                && (Self::is_same_target(house, info, a, b)
+                                    || (info.acts_on == "joint" && share_a_joint(house, a, b)))
+                        }
                         _ => false,
                     }
             };
@@ -60,7 +65,7 @@ impl LawSpec {
                     at: format!("law {}", spec.id),
                     field: "target",
                     found: format!(
-                        "{:?} beside {:?}, which is the same",
+                        "{:?} beside {:?}, which names the same",
                         name(spec),
                         name(other)
                     ),
@@ -72,19 +77,33 @@ impl LawSpec {
     }
 }
 
-fn joint(house: &House, target: &str) -> Option<String> {
-    let own = |id: JointId| {
-        let joint = &house.joints[id];
-        format!("{}/{}", house.objects[joint.object].name, joint.name)
+/// `OBJECT/JOINT`.
+fn own_name(house: &House, id: JointId) -> String {
+    let joint = &house.joints[id];
+    format!("{}/{}", house.objects[joint.object].name, joint.name)
+}
+
+/// The joints that a target names: by their name, beside their object's, or by number.
+fn joints_named(house: &House, target: &str) -> impl Iterator<Item = JointId> {
+    let named = move |id: JointId, name: &str| {
+        target == name || target == own_name(house, id) || target == id.index().to_string()
     };
+    let joints = house.joints.iter_ids();
+    joints
+        .filter(move |(id, joint)| named(*id, &joint.name))
+        .map(|(id, _)| id)
+}
+
+fn share_a_joint(house: &House, a: &str, b: &str) -> bool {
+    let of_b: Vec<JointId> = joints_named(house, b).collect();
+    joints_named(house, a).any(|id| of_b.contains(&id))
+}
+
+fn joint(house: &House, target: &str) -> Option<String> {
     let named = |target: &str| {
-        let joints = house.joints.iter_ids();
-        let is = |id: JointId, name: &str| {
-            target == name || target == own(id) || target == id.index().to_string()
-        };
-        let mut found = joints.filter(|(id, joint)| is(*id, &joint.name));
+        let mut found = joints_named(house, target);
         let (first, more) = (found.next(), found.next().is_some());
-        first.filter(|_| !more).map(|(id, _)| id)
+        first.filter(|_| !more)
     };
     // +3 is 3.
     let number = |target: &str| {
@@ -95,7 +114,7 @@ fn joint(house: &House, target: &str) -> Option<String> {
         let any = house.joints.iter().any(|joint| joint.name == target);
         number(target).filter(|_| !any)
     })?;
-    [own(id), id.index().to_string()]
+    [own_name(house, id), id.index().to_string()]
         .into_iter()
         .find(|spelling| named(spelling) == Some(id))
 }

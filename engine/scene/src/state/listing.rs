@@ -11,7 +11,9 @@ impl State {
     /// The address of every parameter of this world but those of laws: gravity, masses, joints, agents, materials at their
     /// own band centres, and pairs of substances that the house is made of. Each in its one spelling, in a fixed order.
     pub fn addresses(&self, house: &House) -> Vec<Address> {
-        let mut texts = vec!["world/gravity_m_s2".to_owned()];
+        let mut texts = ["world/gravity_m_s2", "world/hand_effort"]
+            .map(str::to_owned)
+            .to_vec();
         for object in house.objects.ids() {
             texts.push(format!(
                 "object/{}/mass_kg",

@@ -20,7 +20,8 @@ impl State {
             let nominal = house.parts[id].mass_kg?;
             Some(nominal * self.part_mass_factor(house, id))
         });
-        masses.sum()
+        // A sum of nothing is -0.
+        masses.sum::<f32>() + 0.0
     }
 
     /// What a part's mass is multiplied with: 1 without overrides.

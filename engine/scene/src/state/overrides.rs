@@ -1,7 +1,7 @@
 //! Values in force: the house's, or what overrides them.
 
 use super::canonical::pair_address;
-use super::{Address, State};
+use super::{Address, AgentBody, State};
 use crate::house::House;
 use crate::ids::{MaterialId, PartId};
 use crate::material::{Bands, PairContact, library};
@@ -46,6 +46,12 @@ impl State {
     pub fn gravity_m_s2(&self) -> f32 {
         self.lookup("world/gravity_m_s2".to_owned())
             .unwrap_or(STANDARD_GRAVITY_M_S2)
+    }
+
+    /// The strongest pull with which a joint without a motor is moved by commands that no agent gives, N·m or N.
+    pub fn hand_effort(&self) -> f32 {
+        self.lookup("world/hand_effort".to_owned())
+            .unwrap_or(AgentBody::HAND_EFFORT)
     }
 
     /// Absorption of a material with overrides.

@@ -121,11 +121,12 @@ impl State {
             }
             ["agent", agent, ref words @ ..] => self.agent_parameter(address, agent, words),
             ["world", "gravity_m_s2"] => make(self.gravity_m_s2(), "m/s2", 0.0, 100.0),
+            ["world", "hand_effort"] => make(self.hand_effort(), "N m or N", 0.0, 1e4),
             ["law", ..] => Err(address.fault(
                 "parameters of laws are read and set through the world, which knows the laws of all engines",
             )),
             _ => Err(address.fault(
-                "known are law/ID/PARAM, object/ID/mass_kg, part/N/FIELD, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/body/FIELD, agent/N/base/FIELD, agent/N/camera/fov_deg, world/gravity_m_s2",
+                "known are law/ID/PARAM, object/ID/mass_kg, part/N/FIELD, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/body/FIELD, agent/N/base/FIELD, agent/N/camera/fov_deg, world/gravity_m_s2, world/hand_effort",
             )),
         }
     }
@@ -143,7 +144,7 @@ impl State {
         self.set_parameters(house, &[(address.clone(), value)])
     }
 
-    /// Sets parameters together: all of them, or none. Ranges that depend on each other (a joint's two limits, a part's three
+    /// Sets parameters together: all of them, or none. A number that stands there anyway is not kept. Ranges that depend on each other (a joint's two limits, a part's three
     /// moments, an agent's height and radius) are checked when all are set, so that their order does not matter.
     ///
     /// # Errors
@@ -184,6 +185,23 @@ impl State {
         }
         for canonical in &known {
             self.check_axis(house, canonical)?;
+        }
+        self.forget_defaults(house, &known)
+    }
+
+    /// Keeps no override that says what stands there without it, so that a number that is set and set back leaves no trace. Only
+    /// when all are set: what stands there may follow from the others.
+    fn forget_defaults(
+        &mut self,
+        house: &House,
+        known: &BTreeSet<Address>,
+    ) -> Result<(), SceneError> {
+        for canonical in known {
+            if let Some(value) = self.overrides.remove(canonical)
+                && self.parameter(house, canonical)?.value as f32 != value as f32
+            {
+                self.overrides.insert(canonical.clone(), value);
+            }
         }
         Ok(())
     }
@@ -325,8 +343,8 @@ mod tests {
             assert_eq!(again, state);
         }
         for (bad, part) in [
-            (("agent/0/body/mass_kg", 0.5), "1 to 500"),
-            (("agent/0/body/mass_kg", f64::NAN), "1 to 500"),
+            (("agent/0/body/reach_m", 0.05), "0.1 to 5"),
+            (("agent/0/body/reach_m", f64::NAN), "0.1 to 5"),
             (("agent/0/body/girth_m", 0.5), "push_force_n"),
             (("agent/00/body/height_m", 0.4), "twice"),
         ] {

@@ -6,7 +6,7 @@ use crate::house::House;
 use xxhash_rust::xxh3::xxh3_64;
 
 const MAGIC: &[u8; 4] = b"dwst";
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 const HEADER: usize = 4 + 4 + 8 + 8;
 
 impl State {

@@ -77,6 +77,43 @@ fn a_law_on_one_thing_under_two_names_is_refused() {
     }
 }
 
+/// What used to happen: a name that several joints have, beside another name of one of them, was two laws on that joint.
+#[test]
+fn a_name_of_several_joints_is_refused_beside_one_of_them() {
+    let mut build = Build::room([6.0, 3.0, 6.0]);
+    build.wall_with_door(3.0, 6.0);
+    build.chest(Vec3::new(1.0, 0.0, 1.0));
+    let house = build.house();
+    let refused = |targets: [&str; 2]| {
+        let mut state = State::new(&house);
+        let law = |target| spec("joint_friction", Some(target), &[("coulomb", 0.2)]);
+        state.laws = targets.map(law).into();
+        let config = PhysicsConfig::default();
+        let made = dwell_physics::PhysicsWorld::new(house.clone(), config, &mut state);
+        made.err().map(|error| error.to_string())
+    };
+    for one in ["door_1/hinge", "0", "chest_of_drawers/hinge"] {
+        for targets in [["hinge", one], [one, "hinge"]] {
+            let message = refused(targets).expect("they share a joint");
+            for part in ["hinge", one, "one spelling"] {
+                assert!(message.contains(part), "{message}");
+            }
+        }
+    }
+    assert_eq!(refused(["door_1/hinge", "chest_of_drawers/hinge"]), None);
+    // The same by addresses: nothing has changed then.
+    let mut state = State::new(&house);
+    let mut set = |target: &str| {
+        let address = format!("law/joint_friction@{target}/coulomb")
+            .parse()
+            .unwrap();
+        let set = state.set_law_parameter(&house, &known(), &address, 0.2);
+        (set.is_ok(), state.laws.len())
+    };
+    assert_eq!(set("hinge"), (true, 1));
+    assert_eq!(set("door_1/hinge"), (false, 1));
+}
+
 fn spec_of(info: &LawInfo, target: &str, param: &str) -> LawSpec {
     LawSpec {
         version: info.version,

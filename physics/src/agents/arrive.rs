@@ -1,0 +1,119 @@
+//! Where agents stand when a world starts.
+
+use super::as_it_stands;
+use crate::error::PhysicsError;
+use crate::report::MovedAgent;
+use crate::world::PhysicsWorld;
+use dwell_scene::{AgentBody, AgentId, House, Id, State};
+use glam::{Vec2, Vec3};
+
+/// How far apart the places are that are tried, m, and the most of them: in large houses they are further apart.
+const SPACING_M: f32 = 0.1;
+const MOST_PLACES: f32 = 20_000.0;
+
+impl PhysicsWorld {
+    /// Puts each agent that would stand in what does not give way at the nearest place on a room's floor that has room for it;
+    /// agents may share a place. A house without rooms does not say where its floors are: there agents stay.
+    ///
+    /// # Errors
+    /// [`PhysicsError::Range`] for a body that no room has room for.
+    pub(crate) fn give_agents_room(
+        &mut self,
+        state: &mut State,
+    ) -> Result<Vec<MovedAgent>, PhysicsError> {
+        let house = self.model.house.clone();
+        let mut moved = Vec::new();
+        // Many agents begin with one body at one place.
+        let mut last: Option<(AgentBody, Vec3, Vec3)> = None;
+        for index in 0..state.agents.len() {
+            let id = AgentId::from_index(index);
+            let (body, from) = (as_it_stands(&state.agents[id]), state.agents[id].position);
+            let known = last.filter(|(known, place, _)| (*known, *place) == (body, from));
+            let place = match known {
+                Some((.., place)) => place,
+                None => self.place_with_room(&house, id, body, from)?,
+            };
+            last = Some((body, from, place));
+            if place == from {
+                continue;
+            }
+            state.agents[id].position = place;
+            if let Some(rigid) = self.engine.bodies.get_mut(self.agents[index].handle) {
+                rigid.set_translation(place, false);
+            }
+            moved.push(MovedAgent {
+                agent: id,
+                distance_m: place.distance(from),
+            });
+        }
+        Ok(moved)
+    }
+
+    fn place_with_room(
+        &self,
+        house: &House,
+        id: AgentId,
+        body: AgentBody,
+        from: Vec3,
+    ) -> Result<Vec3, PhysicsError> {
+        let probe = self.probe_with(body, id, &[]);
+        if house.rooms.is_empty() || !probe.is_cramped(from) {
+            return Ok(from);
+        }
+        let mut places = floor_places(house);
+        let order = |place: &Vec3| place.distance_squared(from);
+        places.sort_by(|a, b| order(a).total_cmp(&order(b)));
+        let fits = |place: &Vec3| !probe.is_cramped(*place) && probe.is_above_something(*place);
+        places
+            .into_iter()
+            .find(fits)
+            .ok_or_else(|| PhysicsError::Range {
+                at: format!("agent {}", id.index()),
+                field: "body",
+                found: format!(
+                    "radius {} m, height {} m, steps of {} m: no room of the house has place for it",
+                    body.radius_m, body.height_m, body.step_height_m
+                ),
+                allowed: "a body that stands in no wall, ceiling or furniture somewhere in the house",
+            })
+    }
+}
+
+/// Places all over the rooms' floors, m: room by room, triangle by triangle, in rows.
+fn floor_places(house: &House) -> Vec<Vec3> {
+    let triangles = || house.rooms.iter().flat_map(|room| &room.footprint);
+    let area_m2: f32 = triangles()
+        .map(|[a, b, c]| 0.5 * (*b - *a).perp_dot(*c - *a).abs())
+        .sum();
+    let spacing = (area_m2 / MOST_PLACES).sqrt().max(SPACING_M);
+    let mut places = Vec::new();
+    for room in &house.rooms {
+        for corners in &room.footprint {
+            let [a, b, c] = *corners;
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            if !(low.is_finite() && high.is_finite()) {
+                continue;
+            }
+            let [first, last] = [low, high].map(|corner| (corner / spacing).floor());
+            let (columns, rows) = ((last.x - first.x) as u32, (last.y - first.y) as u32);
+            for row in 0..=rows {
+                for column in 0..=columns {
+                    let at = (first + Vec2::new(column as f32, row as f32)) * spacing;
+                    if is_within(at, corners) {
+                        places.push(Vec3::new(at.x, room.floor_y, at.y));
+                    }
+                }
+            }
+            // A triangle between the rows has a place, too.
+            let middle = (a + b + c) / 3.0;
+            places.push(Vec3::new(middle.x, room.floor_y, middle.y));
+        }
+    }
+    places
+}
+
+fn is_within(at: Vec2, [a, b, c]: &[Vec2; 3]) -> bool {
+    let side = |a: &Vec2, b: &Vec2| (*b - *a).perp_dot(at - *a);
+    let sides = [side(a, b), side(b, c), side(c, a)];
+    sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
+}
