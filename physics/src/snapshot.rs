@@ -16,6 +16,7 @@ use crate::error::PhysicsError;
 use crate::joints::{self, Drives, Pull};
 use crate::laws::{self, Installed};
 use crate::world::{Assembly, PhysicsWorld, Weights, assemble, pose_of};
+use dwell_scene::columns;
 use dwell_scene::packing::{pack, unpack};
 use dwell_scene::{AgentId, Id, State};
 use rapier3d::dynamics::{ImpulseJointSet, IslandManager, RigidBodySet};
@@ -28,7 +29,7 @@ use xxhash_rust::xxh3::xxh3_64;
 /// What a snapshot begins with, and what a moment begins with, which is not packed.
 const MAGIC: &[u8; 4] = b"dwph";
 const MAGIC_OF_MOMENTS: &[u8; 4] = b"dwpm";
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.
@@ -128,8 +129,7 @@ impl PhysicsWorld {
             bodies: Owned(Cow::Borrowed(&self.engine.bodies)),
             joints: Owned(Cow::Borrowed(&self.engine.joints)),
         };
-        postcard::to_stdvec(&shot)
-            .expect("rapier's sets are plain data that postcard can always write to memory")
+        columns::to_bytes(&shot).expect("rapier's sets are plain data that say how long they are")
     }
 
     fn with_header(&self, magic: &[u8; 4], body: &[u8]) -> Vec<u8> {
@@ -151,7 +151,7 @@ impl PhysicsWorld {
     /// state; the world is then as it was before.
     pub fn restore(&mut self, state: &mut State, bytes: &[u8]) -> Result<(), PhysicsError> {
         let body = self.check_header(bytes)?;
-        let shot: Shot = postcard::from_bytes(&body)
+        let shot: Shot = columns::from_bytes(&body)
             .map_err(|error| PhysicsError::Snapshot(error.to_string()))?;
         let memory = shot.memory;
         let bodies = shot.bodies.0.into_owned();

@@ -8,6 +8,7 @@ mod articulation;
 mod bounds;
 pub mod bvh;
 mod collider;
+pub mod columns;
 mod error;
 mod fixtures;
 mod house;

@@ -1,0 +1,231 @@
+//! Plain data as bytes that pack well: what stands under one name stands side by side.
+//!
+//! A thousand contacts, written one after the other, mix places, forces and numbers of faces. Here every field of every type
+//! has a column of its own, and every column of floats one stream a byte: signs and exponents, which are much alike, lie
+//! apart from the last digits, which are noise. The packed bytes of worlds are a fifth smaller than those of the same data in
+//! rows.
+//!
+//! Readers must know the type, as with `postcard`: nothing is named in the bytes. Columns stand in the order in which the type
+//! comes to them.
+
+mod read;
+mod write;
+
+pub use read::from_bytes;
+pub use write::to_bytes;
+
+use std::collections::HashMap;
+use std::fmt::Display;
+
+/// Bytes of a float.
+const FLOAT: usize = size_of::<f32>();
+/// Streams of a column: one for each byte of a float, and one for all else.
+const STREAMS: usize = FLOAT + 1;
+/// The stream for all else.
+const REST: usize = FLOAT;
+
+/// Why data cannot be written or read as columns.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ColumnsError {
+    /// A column ends too early.
+    #[error("a column ends too early")]
+    Ended,
+    /// Something is left over.
+    #[error("{0} bytes are left over")]
+    Left(usize),
+    /// A number that is too large for its place.
+    #[error("{found} is too large for {place}")]
+    Large {
+        /// The number.
+        found: u64,
+        /// What it should have been.
+        place: &'static str,
+    },
+    /// Data that does not say beforehand how long it is, or is read by asking what it is.
+    #[error("{0} cannot be held in columns")]
+    Shape(&'static str),
+    /// What the type itself says.
+    #[error("{0}")]
+    Said(String),
+}
+
+impl serde::ser::Error for ColumnsError {
+    fn custom<T: Display>(message: T) -> Self {
+        Self::Said(message.to_string())
+    }
+}
+
+impl serde::de::Error for ColumnsError {
+    fn custom<T: Display>(message: T) -> Self {
+        Self::Said(message.to_string())
+    }
+}
+
+/// Which column holds the field of a type: numbered as they are met.
+#[derive(Default)]
+struct Names(HashMap<(&'static str, &'static str), usize>);
+
+impl Names {
+    /// Column 0 is that of what is in no field.
+    fn column(&mut self, owner: &'static str, field: &'static str) -> usize {
+        let next = self.0.len() + 1;
+        *self.0.entry((owner, field)).or_insert(next)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use serde::{Deserialize, Serialize};
+    use std::collections::BTreeMap;
+
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    enum Kind {
+        None,
+        One(u16),
+        Pair(i8, f64),
+        Named { weight: f32, name: String },
+    }
+
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    struct Thing {
+        place: [f32; 3],
+        number: i64,
+        large: u64,
+        larger: u128,
+        kind: Kind,
+        deeper: Option<Box<Thing>>,
+        unit: (),
+        letter: char,
+    }
+
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    struct All {
+        things: Vec<Thing>,
+        on: Vec<bool>,
+        by_name: BTreeMap<String, (u8, f32)>,
+        wrapped: Wrapped,
+    }
+
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    struct Wrapped(Vec<i32>);
+
+    fn kinds() -> impl Strategy<Value = Kind> {
+        prop_oneof![
+            Just(Kind::None),
+            any::<u16>().prop_map(Kind::One),
+            (any::<i8>(), -1e300_f64..1e300).prop_map(|(a, b)| Kind::Pair(a, b)),
+            (-1e30_f32..1e30, ".{0,9}").prop_map(|(weight, name)| Kind::Named { weight, name }),
+        ]
+    }
+
+    fn things() -> impl Strategy<Value = Thing> {
+        let one = (
+            [-9.0_f32..9.0, -9.0_f32..9.0, -9.0_f32..9.0],
+            any::<i64>(),
+            any::<u64>(),
+            any::<u128>(),
+            kinds(),
+            any::<char>(),
+        );
+        let plain = one.prop_map(|(place, number, large, larger, kind, letter)| Thing {
+            place,
+            number,
+            large,
+            larger,
+            kind,
+            deeper: None,
+            unit: (),
+            letter,
+        });
+        plain.prop_recursive(3, 8, 1, |inner| {
+            (inner.clone(), inner).prop_map(|(outer, inner)| Thing {
+                deeper: Some(Box::new(inner)),
+                ..outer
+            })
+        })
+    }
+
+    fn data() -> impl Strategy<Value = All> {
+        let by_name = prop::collection::btree_map(".{0,5}", (any::<u8>(), -1.0_f32..1.0), 0..5);
+        let numbers = prop::collection::vec(any::<i32>(), 0..9);
+        let on = prop::collection::vec(any::<bool>(), 0..9);
+        let things = prop::collection::vec(things(), 0..9);
+        (things, on, by_name, numbers).prop_map(|(things, on, by_name, numbers)| All {
+            things,
+            on,
+            by_name,
+            wrapped: Wrapped(numbers),
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn data_comes_back_equal(data in data()) {
+            let bytes = to_bytes(&data).unwrap();
+            prop_assert_eq!(from_bytes::<All>(&bytes).unwrap(), data);
+        }
+
+        /// An error or other data, but no panic and no memory beyond what the bytes can hold.
+        #[test]
+        fn damage_is_survived(data in data(), at in any::<prop::sample::Index>(), change in 1..=255_u8, cut in any::<prop::sample::Index>()) {
+            let mut bytes = to_bytes(&data).unwrap();
+            prop_assert!(from_bytes::<All>(&bytes[..cut.index(bytes.len())]).is_err());
+            let at = at.index(bytes.len());
+            bytes[at] ^= change;
+            let _read = from_bytes::<All>(&bytes);
+        }
+    }
+
+    #[test]
+    fn floats_keep_every_bit() {
+        let odd = [
+            f32::NAN,
+            -0.0,
+            f32::INFINITY,
+            f32::MIN_POSITIVE / 2.0,
+            -1.5e-40,
+        ];
+        let back: Vec<f32> = from_bytes(&to_bytes(&odd.to_vec()).unwrap()).unwrap();
+        assert!(
+            back.iter()
+                .zip(odd)
+                .all(|(a, b)| a.to_bits() == b.to_bits())
+        );
+    }
+
+    /// Ten thousand things whose places are noise of one size: rows pack to 3.5 bytes a float, exponents apart to 3.1.
+    #[test]
+    fn columns_pack_better_than_rows() {
+        let mut stream = crate::random::Key::root(3).stream();
+        let mut number = 0;
+        let things: Vec<Thing> = (0..10_000)
+            .map(|_| {
+                number += 1;
+                Thing {
+                    place: std::array::from_fn(|_| stream.range(4.0, 5.0)),
+                    number,
+                    large: 7,
+                    larger: 1 << 70,
+                    kind: Kind::None,
+                    deeper: None,
+                    unit: (),
+                    letter: 'x',
+                }
+            })
+            .collect();
+        let packed = |bytes: &[u8]| crate::packing::pack(bytes, &[]).len();
+        let rows = packed(&postcard::to_stdvec(&things).unwrap());
+        let columns = packed(&to_bytes(&things).unwrap());
+        assert!(columns * 10 < rows * 9, "{columns} of {rows}");
+    }
+
+    #[test]
+    fn what_is_left_over_is_told() {
+        let bytes = to_bytes(&(1_u8, 2_u8)).unwrap();
+        let refused = from_bytes::<u8>(&bytes).unwrap_err();
+        assert_eq!(refused.to_string(), "1 bytes are left over");
+    }
+}

@@ -1,0 +1,448 @@
+//! Columns to data.
+
+use super::{ColumnsError, FLOAT, Names, REST, STREAMS};
+use serde::Deserialize;
+use serde::de::value::U32Deserializer;
+use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
+
+/// What [`to_bytes`](super::to_bytes) made of the same type.
+///
+/// # Errors
+/// [`ColumnsError`] for bytes that hold something else.
+pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, ColumnsError> {
+    let mut head = bytes;
+    let count = whole(&mut head)?;
+    // Each column says the lengths of its streams.
+    if count > (head.len() / STREAMS) as u64 {
+        return Err(ColumnsError::Ended);
+    }
+    let mut lengths = Vec::with_capacity(count as usize * STREAMS);
+    for _ in 0..count as usize * STREAMS {
+        let length = whole(&mut head)?;
+        lengths.push(usize::try_from(length).map_err(|_| ColumnsError::Ended)?);
+    }
+    let mut columns = Vec::with_capacity(count as usize);
+    for lengths in lengths.chunks_exact(STREAMS) {
+        let mut column = [&[][..]; STREAMS];
+        for (stream, length) in column.iter_mut().zip(lengths) {
+            *stream = take(&mut head, *length)?;
+        }
+        columns.push(column);
+    }
+    let mut reader = Reader {
+        names: Names::default(),
+        columns,
+        at: 0,
+    };
+    let data = T::deserialize(&mut reader)?;
+    let streams = reader.columns.iter().flatten();
+    let left = head.len() + streams.map(|stream| stream.len()).sum::<usize>();
+    if left > 0 {
+        return Err(ColumnsError::Left(left));
+    }
+    Ok(data)
+}
+
+fn take<'de>(bytes: &mut &'de [u8], length: usize) -> Result<&'de [u8], ColumnsError> {
+    let (taken, rest) = bytes.split_at_checked(length).ok_or(ColumnsError::Ended)?;
+    *bytes = rest;
+    Ok(taken)
+}
+
+fn byte(bytes: &mut &[u8]) -> Result<u8, ColumnsError> {
+    let (first, rest) = bytes.split_first().ok_or(ColumnsError::Ended)?;
+    *bytes = rest;
+    Ok(*first)
+}
+
+fn whole(bytes: &mut &[u8]) -> Result<u64, ColumnsError> {
+    let mut number = 0;
+    for shift in (0..64).step_by(7) {
+        let byte = byte(bytes)?;
+        number |= u64::from(byte & 0x7f) << shift;
+        if byte < 0x80 {
+            return Ok(number);
+        }
+    }
+    Err(ColumnsError::Large {
+        found: number,
+        place: "a number of 64 bits",
+    })
+}
+
+struct Reader<'de> {
+    names: Names,
+    columns: Vec<[&'de [u8]; STREAMS]>,
+    /// The column of what comes next.
+    at: usize,
+}
+
+impl<'de> Reader<'de> {
+    fn rest(&mut self) -> Result<&mut &'de [u8], ColumnsError> {
+        let column = self.columns.get_mut(self.at);
+        Ok(&mut column.ok_or(ColumnsError::Ended)?[REST])
+    }
+
+    fn byte(&mut self) -> Result<u8, ColumnsError> {
+        byte(self.rest()?)
+    }
+
+    fn whole(&mut self) -> Result<u64, ColumnsError> {
+        whole(self.rest()?)
+    }
+
+    fn signed(&mut self) -> Result<i64, ColumnsError> {
+        let number = self.whole()?;
+        Ok((number >> 1).cast_signed() ^ -(number & 1).cast_signed())
+    }
+
+    fn length(&mut self) -> Result<usize, ColumnsError> {
+        let found = self.whole()?;
+        let place = "a length";
+        usize::try_from(found).map_err(|_| ColumnsError::Large { found, place })
+    }
+
+    fn taken(&mut self) -> Result<&'de [u8], ColumnsError> {
+        let length = self.length()?;
+        take(self.rest()?, length)
+    }
+}
+
+macro_rules! numbers {
+    ($($method:ident $read:ident $type:ty, $visit:ident, $place:literal;)*) => {$(
+        fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+            let found = self.$read()?;
+            let number = <$type>::try_from(found).map_err(|_| ColumnsError::Large {
+                found: found as u64,
+                place: $place,
+            })?;
+            visitor.$visit(number)
+        }
+    )*};
+}
+
+impl<'de> Deserializer<'de> for &mut Reader<'de> {
+    type Error = ColumnsError;
+
+    fn is_human_readable(&self) -> bool {
+        false
+    }
+
+    numbers! {
+        deserialize_i16 signed i16, visit_i16, "a signed number of 16 bits";
+        deserialize_i32 signed i32, visit_i32, "a signed number of 32 bits";
+        deserialize_i64 signed i64, visit_i64, "a signed number of 64 bits";
+        deserialize_u16 whole u16, visit_u16, "a number of 16 bits";
+        deserialize_u32 whole u32, visit_u32, "a number of 32 bits";
+        deserialize_u64 whole u64, visit_u64, "a number of 64 bits";
+    }
+
+    fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, ColumnsError> {
+        Err(ColumnsError::Shape(
+            "data that is read by asking what it is",
+        ))
+    }
+
+    fn deserialize_ignored_any<V: Visitor<'de>>(
+        self,
+        visitor: V,
+    ) -> Result<V::Value, ColumnsError> {
+        self.deserialize_any(visitor)
+    }
+
+    fn deserialize_identifier<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        self.deserialize_any(visitor)
+    }
+
+    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        match self.byte()? {
+            0 => visitor.visit_bool(false),
+            1 => visitor.visit_bool(true),
+            found => Err(ColumnsError::Large {
+                found: found.into(),
+                place: "yes or no",
+            }),
+        }
+    }
+
+    fn deserialize_i8<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        visitor.visit_i8(self.byte()?.cast_signed())
+    }
+
+    fn deserialize_u8<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        visitor.visit_u8(self.byte()?)
+    }
+
+    fn deserialize_u128<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        let (low, high) = (self.whole()?, self.whole()?);
+        visitor.visit_u128(u128::from(low) | u128::from(high) << 64)
+    }
+
+    fn deserialize_f32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        let column = self.columns.get_mut(self.at);
+        let column = column.ok_or(ColumnsError::Ended)?;
+        let mut bytes = [0; FLOAT];
+        for (to, stream) in bytes.iter_mut().zip(column) {
+            *to = byte(stream)?;
+        }
+        visitor.visit_f32(f32::from_le_bytes(bytes))
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        let bytes = take(self.rest()?, 8)?;
+        let bytes = std::array::from_fn(|k| bytes[k]);
+        visitor.visit_f64(f64::from_le_bytes(bytes))
+    }
+
+    fn deserialize_char<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        let found = self.whole()?;
+        let letter = u32::try_from(found).ok().and_then(char::from_u32);
+        let place = "a letter";
+        visitor.visit_char(letter.ok_or(ColumnsError::Large { found, place })?)
+    }
+
+    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        let text = std::str::from_utf8(self.taken()?).map_err(de::Error::custom)?;
+        visitor.visit_borrowed_str(text)
+    }
+
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        self.deserialize_str(visitor)
+    }
+
+    fn deserialize_bytes<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        visitor.visit_borrowed_bytes(self.taken()?)
+    }
+
+    fn deserialize_byte_buf<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        self.deserialize_bytes(visitor)
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        match self.byte()? {
+            0 => visitor.visit_none(),
+            1 => visitor.visit_some(self),
+            found => Err(ColumnsError::Large {
+                found: found.into(),
+                place: "something or nothing",
+            }),
+        }
+    }
+
+    fn deserialize_unit<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        visitor.visit_unit()
+    }
+
+    fn deserialize_unit_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, ColumnsError> {
+        visitor.visit_unit()
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, ColumnsError> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        let length = self.length()?;
+        visitor.visit_seq(Row::new(self, length))
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(
+        self,
+        length: usize,
+        visitor: V,
+    ) -> Result<V::Value, ColumnsError> {
+        visitor.visit_seq(Row::new(self, length))
+    }
+
+    fn deserialize_tuple_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        length: usize,
+        visitor: V,
+    ) -> Result<V::Value, ColumnsError> {
+        visitor.visit_seq(Row::new(self, length))
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
+        let length = self.length()?;
+        visitor.visit_map(Row::new(self, length))
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, ColumnsError> {
+        visitor.visit_seq(Fields {
+            outside: self.at,
+            reader: self,
+            owner: name,
+            fields: fields.iter(),
+        })
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        variants: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, ColumnsError> {
+        visitor.visit_enum(Choice {
+            reader: self,
+            variants,
+            chosen: "",
+        })
+    }
+}
+
+/// Values one after the other.
+struct Row<'a, 'de> {
+    reader: &'a mut Reader<'de>,
+    left: usize,
+}
+
+impl<'a, 'de> Row<'a, 'de> {
+    fn new(reader: &'a mut Reader<'de>, left: usize) -> Self {
+        Self { reader, left }
+    }
+
+    /// No room is made beforehand for more than this: a length may be damaged.
+    fn expected(&self) -> usize {
+        self.left.min(1 << 12)
+    }
+}
+
+impl<'de> de::SeqAccess<'de> for Row<'_, 'de> {
+    type Error = ColumnsError;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(
+        &mut self,
+        seed: T,
+    ) -> Result<Option<T::Value>, ColumnsError> {
+        let Some(left) = self.left.checked_sub(1) else {
+            return Ok(None);
+        };
+        self.left = left;
+        seed.deserialize(&mut *self.reader).map(Some)
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.expected())
+    }
+}
+
+impl<'de> de::MapAccess<'de> for Row<'_, 'de> {
+    type Error = ColumnsError;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, ColumnsError> {
+        de::SeqAccess::next_element_seed(self, seed)
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(
+        &mut self,
+        seed: V,
+    ) -> Result<V::Value, ColumnsError> {
+        seed.deserialize(&mut *self.reader)
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.expected())
+    }
+}
+
+/// Within a type whose fields have names.
+struct Fields<'a, 'de> {
+    reader: &'a mut Reader<'de>,
+    owner: &'static str,
+    fields: std::slice::Iter<'static, &'static str>,
+    outside: usize,
+}
+
+impl<'de> de::SeqAccess<'de> for Fields<'_, 'de> {
+    type Error = ColumnsError;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(
+        &mut self,
+        seed: T,
+    ) -> Result<Option<T::Value>, ColumnsError> {
+        let Some(name) = self.fields.next() else {
+            return Ok(None);
+        };
+        self.reader.at = self.reader.names.column(self.owner, name);
+        let value = seed.deserialize(&mut *self.reader);
+        self.reader.at = self.outside;
+        value.map(Some)
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.fields.len())
+    }
+}
+
+/// Within a type of which there are several kinds.
+struct Choice<'a, 'de> {
+    reader: &'a mut Reader<'de>,
+    variants: &'static [&'static str],
+    chosen: &'static str,
+}
+
+impl<'de> de::EnumAccess<'de> for Choice<'_, 'de> {
+    type Error = ColumnsError;
+    type Variant = Self;
+
+    fn variant_seed<V: DeserializeSeed<'de>>(
+        mut self,
+        seed: V,
+    ) -> Result<(V::Value, Self), ColumnsError> {
+        let found = self.reader.whole()?;
+        let place = "one of its kinds";
+        let index = u32::try_from(found).map_err(|_| ColumnsError::Large { found, place })?;
+        let chosen = self.variants.get(index as usize);
+        self.chosen = chosen.ok_or(ColumnsError::Large { found, place })?;
+        let index: U32Deserializer<ColumnsError> = index.into_deserializer();
+        Ok((seed.deserialize(index)?, self))
+    }
+}
+
+impl<'de> de::VariantAccess<'de> for Choice<'_, 'de> {
+    type Error = ColumnsError;
+
+    fn unit_variant(self) -> Result<(), ColumnsError> {
+        Ok(())
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(
+        self,
+        seed: T,
+    ) -> Result<T::Value, ColumnsError> {
+        seed.deserialize(self.reader)
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(
+        self,
+        length: usize,
+        visitor: V,
+    ) -> Result<V::Value, ColumnsError> {
+        visitor.visit_seq(Row::new(self.reader, length))
+    }
+
+    fn struct_variant<V: Visitor<'de>>(
+        self,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, ColumnsError> {
+        self.reader.deserialize_struct(self.chosen, fields, visitor)
+    }
+}

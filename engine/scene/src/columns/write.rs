@@ -1,0 +1,343 @@
+//! Data to columns.
+
+use super::{ColumnsError, FLOAT, Names, REST, STREAMS};
+use serde::Serialize;
+use serde::ser::{self, Serializer};
+
+/// Data as columns.
+///
+/// # Errors
+/// [`ColumnsError::Shape`] for sequences and maps that do not say their length.
+pub fn to_bytes<T: Serialize + ?Sized>(data: &T) -> Result<Vec<u8>, ColumnsError> {
+    let mut writer = Writer {
+        names: Names::default(),
+        columns: vec![Default::default()],
+        at: 0,
+    };
+    data.serialize(&mut writer)?;
+    Ok(writer.bytes())
+}
+
+struct Writer {
+    names: Names,
+    columns: Vec<[Vec<u8>; STREAMS]>,
+    /// The column of what comes next.
+    at: usize,
+}
+
+impl Writer {
+    /// The number of columns, the length of every stream, then the streams.
+    fn bytes(self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        put(&mut bytes, self.columns.len() as u64);
+        for stream in self.columns.iter().flatten() {
+            put(&mut bytes, stream.len() as u64);
+        }
+        for stream in self.columns.iter().flatten() {
+            bytes.extend_from_slice(stream);
+        }
+        bytes
+    }
+
+    fn rest(&mut self) -> &mut Vec<u8> {
+        &mut self.columns[self.at][REST]
+    }
+
+    fn whole(&mut self, number: u64) -> Result<(), ColumnsError> {
+        put(self.rest(), number);
+        Ok(())
+    }
+
+    fn signed(&mut self, number: i64) -> Result<(), ColumnsError> {
+        // Small numbers of either sign become small ones.
+        self.whole(((number << 1) ^ (number >> 63)) as u64)
+    }
+
+    fn length(&mut self, length: Option<usize>) -> Result<(), ColumnsError> {
+        let length = length.ok_or(ColumnsError::Shape("data of unknown length"))?;
+        self.whole(length as u64)
+    }
+}
+
+/// Seven bits a byte, the lowest first.
+fn put(bytes: &mut Vec<u8>, mut number: u64) {
+    while number >= 0x80 {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+}
+
+/// Within a type whose fields have names.
+struct Fields<'a> {
+    writer: &'a mut Writer,
+    owner: &'static str,
+    outside: usize,
+}
+
+impl Fields<'_> {
+    fn field<T: Serialize + ?Sized>(
+        &mut self,
+        name: &'static str,
+        value: &T,
+    ) -> Result<(), ColumnsError> {
+        let column = self.writer.names.column(self.owner, name);
+        if column == self.writer.columns.len() {
+            self.writer.columns.push(Default::default());
+        }
+        self.writer.at = column;
+        let done = value.serialize(&mut *self.writer);
+        self.writer.at = self.outside;
+        done
+    }
+}
+
+impl<'a> Serializer for &'a mut Writer {
+    type Ok = ();
+    type Error = ColumnsError;
+    type SerializeSeq = Self;
+    type SerializeTuple = Self;
+    type SerializeTupleStruct = Self;
+    type SerializeTupleVariant = Self;
+    type SerializeMap = Self;
+    type SerializeStruct = Fields<'a>;
+    type SerializeStructVariant = Fields<'a>;
+
+    fn is_human_readable(&self) -> bool {
+        false
+    }
+
+    fn serialize_bool(self, v: bool) -> Result<(), ColumnsError> {
+        self.serialize_u8(u8::from(v))
+    }
+
+    fn serialize_i8(self, v: i8) -> Result<(), ColumnsError> {
+        self.serialize_u8(v.cast_unsigned())
+    }
+
+    fn serialize_i16(self, v: i16) -> Result<(), ColumnsError> {
+        self.signed(v.into())
+    }
+
+    fn serialize_i32(self, v: i32) -> Result<(), ColumnsError> {
+        self.signed(v.into())
+    }
+
+    fn serialize_i64(self, v: i64) -> Result<(), ColumnsError> {
+        self.signed(v)
+    }
+
+    fn serialize_u8(self, v: u8) -> Result<(), ColumnsError> {
+        self.rest().push(v);
+        Ok(())
+    }
+
+    fn serialize_u16(self, v: u16) -> Result<(), ColumnsError> {
+        self.whole(v.into())
+    }
+
+    fn serialize_u32(self, v: u32) -> Result<(), ColumnsError> {
+        self.whole(v.into())
+    }
+
+    fn serialize_u64(self, v: u64) -> Result<(), ColumnsError> {
+        self.whole(v)
+    }
+
+    /// The low half, then the high one.
+    fn serialize_u128(self, v: u128) -> Result<(), ColumnsError> {
+        self.whole(v as u64)?;
+        self.whole((v >> 64) as u64)
+    }
+
+    fn serialize_f32(self, v: f32) -> Result<(), ColumnsError> {
+        let column = &mut self.columns[self.at];
+        for (stream, byte) in column[..FLOAT].iter_mut().zip(v.to_le_bytes()) {
+            stream.push(byte);
+        }
+        Ok(())
+    }
+
+    fn serialize_f64(self, v: f64) -> Result<(), ColumnsError> {
+        self.rest().extend_from_slice(&v.to_le_bytes());
+        Ok(())
+    }
+
+    fn serialize_char(self, v: char) -> Result<(), ColumnsError> {
+        self.whole(u32::from(v).into())
+    }
+
+    fn serialize_str(self, v: &str) -> Result<(), ColumnsError> {
+        self.serialize_bytes(v.as_bytes())
+    }
+
+    fn serialize_bytes(self, v: &[u8]) -> Result<(), ColumnsError> {
+        self.whole(v.len() as u64)?;
+        self.rest().extend_from_slice(v);
+        Ok(())
+    }
+
+    fn serialize_none(self) -> Result<(), ColumnsError> {
+        self.serialize_u8(0)
+    }
+
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), ColumnsError> {
+        self.rest().push(1);
+        value.serialize(self)
+    }
+
+    fn serialize_unit(self) -> Result<(), ColumnsError> {
+        Ok(())
+    }
+
+    fn serialize_unit_struct(self, _name: &'static str) -> Result<(), ColumnsError> {
+        Ok(())
+    }
+
+    fn serialize_unit_variant(
+        self,
+        _name: &'static str,
+        index: u32,
+        _variant: &'static str,
+    ) -> Result<(), ColumnsError> {
+        self.whole(index.into())
+    }
+
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(
+        self,
+        _name: &'static str,
+        value: &T,
+    ) -> Result<(), ColumnsError> {
+        value.serialize(self)
+    }
+
+    fn serialize_newtype_variant<T: Serialize + ?Sized>(
+        self,
+        _name: &'static str,
+        index: u32,
+        _variant: &'static str,
+        value: &T,
+    ) -> Result<(), ColumnsError> {
+        self.whole(index.into())?;
+        value.serialize(self)
+    }
+
+    fn serialize_seq(self, length: Option<usize>) -> Result<Self, ColumnsError> {
+        self.length(length)?;
+        Ok(self)
+    }
+
+    fn serialize_tuple(self, _length: usize) -> Result<Self, ColumnsError> {
+        Ok(self)
+    }
+
+    fn serialize_tuple_struct(
+        self,
+        _name: &'static str,
+        _length: usize,
+    ) -> Result<Self, ColumnsError> {
+        Ok(self)
+    }
+
+    fn serialize_tuple_variant(
+        self,
+        _name: &'static str,
+        index: u32,
+        _variant: &'static str,
+        _length: usize,
+    ) -> Result<Self, ColumnsError> {
+        self.whole(index.into())?;
+        Ok(self)
+    }
+
+    fn serialize_map(self, length: Option<usize>) -> Result<Self, ColumnsError> {
+        self.length(length)?;
+        Ok(self)
+    }
+
+    fn serialize_struct(
+        self,
+        name: &'static str,
+        _length: usize,
+    ) -> Result<Fields<'a>, ColumnsError> {
+        Ok(Fields {
+            owner: name,
+            outside: self.at,
+            writer: self,
+        })
+    }
+
+    fn serialize_struct_variant(
+        self,
+        _name: &'static str,
+        index: u32,
+        variant: &'static str,
+        length: usize,
+    ) -> Result<Fields<'a>, ColumnsError> {
+        self.whole(index.into())?;
+        self.serialize_struct(variant, length)
+    }
+}
+
+macro_rules! one_after_the_other {
+    ($trait:ident, $method:ident) => {
+        impl ser::$trait for &mut Writer {
+            type Ok = ();
+            type Error = ColumnsError;
+
+            fn $method<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), ColumnsError> {
+                value.serialize(&mut **self)
+            }
+
+            fn end(self) -> Result<(), ColumnsError> {
+                Ok(())
+            }
+        }
+    };
+}
+
+one_after_the_other!(SerializeSeq, serialize_element);
+one_after_the_other!(SerializeTuple, serialize_element);
+one_after_the_other!(SerializeTupleStruct, serialize_field);
+one_after_the_other!(SerializeTupleVariant, serialize_field);
+
+impl ser::SerializeMap for &mut Writer {
+    type Ok = ();
+    type Error = ColumnsError;
+
+    fn serialize_key<T: Serialize + ?Sized>(&mut self, key: &T) -> Result<(), ColumnsError> {
+        key.serialize(&mut **self)
+    }
+
+    fn serialize_value<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), ColumnsError> {
+        value.serialize(&mut **self)
+    }
+
+    fn end(self) -> Result<(), ColumnsError> {
+        Ok(())
+    }
+}
+
+macro_rules! by_field {
+    ($trait:ident) => {
+        impl ser::$trait for Fields<'_> {
+            type Ok = ();
+            type Error = ColumnsError;
+
+            fn serialize_field<T: Serialize + ?Sized>(
+                &mut self,
+                name: &'static str,
+                value: &T,
+            ) -> Result<(), ColumnsError> {
+                self.field(name, value)
+            }
+
+            fn end(self) -> Result<(), ColumnsError> {
+                Ok(())
+            }
+        }
+    };
+}
+
+by_field!(SerializeStruct);
+by_field!(SerializeStructVariant);
