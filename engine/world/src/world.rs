@@ -342,7 +342,7 @@ impl World {
     /// A number that changes with any bit of state, physics, sound queues or random streams.
     pub fn hash(&self) -> u64 {
         let mut bytes = self.state.hash().to_le_bytes().to_vec();
-        bytes.extend_from_slice(&xxh3_64(&self.physics.moment()).to_le_bytes());
+        bytes.extend_from_slice(&self.physics.hash().to_le_bytes());
         bytes.extend_from_slice(&xxh3_64(&self.sound.to_bytes()).to_le_bytes());
         bytes.extend_from_slice(&postcard::to_stdvec(&self.key).unwrap_or_default());
         xxh3_64(&bytes)

@@ -2,8 +2,8 @@
 //!
 //! A thousand contacts, written one after the other, mix places, forces and numbers of faces. Here every field of every type
 //! has a column of its own, and every column of floats one stream a byte: signs and exponents, which are much alike, lie
-//! apart from the last digits, which are noise. The packed bytes of worlds are a fifth smaller than those of the same data in
-//! rows.
+//! apart from the last digits, which are noise. Of 500 things that fell in a heap the packed bytes are a third of those in
+//! rows, of a house whose things lie strewn about seven eighths.
 //!
 //! Readers must know the type, as with `postcard`: nothing is named in the bytes. Columns stand in the order in which the type
 //! comes to them.
@@ -63,14 +63,40 @@ impl serde::de::Error for ColumnsError {
 }
 
 /// Which column holds the field of a type: numbered as they are met.
-#[derive(Default)]
-struct Names(HashMap<(&'static str, &'static str), usize>);
+struct Names {
+    columns: HashMap<(&'static str, &'static str), usize>,
+    /// Those met last, by where their names lie in memory: a place is right or looked up above.
+    recent: Vec<Option<(Place, usize)>>,
+}
+
+/// Where two names lie in memory.
+type Place = [(usize, usize); 2];
+
+/// Entries of [`Names::recent`], a power of two: more than there are fields.
+const RECENT: usize = 1024;
 
 impl Names {
+    fn new() -> Self {
+        Self {
+            columns: HashMap::new(),
+            recent: vec![None; RECENT],
+        }
+    }
+
     /// Column 0 is that of what is in no field.
     fn column(&mut self, owner: &'static str, field: &'static str) -> usize {
-        let next = self.0.len() + 1;
-        *self.0.entry((owner, field)).or_insert(next)
+        let place = [owner, field].map(|name| (name.as_ptr().addr(), name.len()));
+        let [(one, _), (two, _)] = place;
+        let entry = (one.wrapping_mul(31).wrapping_add(two)) % RECENT;
+        if let Some((known, column)) = self.recent[entry]
+            && known == place
+        {
+            return column;
+        }
+        let next = self.columns.len() + 1;
+        let column = *self.columns.entry((owner, field)).or_insert(next);
+        self.recent[entry] = Some((place, column));
+        column
     }
 }
 

@@ -30,7 +30,7 @@ pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, Colum
         columns.push(column);
     }
     let mut reader = Reader {
-        names: Names::default(),
+        names: Names::new(),
         columns,
         at: 0,
     };

@@ -10,7 +10,7 @@ use serde::ser::{self, Serializer};
 /// [`ColumnsError::Shape`] for sequences and maps that do not say their length.
 pub fn to_bytes<T: Serialize + ?Sized>(data: &T) -> Result<Vec<u8>, ColumnsError> {
     let mut writer = Writer {
-        names: Names::default(),
+        names: Names::new(),
         columns: vec![Default::default()],
         at: 0,
     };
@@ -43,11 +43,13 @@ impl Writer {
         &mut self.columns[self.at][REST]
     }
 
+    #[expect(clippy::unnecessary_wraps, reason = "as serde's methods end")]
     fn whole(&mut self, number: u64) -> Result<(), ColumnsError> {
         put(self.rest(), number);
         Ok(())
     }
 
+    #[expect(clippy::unnecessary_wraps, reason = "as serde's methods end")]
     fn signed(&mut self, number: i64) -> Result<(), ColumnsError> {
         // Small numbers of either sign become small ones.
         self.whole(((number << 1) ^ (number >> 63)) as u64)
