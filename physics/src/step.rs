@@ -147,6 +147,7 @@ impl PhysicsWorld {
         );
         let landed = self.engine.step(flying, &hooks, &collector);
         let mut placed = false;
+        let began = self.near.clone();
         for (tree, outlook) in self.trees.iter().zip(outlooks) {
             let (engine, near) = (&mut self.engine, &mut self.near);
             placed |= match outlook {
@@ -159,6 +160,7 @@ impl PhysicsWorld {
             entries: &self.entries,
             trees: &self.trees,
             joints: &self.joints,
+            began: &began,
             dt_s: self.settings.dt_s,
         };
         let rebounds = rebounds.correct(&mut self.engine, &landed, &mut self.near);

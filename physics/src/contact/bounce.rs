@@ -81,6 +81,8 @@ pub(crate) struct Rebounds<'a> {
     pub(crate) entries: &'a [Entry],
     pub(crate) trees: &'a [Tree],
     pub(crate) joints: &'a [Joint],
+    /// The numbers of each joint before the step.
+    pub(crate) began: &'a [Coordinate],
     /// Length of the step, s.
     pub(crate) dt_s: f32,
 }
@@ -175,7 +177,7 @@ impl Rebounds<'_> {
                     let ahead = other.center_after(meets_s) - other.center;
                     let joined = bodies[side].and_then(|body| {
                         let tree = self.struck(engine, body, (&mut *struck, near))?;
-                        let tree_of = &struck[tree];
+                        let tree_of = &mut struck[tree];
                         let [point, pushed_at] = [ahead, Vec3::ZERO]
                             .map(|ahead| tree_of.point(body, approach.place + ahead, way));
                         Some(Joined {
@@ -223,7 +225,7 @@ impl Rebounds<'_> {
         let tree = Struck::tree_of(self.trees, self.joints, body)?;
         let known = struck.iter().position(|known| known.tree() == tree);
         known.or_else(|| {
-            let found = Struck::of(engine, (self.trees, tree), self.joints, near)?;
+            let found = Struck::of(engine, (self.trees, tree), self.joints, (self.began, near))?;
             struck.push(found);
             Some(struck.len() - 1)
         })

@@ -30,8 +30,8 @@ pub(crate) struct Struck {
     free: Vec<usize>,
     /// rad or m. Shape (freedom,).
     positions: Vec<f64>,
-    /// Whether each stands at its lower and at its upper stop. Shape (freedom,).
-    at_stop: Vec<[bool; 2]>,
+    /// The lower and the upper stop of each where the joint stands or stood at it when the step began. Shape (freedom,).
+    at_stop: Vec<[Option<f64>; 2]>,
     axes: Vec<Axis>,
     /// The bodies that the joints move. Shape (freedom,).
     bodies: Vec<RigidBodyHandle>,
@@ -77,12 +77,13 @@ impl Struck {
         trees.iter().position(of)
     }
 
-    /// The tree as it moves now; `None` where it sleeps or is shut.
+    /// The tree as it moves now; `None` where it sleeps or is shut. The numbers of each of the world's joints before the step and
+    /// now.
     pub(crate) fn of(
         engine: &Engine,
         (trees, tree): (&[Tree], usize),
         joints: &[Joint],
-        near: &[Coordinate],
+        (began, near): (&[Coordinate], &[Coordinate]),
     ) -> Option<Self> {
         let number = tree;
         let tree = &trees[number];
@@ -102,13 +103,16 @@ impl Struck {
             inertia = with_root(&inertia, floating, n);
             velocities.extend(floating.before(&motion.root, motion.root_velocity));
         }
-        let at_stop = |(joint, position): (&&Joint, &f64)| {
-            joint.values.limits.map_or([false; 2], |[low, high]| {
+        let at_stop = |k: usize| {
+            let before = began[tree.joints[standing.free[k]]].position;
+            let (least, most) = (before.min(positions[k]), before.max(positions[k]));
+            own[k].values.limits.map_or([None; 2], |[low, high]| {
                 let (low, high) = (f64::from(low), f64::from(high));
-                [*position <= low + AT_STOP, *position >= high - AT_STOP]
+                let (at_low, at_high) = (least <= low + AT_STOP, most >= high - AT_STOP);
+                [at_low.then_some(low), at_high.then_some(high)]
             })
         };
-        let at_stop = own.iter().zip(&positions).map(at_stop).collect();
+        let at_stop = (0..n).map(at_stop).collect();
         let bodies = own.iter().map(|joint| joint.child_handle).collect();
         let (axes, root, root_velocity) = (motion.axes, motion.root, motion.root_velocity);
         Some(Self {
@@ -128,13 +132,32 @@ impl Struck {
         })
     }
 
+    /// Stops a joint, with the impulse along it that this takes.
+    fn stop(&mut self, k: usize) {
+        let mut along = vec![0.0; self.velocities.len()];
+        along[k] = 1.0;
+        let answer = self.inertia.factor().solve(&along);
+        let impulse = -self.velocities[k] / answer[k];
+        for (velocity, answer) in self.velocities.iter_mut().zip(&answer) {
+            *velocity += impulse * answer;
+        }
+        self.velocities[k] = 0.0;
+        self.moved = true;
+    }
+
     /// Its place among the world's trees.
     pub(crate) fn tree(&self) -> usize {
         self.tree
     }
 
-    /// A point of a body where it may be pushed in a direction; `None` for a body that does not give way.
-    pub(crate) fn point(&self, body: RigidBodyHandle, at: Vec3, direction: Vec3) -> Option<Point> {
+    /// A point of a body where it is pushed in a direction; `None` for a body that does not give way. A joint that this pushes
+    /// against its stop stays there: rapier's stops would throw it back.
+    pub(crate) fn point(
+        &mut self,
+        body: RigidBodyHandle,
+        at: Vec3,
+        direction: Vec3,
+    ) -> Option<Point> {
         let (at, direction) = (at.as_dvec3(), direction.as_dvec3());
         let mut link = self.bodies.iter().position(|own| *own == body);
         if link.is_none() && (body != self.root_body || self.floating.is_none()) {
@@ -161,24 +184,27 @@ impl Struck {
     }
 
     /// What 1 N·s adds to the velocities. Joints at a stop are not pushed through it.
-    fn answer(&self, row: &[f64]) -> Vec<f64> {
+    fn answer(&mut self, row: &[f64]) -> Vec<f64> {
         let mut inertia = self.inertia.clone();
         let mut answer = inertia.factor().solve(row);
         let mut held = vec![false; self.at_stop.len()];
-        for _ in 0..held.len() {
-            let mut found = false;
-            for (k, [low, high]) in self.at_stop.iter().enumerate() {
-                if !held[k] && ((*low && answer[k] < 0.0) || (*high && answer[k] > 0.0)) {
-                    inertia.add(k, k, RIGID * inertia.get(k, k));
-                    (held[k], found) = (true, true);
-                }
-            }
-            if !found {
-                break;
-            }
+        loop {
+            let presses = |k: &usize| {
+                let [low, high] = self.at_stop[*k];
+                let stop = if answer[*k] < 0.0 { low } else { high };
+                stop.filter(|_| !held[*k] && answer[*k] != 0.0)
+            };
+            let Some((k, stop)) = (0..held.len()).find_map(|k| Some((k, presses(&k)?))) else {
+                return answer;
+            };
+            held[k] = true;
+            inertia.add(k, k, RIGID * inertia.get(k, k));
             answer = inertia.factor().solve(row);
+            self.positions[k] = stop;
+            if self.velocities[k] != 0.0 {
+                self.stop(k);
+            }
         }
-        answer
     }
 
     /// How fast a point goes in its direction, m/s.

@@ -3,7 +3,7 @@
 use crate::bounces::{each_step, set_pair};
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{JointState, PhysicsConfig};
-use dwell_scene::{JointId, JointKind, Mobility, ObjectId};
+use dwell_scene::{Articulation, JointId, JointKind, Mobility, ObjectId, PartId, Pose};
 use glam::{DVec3, Vec3};
 
 const DENSITY: f32 = 500.0;
@@ -63,6 +63,11 @@ impl Meeting {
 
 impl Blow {
     fn build(&self) -> (Run, ObjectId, JointId) {
+        self.build_within([-1.5, 1.5])
+    }
+
+    /// With a joint between these stops.
+    fn build_within(&self, limits: [f32; 2]) -> (Run, ObjectId, JointId) {
         let mut build = Build::room([6.0, 4.0, 6.0]);
         let density = self.times * ball_kg() as f32 / (8.0 * HALF.element_product());
         let leaf = Piece::cuboid(HALF, Vec3::new(2.4, 1.0, 2.0)).density(density);
@@ -71,7 +76,7 @@ impl Blow {
             JointKind::Hinge => Vec3::Y,
             JointKind::Slide => Vec3::Z,
         };
-        let hinge = build.joint(gate, self.kind, axis, AXIS, [-1.5, 1.5]);
+        let hinge = build.joint(gate, self.kind, axis, AXIS, limits);
         let joint = &mut build.data.joints[hinge];
         (joint.friction, joint.damping, joint.armature) = (0.0, 0.0, 0.0);
         let ball = Piece::ball(RADIUS, self.from).density(DENSITY);
@@ -288,6 +293,122 @@ fn a_leaf_parts_with_restitution_and_keeps_angular_momentum() {
                     assert!(momentum.abs() < within, "{blow:?}: {momentum}");
                     assert!(energy < 1.001, "{blow:?}: {energy}");
                 }
+            }
+        }
+    }
+}
+
+/// A leaf that stands at its stop, or is shut, is a wall to what pushes it there, and a leaf to what pushes it open.
+#[test]
+fn a_leaf_at_its_stop_is_struck_as_a_wall_from_the_other_side_as_a_leaf() {
+    for (limits, gives) in [([0.0, 1.5], true), ([-1.5, 0.0], false)] {
+        let blow = Blow {
+            kind: JointKind::Hinge,
+            restitution: 0.5,
+            from: Vec3::new(2.6, 1.0, 2.6),
+            ..SLIDE
+        };
+        let (mut run, ball, joint) = blow.build_within(limits);
+        run.steps(40);
+        let (v, leaf) = (run.velocity(ball).z, run.state.joint_velocity[joint]);
+        // About +Y a push along -Z beside the hinge turns the leaf forwards.
+        let lever = 0.6_f32;
+        let inertia = (0.8 * 0.8 + 0.04 * 0.04) / 12.0 + 0.16;
+        let share = if gives {
+            1.0 / (1.0 + lever * lever / inertia)
+        } else {
+            1.0
+        };
+        let expected = -3.0 + 1.5 * 3.0 * share;
+        println!("{limits:?}: {v} of {expected} m/s, leaf {leaf} rad/s");
+        assert!(
+            (v - expected).abs() < 0.01 * 3.0,
+            "{limits:?}: {v} {expected}"
+        );
+        assert_eq!(leaf.abs() > 0.1, gives, "{limits:?}: {leaf}");
+    }
+}
+
+/// A body that floats, with a leaf on a hinge or a box on a slide, is struck on either of its parts: momentum is kept, and energy
+/// with a restitution of 1.
+#[test]
+fn what_floats_on_joints_keeps_momentum_when_it_is_struck() {
+    for kind in [JointKind::Hinge, JointKind::Slide] {
+        for (on_root, restitution) in [(false, 1.0), (false, 0.5), (true, 1.0), (true, 0.5)] {
+            let mut build = Build::room([6.0, 4.0, 6.0]);
+            let half = Vec3::new(0.2, 0.2, 0.05);
+            let (root_at, child_at) = (Vec3::new(2.0, 2.0, 3.0), Vec3::new(2.45, 2.0, 3.0));
+            let pieces = [
+                Piece::cuboid(half, root_at).density(DENSITY),
+                Piece::cuboid(half, child_at).density(DENSITY),
+            ];
+            let rig = build.object("rig", Mobility::Movable, &pieces);
+            let parts: Vec<PartId> = build.data.objects[rig].parts().collect();
+            let place = Vec3::new(0.22, 0.0, 0.0);
+            let axis = match kind {
+                JointKind::Hinge => Vec3::Y,
+                JointKind::Slide => Vec3::Z,
+            };
+            build.data.joints.push(Articulation {
+                parent: Some(parts[0]),
+                parent_from_joint: Pose::from_position(place),
+                child_from_joint: Pose::from_position(place - Vec3::X * 0.45),
+                limits: Some([-1.5, 1.5]),
+                ..Articulation::new("link", rig, parts[1], kind, axis)
+            });
+            let aim = if on_root { root_at } else { child_at };
+            let from = aim + Vec3::new(0.05, 0.03, 0.6);
+            let ball = build.movable("ball", Piece::ball(RADIUS, from).density(DENSITY));
+            let mut run = build.run_with(PhysicsConfig {
+                sleeping: false,
+                ..each_step()
+            });
+            let weightless = "world/gravity_m_s2".parse().unwrap();
+            let house = run.house.clone();
+            run.state.set_parameter(&house, &weightless, 0.0).unwrap();
+            let values = [("restitution", restitution), ("friction", 0.0)];
+            set_pair(&mut run, "wood", "wood", values);
+            run.throw(ball, Vec3::Z * -3.0);
+            let box_kg = f64::from(DENSITY * 8.0 * half.element_product());
+            let inertia =
+                |k: usize| box_kg / 3.0 * f64::from(half.length_squared() - half[k] * half[k]);
+            // By parts: their origins are their middles.
+            let look = |run: &Run| {
+                let (mut momentum, mut energy) = (DVec3::ZERO, 0.0);
+                for part in &parts {
+                    let velocity = run.state.part_velocity[*part];
+                    let v = velocity.linear.as_dvec3();
+                    let turn = run.state.part_pose[*part].rotation.as_dquat().inverse();
+                    let spin = turn * velocity.angular.as_dvec3();
+                    momentum += v * box_kg;
+                    energy += 0.5 * box_kg * v.length_squared();
+                    energy += (0..3)
+                        .map(|k| 0.5 * inertia(k) * spin[k] * spin[k])
+                        .sum::<f64>();
+                }
+                let v = run.velocity(ball).as_dvec3();
+                (
+                    momentum + v * ball_kg(),
+                    energy + 0.5 * ball_kg() * v.length_squared(),
+                )
+            };
+            let before = look(&run);
+            let mut steps = 0;
+            while (run.velocity(ball).z + 3.0).abs() < 1e-3 && steps < 100 {
+                run.steps(1);
+                steps += 1;
+            }
+            let after = look(&run);
+            let off = (after.0 - before.0).length() / before.0.length();
+            let share = after.1 / before.1;
+            println!(
+                "{kind:?} root {on_root} e {restitution}: momentum off by {off:.1e}, energy {share:.4}"
+            );
+            assert!(steps < 100 && off < 2e-3, "{kind:?} {on_root}: {off}");
+            if restitution == 1.0 {
+                assert!((share - 1.0).abs() < 0.01, "{kind:?} {on_root}: {share}");
+            } else {
+                assert!(share < 0.99, "{kind:?} {on_root}: {share}");
             }
         }
     }
