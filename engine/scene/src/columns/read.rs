@@ -286,7 +286,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
             outside: self.at,
             reader: self,
             owner: name,
-            fields: fields.iter(),
+            left: fields.iter(),
         })
     }
 
@@ -366,7 +366,7 @@ impl<'de> de::MapAccess<'de> for Row<'_, 'de> {
 struct Fields<'a, 'de> {
     reader: &'a mut Reader<'de>,
     owner: &'static str,
-    fields: std::slice::Iter<'static, &'static str>,
+    left: std::slice::Iter<'static, &'static str>,
     outside: usize,
 }
 
@@ -377,7 +377,7 @@ impl<'de> de::SeqAccess<'de> for Fields<'_, 'de> {
         &mut self,
         seed: T,
     ) -> Result<Option<T::Value>, ColumnsError> {
-        let Some(name) = self.fields.next() else {
+        let Some(name) = self.left.next() else {
             return Ok(None);
         };
         self.reader.at = self.reader.names.column(self.owner, name);
@@ -387,7 +387,7 @@ impl<'de> de::SeqAccess<'de> for Fields<'_, 'de> {
     }
 
     fn size_hint(&self) -> Option<usize> {
-        Some(self.fields.len())
+        Some(self.left.len())
     }
 }
 

@@ -49,7 +49,6 @@ impl Writer {
         Ok(())
     }
 
-    #[expect(clippy::unnecessary_wraps, reason = "as serde's methods end")]
     fn signed(&mut self, number: i64) -> Result<(), ColumnsError> {
         // Small numbers of either sign become small ones.
         self.whole(((number << 1) ^ (number >> 63)) as u64)
