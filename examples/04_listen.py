@@ -3,7 +3,7 @@
 import dwell
 
 house = dwell.House.open("builtin:apartment")
-room = house.rooms()[0]
+room = next(room for room in house.rooms() if "living room" in room["kinds"])
 x, y, z = room["eye"]
 scene = dwell.AcousticScene(house, rays=500)
 response = scene.impulse_response((x, y, z), (x + 0.6, y, z - 0.6), ears=True)

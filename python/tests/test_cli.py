@@ -26,6 +26,16 @@ def one_object(done: subprocess.CompletedProcess[str]) -> dict[str, object]:
     return value
 
 
+@pytest.fixture(scope="module")
+def two_points() -> tuple[str, str]:
+    """Where one looks from in the living room, and over where one stands, for the command line."""
+    from dwell import House
+
+    room = next(room for room in House.open(HOUSE).rooms() if "living room" in room["kinds"])
+    (x, y, z), (stand_x, _, stand_z) = room["eye"], room["stand"]
+    return f"{x},{y},{z}", f"{stand_x},1.5,{stand_z}"
+
+
 def test_exit_statuses_tell_failure_from_bad_usage() -> None:
     assert dwell("info", HOUSE).returncode == 0
     missing = dwell("info", "builtin:castle")
@@ -45,10 +55,12 @@ def test_doctor_and_info_print_one_object() -> None:
     assert {"rooms", "objects", "triangles"} <= set(info)
 
 
-def test_render_writes_pictures_and_exact_arrays(tmp_path: Path) -> None:
+def test_render_writes_pictures_and_exact_arrays(
+    tmp_path: Path, two_points: tuple[str, str]
+) -> None:
     out = tmp_path / "views"
     sensors = "rgb,depth,instance,semantic"
-    where = ("--at", "2,1.5,2", "--width", "64", "--height", "48")
+    where = ("--at", two_points[0], "--width", "64", "--height", "48")
     files = one_object(dwell("render", HOUSE, *where, "--sensors", sensors, "--out", out, "--json"))
     names = {Path(name).name for name in files["files"]}  # type: ignore[attr-defined]
     assert names >= {"view_rgb.png", "view_depth.npy", "view_instance.png"}
@@ -66,9 +78,9 @@ def test_describe_writes_lines_and_reports_bad_houses(tmp_path: Path) -> None:
     assert all(row["text"].endswith(".") for row in rows)
 
 
-def test_ir_writes_a_sound_and_its_measures(tmp_path: Path) -> None:
+def test_ir_writes_a_sound_and_its_measures(tmp_path: Path, two_points: tuple[str, str]) -> None:
     out = tmp_path / "ir.wav"
-    points = ("--source", "2,1.5,6", "--mic", "4,1.5,6")
+    points = ("--source", two_points[0], "--mic", two_points[1])
     facts = one_object(dwell("ir", HOUSE, *points, "--rays", "500", "--out", out, "--json"))
     assert facts["peak_pa"]
     with wave.open(str(out)) as file:
@@ -227,8 +239,8 @@ def test_calibrate_refuses_a_house_where_none_was_measured_in(tmp_path: Path) ->
     assert "house" in done.stderr
 
 
-def test_measures_of_a_response_name_their_bands() -> None:
-    points = ("--source", "2,1.5,6", "--mic", "4,1.5,6", "--rays", "20")
+def test_measures_of_a_response_name_their_bands(two_points: tuple[str, str]) -> None:
+    points = ("--source", two_points[0], "--mic", two_points[1], "--rays", "20")
     metrics = one_object(dwell("ir", HOUSE, *points, "--json"))["metrics"]
     assert [row["centre_hz"] for row in metrics][:3] == [62.5, 125, 250]  # type: ignore[attr-defined]
     assert "1000 Hz: " in dwell("ir", HOUSE, *points).stdout

@@ -6,6 +6,7 @@
 
 #![expect(clippy::print_stdout, reason = "a program tells by printing")]
 
+use dwell_houses::generate::HouseSpec;
 use dwell_scene::parallel::Threads;
 use dwell_tests::validity::{Depth, look, of_other_bytes};
 use std::collections::BTreeMap;
@@ -38,7 +39,9 @@ fn main() -> ExitCode {
     let mut seed = from;
     while seed < to {
         let chunk: Vec<u64> = (seed..to.min(seed + CHUNK)).collect();
-        for looked in threads.map(chunk.len(), |k| look(chunk[k], depth)) {
+        for looked in threads.map(chunk.len(), |k| {
+            look(chunk[k], &HouseSpec::default(), depth)
+        }) {
             for fault in &looked.faults {
                 println!("{} {} {}", looked.seed, fault.rule, fault.what);
                 *by_rule.entry(fault.rule).or_default() += 1;

@@ -1,5 +1,7 @@
 //! Generated houses are valid: as they stand, and when physics begins. The bench `validity` looks at thousands of seeds.
 
+use dwell_houses::builtin;
+use dwell_houses::generate::HouseSpec;
 use dwell_scene::parallel::Threads;
 use dwell_tests::validity::{Depth, Looked, look, of_other_bytes};
 use std::collections::BTreeMap;
@@ -35,13 +37,13 @@ fn assert_valid(all: &[Looked]) {
 
 #[test]
 fn houses_of_seeds_are_valid_as_they_stand() {
-    let look = |seed: usize| look(seed as u64, Depth::Geometric);
+    let look = |seed: usize| look(seed as u64, &HouseSpec::default(), Depth::Geometric);
     assert_valid(&Threads::default().map(SEEDS as usize, look));
 }
 
 #[test]
 fn houses_of_seeds_stay_as_they_are_when_physics_begins() {
-    let look = |seed: usize| look(seed as u64, Depth::Settled);
+    let look = |seed: usize| look(seed as u64, &HouseSpec::default(), Depth::Settled);
     assert_valid(&Threads::default().map(SETTLED as usize, look));
 }
 
@@ -54,5 +56,17 @@ fn houses_of_seeds_are_the_same_alone_and_beside_others() {
 /// Its grid has lines half a micrometre apart: strips of floor between them were triangles without area, which held everything.
 #[test]
 fn a_house_whose_lines_differ_by_rounding_is_valid() {
-    assert_valid(&[look(1743, Depth::Settled)]);
+    assert_valid(&[look(1743, &HouseSpec::default(), Depth::Settled)]);
+}
+
+#[test]
+fn built_in_houses_are_valid_and_stay_as_they_are() {
+    let specs = builtin::names().iter().map(|name| builtin::spec(name));
+    let looked: Vec<Looked> = specs
+        .map(|known| {
+            let (seed, spec) = known.expect("every built-in house has a spec");
+            look(seed, &spec, Depth::Settled)
+        })
+        .collect();
+    assert_valid(&looked);
 }

@@ -2,6 +2,7 @@
 
 use dwell_physics::{AgentControl, ContactEvent, PhysicsConfig, PhysicsWorld, StartReport};
 use dwell_scene::material::library;
+use dwell_scene::navigation::{NavConfig, NavGrid};
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
     Aabb, AgentBody, AgentId, AgentState, Articulation, Category, Collider, Holding, House,
@@ -290,6 +291,15 @@ impl Run {
         self.world
             .add_agent(&mut self.state, AgentState::new(body, at, yaw))
             .unwrap()
+    }
+
+    /// Where an agent can stand and walk about, the nearest to `point` first.
+    pub(crate) fn places_by(&self, point: Vec3) -> Vec<Vec3> {
+        let grid = NavGrid::build(&self.house, &self.state, &NavConfig::default()).unwrap();
+        let largest = grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
+        let mut places: Vec<Vec3> = largest.map(|cell| grid.position(cell)).collect();
+        places.sort_by(|a, b| a.distance(point).total_cmp(&b.distance(point)));
+        places
     }
 
     pub(crate) fn steps(&mut self, count: usize) {

@@ -4,6 +4,7 @@ use crate::common::Run;
 use dwell_physics::{Action, ActionCode, PhysicsConfig};
 use dwell_scene::{AgentId, JointCommand, JointId, ObjectId};
 use glam::Vec3;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 fn apartment() -> Run {
@@ -26,47 +27,60 @@ fn joint(run: &Run, object: ObjectId, name: &str) -> JointId {
         .unwrap_or_else(|| panic!("{} has no {name}", run.house.objects[object].name))
 }
 
-/// An agent that stands `away` from an object and looks at it.
-fn before(run: &mut Run, object: ObjectId, away: Vec3) -> AgentId {
-    let middle = run.house.object_bounds(&run.state, object).center();
-    let yaw = dwell_scene::space::yaw_from_forward(-away);
-    run.agent((middle + away).with_y(0.0), yaw)
+/// An agent that stands as near to a point as it can, and looks there.
+fn before(run: &mut Run, point: Vec3) -> AgentId {
+    let place = run.places_by(point)[0];
+    run.agent(place, dwell_scene::space::yaw_from_forward(point - place))
+}
+
+/// Everything with a tap: the object, its lever, and the room.
+fn taps(run: &Run) -> Vec<(ObjectId, JointId, String)> {
+    let house = &run.house;
+    let levers = house.joints.iter_ids().filter(|(_, joint)| joint.switches);
+    let taps = levers.map(|(id, joint)| {
+        let room = house.objects[joint.object].room.unwrap();
+        (joint.object, id, house.rooms[room].kind().to_owned())
+    });
+    taps.collect()
 }
 
 /// Turned on by hand the lever comes forward and the tap runs; turned off it goes back and is silent.
 #[test]
 fn a_tap_that_is_turned_on_runs_until_it_is_turned_off() {
     let mut run = apartment();
-    let taps = of_category(&run, "tap");
-    assert_eq!(taps.len(), 3);
-    let sounding: Vec<ObjectId> = run
+    let taps = taps(&run);
+    let rooms: Vec<&str> = taps.iter().map(|(_, _, room)| room.as_str()).collect();
+    assert_eq!(taps.len(), 3, "{rooms:?}");
+    assert!(rooms.contains(&"bathroom"), "{rooms:?}");
+    let sounding: BTreeSet<ObjectId> = run
         .house
         .emitters
         .iter()
         .filter(|emitter| emitter.signal == "tap")
         .map(|emitter| emitter.object)
         .collect();
-    assert_eq!(sounding, taps, "each has a sound of its own");
+    let with_levers = taps.iter().map(|(id, ..)| *id).collect();
+    assert_eq!(sounding, with_levers, "each has a sound of its own");
     // In the kitchen, before the worktop.
-    let kitchen = |id: &ObjectId| {
-        let room = run.house.objects[*id].room.unwrap();
-        run.house.rooms[room].kind() == "kitchen"
-    };
-    let tap = *taps.iter().find(|id| kitchen(id)).unwrap();
-    let lever = joint(&run, tap, "lever");
-    let agent = before(&mut run, tap, Vec3::Z * 0.8);
+    let kitchen = taps.iter().find(|(_, _, room)| room == "kitchen");
+    let (tap, lever, _) = *kitchen.unwrap();
+    let water = run.house.emitters.iter().find(|e| e.object == tap).unwrap();
+    let spout = run.state.part_pose[water.part].transform_point(water.position);
+    let agent = before(&mut run, spout);
     run.steps(2);
     assert!(!run.state.is_on(&run.house, tap));
     let told = run.act(agent, Action::toggle(tap));
     assert_eq!(told.code, ActionCode::Started, "{}", told.sentence);
+    let name = run.house.objects[tap].model.replace('_', " ");
     assert_eq!(
         told.sentence,
-        "You turn the mixer tap on; it takes a moment."
+        format!("You turn the {name} on; it takes a moment.")
     );
     let told = run.told(60).expect("it arrives");
     assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
     assert!(run.state.is_on(&run.house, tap));
-    assert!((run.state.joint_position[lever] - 0.9).abs() < 0.03);
+    let open = run.house.joints[lever].open;
+    assert!((run.state.joint_position[lever] - open).abs() < 0.03);
     // Left alone it runs on.
     run.steps(60);
     assert!(run.state.is_on(&run.house, tap));
@@ -81,8 +95,7 @@ fn a_tap_that_is_turned_on_runs_until_it_is_turned_off() {
 #[test]
 fn a_tap_follows_its_lever() {
     let mut run = apartment();
-    let tap = of_category(&run, "tap")[0];
-    let lever = joint(&run, tap, "lever");
+    let (tap, lever, _) = taps(&run)[0];
     run.state.joint_command[lever] = JointCommand::Position(0.5);
     run.steps(40);
     assert!(run.state.is_on(&run.house, tap));
@@ -98,13 +111,16 @@ fn lids_and_small_doors_stay_where_a_hand_leaves_them() {
     let mut run = apartment();
     run.steps(20);
     let mut found = 0;
-    for (category, name) in [
+    let all = [
         ("trash_can", "lid"),
         ("basket", "lid"),
         ("toilet", "lid"),
         ("microwave", "door"),
-    ] {
-        for object in of_category(&run, category) {
+    ];
+    for (category, name) in all {
+        let objects = of_category(&run, category);
+        assert!(!objects.is_empty(), "{category}");
+        for object in objects {
             let id = joint(&run, object, name);
             let open = run.house.joints[id].open;
             run.state.joint_command[id] = JointCommand::Position(open);
@@ -117,7 +133,7 @@ fn lids_and_small_doors_stay_where_a_hand_leaves_them() {
             found += 1;
         }
     }
-    assert!(found >= 6, "{found}");
+    assert!(found >= 4, "{found}");
 }
 
 /// A shut bin takes nothing; opened, the thing lies on its bottom.
@@ -136,12 +152,17 @@ fn things_go_into_an_open_bin_only() {
         .iter()
         .find(|id| run.house.objects[**id].model == "fruit")
         .unwrap();
-    let agent = before(&mut run, bin, Vec3::X * 0.7);
+    let middle = run.house.object_bounds(&run.state, bin).center();
+    let agent = before(&mut run, middle);
     run.steps(2);
-    // It comes into the hand from beside the bin.
-    let at = run.state.agents[agent].position + Vec3::new(0.0, 0.06, 0.45);
+    // It comes into the hand from the free floor beside the agent.
+    let stands = run.state.agents[agent].position;
+    let floor = run
+        .places_by(stands)
+        .into_iter()
+        .find(|place| (0.4..0.6).contains(&place.distance(stands)) && place.distance(middle) > 0.5);
     let root = run.root(fruit);
-    run.state.part_pose[root].position = at;
+    run.state.part_pose[root].position = floor.unwrap() + Vec3::Y * 0.06;
     run.world.adopt(&mut run.state).unwrap();
     run.steps(10);
     let told = run.act(agent, Action::pick(fruit));

@@ -285,16 +285,18 @@ fn what_rests_on_what_follows_a_stack() {
 fn the_apartments_things_stand_on_its_table() {
     let house = Arc::new(dwell_houses::open("builtin:apartment").unwrap().0);
     let mut run = Run::over(Arc::clone(&house), PhysicsConfig::default());
-    let table = house.object_named("dining_table_1").unwrap_or_else(|| {
-        let found = house
-            .objects
-            .iter_ids()
-            .find(|(_, o)| o.category.coarse.contains("table"));
-        found.expect("a table").0
-    });
-    let bounds = house.object_bounds(&run.state, table);
-    let stand = Vec3::new(bounds.center().x, 0.0, bounds.max.z + 0.35);
-    let agent = run.agent(stand, 0.0);
+    let tables = house.objects.iter_ids();
+    let tables = tables.filter(|(_, object)| object.category.coarse == "dining_table");
+    let size = |id: ObjectId| {
+        let size = house.object_bounds(&run.state, id).size();
+        size.x * size.z
+    };
+    let largest = tables.max_by(|a, b| size(a.0).total_cmp(&size(b.0)));
+    let table = largest.expect("a dining table").0;
+    let middle = house.object_bounds(&run.state, table).center();
+    let stand = run.places_by(middle)[0];
+    let ahead = (middle - stand).with_y(0.0).normalize();
+    let agent = run.agent(stand, dwell_scene::space::yaw_from_forward(ahead));
     let pickable: Vec<ObjectId> = house
         .objects
         .iter_ids()
@@ -307,7 +309,7 @@ fn the_apartments_things_stand_on_its_table() {
     for object in &pickable {
         let mut run = start.clone();
         let (eye, root) = (run.state.agents[agent].eye_position(), run.root(*object));
-        run.state.part_pose[root].position = eye + Vec3::new(0.0, -0.1, -0.5);
+        run.state.part_pose[root].position = eye + ahead * 0.5 - Vec3::Y * 0.1;
         run.world.adopt(&mut run.state).unwrap();
         run.rays.update(&run.state);
         let told = run.act(agent, Action::pick(*object));

@@ -324,7 +324,7 @@ mod tests {
             ([236, 228, 212], "white"),
             ([176, 206, 224], "blue"),
             ([206, 194, 172], "beige"),
-            // Things of the built-in apartment: sofa, rug, curtain, pillow.
+            // Things of a home: sofa, rug, curtain, pillow.
             ([83, 102, 122], "blue"),
             ([122, 167, 173], "blue"),
             ([223, 192, 96], "yellow"),

@@ -40,15 +40,15 @@ pub struct Looked {
     pub faults: Vec<Fault>,
 }
 
-/// Looks at the house of a seed.
-pub fn look(seed: u64, depth: Depth) -> Looked {
+/// Looks at the house of a seed and spec.
+pub fn look(seed: u64, spec: &HouseSpec, depth: Depth) -> Looked {
     let mut looked = Looked {
         seed,
         counts: [0; 2],
         given_up: Vec::new(),
         faults: Vec::new(),
     };
-    let Generated { house, report } = match generate(seed, &HouseSpec::default()) {
+    let Generated { house, report } = match generate(seed, spec) {
         Ok(generated) => generated,
         Err(error) => {
             let (rule, what) = ("generate", error.to_string());

@@ -32,13 +32,6 @@ pub(crate) struct Kind {
     materials: Vec<Vec<MaterialId>>,
 }
 
-/// An instance and where it stands.
-#[derive(Clone, Debug)]
-pub(crate) struct Placed {
-    pub(crate) model: Arc<Model>,
-    pub(crate) world_from_model: Pose,
-}
-
 /// A house under construction.
 #[derive(Debug, Default)]
 pub(crate) struct Assembly {
@@ -154,7 +147,7 @@ impl Assembly {
         world_from_model: Pose,
         room: RoomId,
         openness: f32,
-    ) -> Placed {
+    ) {
         let model = if openness > 0.0 {
             Arc::new(Model::clone(&kind.model).ajar(openness))
         } else {
@@ -203,10 +196,6 @@ impl Assembly {
         });
         let part_id = |k: usize| PartId(first_part.0 + k as u32);
         self.fixtures(&model, object, part_id);
-        Placed {
-            model,
-            world_from_model,
-        }
     }
 
     fn fixtures(&mut self, model: &Model, object: ObjectId, part_id: impl Fn(usize) -> PartId) {

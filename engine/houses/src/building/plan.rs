@@ -8,8 +8,6 @@ use glam::{Vec2, Vec3};
 
 /// Height of rooms, m.
 pub(crate) const CEILING_M: f32 = 2.6;
-/// Usual thickness of slabs, m.
-pub(crate) const SLAB_M: f32 = 0.2;
 /// Strips of floor that are narrower come of rounding, m.
 const THIN_M: f32 = 1e-3;
 

@@ -3,8 +3,6 @@
 use super::assembly::Assembly;
 use super::plan::Rect;
 use dwell_furniture::finish::Finish;
-#[cfg(test)]
-use dwell_scene::Aabb;
 use dwell_scene::{Mesh, RoomId, StructureKind};
 use glam::{Vec2, Vec3};
 
@@ -97,23 +95,6 @@ impl Wall {
             Along::X => Vec3::new(along, up, across),
             Along::Z => Vec3::new(across, up, along),
         }
-    }
-
-    /// The solid cells between the lines, as boxes.
-    #[cfg(test)]
-    pub(crate) fn solid_boxes(&self) -> Vec<Aabb> {
-        let [along, up] = self.lines();
-        let [low, high] = self.depth();
-        let mut boxes = Vec::new();
-        for a in along.windows(2) {
-            for u in up.windows(2) {
-                if self.is_solid(0.5 * (a[0] + a[1]), 0.5 * (u[0] + u[1])) {
-                    let corner = |k: usize, across: f32| self.point([a[k], u[k], across]);
-                    boxes.push(Aabb::new(corner(0, low), corner(1, high)));
-                }
-            }
-        }
-        boxes
     }
 
     /// Adds the wall, one closed piece.

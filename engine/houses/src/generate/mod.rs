@@ -36,7 +36,7 @@ use programme::Programme;
 use serde::Serialize;
 
 /// The version of the generator: another one may make other houses of the same seed.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// A generated house.
 #[derive(Debug)]

@@ -16,6 +16,8 @@ pub(crate) const OUTER_M: f32 = 0.2;
 const DOOR: Steps = 19;
 /// From the middle of the wall at a corner to the opening.
 const CORNER: Steps = 3;
+/// What a leaf that opens beyond a right angle takes beside its opening, with its handle, m.
+const BESIDE_M: f32 = 0.099;
 /// Depth before a door that no open leaf may reach into, from the middle of its wall, m: one passes between the two.
 const PASS_M: f32 = 0.85;
 /// Upper edge of doors, m.
@@ -94,6 +96,25 @@ impl Hole {
     pub(crate) fn sweep(&self) -> Option<Zone> {
         matches!(self.filling, Filling::Door { .. })
             .then(|| self.front(1.0, self.to_m - self.from_m + 0.1, 0.06))
+    }
+
+    /// The floor beside its hinges into which a leaf reaches that opens beyond a right angle, if it has one.
+    pub(crate) fn beside_hinges(&self, wall_m: f32) -> Option<Zone> {
+        let Filling::Door { hinge_right, .. } = self.filling else {
+            return None;
+        };
+        let (from, to) = if self.hinge_at_low_end(hinge_right) {
+            (self.from_m - BESIDE_M, self.from_m)
+        } else {
+            (self.to_m, self.to_m + BESIDE_M)
+        };
+        let ends = [0.5 * wall_m, self.to_m - self.from_m].map(|off| self.at_m + self.inward * off);
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        Some(if self.along_x {
+            [from, low, to, high]
+        } else {
+            [low, from, high, to]
+        })
     }
 
     /// Where its leaf stands when open.

@@ -10,8 +10,8 @@ use super::spec::DoorStates;
 use crate::build::Names;
 use crate::building::assembly::Assembly;
 use crate::building::plan::{CEILING_M, RoomPlan};
-use crate::building::site::yaw;
 use crate::building::wall::{Along, Bands, Opening, Wall};
+use crate::building::yaw::yaw;
 use dwell_furniture::finish::Finish;
 use dwell_furniture::model::Model;
 use dwell_furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
@@ -21,6 +21,7 @@ use dwell_furniture::style::Style;
 use dwell_scene::random::Key;
 use dwell_scene::{LevelId, Pose, RoomId};
 use glam::Vec3;
+use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 /// Thickness of the ceiling below another storey, m.
@@ -83,6 +84,26 @@ pub(crate) fn free_floor(storey: &Storey, cells: &Cells, room: usize) -> Vec<Zon
         [x0 + west, z0 + north, x1 - east, z1 - south]
     });
     rectangles.collect()
+}
+
+/// Whether a rectangle lies over a floor entirely.
+pub(crate) fn covers(floor: &[Zone], rect: &Zone) -> bool {
+    let area = |r: &Zone| (r[2] - r[0]).max(0.0) * (r[3] - r[1]).max(0.0);
+    let common = |z: &Zone| {
+        [
+            z[0].max(rect[0]),
+            z[1].max(rect[1]),
+            z[2].min(rect[2]),
+            z[3].min(rect[3]),
+        ]
+    };
+    let inside: f32 = floor
+        .iter()
+        .map(common)
+        .filter(|c| c[2] > c[0] && c[3] > c[1])
+        .map(|c| area(&c))
+        .sum();
+    inside >= area(rect) - 1e-4
 }
 
 /// The rectangles that a room's slab covers: to the middle of inner and to the outer face of outer walls, m.
@@ -290,7 +311,9 @@ impl Builder<'_> {
         let storey = self.storey(level);
         let floor = Self::floor_m(level);
         let key = self.key.child("fillings").child(level as u64);
+        let cells = Cells::new(&storey.rooms);
         for (k, hole) in self.holes[level].iter().enumerate() {
+            let free = free_floor(storey, &cells, hole.room);
             let middle = 0.5 * (hole.from_m + hole.to_m);
             let (x, z) = if hole.along_x {
                 (middle, hole.at_m)
@@ -318,7 +341,17 @@ impl Builder<'_> {
                     if entrance {
                         door.leaf = entrance_leaf(self.style);
                     }
-                    let kind = assembly.kind(made_to_measure(format!("{door:?}"), || door.build()));
+                    // Beside an outer wall, which is thicker, the leaf opens square.
+                    let beside = hole.beside_hinges(wall_m);
+                    let square = beside.is_some_and(|zone| !covers(&free, &zone));
+                    let settings = format!("{door:?} square {square}");
+                    let kind = assembly.kind(made_to_measure(settings, || {
+                        let mut model = door.build();
+                        for joint in model.joints.iter_mut().filter(|_| square) {
+                            joint.open = joint.open.min(FRAC_PI_2);
+                        }
+                        model
+                    }));
                     let openness = self.openness(hole, key.child(k as u64));
                     let pose = Pose::new(Vec3::new(x, floor, z), turn);
                     assembly.place(&kind, pose, ids[hole.room], openness);

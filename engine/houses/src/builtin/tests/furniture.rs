@@ -1,8 +1,6 @@
 //! Nothing interpenetrates, nothing floats, everything opens.
 
-use super::support::apartment;
-use crate::building::plan::CEILING_M;
-use crate::builtin::apartment::walls;
+use super::support::{apartment, building_boxes};
 use dwell_furniture::testing::overlap::{Convex, deepest, depth, object_pieces, part_pieces};
 use dwell_scene::{Aabb, House, Mobility, ObjectId};
 use glam::Vec3;
@@ -10,21 +8,8 @@ use glam::Vec3;
 /// What counts as interpenetration, m.
 const TOLERANCE_M: f32 = 0.002;
 
-/// The building as boxes: walls, floor, ceiling.
-fn shell() -> Vec<Convex> {
-    let mut boxes: Vec<Aabb> = walls()
-        .iter()
-        .flat_map(crate::building::wall::Wall::solid_boxes)
-        .collect();
-    boxes.push(Aabb::new(
-        Vec3::new(-1.0, -0.2, -1.0),
-        Vec3::new(12.0, 0.0, 10.0),
-    ));
-    boxes.push(Aabb::new(
-        Vec3::new(-1.0, CEILING_M, -1.0),
-        Vec3::new(12.0, CEILING_M + 0.2, 10.0),
-    ));
-    boxes.iter().map(Convex::cuboid).collect()
+fn shell(house: &House) -> Vec<Convex> {
+    building_boxes(house).iter().map(Convex::cuboid).collect()
 }
 
 fn around(pieces: &[Convex]) -> Aabb {
@@ -44,7 +29,7 @@ fn all(house: &House) -> Vec<(ObjectId, Vec<Convex>)> {
 #[test]
 fn nothing_reaches_into_anything_else() {
     let house = apartment();
-    let (objects, shell) = (all(house), shell());
+    let (objects, shell) = (all(house), shell(house));
     let mut faults = Vec::new();
     for (k, (id, pieces)) in objects.iter().enumerate() {
         let name = &house.objects[*id].name;
@@ -78,7 +63,7 @@ fn nothing_reaches_into_anything_else() {
 fn nothing_floats() {
     const DROP_M: f32 = 0.0015;
     let house = apartment();
-    let (objects, shell) = (all(house), shell());
+    let (objects, shell) = (all(house), shell(house));
     let mut faults = Vec::new();
     for (id, pieces) in &objects {
         let object = &house.objects[*id];
@@ -111,7 +96,10 @@ fn nothing_floats() {
                         leans = true;
                         continue;
                     }
-                    let (a, b) = (still.bounds, other.bounds);
+                    let (a, b) = (
+                        still.bounds.grown(if fixed { reach } else { 0.0 }),
+                        other.bounds,
+                    );
                     stand = stand.union(&Aabb {
                         min: a.min.max(b.min).with_y(0.0),
                         max: a.max.min(b.max).with_y(0.0),
@@ -144,16 +132,30 @@ fn nothing_floats() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Every door, drawer and lid goes from closed to open without reaching into anything but its own object.
+/// Every door, drawer and lid goes from closed to open without reaching into anything but its own object and what lies in it.
 #[test]
 fn everything_opens() {
     const STEPS: usize = 8;
     let house = apartment();
-    let (objects, shell) = (all(house), shell());
+    let (objects, shell) = (all(house), shell(house));
     let mut faults = Vec::new();
     for joint in &house.joints {
         let parent = joint.parent.expect("built-in joints hang on a part");
         let world = house.parts[parent].world_from_part;
+        // What lies in a drawer goes with it.
+        let mut spaces = Vec::new();
+        for space in house
+            .receptacles
+            .iter()
+            .filter(|space| space.part == joint.child)
+        {
+            let place = house.parts[space.part].world_from_part.to_affine();
+            spaces.push(space.space_in_part.transformed(&place).grown(0.01));
+        }
+        let rides = |pieces: &[Convex]| {
+            let middle = around(pieces).center();
+            spaces.iter().any(|space| space.contains(middle))
+        };
         for step in 0..=STEPS {
             let open = step as f32 / STEPS as f32;
             let pose = joint.world_from_child(&world, joint.position_at(open));
@@ -161,7 +163,8 @@ fn everything_opens() {
             let near = around(&pieces);
             let others = objects
                 .iter()
-                .filter(|(id, others)| *id != joint.object && near.intersects(&around(others)));
+                .filter(|(id, others)| *id != joint.object && near.intersects(&around(others)))
+                .filter(|(_, others)| !rides(others));
             let building = ("the building".to_owned(), &shell);
             for (name, others) in others
                 .map(|(id, o)| (house.objects[*id].name.clone(), o))

@@ -3,7 +3,7 @@
 use super::place::REST_GAP_M;
 use super::rules::Clutter;
 use super::space::{Piece, Space};
-use crate::building::site::yaw;
+use crate::building::yaw::yaw;
 use dwell_furniture::stock::{Stock, stock};
 use dwell_furniture::style::Style;
 use dwell_scene::random::{Key, Stream};

@@ -12,7 +12,7 @@ use super::openings::{Filling, Hole};
 use super::plan::{Cells, FloorPlan, metres};
 use super::rooms::RoomKind;
 use super::spec::HouseSpec;
-use crate::building::site::yaw;
+use crate::building::yaw::yaw;
 use dwell_furniture::stock::{Stock, stock};
 use dwell_furniture::style::Style;
 use dwell_scene::Pose;

@@ -3,7 +3,7 @@
 use super::rules::{Place, Rule};
 use super::space::{Piece, Space, Span};
 use crate::building::plan::CEILING_M;
-use crate::building::site::yaw;
+use crate::building::yaw::yaw;
 use dwell_furniture::stock::Stock;
 use dwell_scene::random::Stream;
 use dwell_scene::{Aabb, Holding, Pose};
@@ -14,6 +14,8 @@ use std::sync::Arc;
 const WALL_GAP_M: f32 = 0.003;
 /// Space left under a thing that stands on something: below what physics counts as contact, m.
 pub(crate) const REST_GAP_M: f32 = 0.0004;
+/// What hangs over furniture hangs on a wall that is no further behind it, m.
+const BEHIND_M: f32 = 0.3;
 /// Steps along walls, m.
 const ALONG_M: f32 = 0.12;
 /// Chairs are this far apart along a table, m (DIN 18022 asks for 0.6).
@@ -22,15 +24,13 @@ const SEAT_M: f32 = 0.6;
 /// A place and how little it is liked.
 type Idea = (f32, Pose);
 
-/// Half of a thing's width with its doors open, and from its origin to its back.
+/// Half of a thing's width with its doors open, and from its origin to its back with its lid up.
 fn half_and_back(stock: &Stock) -> (f32, f32) {
+    let all = || stock.swings.iter().chain([&stock.felt]);
     let wide = |bounds: &Aabb| bounds.min.x.abs().max(bounds.max.x.abs());
-    let half = stock
-        .swings
-        .iter()
-        .map(wide)
-        .fold(wide(&stock.felt), f32::max);
-    (half, -stock.felt.min.z)
+    let half = all().map(wide).fold(0.0, f32::max);
+    let back = all().map(|bounds| -bounds.min.z);
+    (half, back.fold(f32::NEG_INFINITY, f32::max))
 }
 
 /// The places for a thing, the likeliest first.
@@ -58,7 +58,7 @@ pub(crate) fn ideas(
         (Place::Around, Some(anchor)) => around(stock, anchor),
         (Place::At, Some(anchor)) => at(stock, anchor, stream),
         (Place::On, Some(anchor)) => on(stock, anchor, stream),
-        (Place::Above, Some(anchor)) => above(anchor, rule.height_m),
+        (Place::Above, Some(anchor)) => above(space, anchor, rule.height_m),
         _ => Vec::new(),
     };
     ideas.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -286,15 +286,31 @@ fn on(stock: &Stock, anchor: &Piece, stream: &mut Stream) -> Vec<Idea> {
     ideas
 }
 
-fn above(anchor: &Piece, height_m: f32) -> Vec<Idea> {
-    let back = anchor.stock.felt.min.z - WALL_GAP_M;
-    [0.0, 0.2, -0.2]
-        .into_iter()
-        .map(|x| {
-            let pose = Pose::new(Vec3::new(x, height_m - REST_GAP_M, back), yaw(0.0));
-            (f32::abs(x), anchor.pose * pose)
-        })
-        .collect()
+/// On the wall behind the anchor; nothing where the anchor stands away from walls.
+fn above(space: &Space, anchor: &Piece, height_m: f32) -> Vec<Idea> {
+    let mut ideas = Vec::new();
+    for x in [0.0, 0.2, -0.2] {
+        let behind = Vec3::new(x, height_m - REST_GAP_M, anchor.stock.felt.min.z);
+        let at = anchor.pose.transform_point(behind);
+        let facing = anchor.pose.rotation * Vec3::Z;
+        for span in &space.spans {
+            let (along, across) = if span.along_x {
+                (at.x, at.z)
+            } else {
+                (at.z, at.x)
+            };
+            let off = (across - span.face_m) * span.inward;
+            let turn = yaw(span.yaw_deg());
+            let backs_it = facing.dot(turn * Vec3::Z) > 0.99
+                && (-0.01..BEHIND_M).contains(&off)
+                && (span.from_m..span.to_m).contains(&along);
+            if backs_it {
+                let pose = Pose::new(span.point(along, 0.0) + Vec3::Y * at.y, turn);
+                ideas.push((f32::abs(x) + off, pose));
+            }
+        }
+    }
+    ideas
 }
 
 /// The gap that a row leaves where its rule says so, m.

@@ -5,7 +5,7 @@
 
 use crate::generate::openings::{Filling, Hole, Zone, overlap};
 use crate::generate::plan::{Cells, Storey, metres};
-use crate::generate::shell::{free_floor, half_wall};
+use crate::generate::shell::{covers, free_floor, half_wall};
 use dwell_furniture::stock::Stock;
 use dwell_scene::{Aabb, Pose};
 use glam::Vec3;
@@ -296,23 +296,7 @@ impl Space {
 
     /// Whether a rectangle lies over the floor entirely.
     pub(crate) fn covers(&self, rect: &Zone) -> bool {
-        let area = |r: &Zone| (r[2] - r[0]).max(0.0) * (r[3] - r[1]).max(0.0);
-        let common = |z: &Zone| {
-            [
-                z[0].max(rect[0]),
-                z[1].max(rect[1]),
-                z[2].min(rect[2]),
-                z[3].min(rect[3]),
-            ]
-        };
-        let inside: f32 = self
-            .floor
-            .iter()
-            .map(common)
-            .filter(|c| c[2] > c[0] && c[3] > c[1])
-            .map(|c| area(&c))
-            .sum();
-        inside >= area(rect) - 1e-4
+        covers(&self.floor, rect)
     }
 
     /// Whether a thing can stand there without touching anything or standing in anyone's way.
