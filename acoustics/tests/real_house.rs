@@ -4,11 +4,12 @@
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
 use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source, metrics, signals};
+use dwell_scene::navigation::{NavConfig, NavGrid};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{House, Pose, Room};
-use glam::Vec3;
+use dwell_scene::{House, Pose, Room, State};
+use glam::{Vec2, Vec3};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -31,12 +32,19 @@ fn sample_house() -> Option<Arc<House>> {
     ))
 }
 
-/// A point in a room, 1.2 m above its floor, `way` of the way from its middle to a corner of its first triangle.
-fn point_in(room: &Room, way: f32) -> Vec3 {
+/// A point in a room, 1.2 m above its floor, `way` of the way from its middle to a corner of its first triangle; over the free
+/// floor nearest to it where the room has some, out of furniture.
+fn point_in(grid: &NavGrid, room: &Room, way: f32) -> Vec3 {
     let [a, b, c] = room.footprint[0];
     let middle = (a + b + c) / 3.0;
     let there = middle + (a - middle) * way;
-    Vec3::new(there.x, room.floor_y + 1.2, there.y)
+    let there = Vec3::new(there.x, room.floor_y, there.y);
+    let places = grid.walkable().map(|cell| grid.position(cell));
+    let free = places
+        .filter(|place| room.contains_xz(Vec2::new(place.x, place.z)))
+        .filter(|place| (place.y - room.floor_y).abs() < 0.3)
+        .min_by(|a, b| a.distance(there).total_cmp(&b.distance(there)));
+    free.unwrap_or(there) + Vec3::Y * 1.2
 }
 
 /// In every furnished room a voice is heard: finite, in time, at a plausible level and with the reverberation of a home.
@@ -50,9 +58,10 @@ fn rooms_sound_like_rooms(house: &Arc<House>) {
         AcousticScene::new(house.clone(), config).unwrap(),
         RayScene::new(house.clone()),
     );
+    let grid = NavGrid::build(house, &State::new(house), &NavConfig::default()).unwrap();
     let mut heard = 0;
     for room in house.rooms.iter().filter(|room| room.area_m2() > 4.0) {
-        let (from, to) = (point_in(room, 0.4), point_in(room, -0.4));
+        let (from, to) = (point_in(&grid, room, 0.4), point_in(&grid, room, -0.4));
         let receiver = Receiver::binaural(Pose::from_position(to));
         let response = scene
             .impulse_response(

@@ -1,7 +1,7 @@
 //! The built-in apartment: what is said of it is what was put there.
 
 use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentBody, AgentId, AgentState, Holding, House, State};
+use dwell_scene::{AgentBody, AgentId, AgentState, Holding, House, ObjectId, State};
 use dwell_semantics::color::Vocabulary;
 use dwell_semantics::describe::{caption, describe_house};
 use dwell_semantics::graph::scene_graph;
@@ -103,15 +103,18 @@ fn every_thing_is_mentioned_once() {
         let simple = [
             "bathtub",
             "candle",
+            "coffee machine",
             "cooker",
             "double bed",
             "fork",
             "knife",
             "laptop",
             "magazine",
+            "microwave",
             "mirror",
             "pillow",
             "radiator",
+            "refrigerator",
             "single bed",
             "sofa",
             "telephone",
@@ -222,8 +225,28 @@ fn most_things_can_be_asked_for_and_found() {
         .agents
         .push(AgentState::new(AgentBody::default(), Vec3::ZERO, 0.0));
     let rays = RayScene::new(house.clone());
+    // What lies behind a shut door or in a shut drawer is in nobody's sight.
+    let inside = predicates::find("in").expect("it exists");
+    let shut: Vec<ObjectId> = house
+        .joints
+        .iter()
+        .filter(|joint| !joint.switches && joint.initial == joint.closed)
+        .map(|joint| joint.object)
+        .collect();
+    let shut_away: Vec<ObjectId> = {
+        let scene = semantics.scene(&state);
+        let holds = |thing: ObjectId, other: ObjectId| {
+            inside.holds(&scene, Term::Object(thing), Term::Object(other), None)
+        };
+        let away = |thing: &ObjectId| shut.iter().any(|other| holds(*thing, *other));
+        house.objects.ids().filter(away).collect()
+    };
+    let open: Vec<_> = all
+        .iter()
+        .filter(|instruction| !shut_away.contains(&instruction.goal.objects[0]))
+        .collect();
     let mut found = 0;
-    for instruction in &all {
+    for instruction in &open {
         let object = instruction.goal.objects[0];
         let center = semantics.scene(&state).extent(object).bounds.center();
         let reached = (0..16).any(|k| {
@@ -238,8 +261,8 @@ fn most_things_can_be_asked_for_and_found() {
         state.agents[AgentId(0)].body = AgentBody::default();
         found += usize::from(reached);
     }
-    println!("{found} of {} are seen from a metre away", all.len());
-    assert!(found * 10 >= all.len() * 9);
+    println!("{found} of {} are seen from a metre away", open.len());
+    assert!(open.len() >= 60 && found * 10 >= open.len() * 9);
 }
 
 #[test]

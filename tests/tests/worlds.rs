@@ -204,16 +204,21 @@ fn windows_grow_backwards_and_time_goes_on_without_ears() {
     let beside_a_source = || {
         let mut world = gathering(1);
         let (house, state) = (world.house().clone(), world.state().clone());
-        let source = house
-            .emitters
-            .iter()
-            .find(|source| state.is_on(&house, source.object));
-        let source = source.expect("something is playing");
+        let playing = house.emitters.iter();
+        let loudest = playing
+            .filter(|source| state.is_on(&house, source.object))
+            .max_by(|a, b| a.level_db.total_cmp(&b.level_db));
+        let source = loudest.expect("something is playing");
         let place = state.part_pose[source.part].transform_point(source.position);
-        let floor = state.agents[AGENT].position.y;
-        world
-            .place_agent(AGENT, Vec3::new(place.x + 0.3, floor, place.z), 0.0)
+        let grid = world
+            .engines()
+            .navigation(&state.agents[AGENT].body)
             .unwrap();
+        let beside = grid
+            .walkable()
+            .map(|cell| grid.position(cell))
+            .min_by(|a, b| a.distance(place).total_cmp(&b.distance(place)));
+        world.place_agent(AGENT, beside.unwrap(), 0.0).unwrap();
         world
     };
     let (mut early, mut late) = (beside_a_source(), beside_a_source());

@@ -18,8 +18,8 @@ const HAND_LEAD: [f32; 2] = [0.3, 0.1];
 const CREEP: f32 = 0.02;
 /// Speed under which a joint that reaches its stop has arrived, rad/s or m/s.
 const STOPPED: f32 = 0.2;
-/// How long a joint may make no progress before the hand gives up, s.
-const PATIENCE_S: f32 = 0.6;
+/// How long a joint may make no progress before the hand, which pulls as far ahead as it can, gives up, s.
+const PATIENCE_S: f32 = 0.4;
 
 /// A hand that moves a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -92,7 +92,10 @@ impl Drive {
             self.ramp = self.goal;
         }
         self.ramp = self.ramp.clamp(position - lead, position + lead);
-        if stands {
+        // A light lid with much friction follows the hand without a velocity at the end of a step: what counts is whether it
+        // follows.
+        let strains = (self.ramp - position).abs() > 0.99 * lead;
+        if stands && strains {
             self.stalled_s += step_s;
         } else {
             self.stalled_s = 0.0;
