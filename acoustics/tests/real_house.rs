@@ -10,6 +10,7 @@ use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, Pose, Room, State};
 use glam::{Vec2, Vec3};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -32,19 +33,25 @@ fn sample_house() -> Option<Arc<House>> {
     ))
 }
 
-/// A point in a room, 1.2 m above its floor, `way` of the way from its middle to a corner of its first triangle; over the free
-/// floor nearest to it where the room has some, out of furniture.
+/// A point in a room, 1.2 m above its floor, `way` of the way from its middle to a corner of its first triangle; over the nearest
+/// of the room's largest stretch of free floor where it has some: out of furniture, in wardrobes too.
 fn point_in(grid: &NavGrid, room: &Room, way: f32) -> Vec3 {
     let [a, b, c] = room.footprint[0];
     let middle = (a + b + c) / 3.0;
     let there = middle + (a - middle) * way;
     let there = Vec3::new(there.x, room.floor_y, there.y);
-    let places = grid.walkable().map(|cell| grid.position(cell));
-    let free = places
-        .filter(|place| room.contains_xz(Vec2::new(place.x, place.z)))
-        .filter(|place| (place.y - room.floor_y).abs() < 0.3)
-        .min_by(|a, b| a.distance(there).total_cmp(&b.distance(there)));
-    free.unwrap_or(there) + Vec3::Y * 1.2
+    let mut stretches = BTreeMap::<_, Vec<Vec3>>::new();
+    for cell in grid.walkable() {
+        let place = grid.position(cell);
+        let inside = room.contains_xz(Vec2::new(place.x, place.z));
+        if inside && (place.y - room.floor_y).abs() < 0.3 {
+            stretches.entry(grid.island(cell)).or_default().push(place);
+        }
+    }
+    let largest = stretches.into_values().max_by_key(Vec::len);
+    let places = largest.unwrap_or_default().into_iter();
+    let nearest = places.min_by(|a, b| a.distance(there).total_cmp(&b.distance(there)));
+    nearest.unwrap_or(there) + Vec3::Y * 1.2
 }
 
 /// In every furnished room a voice is heard: finite, in time, at a plausible level and with the reverberation of a home.
