@@ -93,10 +93,8 @@ static SUNCG: LazyLock<Option<World>> = LazyLock::new(|| {
 });
 
 const DEPTH: Channels = Channels {
-    rgb: false,
     depth: true,
-    instance: false,
-    semantic: false,
+    ..Channels::NONE
 };
 
 #[divan::bench(args = [1, 2])]

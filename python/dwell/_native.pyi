@@ -82,7 +82,8 @@ class House:
         """Counts, rooms, objects, categories, report of damage: one JSON object."""
     def describe(self, level: str, key: int | None = ...) -> list[str]:
         """Sentences, or JSON lines, of one level: object, room, house, graph, instructions."""
-    def semantic_classes(self) -> list[str]: ...
+    def semantic_classes(self, table: str = ...) -> list[str]:
+        """Names of semantic classes: ``coarse``, ``fine`` or ``nyu40``; 0 is void."""
     def rooms_json(self) -> str:
         """For each room: name, kinds, area, centre of a good view: ``{name, kinds, area_m2, floor_y, eye, yaw_deg}``."""
     def write_into(self, root: str, name: str, form: str) -> tuple[Path, list[str]]: ...
@@ -131,7 +132,7 @@ class World:
     def events_json(self) -> str: ...
     def start_report_json(self) -> str: ...
     def render(self, view_json: str, channels: Sequence[str]) -> dict[str, NDArray[Any]]:
-        """``view_json``: ``{width, height, fov_deg, near_m, far_m, preset, position, yaw_deg, pitch_deg | forward}`` or ``{"agent": 0, ...}``."""
+        """``view_json``: ``{camera, position, yaw_deg, pitch_deg | forward}`` or ``{camera, agent}``."""
     def map(self, longest_edge: int) -> tuple[NDArray[np.uint8], float, float, float]:
         """The lowest storey from above (height, width, 3), with the x and z of the upper left corner and pixels a metre."""
     def listen(self, agent: int, samples: int) -> NDArray[np.float32]:

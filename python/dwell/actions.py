@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dwell.arguments import fields, finite, mapping, pair, point, text, to_json, whole
-from dwell.camera import Camera
+from dwell.camera import Camera, camera_settings
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,10 +64,13 @@ def _thing(name: str, value: object) -> str | int:
 def _camera(name: str, value: object) -> dict[str, Any]:
     """A camera as what its pixels depend on."""
     if isinstance(value, Camera):
-        value = {"width": value.width, "height": value.height} | (
-            {} if value.fov_deg is None else {"fov_deg": value.fov_deg}
-        )
+        settings = camera_settings(name, value)
+        return {key: part for key, part in settings.items() if key not in _NOT_OF_PIXELS}
     return fields(name, value, {"width": whole, "height": whole, "fov_deg": finite})
+
+
+#: What does not change where a camera's pixels look.
+_NOT_OF_PIXELS = {"near_m", "far_m", "preset", "max_objects"}
 
 
 def _grasp(name: str, value: object) -> str | dict[str, Any]:

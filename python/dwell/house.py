@@ -14,6 +14,7 @@ from dwell.navigation import Navigation, Walker, walker_json
 
 Level = Literal["object", "room", "house", "graph", "instructions"]
 Form = Literal["dwell", "suncg", "glb"]
+Table = Literal["coarse", "fine", "nyu40"]
 
 
 class House:
@@ -182,9 +183,14 @@ class House:
         seed = None if seed is None else whole("seed", seed)
         return self._native.describe(text("level", level), seed)
 
-    def semantic_classes(self) -> list[str]:
-        """The names of the numbers in semantic images; 0 is void."""
-        return self._native.semantic_classes()
+    def semantic_classes(self, table: Table = "coarse") -> list[str]:
+        """The names of the numbers in semantic images; 0 is void.
+
+        Args:
+            table: ``coarse`` for ``semantic``, ``fine`` for ``semantic_fine``, ``nyu40`` for
+                ``semantic_nyu40``.
+        """
+        return self._native.semantic_classes(text("table", table))
 
     def navigation(self, walker: Walker | None = None) -> Navigation:
         """Where one can walk in the house as it starts."""

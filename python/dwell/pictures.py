@@ -51,8 +51,52 @@ def id_colors(ids: NDArray[Any]) -> NDArray[np.uint8]:
     return np.rint(colors).astype(np.uint8)
 
 
+def direction_colors(normals: NDArray[Any]) -> NDArray[np.uint8]:
+    """Unit vectors, -1 to 1 as dark to bright in red, green and blue; none is black."""
+    colors = np.rint((normals.astype(np.float64) * 0.5 + 0.5).clip(0.0, 1.0) * 255.0)
+    colors[(normals == 0.0).all(-1)] = 0.0
+    return colors.astype(np.uint8)
+
+
+def light_colors(light: NDArray[Any]) -> NDArray[np.uint8]:
+    """Linear light, 0 to 1, as sRGB (IEC 61966-2-1)."""
+    light = light.astype(np.float64).clip(0.0, 1.0)
+    encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    colors: NDArray[np.uint8] = np.rint(encoded * 255.0).astype(np.uint8)
+    return colors
+
+
+def flow_colors(flow: NDArray[Any]) -> NDArray[np.uint8]:
+    """Movement: the direction as hue, speed as saturation; what rests is white."""
+    x, y = flow[..., 0].astype(np.float64), flow[..., 1].astype(np.float64)
+    speed = np.hypot(x, y)
+    part = np.clip(speed / max(float(np.quantile(speed, 0.99)), 1e-6), 0.0, 1.0)
+    hue = np.mod(np.arctan2(y, x) / (2.0 * np.pi), 1.0) * 6.0
+    rgb = np.stack([np.abs(np.mod(hue + shift, 6.0) - 3.0) - 1.0 for shift in (0.0, 4.0, 2.0)], -1)
+    colors = 1.0 - part[..., None] * (1.0 - rgb.clip(0.0, 1.0))
+    shown: NDArray[np.uint8] = np.rint(colors * 255.0).astype(np.uint8)
+    return shown
+
+
+#: How each sensor's image is shown; what lists things has no picture.
+_SHOWN = {
+    "depth": depth_colors,
+    "instance": id_colors,
+    "semantic": id_colors,
+    "semantic_fine": id_colors,
+    "semantic_nyu40": id_colors,
+    "normals": direction_colors,
+    "albedo": light_colors,
+    "surfels": lambda surfels: light_colors(surfels[..., 6:]),
+    "flow": flow_colors,
+}
+
+
+def has_picture(channel: str) -> bool:
+    """Whether a sensor gives an image, and not a list."""
+    return channel == "rgb" or channel in _SHOWN
+
+
 def picture(channel: str, image: NDArray[Any]) -> Image.Image:
-    """A sensor's image as a picture: rgb as it is, depth on a colour scale, ids in colours."""
-    if channel == "rgb":
-        return Image.fromarray(image)
-    return Image.fromarray(depth_colors(image) if channel == "depth" else id_colors(image))
+    """A sensor's image as a picture for people: colours as they are, others in colours."""
+    return Image.fromarray(image if channel == "rgb" else _SHOWN[channel](image))

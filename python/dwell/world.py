@@ -19,7 +19,6 @@ from dwell.arguments import (
     mapping,
     pair,
     point,
-    record,
     text,
     texts,
     to_json,
@@ -27,7 +26,7 @@ from dwell.arguments import (
     unit_quaternion,
     whole,
 )
-from dwell.camera import Camera, Channel
+from dwell.camera import Camera, Channel, camera_settings
 from dwell.house import House
 from dwell.navigation import Navigation, Walker, walker_json
 from dwell.settings import Laws, world_settings
@@ -291,13 +290,30 @@ class World:
     ) -> dict[str, NDArray[Any]]:
         """Renders a view from an agent's eyes, or from a position.
 
+        What an agent carries obeys the laws of its cameras; a camera anywhere else is ideal.
+
+        Args:
+            agent: Whose eyes; 0 when no position is given.
+            position: Where the camera is instead, m.
+            yaw_deg: Where it looks there, positive to the left.
+            pitch_deg: Positive up.
+            camera: Size, projection, mount.
+            channels: What to take.
+
         Returns:
-            ``rgb`` (height, width, 3) uint8 sRGB; ``depth`` (height, width, 1) float32 m;
-            ``instance`` and ``semantic`` (height, width, 1) int32.
+            ``rgb`` (height, width, 3) uint8 sRGB; ``depth`` (height, width, 1) float32 m along -Z
+            (range for fisheyes and cameras that see all around); ``instance``, ``semantic``,
+            ``semantic_fine`` and ``semantic_nyu40`` (height, width, 1) int32; in the camera's frame
+            (right, up, back) ``normals`` (height, width, 3) float32 and ``surfels`` (height, width,
+            9) float32, position in m, normal, reflectance; ``albedo`` (height, width, 3) float32,
+            linear reflectance 0 to 1; ``flow`` (height, width, 2) float32, pixels right and down
+            since the step before; of what is in view, by id, unused rows 0: ``visible_objects``
+            (max_objects, 3) float32, id, pixels, part hidden by others; ``boxes_2d`` (max_objects,
+            6) int32, id, first column and row, those behind the last, pixels; ``boxes_3d``
+            (max_objects, 11) float32, id, middle and edges in m, rotation x, y, z, w.
         """
-        view = record(
-            "camera", Camera() if camera is None else camera, Camera, {"preset": ("flat", "lit")}
-        )
+        chosen = Camera() if camera is None else camera
+        view: dict[str, Any] = {"camera": camera_settings("camera", chosen)}
         if position is None:
             view["agent"] = 0 if agent is None else whole("agent", agent)
         else:

@@ -8,7 +8,7 @@ use dwell::sensors::{Dtype, Out};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo};
 use dwell_scene::parallel::Threads;
 use numpy::{
-    BorrowError, IntoPyArray, PyArray1, PyArray3, PyArrayDyn, PyArrayMethods, PyReadonlyArray1,
+    BorrowError, IntoPyArray, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1,
     PyReadwriteArrayDyn,
 };
 use pyo3::prelude::*;
@@ -209,8 +209,8 @@ impl PyBatch {
         py: Python<'py>,
         env: usize,
         view_json: &str,
-    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        let picture = self.with(py, |batch| {
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut seen = self.with(py, |batch| {
             let mut view: serde_json::Value = serde_json::from_str(view_json)?;
             if let Some(view) = view.as_object_mut() {
                 view.entry("agent").or_insert_with(|| 0.into());
@@ -221,11 +221,10 @@ impl PyBatch {
                 &["rgb".to_owned()],
             )
         })?;
-        picture
-            .frame
-            .rgb
-            .into_pyarray(py)
-            .reshape([picture.height, picture.width, 3])
+        let rgb = seen.pop().ok_or_else(|| {
+            crate::errors::to_python(Fault::Usage("no picture was taken".to_owned()))
+        })?;
+        picture::array(py, rgb)
     }
 
     fn expert_actions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {

@@ -140,8 +140,17 @@ impl PyHouse {
         })
     }
 
-    fn semantic_classes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        py.engine(|| Ok::<_, Fault>(dwell_render::semantic_classes(self.house())))
+    #[pyo3(signature = (table="coarse"))]
+    fn semantic_classes(&self, py: Python<'_>, table: &str) -> PyResult<Vec<String>> {
+        py.engine(|| {
+            let known: Result<dwell_render::Classes, _> = serde_json::from_value(table.into());
+            let classes = known.map_err(|_| {
+                Fault::Config(format!(
+                    "no table of classes {table:?}; there are coarse, fine and nyu40"
+                ))
+            })?;
+            Ok::<_, Fault>(classes.names(self.house()))
+        })
     }
 
     fn write(&self, py: Python<'_>, path: &str, form: &str) -> PyResult<Vec<String>> {

@@ -1,24 +1,22 @@
 //! One picture of a world, as Python asks for it.
 
 use crate::errors::Fault;
-use dwell::World;
-use dwell_render::{Camera, Channels, Frame, Preset, View};
+use dwell::sensors::{Data, Observation};
+use dwell::{PictureRequest, Place, World, camera_mount};
+use dwell_render::{Camera, Preset, Projection};
 use dwell_scene::parallel::Threads;
 use dwell_scene::space::{rotation_from_forward, rotation_from_yaw_pitch};
-use dwell_scene::{AgentId, EntityId, Pose};
+use dwell_scene::{AgentId, Pose};
 use glam::Vec3;
+use numpy::{IntoPyArray, PyArrayMethods};
+use pyo3::prelude::*;
 use serde::Deserialize;
 
 /// A picture that is asked for.
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct ViewSettings {
-    width: u32,
-    height: u32,
-    fov_deg: Option<f32>,
-    near_m: f32,
-    far_m: f32,
-    preset: Preset,
+    camera: CameraSettings,
     agent: Option<u32>,
     position: [f32; 3],
     yaw_deg: f32,
@@ -26,15 +24,47 @@ struct ViewSettings {
     forward: Option<[f32; 3]>,
 }
 
-impl Default for ViewSettings {
+/// The camera of a picture, and how it is mounted.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct CameraSettings {
+    width: u32,
+    height: u32,
+    fov_deg: Option<f32>,
+    projection: Option<Projection>,
+    near_m: f32,
+    far_m: f32,
+    preset: Preset,
+    position_m: [f32; 3],
+    yaw_deg: f32,
+    pitch_deg: f32,
+    roll_deg: f32,
+    max_objects: u32,
+}
+
+impl Default for CameraSettings {
     fn default() -> Self {
         Self {
             width: 128,
             height: 128,
             fov_deg: None,
-            near_m: 0.05,
-            far_m: 50.0,
+            projection: None,
+            near_m: Camera::DEFAULT_NEAR_M,
+            far_m: Camera::DEFAULT_FAR_M,
             preset: Preset::Lit,
+            position_m: [0.0; 3],
+            yaw_deg: 0.0,
+            pitch_deg: 0.0,
+            roll_deg: 0.0,
+            max_objects: 64,
+        }
+    }
+}
+
+impl Default for ViewSettings {
+    fn default() -> Self {
+        Self {
+            camera: CameraSettings::default(),
             agent: None,
             position: [0.0; 3],
             yaw_deg: 0.0,
@@ -44,79 +74,67 @@ impl Default for ViewSettings {
     }
 }
 
-/// The images of a picture; those that nobody asked for are empty.
-pub(crate) struct Picture {
-    pub(crate) height: usize,
-    pub(crate) width: usize,
-    pub(crate) frame: Frame,
-}
-
-/// Renders the view that `view_json` describes.
+/// What the sensors called `channels` give for the view that `view_json` describes.
 pub(crate) fn render(
     world: &World,
     view_json: &str,
     channels: &[String],
-) -> Result<Picture, Fault> {
-    let known = ["rgb", "depth", "instance", "semantic"];
-    if let Some(other) = channels
-        .iter()
-        .find(|channel| !known.contains(&channel.as_str()))
-    {
-        return Err(Fault::Config(format!(
-            "no image {other:?}; there are {known:?}"
-        )));
-    }
-    let wanted = |channel: &str| channels.iter().any(|other| other == channel);
+) -> Result<Vec<Observation>, Fault> {
     let settings: ViewSettings = serde_json::from_str(view_json)?;
-    let (world_from_camera, hide) = eye(world, &settings)?;
-    let own = settings
-        .agent
-        .map(|agent| world.state().camera_fov_deg(AgentId(agent)));
-    // Away from an agent's eyes a camera has the right angle that they have where nothing else is said.
-    let fov_deg = settings.fov_deg.or(own).unwrap_or(90.0);
-    let camera = Camera::from_fov(settings.width, settings.height, fov_deg)?;
-    let camera = camera.with_range(settings.near_m, settings.far_m)?;
-    let view = View {
-        preset: settings.preset,
-        hide,
-        ..View::new(camera, world_from_camera)
+    let own = &settings.camera;
+    let camera = match (own.projection, own.fov_deg) {
+        (Some(_), Some(fov_deg)) => {
+            return Err(Fault::Config(format!(
+                "camera.fov_deg is {fov_deg}; allowed is None beside a projection"
+            )));
+        }
+        (Some(projection), None) => Camera::new(own.width, own.height, projection)?,
+        (None, fov_deg) => {
+            let agents = settings
+                .agent
+                .filter(|agent| (*agent as usize) < world.state().agents.len())
+                .map(|agent| world.state().camera_fov_deg(AgentId(agent)));
+            // Away from an agent's eyes a camera has the right angle that they have where nothing else is said.
+            let fov_deg = fov_deg.or(agents).unwrap_or(90.0);
+            Camera::from_fov(own.width, own.height, fov_deg)?
+        }
     };
-    let channels = Channels {
-        rgb: wanted("rgb"),
-        depth: wanted("depth"),
-        instance: wanted("instance"),
-        semantic: wanted("semantic"),
+    let request = PictureRequest {
+        camera: camera.with_range(own.near_m, own.far_m)?,
+        place: place(world, &settings)?,
+        preset: own.preset,
     };
-    let mut frame = Frame::new(&camera, channels);
-    let renderer = world.engines().renderer();
-    renderer.render(
-        world.rays(),
-        world.state(),
-        &[view],
-        &mut [frame.as_mut()],
-        Threads::requested(None)?,
-    )?;
-    Ok(Picture {
-        height: settings.height as usize,
-        width: settings.width as usize,
-        frame,
+    let threads = Threads::requested(None)?;
+    Ok(world.look(&request, channels, own.max_objects, threads)?)
+}
+
+/// An observation as an array of its own shape.
+pub(crate) fn array(py: Python<'_>, observation: Observation) -> PyResult<Bound<'_, PyAny>> {
+    let shape = observation.spec.shape;
+    Ok(match observation.data {
+        Data::Uint8(data) => data.into_pyarray(py).reshape(shape)?.into_any(),
+        Data::Float32(data) => data.into_pyarray(py).reshape(shape)?.into_any(),
+        Data::Int32(data) => data.into_pyarray(py).reshape(shape)?.into_any(),
     })
 }
 
-/// Where the camera stands, and whose body it does not see.
-fn eye(world: &World, settings: &ViewSettings) -> Result<(Pose, Option<EntityId>), Fault> {
-    if let Some(number) = settings.agent {
-        let agents = &world.state().agents;
-        let Some(agent) = agents.get(AgentId(number)) else {
-            return Err(Fault::Usage(format!(
-                "no agent {number}; there are {}",
-                agents.len()
-            )));
-        };
-        return Ok((
-            agent.world_from_eye(),
-            Some(world.house().entity_of_agent(AgentId(number))),
+/// Where the camera stands.
+fn place(world: &World, settings: &ViewSettings) -> Result<Place, Fault> {
+    let own = &settings.camera;
+    let mount = camera_mount(own.position_m, [own.yaw_deg, own.pitch_deg, own.roll_deg]);
+    if !mount.is_valid() {
+        return Err(Fault::Config(
+            "camera: position and angles must be finite".to_owned(),
         ));
+    }
+    if let Some(number) = settings.agent {
+        let count = world.state().agents.len();
+        if number as usize >= count {
+            return Err(Fault::Usage(format!(
+                "no agent {number}; there are {count}"
+            )));
+        }
+        return Ok(Place::Agent(AgentId(number), mount));
     }
     let rotation = match settings.forward {
         Some(forward) => rotation_from_forward(Vec3::from_array(forward)).ok_or_else(|| {
@@ -131,7 +149,7 @@ fn eye(world: &World, settings: &ViewSettings) -> Result<(Pose, Option<EntityId>
     };
     let pose = Pose::new(Vec3::from_array(settings.position), rotation);
     if pose.is_valid() {
-        Ok((pose, None))
+        Ok(Place::World(pose * mount))
     } else {
         Err(Fault::Config(
             "position and angles must be finite".to_owned(),

@@ -199,43 +199,12 @@ impl PyWorld {
         view_json: &str,
         channels: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let picture = self.with(py, |running| {
+        let seen = self.with(py, |running| {
             picture::render(&running.world, view_json, &channels)
         })?;
-        let (height, width) = (picture.height, picture.width);
         let images = PyDict::new(py);
-        for channel in &channels {
-            let image = match channel.as_str() {
-                "rgb" => picture
-                    .frame
-                    .rgb
-                    .clone()
-                    .into_pyarray(py)
-                    .reshape([height, width, 3])?
-                    .into_any(),
-                "depth" => picture
-                    .frame
-                    .depth
-                    .clone()
-                    .into_pyarray(py)
-                    .reshape([height, width, 1])?
-                    .into_any(),
-                "instance" => picture
-                    .frame
-                    .instance
-                    .clone()
-                    .into_pyarray(py)
-                    .reshape([height, width, 1])?
-                    .into_any(),
-                _ => picture
-                    .frame
-                    .semantic
-                    .clone()
-                    .into_pyarray(py)
-                    .reshape([height, width, 1])?
-                    .into_any(),
-            };
-            images.set_item(channel, image)?;
+        for (channel, observation) in channels.iter().zip(seen) {
+            images.set_item(channel, picture::array(py, observation)?)?;
         }
         Ok(images)
     }
@@ -252,9 +221,7 @@ impl PyWorld {
                 &map.view.camera,
                 Channels {
                     rgb: true,
-                    depth: false,
-                    instance: false,
-                    semantic: false,
+                    ..Channels::NONE
                 },
             );
             let threads = Threads::requested(None)?;

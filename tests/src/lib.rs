@@ -62,7 +62,11 @@ pub fn env_of(task: &str, sensors: &[&str]) -> Env {
 /// When the task, a law or a sensor does not exist.
 pub fn env_with(config: EnvConfig, sensors: &[&str]) -> Env {
     let settings = |name: &str| match name {
-        "rgb" | "depth" | "instance" | "semantic" => json!({"width": 32, "height": 24}),
+        "rgb" | "depth" | "instance" | "semantic" | "semantic_fine" | "semantic_nyu40"
+        | "normals" | "albedo" | "surfels" | "flow" | "visible_objects" | "boxes_2d"
+        | "boxes_3d" => {
+            json!({"width": 32, "height": 24})
+        }
         _ => json!({}),
     };
     let sensors = sensors.iter().map(|name| SensorConfig {

@@ -197,18 +197,24 @@ fn laws_at_their_default_change_nothing() {
         (batch.envs()[0].world().hash(), observe(&mut batch))
     };
     let bare = run(Vec::new());
-    for info in dwell::laws::all() {
-        let params = info
-            .params
-            .iter()
-            .map(|param| (param.name.to_owned(), param.default))
-            .collect();
-        let spec = LawSpec {
+    let specs: Vec<LawSpec> = dwell::laws::all()
+        .map(|info| LawSpec {
             id: info.id.to_owned(),
             version: info.version,
             target: None,
-            params,
-        };
-        assert!(run(vec![spec]) == bare, "{}", info.id);
+            params: info
+                .params
+                .iter()
+                .map(|param| (param.name.to_owned(), param.default))
+                .collect(),
+        })
+        .collect();
+    // All at once; one by one only to say which.
+    if run(specs.clone()) != bare {
+        for spec in specs {
+            let id = spec.id.clone();
+            assert!(run(vec![spec]) == bare, "{id}");
+        }
+        panic!("laws at their default change something together");
     }
 }

@@ -14,7 +14,7 @@ Physical effects that the basic model lacks. A law at its default is not install
 written by the test `laws_page` (`UPDATE_GOLDEN=1 cargo test -p dwell-tests --test laws_page`) from what the engines say.
 
 What a target names: a law on an *object* takes an object's name (all of its bodies, free or moved by joints) or `OBJECT/PART`,
-one on a *joint* a joint's name, `OBJECT/JOINT` or a number, one on an *agent* its number, one on *contacts* `NAME` (all contacts
+one on a *joint* a joint's name, `OBJECT/JOINT` or a number, one on an *agent* its number (laws of cameras act on what it carries), one on *contacts* `NAME` (all contacts
 of it) or `NAME~NAME` (those between the two, in either order; the surface is the first), where a name is that of an object, of a
 piece of the structure or of a substance of the materials library. No target means everything that they can act on: agents on
 legs have neither wheels nor gyro, and are refused by laws of these. Agents that come later are among everything, and not among

@@ -35,6 +35,7 @@ fn main() {
             depth: m.contains('d'),
             instance: m.contains('i'),
             semantic: m.contains('s'),
+            ..Channels::NONE
         };
         let views: Vec<View> = l
             .iter()

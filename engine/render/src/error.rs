@@ -60,4 +60,14 @@ pub enum RenderError {
         /// How many there are.
         count: usize,
     },
+    /// A law of cameras on an agent that there is not.
+    #[error("law {law}: target {found:?} is no agent; there are {agents}, counted from 0")]
+    LawTarget {
+        /// The law's id.
+        law: String,
+        /// What it names.
+        found: String,
+        /// How many agents there are.
+        agents: usize,
+    },
 }

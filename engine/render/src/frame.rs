@@ -2,7 +2,8 @@
 
 use crate::camera::Camera;
 use crate::error::RenderError;
-use dwell_scene::{EntityId, Pose};
+use dwell_scene::{EntityId, PartId, Pose};
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// How much light there is in a picture.
@@ -44,7 +45,7 @@ impl View {
 /// Which images are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-#[expect(clippy::struct_excessive_bools, reason = "a set of four images")]
+#[expect(clippy::struct_excessive_bools, reason = "a set of images")]
 pub struct Channels {
     /// Colour.
     pub rgb: bool,
@@ -54,6 +55,12 @@ pub struct Channels {
     pub instance: bool,
     /// Ids of classes of things.
     pub semantic: bool,
+    /// Normals of surfaces.
+    pub normals: bool,
+    /// Reflectance of surfaces.
+    pub albedo: bool,
+    /// How surfaces have moved in the image.
+    pub flow: bool,
 }
 
 impl Channels {
@@ -63,17 +70,57 @@ impl Channels {
         depth: true,
         instance: true,
         semantic: true,
+        normals: true,
+        albedo: true,
+        flow: true,
     };
+    /// No image.
+    pub const NONE: Self = Self {
+        rgb: false,
+        depth: false,
+        instance: false,
+        semantic: false,
+        normals: false,
+        albedo: false,
+        flow: false,
+    };
+
+    /// The images of both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            rgb: self.rgb | other.rgb,
+            depth: self.depth | other.depth,
+            instance: self.instance | other.instance,
+            semantic: self.semantic | other.semantic,
+            normals: self.normals | other.normals,
+            albedo: self.albedo | other.albedo,
+            flow: self.flow | other.flow,
+        }
+    }
 }
 
 impl Default for Channels {
     /// Colour, depth and instance.
     fn default() -> Self {
         Self {
-            semantic: false,
-            ..Self::ALL
+            rgb: true,
+            depth: true,
+            instance: true,
+            ..Self::NONE
         }
     }
+}
+
+/// Where camera and things were a while ago, for [`FrameMut::flow`].
+#[derive(Clone, Copy, Debug)]
+pub struct Before<'a> {
+    /// Where the camera stood.
+    pub world_from_camera: Pose,
+    /// Where parts were that have moved since, by part; the others stood where they stand.
+    pub moved: &'a [(PartId, Pose)],
+    /// Where the agents' feet were, m. Shape (agent,); those beyond its end stood where they stand.
+    pub agents: &'a [Vec3],
 }
 
 /// The images of one view in memory of the caller; `None`: not wanted. Rows from the top, without gaps.
@@ -81,89 +128,147 @@ impl Default for Channels {
 pub struct FrameMut<'a> {
     /// Colour, sRGB-encoded. Shape (height, width, 3).
     pub rgb: Option<&'a mut [u8]>,
-    /// Depth along the camera's axis, m; `far_m` where nothing is seen. Shape (height, width).
+    /// Depth along the camera's axis (range for cameras that see all around), m; `far_m` where nothing is seen. Shape (height,
+    /// width).
     pub depth: Option<&'a mut [f32]>,
     /// [`EntityId`] of what is seen; 0 for nothing. Shape (height, width).
     pub instance: Option<&'a mut [i32]>,
     /// Class of what is seen, a position in [`crate::semantic_classes`]; 0 for nothing. Shape (height, width).
     pub semantic: Option<&'a mut [i32]>,
+    /// Unit normal of the surface in camera space, on the side that is seen; zeros for nothing. Shape (height, width, 3).
+    pub normals: Option<&'a mut [f32]>,
+    /// Reflectance of the surface, linear, 0 to 1; zeros for nothing. Shape (height, width, 3).
+    pub albedo: Option<&'a mut [f32]>,
+    /// How the seen point has moved in the image since [`Before`], pixels to the right and down; zeros where it was not seen
+    /// by the camera. Shape (height, width, 2).
+    pub flow: Option<&'a mut [f32]>,
 }
 
-impl FrameMut<'_> {
+/// Applies a macro to every image of a frame, with its elements per pixel.
+macro_rules! each_image {
+    ($visit:ident) => {
+        $visit!(rgb, 3);
+        $visit!(depth, 1);
+        $visit!(instance, 1);
+        $visit!(semantic, 1);
+        $visit!(normals, 3);
+        $visit!(albedo, 3);
+        $visit!(flow, 2);
+    };
+}
+
+impl<'a> FrameMut<'a> {
     /// The same frame for a shorter time.
     pub fn reborrow(&mut self) -> FrameMut<'_> {
-        FrameMut {
-            rgb: self.rgb.as_deref_mut(),
-            depth: self.depth.as_deref_mut(),
-            instance: self.instance.as_deref_mut(),
-            semantic: self.semantic.as_deref_mut(),
+        let mut frame = FrameMut::default();
+        macro_rules! lend {
+            ($image:ident, $parts:expr) => {
+                frame.$image = self.$image.as_deref_mut();
+            };
         }
+        each_image!(lend);
+        frame
     }
 
-    /// Checks every length against the camera's image.
-    pub(crate) fn check(&self, view: usize, camera: &Camera) -> Result<(), RenderError> {
-        let pixels = camera.pixels();
-        let lengths = [
-            ("rgb", self.rgb.as_ref().map(|b| b.len()), pixels * 3),
-            ("depth", self.depth.as_ref().map(|b| b.len()), pixels),
-            ("instance", self.instance.as_ref().map(|b| b.len()), pixels),
-            ("semantic", self.semantic.as_ref().map(|b| b.len()), pixels),
-        ];
-        for (channel, found, expected) in lengths {
-            if let Some(found) = found
-                && found != expected
-            {
-                return Err(RenderError::Length {
-                    view,
-                    channel,
-                    found,
-                    expected,
-                });
-            }
+    /// Takes the first `pixels` pixels off, such as those of the first rows; a shorter frame gives nothing.
+    #[must_use]
+    pub fn take_pixels(&mut self, pixels: usize) -> FrameMut<'a> {
+        let mut frame = FrameMut::default();
+        macro_rules! cut {
+            ($image:ident, $parts:expr) => {
+                if let Some((first, rest)) = self
+                    .$image
+                    .take()
+                    .and_then(|all| all.split_at_mut_checked(pixels * $parts))
+                {
+                    (frame.$image, self.$image) = (Some(first), Some(rest));
+                }
+            };
         }
+        each_image!(cut);
+        frame
+    }
+
+    /// Checks every length against a number of pixels.
+    pub(crate) fn check(&self, view: usize, pixels: usize) -> Result<(), RenderError> {
+        macro_rules! check {
+            ($image:ident, $parts:expr) => {
+                if let Some(buffer) = &self.$image
+                    && buffer.len() != pixels * $parts
+                {
+                    return Err(RenderError::Length {
+                        view,
+                        channel: stringify!($image),
+                        found: buffer.len(),
+                        expected: pixels * $parts,
+                    });
+                }
+            };
+        }
+        each_image!(check);
         Ok(())
     }
 }
 
-/// The images of one view, in memory of their own.
+/// The images of one view, in memory of their own. Those that are not wanted are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
-    /// Colour, sRGB-encoded. Shape (height, width, 3), or empty.
+    /// As [`FrameMut::rgb`].
     pub rgb: Vec<u8>,
-    /// Depth along the camera's axis, m; `far_m` where nothing is seen. Shape (height, width), or empty.
+    /// As [`FrameMut::depth`].
     pub depth: Vec<f32>,
-    /// [`EntityId`] of what is seen; 0 for nothing. Shape (height, width), or empty.
+    /// As [`FrameMut::instance`].
     pub instance: Vec<i32>,
-    /// Class of what is seen, a position in [`crate::semantic_classes`]; 0 for nothing. Shape (height, width), or empty.
+    /// As [`FrameMut::semantic`].
     pub semantic: Vec<i32>,
+    /// As [`FrameMut::normals`].
+    pub normals: Vec<f32>,
+    /// As [`FrameMut::albedo`].
+    pub albedo: Vec<f32>,
+    /// As [`FrameMut::flow`].
+    pub flow: Vec<f32>,
 }
 
 impl Frame {
     /// Black images of the right size.
     pub fn new(camera: &Camera, channels: Channels) -> Self {
-        let pixels = |wanted: bool| if wanted { camera.pixels() } else { 0 };
-        Self {
-            rgb: vec![0; pixels(channels.rgb) * 3],
-            depth: vec![0.0; pixels(channels.depth)],
-            instance: vec![0; pixels(channels.instance)],
-            semantic: vec![0; pixels(channels.semantic)],
+        let mut frame = Self::default();
+        macro_rules! fill {
+            ($image:ident, $parts:expr) => {
+                if channels.$image {
+                    frame
+                        .$image
+                        .resize(camera.pixels() * $parts, Default::default());
+                }
+            };
         }
+        each_image!(fill);
+        frame
+    }
+
+    /// The images that it holds.
+    pub fn channels(&self) -> Channels {
+        let mut channels = Channels::NONE;
+        macro_rules! note {
+            ($image:ident, $parts:expr) => {
+                channels.$image = !self.$image.is_empty();
+            };
+        }
+        each_image!(note);
+        channels
     }
 
     /// The images to write into; an empty one is not wanted.
     pub fn as_mut(&mut self) -> FrameMut<'_> {
-        fn wanted<T>(buffer: &mut [T]) -> Option<&mut [T]> {
-            if buffer.is_empty() {
-                None
-            } else {
-                Some(buffer)
-            }
+        let mut frame = FrameMut::default();
+        macro_rules! lend {
+            ($image:ident, $parts:expr) => {
+                if !self.$image.is_empty() {
+                    frame.$image = Some(&mut self.$image);
+                }
+            };
         }
-        FrameMut {
-            rgb: wanted(&mut self.rgb),
-            depth: wanted(&mut self.depth),
-            instance: wanted(&mut self.instance),
-            semantic: wanted(&mut self.semantic),
-        }
+        each_image!(lend);
+        frame
     }
 }

@@ -65,6 +65,21 @@ impl Look {
         look
     }
 
+    /// How agents' bodies look: a middle blue, unlike most furniture.
+    pub(crate) fn body() -> Self {
+        let base = [0.08, 0.19, 0.42];
+        Self {
+            base,
+            texture: NONE,
+            opacity: 1.0,
+            emission: [0.0; 3],
+            texels: 0.0,
+            plain: Some(Srgb::tables().encode3(base)),
+            clear: false,
+            mirror: false,
+        }
+    }
+
     /// Every material of a house, in order.
     pub(crate) fn all(house: &House, textures: &Textures) -> Vec<Self> {
         house

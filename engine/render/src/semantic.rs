@@ -1,25 +1,35 @@
 //! Classes of things, as the semantic image numbers them.
 
-use dwell_scene::{House, StructureKind};
+use dwell_scene::{House, Object, StructureKind};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 /// The class of nothing.
-pub(crate) const VOID: i32 = 0;
+const VOID: i32 = 0;
+/// `otherprop` of NYU-40.
+const OTHER_PROP: i32 = 40;
 
 struct Table {
     names: Vec<String>,
     /// By name and by alias.
     class: BTreeMap<String, i32>,
+    /// The NYU-40 class of each row; 0 for void.
+    nyu40_of_row: Vec<i32>,
+    /// Names of the NYU-40 classes; 0 is void.
+    nyu40: Vec<String>,
 }
 
-/// `assets/categories.csv`: column 1 is the name, column 6 its aliases with `;` between.
+/// `assets/categories.csv`: column 1 is the name, column 6 its aliases with `;` between, 7 and 8 the NYU-40 class.
 static TABLE: LazyLock<Table> = LazyLock::new(|| {
     let text = include_str!("../../../assets/categories.csv");
     let mut table = Table {
         names: vec!["void".to_owned()],
         class: BTreeMap::new(),
+        nyu40_of_row: vec![VOID],
+        nyu40: vec![String::new(); 41],
     };
+    table.nyu40[0] = "void".to_owned();
     for row in text.lines().skip(1) {
         let mut cells = row.split(',');
         let Some(name) = cells.next().filter(|name| !name.is_empty()) else {
@@ -28,79 +38,154 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
         let class = table.names.len() as i32;
         table.names.push(name.to_owned());
         table.class.insert(name.to_owned(), class);
-        for alias in cells
-            .nth(4)
-            .unwrap_or_default()
-            .split(';')
-            .filter(|alias| !alias.is_empty())
-        {
+        let aliases = cells.nth(4).unwrap_or_default();
+        let number = cells.next().and_then(|cell| cell.parse().ok());
+        let number = number.filter(|number: &usize| *number < table.nyu40.len());
+        table.nyu40_of_row.push(number.unwrap_or_default() as i32);
+        if let (Some(number), Some(name)) = (number, cells.next()) {
+            name.clone_into(&mut table.nyu40[number]);
+        }
+        for alias in aliases.split(';').filter(|alias| !alias.is_empty()) {
             table.class.entry(alias.to_owned()).or_insert(class);
         }
     }
     table
 });
 
-/// The classes of the semantic image; a pixel's value is a position in this list.
-///
-/// 0 is `"void"`. Then come the rows of `assets/categories.csv` in file order: the same number in every house (the file
-/// grows at its end). Then the categories of this house's objects that the file does not know, sorted by name.
-pub fn semantic_classes(house: &House) -> Vec<String> {
-    let mut names = TABLE.names.clone();
-    names.extend(strange_names(house).into_keys());
-    names
+/// Which names things are classed by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Classes {
+    /// `table`, `chair`, ...: the rows of `assets/categories.csv`.
+    Coarse = 0,
+    /// `coffee_table`, `office_chair`, ...: the finest name that the house's file gives.
+    Fine = 1,
+    /// The 40 classes of NYU Depth V2, numbered as there.
+    Nyu40 = 2,
 }
 
-/// The class of every entity: structure pieces, then objects, by [`dwell_scene::EntityId`]; agents, which come after, are
-/// the last entry.
-pub(crate) fn class_of_entities(house: &House) -> Vec<i32> {
-    let strange = strange_names(house);
-    let named = |name: &str| TABLE.class.get(name).copied().unwrap_or(VOID);
-    let mut classes = vec![VOID];
-    classes.extend(house.structure.iter().map(|piece| match piece.kind {
-        StructureKind::Wall => named("wall"),
-        StructureKind::Floor => named("floor"),
-        StructureKind::Ceiling => named("ceiling"),
-        StructureKind::Ground => named("ground"),
-        StructureKind::Other => named("box"),
-    }));
-    classes.extend(house.objects.iter().map(|object| {
-        let name = class_name(object);
-        known(object)
-            .or_else(|| strange.get(name).copied())
-            .unwrap_or(VOID)
-    }));
-    classes.push(named("person"));
-    classes
-}
+impl Classes {
+    /// All tables.
+    pub const ALL: [Self; 3] = [Self::Coarse, Self::Fine, Self::Nyu40];
 
-/// The class of the coarse name, else of the fine one, else of the NYU-40 one.
-fn known(object: &dwell_scene::Object) -> Option<i32> {
-    let category = &object.category;
-    [&category.coarse, &category.fine]
-        .into_iter()
-        .find_map(|name| TABLE.class.get(name.as_str()).copied())
-}
-
-fn class_name(object: &dwell_scene::Object) -> &str {
-    let category = &object.category;
-    [&category.coarse, &category.fine]
-        .into_iter()
-        .find(|name| !name.is_empty())
-        .map_or("object", String::as_str)
-}
-
-/// Categories that the table does not have, with their classes.
-fn strange_names(house: &House) -> BTreeMap<String, i32> {
-    let mut names: BTreeMap<String, i32> = house
-        .objects
-        .iter()
-        .filter(|object| known(object).is_none())
-        .map(|object| (class_name(object).to_owned(), VOID))
-        .collect();
-    for (class, value) in (TABLE.names.len() as i32..).zip(names.values_mut()) {
-        *value = class;
+    /// The names of classes; a pixel's value is a position in this list, and 0 is `"void"`.
+    ///
+    /// Coarse and fine: after void come the rows of `assets/categories.csv` in file order, the same number in every house (the
+    /// file grows at its end); then the names of this house's objects that the file does not know, sorted. NYU-40: 1 `"wall"`
+    /// to 40 `"otherprop"` in every house.
+    pub fn names(self, house: &House) -> Vec<String> {
+        if self == Self::Nyu40 {
+            return TABLE.nyu40.clone();
+        }
+        let mut names = TABLE.names.clone();
+        names.extend(self.strange(house).into_keys());
+        names
     }
-    names
+
+    /// The names of an object that are tried, in order.
+    fn names_of(self, object: &Object) -> [&str; 2] {
+        let category = &object.category;
+        match self {
+            Self::Fine => [&category.fine, &category.coarse],
+            Self::Coarse | Self::Nyu40 => [&category.coarse, &category.fine],
+        }
+        .map(String::as_str)
+    }
+
+    /// The class of an object by the file: of the first name that it knows, if that is the first that the object has.
+    fn known(self, object: &Object) -> Option<i32> {
+        let mut names = self.names_of(object).into_iter();
+        let class = |name: &str| TABLE.class.get(name).copied();
+        if self == Self::Fine {
+            return names.find(|name| !name.is_empty()).and_then(class);
+        }
+        names.find_map(class)
+    }
+
+    /// Names that the file does not know, with their classes.
+    fn strange(self, house: &House) -> BTreeMap<String, i32> {
+        let mut names: BTreeMap<String, i32> = house
+            .objects
+            .iter()
+            .filter(|object| self.known(object).is_none())
+            .map(|object| (self.name(object).to_owned(), VOID))
+            .collect();
+        for (class, value) in (TABLE.names.len() as i32..).zip(names.values_mut()) {
+            *value = class;
+        }
+        names
+    }
+
+    fn name(self, object: &Object) -> &str {
+        let mut names = self.names_of(object).into_iter();
+        names.find(|name| !name.is_empty()).unwrap_or("object")
+    }
+
+    /// The NYU-40 class of an object: by its own NYU-40 name, else by the row of its name, else other prop.
+    fn nyu40(object: &Object) -> i32 {
+        let own = object.category.nyu40.as_str();
+        let named = TABLE.nyu40.iter().position(|name| name == own);
+        let by_row = || {
+            Self::Coarse
+                .known(object)
+                .map(|row| TABLE.nyu40_of_row[row as usize])
+        };
+        named
+            .filter(|class| *class > 0)
+            .map(|class| class as i32)
+            .or_else(by_row)
+            .unwrap_or(OTHER_PROP)
+    }
+}
+
+/// The classes of the semantic image; a pixel's value is a position in this list. See [`Classes::names`].
+pub fn semantic_classes(house: &House) -> Vec<String> {
+    Classes::Coarse.names(house)
+}
+
+/// The class of every entity of a house.
+#[derive(Clone, Debug)]
+pub struct EntityClasses {
+    /// Void, structure pieces, objects, by [`dwell_scene::EntityId`]; the last one is that of agents.
+    classes: Vec<i32>,
+}
+
+impl EntityClasses {
+    pub(crate) fn new(house: &House, table: Classes) -> Self {
+        let strange = table.strange(house);
+        let named = |name: &str| {
+            let row = TABLE.class.get(name).copied().unwrap_or(VOID);
+            match table {
+                Classes::Nyu40 => TABLE.nyu40_of_row[row as usize],
+                Classes::Coarse | Classes::Fine => row,
+            }
+        };
+        let mut classes = vec![VOID];
+        classes.extend(house.structure.iter().map(|piece| match piece.kind {
+            StructureKind::Wall => named("wall"),
+            StructureKind::Floor => named("floor"),
+            StructureKind::Ceiling => named("ceiling"),
+            StructureKind::Ground => named("ground"),
+            StructureKind::Other => named("box"),
+        }));
+        classes.extend(house.objects.iter().map(|object| {
+            match table {
+                Classes::Nyu40 => Classes::nyu40(object),
+                Classes::Coarse | Classes::Fine => table
+                    .known(object)
+                    .or_else(|| strange.get(table.name(object)).copied())
+                    .unwrap_or(VOID),
+            }
+        }));
+        classes.push(named("person"));
+        Self { classes }
+    }
+
+    /// The class of an entity's number; agents follow the objects.
+    #[inline]
+    pub fn of(&self, entity: i32) -> i32 {
+        self.classes[(entity.max(0) as usize).min(self.classes.len() - 1)]
+    }
 }
 
 #[cfg(test)]
@@ -113,7 +198,7 @@ mod tests {
         let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
         let names = semantic_classes(&house);
         assert_eq!(names[0], "void");
-        let classes = class_of_entities(&house);
+        let classes = EntityClasses::new(&house, Classes::Coarse).classes;
         let words: Vec<&str> = classes
             .iter()
             .map(|class| names[*class as usize].as_str())
@@ -132,6 +217,54 @@ mod tests {
         assert!(TABLE.names.len() > 100);
         for (k, name) in TABLE.names.iter().enumerate().skip(1) {
             assert_eq!(TABLE.class[name] as usize, k, "{name}");
+        }
+    }
+
+    #[test]
+    fn the_forty_classes_have_their_numbers() {
+        let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
+        let names = Classes::Nyu40.names(&house);
+        assert_eq!(names.len(), 41);
+        assert!(names.iter().all(|name| !name.is_empty()));
+        // N. Silberman et al., ECCV 2012, with the 40 classes of S. Gupta et al., CVPR 2013.
+        for (number, name) in [
+            (1, "wall"),
+            (2, "floor"),
+            (22, "ceiling"),
+            (25, "television"),
+            (31, "person"),
+            (40, "otherprop"),
+        ] {
+            assert_eq!(names[number], name);
+        }
+        let classes = EntityClasses::new(&house, Classes::Nyu40).classes;
+        assert_eq!(classes, [0, 2, 22, 1, 1, 1, 1, 31]);
+    }
+
+    /// A fine name is shown where there is one, and the same number everywhere where the file knows it.
+    #[test]
+    fn fine_classes_tell_apart_what_coarse_ones_join() {
+        let (house, _) = dwell_houses::open("builtin:studio").unwrap();
+        let [coarse, fine] = [Classes::Coarse, Classes::Fine];
+        let tables =
+            [coarse, fine].map(|table| (table.names(&house), EntityClasses::new(&house, table)));
+        for (id, object) in house.objects.iter_ids() {
+            let entity = house.entity_of_object(id).0;
+            let [a, b] =
+                [0, 1].map(|k: usize| tables[k].0[tables[k].1.of(entity) as usize].as_str());
+            let same = |name: &str, shown: &str| {
+                name == shown || TABLE.class.get(name) == TABLE.class.get(shown)
+            };
+            assert!(
+                object.category.coarse.is_empty() || same(&object.category.coarse, a),
+                "{a}"
+            );
+            assert!(
+                object.category.fine.is_empty() || same(&object.category.fine, b),
+                "{b}"
+            );
+            let nyu = EntityClasses::new(&house, Classes::Nyu40).of(entity);
+            assert!((1..=40).contains(&nyu));
         }
     }
 }

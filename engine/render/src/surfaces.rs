@@ -1,6 +1,7 @@
 //! What each triangle of a house looks like, in the order in which hits name triangles.
 
 use crate::look::Look;
+use dwell_scene::rays::{BODY_PIECES, body_meshes};
 use dwell_scene::{House, Id, Mesh, PartId, Placed, Pose, State, SurfaceOwner};
 use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 
@@ -42,6 +43,8 @@ pub(crate) struct Surfaces {
     first: Vec<u32>,
     /// The part of each moving instance. Shape (instance,).
     movable: Vec<PartId>,
+    /// First triangle of each piece of an agent's body; agents are the instances behind the parts that move.
+    bodies: [u32; BODY_PIECES],
 }
 
 impl Surfaces {
@@ -54,6 +57,7 @@ impl Surfaces {
             quick: Vec::with_capacity(count),
             first: Vec::with_capacity(geometry.movable.len()),
             movable: geometry.movable.clone(),
+            bodies: [0; BODY_PIECES],
         };
         for source in &geometry.static_triangles {
             let placed = &geometry.placed[source.placed as usize];
@@ -72,7 +76,31 @@ impl Surfaces {
                 all.add(house, placed, &placed.part_from_mesh, triangle, looks);
             }
         }
+        for (piece, mesh) in body_meshes().iter().enumerate() {
+            all.bodies[piece] = all.triangles.len() as u32;
+            for triangle in 0..mesh.triangles.len() {
+                all.add_body(mesh, triangle, looks.len() - 1, looks);
+            }
+        }
         all
+    }
+
+    /// A triangle of agents' bodies. Pieces are only stretched along the axes of their symmetry, so that normals stay.
+    fn add_body(&mut self, mesh: &Mesh, triangle: usize, material: usize, looks: &[Look]) {
+        let [a, b, c] = mesh.corners(triangle);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        self.triangles.push(Triangle {
+            uv: [Vec4::ZERO; 2],
+            normal,
+            density: 0.0,
+            material: material as u32,
+        });
+        self.corner_normals
+            .push(corner_normals(mesh, triangle, &Affine3A::IDENTITY, normal));
+        self.quick.push(match looks[material].plain() {
+            Some([r, g, b]) => [r, g, b, 255],
+            None => [0, 0, 0, SLOW],
+        });
     }
 
     fn add(
@@ -120,8 +148,25 @@ impl Surfaces {
     pub(crate) fn position(&self, instance: Option<u32>, triangle: u32) -> usize {
         match instance {
             None => triangle as usize,
-            Some(instance) => self.first[instance as usize] as usize + triangle as usize,
+            Some(instance) => {
+                let first = match self.first.get(instance as usize) {
+                    Some(first) => *first,
+                    None => self.bodies[(instance as usize - self.first.len()) % BODY_PIECES],
+                };
+                first as usize + triangle as usize
+            }
         }
+    }
+
+    /// The part of a moving instance; nothing for agents' bodies.
+    pub(crate) fn part_of(&self, instance: u32) -> Option<PartId> {
+        self.movable.get(instance as usize).copied()
+    }
+
+    /// The number of the agent whose body an instance belongs to.
+    pub(crate) fn agent_of(&self, instance: u32) -> Option<usize> {
+        let behind = (instance as usize).checked_sub(self.movable.len());
+        behind.map(|piece| piece / BODY_PIECES)
     }
 
     #[inline]
@@ -140,10 +185,11 @@ impl Surfaces {
         a * (1.0 - u - v) + b * u + c * v
     }
 
-    /// From the space of [`Triangle::normal`] to the world; nothing where that is the world.
+    /// From the space of [`Triangle::normal`] to the world; nothing where that is the world, or turned as the world is.
     #[inline]
     pub(crate) fn pose<'a>(&self, instance: Option<u32>, state: &'a State) -> Option<&'a Pose> {
-        instance.map(|instance| &state.part_pose[self.movable[instance as usize]])
+        let part = self.part_of(instance?)?;
+        state.part_pose.get(part)
     }
 
     /// Memory held, bytes.
@@ -305,9 +351,10 @@ mod tests {
     #[test]
     fn a_room_has_one_texture_unit_a_metre_and_normals_to_the_inside() {
         let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
-        let looks = Look::all(&house, &Textures::new(&house));
+        let mut looks = Look::all(&house, &Textures::new(&house));
+        looks.push(Look::body());
         let surfaces = Surfaces::new(&house, &looks);
-        assert_eq!(surfaces.triangles.len(), 12);
+        assert_eq!(surfaces.bodies[0], 12);
         for (k, source) in house.geometry().static_triangles.iter().enumerate() {
             let triangle = surfaces.triangle(surfaces.position(None, k as u32));
             assert!((triangle.density - 1.0).abs() < 1e-5);

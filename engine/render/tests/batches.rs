@@ -107,6 +107,7 @@ fn bits_are_equal_for_any_number_of_threads_and_any_company() {
             .unwrap();
         for (a, b) in alone.iter().zip(&frames) {
             assert!(a.rgb == b.rgb && a.instance == b.instance && a.semantic == b.semantic);
+            assert!(a.normals == b.normals && a.albedo == b.albedo && a.flow == b.flow);
             assert!(
                 a.depth
                     .iter()
@@ -139,12 +140,7 @@ fn worlds_over_one_house_share_a_batch() {
             } else {
                 (&first_scene, &first_state)
             };
-            Job {
-                scene,
-                state,
-                view,
-                frame: frame.as_mut(),
-            }
+            Job::new(scene, state, view, frame.as_mut())
         })
         .collect();
     world
@@ -175,12 +171,7 @@ fn wanted_images_do_not_depend_on_one_another() {
             .unwrap();
         frame
     };
-    let none = Channels {
-        rgb: false,
-        depth: false,
-        instance: false,
-        semantic: false,
-    };
+    let none = Channels::NONE;
     assert_eq!(only(Channels { rgb: true, ..none }).rgb, all.rgb);
     assert_eq!(
         only(Channels {
@@ -206,6 +197,12 @@ fn wanted_images_do_not_depend_on_one_another() {
         .semantic,
         all.semantic
     );
+    let surfaces = only(Channels {
+        normals: true,
+        albedo: true,
+        ..none
+    });
+    assert!(surfaces.normals == all.normals && surfaces.albedo == all.albedo);
     assert!(only(none).rgb.is_empty());
 }
 

@@ -4,9 +4,8 @@ use crate::action::DiscreteAction;
 use crate::engines::Engines;
 use crate::env::{Env, StepInfo};
 use crate::error::WorldError;
-use crate::requests::Channel;
 use crate::sensors::{Dtype, Out, SensorSpec};
-use dwell_render::{FrameMut, Job, View};
+use dwell_render::Job;
 use dwell_scene::parallel::Threads;
 use std::sync::Arc;
 
@@ -227,8 +226,10 @@ impl Batch {
         texts
     }
 
-    /// Renders all pictures that are asked for: the views of all worlds over one house in one submission.
+    /// Renders all pictures that are asked for: the views of all worlds over one house in one submission, apart from those
+    /// whose shutter is open or rolls.
     fn render(&mut self, which: &[bool]) -> Result<(), WorldError> {
+        let threads = self.threads;
         let mut groups: Vec<(Arc<Engines>, Vec<Job<'_>>)> = Vec::new();
         for (env, _) in self
             .envs
@@ -246,29 +247,23 @@ impl Batch {
                     groups.len() - 1
                 });
             for (request, picture) in requests.views.iter().zip(&mut results.pictures) {
-                let Some(agent) = world.state().agents.get(request.eye.agent) else {
+                let eye = &request.eye;
+                if world.state().agents.get(eye.agent).is_none() {
                     continue;
-                };
-                let wanted = |channel| request.channels.contains(&channel);
-                groups[group].1.push(Job {
-                    scene: world.rays(),
-                    state: world.state(),
-                    view: View {
-                        preset: request.eye.preset,
-                        hide: Some(world.house().entity_of_agent(request.eye.agent)),
-                        ..View::new(request.eye.camera_in(world.state()), agent.world_from_eye())
-                    },
-                    frame: FrameMut {
-                        rgb: wanted(Channel::Rgb).then_some(&mut picture.rgb),
-                        depth: wanted(Channel::Depth).then_some(&mut picture.depth),
-                        instance: wanted(Channel::Instance).then_some(&mut picture.instance),
-                        semantic: wanted(Channel::Semantic).then_some(&mut picture.semantic),
-                    },
-                });
+                }
+                let request = eye.request(world.state());
+                let (shot, optics) = (world.shot(&request), world.optics(&request.place));
+                picture.camera = shot.view.camera;
+                if optics.shutter().is_still() {
+                    let job = world.job(&shot, picture.frame.as_mut());
+                    groups[group].1.push(job);
+                } else {
+                    world.expose(&shot, &optics, &mut picture.frame, threads)?;
+                }
             }
         }
         for (engines, jobs) in &mut groups {
-            engines.renderer().render_batch(jobs, self.threads)?;
+            engines.renderer().render_batch(jobs, threads)?;
         }
         Ok(())
     }

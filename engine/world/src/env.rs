@@ -6,7 +6,7 @@ use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::metrics::Progress;
 use crate::requests::{Requests, Results};
-use crate::sensors::{self, EyeCamera, Out, Seen, Sensor, SensorSpec, Site};
+use crate::sensors::{self, Out, Seen, Sensor, SensorSpec, Site};
 use crate::tasks::{self, Task, TaskKind};
 use crate::world::World;
 use dwell_scene::random::Key;
@@ -158,12 +158,12 @@ impl Env {
             }
         }
         let mut world_config = config.world.clone();
-        // What `agent/N/camera/fov_deg` reads is what the agent sees with: its first camera.
+        // What `agent/N/camera/fov_deg` reads is what the agent sees with: its first camera with a field of view.
         for (k, body) in world_config.agents.iter_mut().enumerate() {
             let eyes = sensors.iter().filter_map(|sensor| sensor.eye());
-            let own = |eye: &&EyeCamera| eye.agent.index() == k;
-            if let Some(eye) = eyes.clone().find(own) {
-                body.camera_fov_deg = eye.fov_deg;
+            let mut own = eyes.filter(|eye| eye.agent.index() == k);
+            if let Some(fov_deg) = own.find_map(|eye| eye.fov_deg) {
+                body.camera_fov_deg = fov_deg;
             }
         }
         let world = World::new(engines, &world_config)?;
@@ -346,7 +346,7 @@ impl Env {
 
     /// The world, and the buffers for its pictures, at the same time.
     pub(crate) fn picture_work(&mut self) -> (&World, &Requests, &mut Results) {
-        self.results.prepare(&self.requests);
+        self.results.prepare(&self.requests, &self.world);
         (&self.world, &self.requests, &mut self.results)
     }
 

@@ -9,6 +9,7 @@ pub fn all() -> impl Iterator<Item = &'static LawInfo> {
     dwell_physics::laws::all()
         .iter()
         .chain(dwell_acoustics::laws::all())
+        .chain(dwell_render::laws::all())
 }
 
 /// Checks laws and leaves out those at their default: such a law changes nothing, bit for bit. Their targets are kept in one

@@ -14,6 +14,8 @@ mod expert;
 mod info;
 pub mod laws;
 pub mod metrics;
+mod past;
+mod pictures;
 mod request;
 mod requests;
 mod saving;
@@ -31,6 +33,13 @@ pub use env::{Env, EnvConfig, Episode, SensorConfig, StepInfo, Verdict};
 pub use error::WorldError;
 pub use expert::{Guide, face};
 pub use info::{ObjectNow, Viewpoint, info, objects_now, viewpoints};
+pub use past::Past;
+pub use pictures::{PictureRequest, Place};
 pub use request::{ActionRequest, Named, PixelCamera};
-pub use requests::{Channel, Picture, Requests, Results, ViewRequest};
+pub use requests::{Picture, Requests, Results, ViewRequest};
 pub use world::World;
+
+/// Where a camera is against the eyes that carry it: position in m, then yaw, pitch and roll in degrees.
+pub fn camera_mount(position_m: [f32; 3], angles_deg: [f32; 3]) -> dwell_scene::Pose {
+    sensors::mount(position_m, angles_deg)
+}

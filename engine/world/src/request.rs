@@ -3,8 +3,8 @@
 use crate::error::WorldError;
 use crate::world::World;
 use dwell_physics::{Action, ActionOutcome, Grasp, Notice, Target};
-use dwell_render::Camera;
-use dwell_scene::{AgentId, EntityId, House, ObjectId, PartId};
+use dwell_render::{Camera, Projection};
+use dwell_scene::{AgentId, EntityId, House, ObjectId, PartId, Pose};
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -46,6 +46,16 @@ pub struct PixelCamera {
     pub height: u32,
     /// Full angle from the left to the right edge, degrees; by default that of the agent's camera.
     pub fov_deg: Option<f32>,
+    /// The kind of camera with its numbers, in place of `fov_deg`.
+    pub projection: Option<Projection>,
+    /// Where the camera is against the eye: to the right, up, back, m.
+    pub position_m: [f32; 3],
+    /// How it is turned there, degrees to the left.
+    pub yaw_deg: f32,
+    /// Then up, degrees.
+    pub pitch_deg: f32,
+    /// Then about its own axis, degrees, counter-clockwise as it looks.
+    pub roll_deg: f32,
 }
 
 impl Default for PixelCamera {
@@ -54,6 +64,11 @@ impl Default for PixelCamera {
             width: 128,
             height: 128,
             fov_deg: None,
+            projection: None,
+            position_m: [0.0; 3],
+            yaw_deg: 0.0,
+            pitch_deg: 0.0,
+            roll_deg: 0.0,
         }
     }
 }
@@ -192,8 +207,15 @@ impl ActionRequest {
             let state = world.state();
             let own = state.agents.get(agent).map(|_| state.camera_fov_deg(agent));
             let fov_deg = camera.fov_deg.or(own).unwrap_or(90.0);
-            let camera = Camera::from_fov(camera.width, camera.height, fov_deg)?;
-            return world.pixel_target(agent, &camera, [column, row]).map(Some);
+            let angles = [camera.yaw_deg, camera.pitch_deg, camera.roll_deg];
+            let mount = crate::sensors::mount(camera.position_m, angles);
+            let camera = match camera.projection {
+                Some(projection) => Camera::new(camera.width, camera.height, projection)?,
+                None => Camera::from_fov(camera.width, camera.height, fov_deg)?,
+            };
+            return world
+                .pixel_target(agent, &camera, mount, [column, row])
+                .map(Some);
         }
         if let Some(direction) = self.direction {
             let eye = world
@@ -250,6 +272,7 @@ fn missing(kind: &str, field: &str) -> WorldError {
 impl World {
     /// What a pixel of a camera at an agent's eye shows, as a target.
     ///
+    /// `eye_from_camera`: where the camera is mounted.
     /// `pixel`: column and row, counted from 0 at the top left; the middle of the pixel is meant.
     ///
     /// # Errors
@@ -258,6 +281,7 @@ impl World {
         &self,
         agent: AgentId,
         camera: &Camera,
+        eye_from_camera: Pose,
         [column, row]: [f32; 2],
     ) -> Result<Target, WorldError> {
         let (width, height) = (camera.width() as f32, camera.height() as f32);
@@ -275,8 +299,15 @@ impl World {
                 self.state().agents.len()
             )));
         };
-        let eye = state.world_from_eye();
+        let eye = state.world_from_eye() * eye_from_camera;
         let (start, direction) = camera.ray_in_camera(Vec2::new(column + 0.5, row + 0.5));
+        if direction == Vec3::ZERO {
+            return Err(WorldError::Config {
+                field: "pixel",
+                found: format!("[{column}, {row}]"),
+                allowed: "a pixel that sees something".to_owned(),
+            });
+        }
         Ok(Target::Ray {
             origin: eye.transform_point(start),
             direction: eye.transform_vector(direction),

@@ -1,20 +1,9 @@
 //! What sensors ask of the engines, and what they get.
 
 use crate::sensors::EyeCamera;
+use crate::world::World;
+use dwell_render::{Camera, Channels, Frame};
 use dwell_scene::AgentId;
-
-/// One image of a view.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channel {
-    /// sRGB bytes, three a pixel.
-    Rgb,
-    /// Metres.
-    Depth,
-    /// Entity ids.
-    Instance,
-    /// Class ids.
-    Semantic,
-}
 
 /// A view that some sensor wants.
 #[derive(Clone, Debug)]
@@ -22,7 +11,7 @@ pub struct ViewRequest {
     /// From where.
     pub eye: EyeCamera,
     /// Which images.
-    pub channels: Vec<Channel>,
+    pub channels: Channels,
 }
 
 /// All that the sensors of one world want in one step. Equal wishes are merged.
@@ -35,14 +24,13 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Asks for one image of a view.
-    pub fn view(&mut self, eye: &EyeCamera, channel: Channel) {
+    /// Asks for images of a view.
+    pub fn view(&mut self, eye: &EyeCamera, channels: Channels) {
         match self.views.iter_mut().find(|view| view.eye == *eye) {
-            Some(view) if view.channels.contains(&channel) => {}
-            Some(view) => view.channels.push(channel),
+            Some(view) => view.channels = view.channels.and(channels),
             None => self.views.push(ViewRequest {
                 eye: eye.clone(),
-                channels: vec![channel],
+                channels,
             }),
         }
     }
@@ -61,14 +49,10 @@ impl Requests {
 pub struct Picture {
     /// From where.
     pub eye: EyeCamera,
-    /// Shape (height, width, 3).
-    pub rgb: Vec<u8>,
-    /// Shape (height, width), m.
-    pub depth: Vec<f32>,
-    /// Shape (height, width).
-    pub instance: Vec<i32>,
-    /// Shape (height, width).
-    pub semantic: Vec<i32>,
+    /// The camera as it was for this picture.
+    pub camera: Camera,
+    /// The images, without the noise that laws add.
+    pub frame: Frame,
 }
 
 /// What the engines computed for one world. Buffers are kept from step to step.
@@ -84,37 +68,32 @@ impl Results {
         self.pictures.iter().find(|picture| picture.eye == *eye)
     }
 
-    /// Makes room for what is asked for; allocates only when the requests differ from the last ones.
-    pub(crate) fn prepare(&mut self, requests: &Requests) {
-        let fits = self.pictures.len() == requests.views.len()
-            && self
-                .pictures
-                .iter()
-                .zip(&requests.views)
-                .all(|(picture, view)| picture.eye == view.eye);
-        if fits {
-            return;
-        }
-        self.pictures = requests
-            .views
-            .iter()
-            .map(|view| {
-                let pixels = view.eye.camera.pixels();
-                let room = |channel, per_pixel| {
-                    if view.channels.contains(&channel) {
-                        pixels * per_pixel
-                    } else {
-                        0
+    /// Makes room for what is asked for; allocates only when that is other than the last time.
+    pub(crate) fn prepare(&mut self, requests: &Requests, world: &World) {
+        self.pictures.truncate(requests.views.len());
+        for (k, request) in requests.views.iter().enumerate() {
+            let mut channels = request.channels;
+            // Laws come and go while a world runs.
+            channels.normals |= channels.depth && world.needs_normals(request.eye.agent);
+            let camera = request.eye.camera;
+            match self.pictures.get_mut(k) {
+                Some(picture) if picture.eye == request.eye => {
+                    if picture.frame.channels() != channels {
+                        picture.frame = Frame::new(&camera, channels);
                     }
-                };
-                Picture {
-                    eye: view.eye.clone(),
-                    rgb: vec![0; room(Channel::Rgb, 3)],
-                    depth: vec![0.0; room(Channel::Depth, 1)],
-                    instance: vec![0; room(Channel::Instance, 1)],
-                    semantic: vec![0; room(Channel::Semantic, 1)],
                 }
-            })
-            .collect();
+                found => {
+                    let picture = Picture {
+                        eye: request.eye.clone(),
+                        camera,
+                        frame: Frame::new(&camera, channels),
+                    };
+                    match found {
+                        Some(place) => *place = picture,
+                        None => self.pictures.push(picture),
+                    }
+                }
+            }
+        }
     }
 }

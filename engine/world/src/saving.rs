@@ -6,18 +6,19 @@
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
+use crate::past::Past;
 use crate::sound::Sound;
 use crate::start::Start;
 use crate::world::World;
 use dwell_physics::PhysicsWorld;
 use dwell_scene::packing::{pack, unpack};
 use dwell_scene::random::Key;
-use dwell_scene::{AgentBody, House, State};
+use dwell_scene::{AgentBody, House, Id, State};
 use std::collections::BTreeMap;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// What a world's snapshot begins with: its kind and version.
-const MAGIC: &[u8] = b"dwworld4";
+const MAGIC: &[u8] = b"dwworld5";
 
 /// What is told before the rest is unpacked.
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -36,6 +37,7 @@ struct Parts {
     physics: Vec<u8>,
     sound: Vec<u8>,
     key: Key,
+    past: Past,
 }
 
 /// The bytes of worlds' common beginning.
@@ -62,8 +64,7 @@ impl Base {
                     engines.house(),
                     &start.state,
                     &start.physics,
-                    Vec::new(),
-                    Key::root(0),
+                    (Vec::new(), Key::root(0), Past::default()),
                 )
             },
         );
@@ -72,18 +73,25 @@ impl Base {
     }
 }
 
-fn body(house: &House, state: &State, physics: &PhysicsWorld, sound: Vec<u8>, key: Key) -> Vec<u8> {
+fn body(
+    house: &House,
+    state: &State,
+    physics: &PhysicsWorld,
+    (sound, key, past): (Vec<u8>, Key, Past),
+) -> Vec<u8> {
     let parts = Parts {
         state: state.to_bytes(house),
         physics: physics.moment(),
         sound,
         key,
+        past,
     };
     postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory")
 }
 
 impl World {
-    /// The whole world as bytes: state, physics with its contact caches, sound queues and the key of the episode; packed.
+    /// The whole world as bytes: state, physics with its contact caches, sound queues, the key of the episode and what has moved in the last
+    /// step; packed.
     ///
     /// # Panics
     /// Never: plain bytes can always be written to memory.
@@ -101,8 +109,7 @@ impl World {
             self.house(),
             state,
             physics,
-            self.sound.to_bytes(),
-            self.key,
+            (self.sound.to_bytes(), self.key, self.past.clone()),
         );
         told.extend_from_slice(&pack(&body, &base.bytes));
         let mut bytes = MAGIC.to_vec();
@@ -119,7 +126,7 @@ impl World {
         let refuse = |why: String| WorldError::Snapshot(why);
         let told = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwworld4\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwworld5\"".to_owned()))?;
         let (sum, told) = told
             .split_first_chunk::<8>()
             .ok_or_else(|| refuse("it is too short".to_owned()))?;
@@ -161,10 +168,17 @@ impl World {
             parts.key.child("sound"),
             &parts.sound,
         )?;
+        let parts_of_past = parts.past.moved.iter().map(|(part, _)| part.index());
+        if parts_of_past.max() >= Some(state.part_pose.len()) {
+            return Err(refuse(
+                "parts moved that the house does not have".to_owned(),
+            ));
+        }
         self.physics.restore(&mut state, &parts.physics)?;
         self.state = state;
         self.sound = sound;
         self.key = parts.key;
+        self.past = parts.past;
         self.events.clear();
         self.rays.update(&self.state);
         Ok(())

@@ -42,6 +42,7 @@ impl Start {
             .map(|(text, value)| Ok((text.parse()?, *value)))
             .collect::<Result<_, WorldError>>()?;
         crate::laws::set_parameters(&mut state, house, &values)?;
+        dwell_render::laws::check(&state.laws, state.agents.len())?;
         let physics_config = PhysicsConfig {
             control_rate_hz: config.control_rate_hz as f32,
             physics_rate_hz: config.physics_rate_hz as f32,

@@ -3,6 +3,7 @@
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
+use crate::past::{Before, Past};
 use crate::sound::Sound;
 use crate::start::Start;
 use dwell_physics::{
@@ -30,6 +31,10 @@ pub struct World {
     pub(crate) sound: Sound,
     pub(crate) events: Vec<ContactEvent>,
     pub(crate) key: Key,
+    /// Where things were before the last step.
+    pub(crate) past: Past,
+    /// Memory for it.
+    before: Before,
     /// What [`World::reset`] goes back to; worlds of one config share it.
     pub(crate) start: Arc<Start>,
 }
@@ -54,6 +59,8 @@ impl World {
             sound: Sound::new(config),
             events: Vec::new(),
             key: Key::root(0),
+            past: Past::default(),
+            before: Before::default(),
             start,
         })
     }
@@ -68,6 +75,7 @@ impl World {
         self.rays.update(&self.state);
         self.sound.reset();
         self.events.clear();
+        self.past.clear();
         self.key = key;
         Ok(())
     }
@@ -79,10 +87,12 @@ impl World {
     pub fn step(&mut self, controls: &[AgentControl]) -> Result<(), WorldError> {
         self.events.clear();
         let began_s = self.physics.time_s();
+        self.before.take(&self.state);
         self.physics
             .step(&mut self.state, controls, &mut self.events)?;
         self.state.step += 1;
         self.state.time_s = self.state.step as f64 * self.config.step_s();
+        self.past.remember(&self.before, &self.state);
         self.rays.update(&self.state);
         let key = self.key.child("sound");
         self.sound
@@ -188,6 +198,16 @@ impl World {
         &self.rays
     }
 
+    /// Where things were before the last step.
+    pub fn past(&self) -> &Past {
+        &self.past
+    }
+
+    /// Whether laws of an agent's depth sensors look at normals.
+    pub(crate) fn needs_normals(&self, agent: AgentId) -> bool {
+        dwell_render::Optics::of(&self.state.laws, agent).needs_normals()
+    }
+
     pub(crate) fn physics(&self) -> &PhysicsWorld {
         &self.physics
     }
@@ -254,9 +274,14 @@ impl World {
             state.agents.clone(),
         );
         crate::laws::set_parameters(&mut self.state, &house, values)?;
-        if let Err(error) = self.physics.apply_parameters(&mut self.state) {
+        let optics = dwell_render::laws::check(&self.state.laws, self.state.agents.len());
+        let set = optics.map_err(WorldError::from).and_then(|()| {
+            let applied = self.physics.apply_parameters(&mut self.state);
+            applied.map_err(WorldError::from)
+        });
+        if let Err(error) = set {
             (self.state.overrides, self.state.laws, self.state.agents) = before;
-            return Err(error.into());
+            return Err(error);
         }
         self.rays.update(&self.state);
         Ok(())

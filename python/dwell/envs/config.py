@@ -76,8 +76,20 @@ def env_json(
     if stride is not None:
         config["stride"] = fields("stride", stride, _STRIDE)
     if sensors is not None:
-        by_name = isinstance(sensors, Mapping)
-        named: dict[str, Any] = {} if by_name else {name: {} for name in texts("sensors", sensors)}
-        rows = (mapping("sensors", sensors) if by_name else named).items()
-        config["sensors"] = [{"kind": name, "settings": settings} for name, settings in rows]
+        config["sensors"] = _sensors(sensors)
     return to_json(config)
+
+
+def _sensors(sensors: Sequence[str] | Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Kinds with their settings. A sensor whose settings hold ``kind`` keeps its name beside it."""
+    by_name = isinstance(sensors, Mapping)
+    named: dict[str, Any] = {} if by_name else {name: {} for name in texts("sensors", sensors)}
+    rows = []
+    for name, settings in (mapping("sensors", sensors) if by_name else named).items():
+        if not isinstance(settings, Mapping) or "kind" not in settings:
+            rows.append({"kind": name, "settings": settings})
+            continue
+        own = mapping(f"sensors.{name}", settings)
+        kind = text(f"sensors.{name}.kind", own.pop("kind"))
+        rows.append({"kind": kind, "settings": {"name": name, **own}})
+    return rows

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import mapping, to_json, whole
-from dwell.camera import Camera
+from dwell.camera import Camera, camera_settings
 from dwell.envs.config import Houses, HouseShelf, Sensors, env_json
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.spaces import action_space, observation_space
@@ -184,8 +184,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """What the agent sees, (240, 320, 3) uint8; ``None`` without a render mode."""
         if self.render_mode is None:
             return None
-        camera = {key: getattr(RENDER_CAMERA, key) for key in ("width", "height")}
-        image: NDArray[np.uint8] = self._runner.batch.render(0, to_json(camera))
+        view = {"camera": camera_settings("camera", RENDER_CAMERA)}
+        image: NDArray[np.uint8] = self._runner.batch.render(0, to_json(view))
         return image
 
     def close(self) -> None:

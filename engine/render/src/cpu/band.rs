@@ -1,17 +1,20 @@
 //! Some rows of one picture.
 
+use super::motion;
 use super::rays::{COLUMNS, Packet, ROWS, Rays};
 use super::shade::Palette;
 use super::{BAND_ROWS, CpuRenderer, Job};
-use crate::frame::FrameMut;
+use crate::frame::{Before, FrameMut};
 use crate::light::{Exposure, Lighting};
 use dwell_scene::State;
-use dwell_scene::rays::RayScene;
+use dwell_scene::bvh::SceneBvh;
+use glam::Vec3;
 
 /// Rows of a picture, with the memory they go to.
 pub(super) struct Band<'a> {
-    pub(super) scene: &'a RayScene,
+    pub(super) scene: SceneBvh<'a>,
     pub(super) state: &'a State,
+    before: Option<Before<'a>>,
     pub(super) rays: Rays,
     /// Nothing for flat views.
     pub(super) light: Option<(&'a Lighting, Exposure)>,
@@ -33,24 +36,20 @@ impl<'a> Band<'a> {
         let camera = job.view.camera;
         let (width, height) = (camera.width() as usize, camera.height() as usize);
         let rays = Rays::new(&job.view);
+        let (first, last) = job.row_range();
         let mut rest = job.frame.reborrow();
-        for first_row in (0..height).step_by(BAND_ROWS) {
-            let rows = BAND_ROWS.min(height - first_row);
-            let pixels = rows * width;
+        for first_row in (first..last).step_by(BAND_ROWS) {
+            let rows = BAND_ROWS.min(last - first_row);
             bands.push(Self {
-                scene: job.scene,
+                scene: job.scene.bvh(),
                 state: job.state,
+                before: job.before,
                 rays,
                 light,
                 size: (width, height),
                 first_row,
                 rows,
-                frame: FrameMut {
-                    rgb: cut(&mut rest.rgb, pixels * 3),
-                    depth: cut(&mut rest.depth, pixels),
-                    instance: cut(&mut rest.instance, pixels),
-                    semantic: cut(&mut rest.semantic, pixels),
-                },
+                frame: rest.take_pixels(rows * width),
             });
         }
     }
@@ -58,10 +57,11 @@ impl<'a> Band<'a> {
     /// Writes the pixels.
     pub(super) fn render(&mut self, renderer: &CpuRenderer) {
         let (mut packet, mut palette) = (Packet::new(), Palette::new());
+        let end = (self.size.0, self.first_row + self.rows);
         for top in (0..self.rows).step_by(ROWS) {
             for left in (0..self.size.0).step_by(COLUMNS) {
                 let corner = (left, self.first_row + top);
-                self.rays.cast(self.scene, corner, self.size, &mut packet);
+                self.rays.cast(self.scene, corner, end, &mut packet);
                 self.write(renderer, &mut packet, &mut palette, (left, top));
             }
         }
@@ -104,6 +104,16 @@ impl<'a> Band<'a> {
                 }
             }
         }
+        let surfaces = self.frame.normals.is_some()
+            || self.frame.albedo.is_some()
+            || self.frame.flow.is_some();
+        if surfaces {
+            for (pixels, lanes) in (0..rows).map(spans) {
+                for (pixel, lane) in pixels.zip(lanes) {
+                    self.write_surface(renderer, packet, lane, pixel);
+                }
+            }
+        }
         if self.frame.rgb.is_some() {
             self.colors(renderer, packet, (columns, rows), palette);
             if let Some(buffer) = &mut self.frame.rgb {
@@ -114,11 +124,57 @@ impl<'a> Band<'a> {
             }
         }
     }
-}
 
-/// The first `count` elements of what is left of a buffer.
-fn cut<'a, T>(rest: &mut Option<&'a mut [T]>, count: usize) -> Option<&'a mut [T]> {
-    let (first, others) = rest.take()?.split_at_mut_checked(count)?;
-    *rest = Some(others);
-    Some(first)
+    /// Normal, reflectance and movement of what one pixel sees.
+    fn write_surface(
+        &mut self,
+        renderer: &CpuRenderer,
+        packet: &Packet,
+        lane: usize,
+        pixel: usize,
+    ) {
+        let sight = packet.sight(lane);
+        let skin = sight
+            .as_ref()
+            .map(|sight| renderer.skin(&self.rays, self.state, sight));
+        let put = |buffer: &mut Option<&mut [f32]>, value: Vec3| {
+            if let Some(buffer) = buffer {
+                buffer[pixel * 3..pixel * 3 + 3].copy_from_slice(&value.to_array());
+            }
+        };
+        let facing = |normal: Vec3, direction: Vec3| {
+            if normal.dot(direction) > 0.0 {
+                -normal
+            } else {
+                normal
+            }
+        };
+        let (normal, albedo) = match (&sight, &skin) {
+            (Some(sight), Some(skin)) => (
+                self.rays.in_camera(facing(skin.normal, sight.direction)),
+                skin.color.clamp(Vec3::ZERO, Vec3::ONE),
+            ),
+            _ => (Vec3::ZERO, Vec3::ZERO),
+        };
+        put(&mut self.frame.normals, normal);
+        put(&mut self.frame.albedo, albedo);
+        let Some(buffer) = &mut self.frame.flow else {
+            return;
+        };
+        let image = (
+            (pixel % self.size.0) as f32 + 0.5,
+            (self.first_row + pixel / self.size.0) as f32 + 0.5,
+        );
+        let flow = self.before.as_ref().map_or([0.0; 2], |before| {
+            let camera = self.rays.camera();
+            match &sight {
+                Some(sight) => {
+                    let was = renderer.point_before(sight, self.state, before);
+                    motion::flow(camera, before, image, was)
+                }
+                None => motion::far_flow(camera, before, image, packet.direction(lane)),
+            }
+        });
+        buffer[pixel * 2..pixel * 2 + 2].copy_from_slice(&flow);
+    }
 }

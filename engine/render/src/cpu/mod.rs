@@ -1,21 +1,23 @@
 //! The `cpu` back end: ray casting, always there, the same bits for any number of threads.
 
+mod alone;
 mod band;
+mod motion;
 mod rays;
 mod shade;
 
 use crate::error::RenderError;
-use crate::frame::{FrameMut, Preset, View};
+use crate::frame::{Before, FrameMut, Preset, View};
 use crate::light::{HouseLight, Lighting};
 use crate::look::Look;
-use crate::semantic::class_of_entities;
+use crate::semantic::{Classes, EntityClasses};
 use crate::surfaces::Surfaces;
 use crate::texture::Textures;
 use band::Band;
-use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::bvh::{Ray, SceneBvh, TriangleBvh};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{House, State};
+use dwell_scene::{Aabb, House, State};
 use glam::Vec3;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -55,12 +57,16 @@ pub struct CpuRenderer {
     textures: Textures,
     looks: Vec<Look>,
     surfaces: Surfaces,
-    /// Class of every entity; the last one is that of agents.
-    classes: Vec<i32>,
+    /// Class of every entity, by each table.
+    classes: [EntityClasses; 3],
+    /// Around the surface of each part, in its own space. Shape (part,).
+    part_bounds: OnceLock<Vec<Aabb>>,
     /// Made when the first lit view is asked for.
     light: OnceLock<HouseLight>,
     /// Memory of earlier calls.
     lightings: Mutex<Vec<Lighting>>,
+    /// The trees of meshes, made when they are looked at alone. Shape (mesh,).
+    trees: Vec<OnceLock<Arc<TriangleBvh>>>,
 }
 
 /// One view of one world, for a batch.
@@ -72,15 +78,42 @@ pub struct Job<'a> {
     pub state: &'a State,
     /// The view.
     pub view: View,
-    /// Where its images go.
+    /// Where things were before, for flow; without it nothing has moved.
+    pub before: Option<Before<'a>>,
+    /// The first row and the one behind the last, of those that are wanted; `None`: all.
+    pub rows: Option<(u32, u32)>,
+    /// Where its images go: of the rows that are wanted.
     pub frame: FrameMut<'a>,
+}
+
+impl<'a> Job<'a> {
+    /// All rows of a view in which nothing has moved.
+    pub fn new(scene: &'a RayScene, state: &'a State, view: View, frame: FrameMut<'a>) -> Self {
+        Self {
+            scene,
+            state,
+            view,
+            before: None,
+            rows: None,
+            frame,
+        }
+    }
+
+    /// The first row and the one behind the last.
+    fn row_range(&self) -> (usize, usize) {
+        let height = self.view.camera.height();
+        let (first, end) = self.rows.unwrap_or((0, height));
+        let end = end.min(height);
+        (first.min(end) as usize, end as usize)
+    }
 }
 
 impl CpuRenderer {
     /// Prepares textures, colours and the tables of all triangles of a house, to be shared by all worlds over it.
     pub fn new(house: &Arc<House>) -> Self {
         let textures = Textures::new(house);
-        let looks = Look::all(house, &textures);
+        let mut looks = Look::all(house, &textures);
+        looks.push(Look::body());
         let surfaces = Surfaces::new(house, &looks);
         tracing::debug!(
             texture_bytes = textures.bytes(),
@@ -89,13 +122,15 @@ impl CpuRenderer {
             "cpu renderer prepared"
         );
         Self {
-            classes: class_of_entities(house),
+            classes: Classes::ALL.map(|table| EntityClasses::new(house, table)),
+            part_bounds: OnceLock::new(),
             house: house.clone(),
             textures,
             looks,
             surfaces,
             light: OnceLock::new(),
             lightings: Mutex::new(Vec::new()),
+            trees: house.meshes.iter().map(|_| OnceLock::new()).collect(),
         }
     }
 
@@ -125,12 +160,7 @@ impl CpuRenderer {
         }
         let pairs = views.iter().zip(frames);
         let mut jobs: Vec<Job<'_>> = pairs
-            .map(|(view, frame)| Job {
-                scene,
-                state,
-                view: *view,
-                frame: frame.reborrow(),
-            })
+            .map(|(view, frame)| Job::new(scene, state, *view, frame.reborrow()))
             .collect();
         self.render_batch(&mut jobs, threads)
     }
@@ -189,7 +219,9 @@ impl CpuRenderer {
                 found: format!("{:?} {:?}", pose.position, pose.rotation),
             });
         }
-        job.frame.check(view, &job.view.camera)
+        let (first, end) = job.row_range();
+        let pixels = (end - first) * job.view.camera.width() as usize;
+        job.frame.check(view, pixels)
     }
 
     fn house_light(&self) -> &HouseLight {
@@ -198,7 +230,7 @@ impl CpuRenderer {
     }
 
     /// Whether nothing but glass stands between a point and the sun.
-    fn sun_reaches(&self, scene: &RayScene, point: Vec3) -> bool {
+    fn sun_reaches(&self, scene: SceneBvh<'_>, point: Vec3) -> bool {
         let mut ray = Ray {
             origin: point,
             direction: self.house_light().sun.0,
@@ -206,7 +238,7 @@ impl CpuRenderer {
             far_m: SUN_RAY_M,
         };
         for _ in 0..PANES {
-            let Some(hit) = scene.closest(&ray, RayMask::EYE) else {
+            let Some(hit) = scene.closest(&ray, rays::SEEN) else {
                 return true;
             };
             let position = self.surfaces.position(hit.instance, hit.triangle);
@@ -227,14 +259,36 @@ impl CpuRenderer {
             .pop();
         let mut lighting = used.unwrap_or_default();
         lighting.update(&self.house, self.house_light(), state, |point| {
-            self.sun_reaches(scene, point)
+            self.sun_reaches(scene.bvh(), point)
         });
         lighting
     }
 
-    /// The class of an entity.
+    /// The class of every entity, by a table.
+    pub fn classes(&self, table: Classes) -> &EntityClasses {
+        &self.classes[table as usize]
+    }
+
+    /// The class of an entity in the semantic image.
     #[inline]
     fn class(&self, entity: i32) -> i32 {
-        self.classes[(entity.max(0) as usize).min(self.classes.len() - 1)]
+        self.classes[Classes::Coarse as usize].of(entity)
+    }
+
+    /// Around the surface of each part, in its own space; made at first use. Shape (part,).
+    pub(crate) fn part_bounds(&self) -> &[Aabb] {
+        self.part_bounds.get_or_init(|| {
+            let parts = self.house.parts.iter();
+            parts
+                .map(|part| {
+                    let mesh = &self.house.meshes[part.mesh];
+                    let points = mesh.triangles.iter().flatten();
+                    Aabb::from_points(points.map(|vertex| {
+                        let point = mesh.positions[*vertex as usize];
+                        part.part_from_mesh.transform_point3(point)
+                    }))
+                })
+                .collect()
+        })
     }
 }

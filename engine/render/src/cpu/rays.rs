@@ -1,16 +1,17 @@
 //! The rays of a view, a packet of pixels at a time.
 
-use crate::camera::Projection;
+use crate::camera::{Camera, Projection};
 use crate::frame::View;
 use dwell_scene::EntityId;
-use dwell_scene::bvh::{Hit, PacketHits, Ray, RayMask, RayPacket};
-use dwell_scene::rays::RayScene;
+use dwell_scene::bvh::{Hit, PacketHits, Ray, RayMask, RayPacket, SceneBvh};
 use glam::{Vec2, Vec3};
 
 /// Pixels across a packet.
 pub(super) const COLUMNS: usize = 8;
 /// Pixels down a packet.
 pub(super) const ROWS: usize = 4;
+/// What cameras see.
+pub(super) const SEEN: RayMask = RayMask::EYE.or(RayMask::BODY);
 /// Rays of a packet.
 pub(super) const LANES: usize = COLUMNS * ROWS;
 
@@ -115,6 +116,14 @@ impl Packet {
         })
     }
 
+    /// Whether a pixel sees anything.
+    pub(super) fn sees(&self, lane: usize) -> bool {
+        match &self.beam {
+            None => self.hits.is_hit(lane),
+            Some(beam) => beam.hits[lane].is_some(),
+        }
+    }
+
     /// Depths of what pixels see, m; `far_m` for those that see nothing.
     #[inline]
     pub(super) fn depths(&self, near_m: f32, far_m: f32) -> [f32; LANES] {
@@ -139,7 +148,7 @@ impl Packet {
     }
 
     /// Weights of the second and third corner of the triangle that a pixel sees.
-    pub(super) fn weights(&self, scene: &RayScene, lane: usize) -> (f32, f32) {
+    pub(super) fn weights(&self, scene: SceneBvh<'_>, lane: usize) -> (f32, f32) {
         let hit = match &self.beam {
             None => scene.packet_hit(&self.rays, &self.hits, lane),
             Some(beam) => beam.hits[lane],
@@ -151,7 +160,7 @@ impl Packet {
     pub(super) fn go_on(
         &mut self,
         rays: &Rays,
-        scene: &RayScene,
+        scene: SceneBvh<'_>,
         behind: impl Iterator<Item = (usize, f32)>,
     ) {
         let mut far_m = [-1.0; LANES];
@@ -163,9 +172,9 @@ impl Packet {
         self.trace(rays, scene);
     }
 
-    fn trace(&mut self, rays: &Rays, scene: &RayScene) {
+    fn trace(&mut self, rays: &Rays, scene: SceneBvh<'_>) {
         let Some(beam) = &mut self.beam else {
-            scene.closest_packet(&self.rays, RayMask::EYE, rays.hidden, &mut self.hits);
+            scene.closest_packet(&self.rays, SEEN, Some(rays.hidden.0), &mut self.hits);
             return;
         };
         for k in 0..LANES {
@@ -173,7 +182,7 @@ impl Packet {
                 origin: beam.start[k],
                 ..self.rays.ray(k)
             };
-            beam.hits[k] = scene.closest_without(&ray, RayMask::EYE, rays.hidden);
+            beam.hits[k] = scene.closest_without(&ray, SEEN, rays.hidden.0);
         }
     }
 }
@@ -201,7 +210,7 @@ impl Rays {
     #[inline]
     pub(super) fn cast(
         &self,
-        scene: &RayScene,
+        scene: SceneBvh<'_>,
         (left, top): (usize, usize),
         (width, height): (usize, usize),
         packet: &mut Packet,
@@ -222,6 +231,7 @@ impl Rays {
                 self.aim(packet, (left as f32, top as f32), (fx, fy, cx, cy));
             }
             Projection::Orthographic { .. } => self.spread(packet, (left, top)),
+            _ => self.bend(packet, (left, top)),
         }
         packet.trace(self, scene);
     }
@@ -252,6 +262,45 @@ impl Rays {
                 rays.far_m[k] *= length;
             }
         }
+    }
+
+    /// Directions through the middles of pixels of cameras that bend straight lines.
+    fn bend(&self, packet: &mut Packet, (left, top): (usize, usize)) {
+        let camera = &self.view.camera;
+        let is_range = camera.projection().depth_is_range();
+        for k in 0..LANES {
+            let image = Vec2::new(
+                (left + k % COLUMNS) as f32 + 0.5,
+                (top + k / COLUMNS) as f32 + 0.5,
+            );
+            let seen = camera.ray_in_camera(image).1;
+            let direction = self.right * seen.x + self.up * seen.y + self.back * seen.z;
+            let rays = &mut packet.rays;
+            let Some(unit) = direction.try_normalize() else {
+                rays.set(k, Vec3::ZERO, 0.0, -1.0);
+                packet.per_length[k] = 1.0;
+                continue;
+            };
+            // A direction is as long as the ray is for a metre of depth.
+            let length = if is_range { 1.0 } else { seen.length() };
+            rays.set(k, unit, rays.near_m[k] * length, rays.far_m[k] * length);
+            packet.per_length[k] = 1.0 / length;
+        }
+    }
+
+    /// A direction of the world in the camera's frame.
+    #[inline]
+    pub(super) fn in_camera(&self, direction: Vec3) -> Vec3 {
+        Vec3::new(
+            self.right.dot(direction),
+            self.up.dot(direction),
+            self.back.dot(direction),
+        )
+    }
+
+    /// The camera.
+    pub(super) fn camera(&self) -> &Camera {
+        &self.view.camera
     }
 
     /// Starts in the middles of pixels, all in one direction.

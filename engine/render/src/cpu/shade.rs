@@ -2,12 +2,14 @@
 
 use super::CpuRenderer;
 use super::band::Band;
-use super::rays::{COLUMNS, LANES, Packet, Sight};
+use super::rays::Rays;
+use super::rays::{COLUMNS, LANES, Packet, SEEN, Sight};
 use crate::color::Srgb;
 use crate::light::{beside_surface, display, sky};
+use crate::look::Look;
 use crate::surfaces::SLOW;
-use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::{Entity, EntityId};
+use dwell_scene::bvh::Ray;
+use dwell_scene::{Entity, EntityId, Pose, State};
 use glam::Vec3;
 
 /// Most surfaces that a ray passes; the last one counts as opaque.
@@ -33,6 +35,18 @@ struct Open {
     rest: f32,
     /// Where to go on, m of depth.
     from: f32,
+}
+
+/// What a surface is like at a point, before light.
+pub(super) struct Skin<'a> {
+    look: &'a Look,
+    /// Reflectance, linear.
+    pub(super) color: Vec3,
+    opacity: f32,
+    /// By the winding, world space.
+    pub(super) normal: Vec3,
+    /// Of the part that it moves with.
+    pose: Option<&'a Pose>,
 }
 
 /// The pixels of a packet whose rays passed a surface.
@@ -79,6 +93,55 @@ impl Palette {
     }
 }
 
+impl CpuRenderer {
+    /// What is seen of a surface without light.
+    pub(super) fn skin<'a>(&'a self, rays: &Rays, state: &'a State, sight: &Sight) -> Skin<'a> {
+        let position = self.surfaces.position(sight.instance, sight.triangle);
+        self.skin_at(rays, state, sight, position)
+    }
+
+    #[inline]
+    fn skin_at<'a>(
+        &'a self,
+        rays: &Rays,
+        state: &'a State,
+        sight: &Sight,
+        position: usize,
+    ) -> Skin<'a> {
+        let triangle = self.surfaces.triangle(position);
+        let look = &self.looks[triangle.material as usize];
+        let mut color = Vec3::from_array(look.base);
+        let mut opacity = look.opacity;
+        let &Sight {
+            point,
+            direction,
+            depth,
+            ..
+        } = sight;
+        let pose = self.surfaces.pose(sight.instance, state);
+        let normal = pose.map_or(triangle.normal, |pose| pose.rotation * triangle.normal);
+        if let Some(texture) = look.texture() {
+            let in_part =
+                |p: Vec3| pose.map_or(p, |pose| pose.rotation.inverse() * (p - pose.position));
+            let (fixed, growing) = rays.pixel_area;
+            let slope = normal.dot(direction).abs().max(GRAZING);
+            let area = (fixed + growing * depth * depth) * sight.per_length / slope;
+            let texels = area * triangle.density * look.texels;
+            let uv = triangle.uv(in_part(point));
+            let sample = self.textures.sample(Srgb::tables(), texture, uv, texels);
+            color *= sample.truncate();
+            opacity *= sample.w;
+        }
+        Skin {
+            look,
+            color,
+            opacity,
+            normal,
+            pose,
+        }
+    }
+}
+
 impl Band<'_> {
     /// sRGB of the first `columns` by `rows` pixels of a packet, which afterwards no longer knows what they see first.
     pub(super) fn colors(
@@ -109,7 +172,11 @@ impl Band<'_> {
         open: &mut OpenLanes,
     ) -> [u8; 3] {
         let Some(sight) = packet.sight(lane) else {
-            return self.encode(self.sky(renderer, packet.direction(lane)));
+            let direction = packet.direction(lane);
+            if direction == Vec3::ZERO {
+                return [0; 3];
+            }
+            return self.encode(self.sky(renderer, direction));
         };
         let position = renderer.surfaces.position(sight.instance, sight.triangle);
         let [r, g, b, kind] = renderer.surfaces.quick(position);
@@ -200,32 +267,16 @@ impl Band<'_> {
         mirrors: u32,
         weights: impl FnOnce() -> (f32, f32),
     ) -> (Vec3, f32) {
-        let triangle = renderer.surfaces.triangle(position);
-        let look = &renderer.looks[triangle.material as usize];
-        let mut color = Vec3::from_array(look.base);
-        let mut opacity = look.opacity;
+        let Skin {
+            look,
+            color,
+            opacity,
+            normal,
+            pose,
+        } = renderer.skin_at(&self.rays, self.state, sight, position);
         let &Sight {
-            point,
-            direction,
-            depth,
-            ..
+            point, direction, ..
         } = sight;
-        let pose = renderer.surfaces.pose(sight.instance, self.state);
-        let normal = pose.map_or(triangle.normal, |pose| pose.rotation * triangle.normal);
-        if let Some(texture) = look.texture() {
-            let in_part =
-                |p: Vec3| pose.map_or(p, |pose| pose.rotation.inverse() * (p - pose.position));
-            let (fixed, growing) = self.rays.pixel_area;
-            let slope = normal.dot(direction).abs().max(GRAZING);
-            let area = (fixed + growing * depth * depth) * sight.per_length / slope;
-            let texels = area * triangle.density * look.texels;
-            let uv = triangle.uv(in_part(point));
-            let sample = renderer
-                .textures
-                .sample(Srgb::tables(), texture, uv, texels);
-            color *= sample.truncate();
-            opacity *= sample.w;
-        }
         let Some((lighting, exposure)) = &self.light else {
             return (color, opacity);
         };
@@ -281,7 +332,7 @@ impl Band<'_> {
         };
         let (mut light, mut rest) = (Vec3::ZERO, 1.0);
         for layer in 1..=LAYERS {
-            let Some(hit) = self.scene.closest(&ray, RayMask::EYE) else {
+            let Some(hit) = self.scene.closest(&ray, SEEN) else {
                 break;
             };
             let distance = hit.distance_m;

@@ -13,8 +13,10 @@ impl RayMask {
     pub const EAR: Self = Self(2);
     /// Agents' bodies and navigation.
     pub const AGENT: Self = Self(4);
-    /// Every ray.
-    pub const ALL: Self = Self(0xff);
+    /// Cameras that see agents' bodies, too: together with [`Self::EYE`].
+    pub const BODY: Self = Self(0x80);
+    /// Every ray but those for bodies.
+    pub const ALL: Self = Self(0x7f);
     /// No ray.
     pub const NONE: Self = Self(0);
 

@@ -1,5 +1,9 @@
 //! Rays through a house as it stands in one world: the one way in which eyes, ears and hands find surfaces.
 
+mod bodies;
+
+pub use bodies::{BODY_PIECES, body_meshes};
+
 use crate::bvh::{Hit, Instance, InstanceSet, PacketHits, Ray, RayMask, RayPacket, SceneBvh};
 use crate::house::{House, Placed, Surface, SurfaceOwner, normals_map};
 use crate::ids::{EntityId, Id, MaterialId, PartId};
@@ -17,7 +21,7 @@ pub const FAN: usize = 16;
 pub struct RayScene {
     house: Arc<House>,
     moving: InstanceSet,
-    /// For each moving part, where it stands. Shape (instance,).
+    /// For each moving part, where it stands; then the pieces of agents' bodies. Shape (instance,).
     world_from_mesh: Vec<Affine3A>,
 }
 
@@ -30,31 +34,50 @@ impl RayScene {
             .iter()
             .map(|part| geometry.placed_part(*part).world_from_mesh)
             .collect();
-        let instances = geometry.movable.iter().zip(&start).map(|(part, place)| {
-            let placed = geometry.placed_part(*part);
-            Instance {
-                mesh: geometry.mesh_bvh[placed.mesh].clone().unwrap_or_default(),
-                world_from_mesh: *place,
-                id: placed.entity.0,
-                mask: RayMask::ALL,
-            }
-        });
-        let moving = InstanceSet::new(instances);
         Self {
-            moving,
+            moving: InstanceSet::new(parts(&house)),
             world_from_mesh: start,
             house,
         }
     }
 
-    /// Moves the parts to where `state` has them. Allocates nothing after the first call.
+    /// Moves the parts and the agents' bodies to where `state` has them. Allocates nothing after the first call, unless
+    /// there are other agents than before.
     pub fn update(&mut self, state: &State) {
+        let parts = self.house.geometry().movable.len();
+        if self.world_from_mesh.len() != parts + state.agents.len() * BODY_PIECES {
+            self.admit(state);
+        }
+        for (agent, pieces) in state
+            .agents
+            .iter()
+            .zip(self.world_from_mesh[parts..].chunks_exact_mut(BODY_PIECES))
+        {
+            pieces.copy_from_slice(&bodies::places(agent));
+        }
         let geometry = self.house.geometry();
         for (place, part) in self.world_from_mesh.iter_mut().zip(&geometry.movable) {
             *place =
                 state.part_pose[*part].to_affine() * geometry.placed_part(*part).part_from_mesh;
         }
         self.moving.set_poses(&self.world_from_mesh);
+    }
+
+    /// Makes room for other agents than there were.
+    fn admit(&mut self, state: &State) {
+        let house = &self.house;
+        let instances = parts(house).chain(state.agents.ids().flat_map(|id| {
+            let entity = house.entity_of_agent(id).0;
+            bodies::trees().iter().map(move |mesh| Instance {
+                mesh: mesh.clone(),
+                world_from_mesh: Affine3A::IDENTITY,
+                id: entity,
+                mask: RayMask::BODY,
+            })
+        }));
+        self.moving = InstanceSet::new(instances);
+        self.world_from_mesh
+            .resize(self.moving.len(), Affine3A::IDENTITY);
     }
 
     /// The trees that rays walk.
@@ -132,6 +155,10 @@ impl RayScene {
     }
 
     /// The part of a moving instance.
+    ///
+    /// # Panics
+    /// For a piece of an agent's body, which only rays with [`RayMask::BODY`] meet; as do [`Self::surface`], [`Self::uv`] and
+    /// [`Self::shading_normal`].
     pub fn part_of_instance(&self, instance: u32) -> PartId {
         self.house.geometry().movable[instance as usize]
     }
@@ -199,6 +226,20 @@ impl RayScene {
             turned
         }
     }
+}
+
+/// The parts that move, where they stand at the start.
+fn parts(house: &House) -> impl Iterator<Item = Instance> + '_ {
+    let geometry = house.geometry();
+    geometry.movable.iter().map(|part| {
+        let placed = geometry.placed_part(*part);
+        Instance {
+            mesh: geometry.mesh_bvh[placed.mesh].clone().unwrap_or_default(),
+            world_from_mesh: placed.world_from_mesh,
+            id: placed.entity.0,
+            mask: RayMask::ALL,
+        }
+    })
 }
 
 impl House {

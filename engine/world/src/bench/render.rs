@@ -63,14 +63,12 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         let mut jobs: Vec<Job<'_>> = poses
             .iter()
             .zip(&mut frames)
-            .map(|(pose, frame)| Job {
-                scene: &scene,
-                state: &state,
-                view: View {
+            .map(|(pose, frame)| {
+                let view = View {
                     preset: options.preset,
                     ..View::new(camera, *pose)
-                },
-                frame: frame.as_mut(),
+                };
+                Job::new(&scene, &state, view, frame.as_mut())
             })
             .collect();
         renderer.render_batch(&mut jobs, threads)?;

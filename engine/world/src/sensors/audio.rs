@@ -17,6 +17,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "audio",
     about: ABOUT,
     build,
+    image: None,
 };
 
 /// The settings of the ears.

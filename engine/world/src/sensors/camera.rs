@@ -1,40 +1,67 @@
 //! The settings that all camera sensors share. Sensors with equal settings share one picture.
 
 use crate::error::WorldError;
-use dwell_render::{Camera, Preset};
-use dwell_scene::{AgentBody, AgentId, State};
+use crate::pictures::{PictureRequest, Place};
+use dwell_render::{Camera, Preset, Projection};
+use dwell_scene::space::rotation_from_yaw_pitch;
+use dwell_scene::{AgentBody, AgentId, Pose, State, math};
+use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// A camera at an agent's eyes.
+/// A camera at an agent's eyes, or mounted beside them. Several sensors of one kind need names; two cameras side by side are a
+/// stereo pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CameraConfig {
+    /// The key in the observation; by default the sensor's kind.
+    pub name: Option<String>,
     /// Which agent's eyes.
     pub agent: u32,
     /// Pixels across; 1 to 8,192, default 128.
     pub width: u32,
     /// Pixels down; 1 to 8,192, default 128.
     pub height: u32,
-    /// Horizontal field of view, degrees; 1 to 170; by default that of the agent's body, 90 if nothing else is said.
+    /// Horizontal field of view of a pinhole, degrees; 1 to 170; by default that of the agent's body, 90 if nothing else is
+    /// said.
     pub fov_deg: Option<f32>,
+    /// The kind of camera with its numbers, in place of `fov_deg`: `{"kind": "pinhole", "fx": ...}`, `brown_conrady`,
+    /// `fisheye`, `equirectangular`, `cubemap`, `orthographic`.
+    pub projection: Option<Projection>,
+    /// Where the camera is against the eyes: to the right, up, back, m; default none of them.
+    pub position_m: [f32; 3],
+    /// How it is turned against the look of the eyes, degrees to the left.
+    pub yaw_deg: f32,
+    /// Then up, degrees.
+    pub pitch_deg: f32,
+    /// Then about its own axis, degrees, counter-clockwise as it looks.
+    pub roll_deg: f32,
     /// Nearest distance that is seen, m; default 0.05.
     pub near_m: f32,
     /// Furthest distance, to which depth is clamped, m; default 50.
     pub far_m: f32,
     /// `"flat"` (texture times colour) or `"lit"` (lamps and daylight).
     pub preset: String,
+    /// Rows of sensors that list things; 1 to 4,096, default 64.
+    pub max_objects: u32,
 }
 
 impl Default for CameraConfig {
     fn default() -> Self {
         Self {
+            name: None,
             agent: 0,
             width: 128,
             height: 128,
             fov_deg: None,
+            projection: None,
+            position_m: [0.0; 3],
+            yaw_deg: 0.0,
+            pitch_deg: 0.0,
+            roll_deg: 0.0,
             near_m: 0.05,
             far_m: 50.0,
             preset: "lit".to_owned(),
+            max_objects: 64,
         }
     }
 }
@@ -46,17 +73,19 @@ pub struct EyeCamera {
     pub agent: AgentId,
     /// The camera.
     pub camera: Camera,
-    /// Its horizontal field of view, degrees.
-    pub fov_deg: f32,
+    /// Its horizontal field of view, degrees; nothing for a camera that was given by its projection.
+    pub fov_deg: Option<f32>,
+    /// Where it is mounted.
+    pub eye_from_camera: Pose,
     /// Flat or lit.
     pub preset: Preset,
 }
 
 impl EyeCamera {
     /// The camera as a world's parameters have it: once `agent/N/camera/fov_deg` is set it goes before its own
-    /// field of view.
+    /// field of view. A camera that was given by its projection keeps it.
     pub fn camera_in(&self, state: &State) -> Camera {
-        let Some(fov_deg) = state.overridden_fov_deg(self.agent) else {
+        let (Some(fov_deg), Some(_)) = (state.overridden_fov_deg(self.agent), self.fov_deg) else {
             return self.camera;
         };
         let own = &self.camera;
@@ -66,46 +95,89 @@ impl EyeCamera {
     }
 }
 
+impl EyeCamera {
+    /// The picture that it asks for.
+    pub fn request(&self, state: &State) -> PictureRequest {
+        PictureRequest {
+            camera: self.camera_in(state),
+            place: Place::Agent(self.agent, self.eye_from_camera),
+            preset: self.preset,
+        }
+    }
+}
+
+/// Where a camera is against the eyes, from its settings.
+pub(crate) fn mount(position_m: [f32; 3], [yaw_deg, pitch_deg, roll_deg]: [f32; 3]) -> Pose {
+    let turned = rotation_from_yaw_pitch(yaw_deg.to_radians(), pitch_deg.to_radians());
+    let (sine, cosine) = math::sin_cos(0.5 * roll_deg.to_radians());
+    let rolled = Quat::from_xyzw(0.0, 0.0, sine, cosine);
+    Pose::new(Vec3::from_array(position_m), (turned * rolled).normalize())
+}
+
 impl CameraConfig {
     /// Checks every range.
     ///
     /// # Errors
     /// [`WorldError::Config`] or [`WorldError::Render`] names the field.
     pub fn build(&self, agents: &[AgentBody]) -> Result<EyeCamera, WorldError> {
-        let Some(body) = agents.get(self.agent as usize) else {
-            let agent_count = agents.len();
-            let allowed = format!("below the number of agents, {agent_count}");
-            return Err(WorldError::Config {
-                field: "agent",
-                found: self.agent.to_string(),
+        let fault = |field: &'static str, found: String, allowed: String| {
+            Err(WorldError::Config {
+                field,
+                found,
                 allowed,
-            });
+            })
+        };
+        let Some(body) = agents.get(self.agent as usize) else {
+            let allowed = format!("below the number of agents, {}", agents.len());
+            return fault("agent", self.agent.to_string(), allowed);
         };
         let preset = match self.preset.as_str() {
             "flat" => Preset::Flat,
             "lit" => Preset::Lit,
             other => {
                 let allowed = "\"flat\" or \"lit\"".to_owned();
-                return Err(WorldError::Config {
-                    field: "preset",
-                    found: format!("{other:?}"),
-                    allowed,
-                });
+                return fault("preset", format!("{other:?}"), allowed);
             }
         };
-        let fov_deg = self.fov_deg.unwrap_or(body.camera_fov_deg);
-        let camera = Camera::from_fov(self.width, self.height, fov_deg)?
-            .with_range(self.near_m, self.far_m)?;
+        if !self.position_m.iter().all(|part| part.abs() <= 100.0) {
+            let found = format!("{:?}", self.position_m);
+            return fault(
+                "position_m",
+                found,
+                "-100 to 100 m along each axis".to_owned(),
+            );
+        }
+        let angles = [self.yaw_deg, self.pitch_deg, self.roll_deg];
+        for (field, angle) in ["yaw_deg", "pitch_deg", "roll_deg"].into_iter().zip(angles) {
+            if !(-360.0..=360.0).contains(&angle) {
+                return fault(field, angle.to_string(), "-360 to 360 degrees".to_owned());
+            }
+        }
+        if !(1..=4096).contains(&self.max_objects) {
+            let found = self.max_objects.to_string();
+            return fault("max_objects", found, "1 to 4096".to_owned());
+        }
+        if self.name.as_ref().is_some_and(String::is_empty) {
+            return fault("name", "\"\"".to_owned(), "a word".to_owned());
+        }
+        let (camera, fov_deg) = match (self.projection, self.fov_deg) {
+            (Some(_), Some(fov_deg)) => {
+                let allowed = "nothing beside a projection".to_owned();
+                return fault("fov_deg", fov_deg.to_string(), allowed);
+            }
+            (Some(projection), None) => (Camera::new(self.width, self.height, projection)?, None),
+            (None, own) => {
+                let fov_deg = own.unwrap_or(body.camera_fov_deg);
+                let camera = Camera::from_fov(self.width, self.height, fov_deg)?;
+                (camera, Some(fov_deg))
+            }
+        };
         Ok(EyeCamera {
             agent: AgentId(self.agent),
-            camera,
+            camera: camera.with_range(self.near_m, self.far_m)?,
             fov_deg,
+            eye_from_camera: mount(self.position_m, angles),
             preset,
         })
-    }
-
-    /// The shape of an image with `channels` channels.
-    pub(crate) fn shape(&self, channels: usize) -> Vec<usize> {
-        vec![self.height as usize, self.width as usize, channels]
     }
 }

@@ -13,6 +13,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "compass",
     about: ABOUT,
     build,
+    image: None,
 };
 
 #[derive(Debug)]

@@ -1,55 +1,42 @@
-//! Depth image: metres along the camera's -Z, shape (height, width, 1); misses are clamped to `far_m`.
+//! Depth image: metres along the camera's -Z (range for fisheyes and cameras that see all around), shape (height, width, 1); misses are clamped to `far_m`.
 
-use super::camera::{CameraConfig, EyeCamera};
-use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::image::{self, Kind, Look, Shape};
+use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use crate::requests::{Channel, Requests};
-use crate::world::World;
+use dwell_render::Channels;
 
-const ABOUT: &str = "Depth image: metres along the camera's -Z, shape (height, width, 1); misses are clamped to `far_m`.";
+const ABOUT: &str = "Depth image: metres along the camera's -Z (range for fisheyes and cameras that see all around), shape (height, width, 1); misses are clamped to `far_m`.";
 
 pub(super) const KIND: SensorKind = SensorKind {
-    name: "depth",
+    name: IMAGE.name,
     about: ABOUT,
     build,
+    image: Some(&IMAGE),
 };
 
-#[derive(Debug)]
-struct Depth {
-    config: CameraConfig,
-    eye: EyeCamera,
-}
+static IMAGE: Kind = Kind {
+    name: "depth",
+    about: ABOUT,
+    shape: Shape::Image(1),
+    dtype: Dtype::Float32,
+    unit: "m",
+    low: 0.0,
+    high: 1e6,
+    channels: Channels {
+        depth: true,
+        ..Channels::NONE
+    },
+    write,
+};
 
 fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let config: CameraConfig = settings(value)?;
-    let eye = config.build(&site.config.agents)?;
-    Ok(Box::new(Depth { config, eye }))
+    image::build(&IMAGE, value, site)
 }
 
-impl Sensor for Depth {
-    fn spec(&self) -> SensorSpec {
-        SensorSpec {
-            name: "depth".to_owned(),
-            shape: self.config.shape(1),
-            dtype: Dtype::Float32,
-            unit: "m",
-            low: 0.0,
-            high: f64::from(self.config.far_m),
-            about: ABOUT,
-        }
-    }
-
-    fn eye(&self) -> Option<&EyeCamera> {
-        Some(&self.eye)
-    }
-
-    fn plan(&self, _world: &World, requests: &mut Requests) {
-        requests.view(&self.eye, Channel::Depth);
-    }
-
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        if let (Some(view), Out::Float32(out)) = (seen.results.view(&self.eye), out) {
-            out.copy_from_slice(&view.depth);
-        }
+fn write(look: Look<'_>, out: Out<'_>) {
+    if let Out::Float32(out) = out {
+        let (frame, camera) = (look.frame, look.camera);
+        out.copy_from_slice(&frame.depth);
+        look.optics().depth(camera, &frame.normals, look.key, out);
     }
 }

@@ -14,6 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "gyro",
     about: ABOUT,
     build,
+    image: None,
 };
 
 #[derive(Debug)]

@@ -1,55 +1,40 @@
 //! Instance ids: 0 void, then structure pieces, objects, agents, in file order; shape (height, width, 1).
 
-use super::camera::{CameraConfig, EyeCamera};
-use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::image::{self, Kind, Look, Shape};
+use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use crate::requests::{Channel, Requests};
-use crate::world::World;
+use dwell_render::Channels;
 
 const ABOUT: &str = "Instance ids: 0 void, then structure pieces, objects, agents, in file order; shape (height, width, 1).";
 
 pub(super) const KIND: SensorKind = SensorKind {
-    name: "instance",
+    name: IMAGE.name,
     about: ABOUT,
     build,
+    image: Some(&IMAGE),
 };
 
-#[derive(Debug)]
-struct Instance {
-    config: CameraConfig,
-    eye: EyeCamera,
-}
+static IMAGE: Kind = Kind {
+    name: "instance",
+    about: ABOUT,
+    shape: Shape::Image(1),
+    dtype: Dtype::Int32,
+    unit: "id",
+    low: 0.0,
+    high: i32::MAX as f64,
+    channels: Channels {
+        instance: true,
+        ..Channels::NONE
+    },
+    write,
+};
 
 fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let config: CameraConfig = settings(value)?;
-    let eye = config.build(&site.config.agents)?;
-    Ok(Box::new(Instance { config, eye }))
+    image::build(&IMAGE, value, site)
 }
 
-impl Sensor for Instance {
-    fn spec(&self) -> SensorSpec {
-        SensorSpec {
-            name: "instance".to_owned(),
-            shape: self.config.shape(1),
-            dtype: Dtype::Int32,
-            unit: "id",
-            low: 0.0,
-            high: f64::from(i32::MAX),
-            about: ABOUT,
-        }
-    }
-
-    fn eye(&self) -> Option<&EyeCamera> {
-        Some(&self.eye)
-    }
-
-    fn plan(&self, _world: &World, requests: &mut Requests) {
-        requests.view(&self.eye, Channel::Instance);
-    }
-
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        if let (Some(view), Out::Int32(out)) = (seen.results.view(&self.eye), out) {
-            out.copy_from_slice(&view.instance);
-        }
+fn write(look: Look<'_>, out: Out<'_>) {
+    if let Out::Int32(out) = out {
+        out.copy_from_slice(&look.frame.instance);
     }
 }

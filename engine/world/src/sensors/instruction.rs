@@ -10,6 +10,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "instruction",
     about: ABOUT,
     build,
+    image: None,
 };
 
 #[derive(Debug)]

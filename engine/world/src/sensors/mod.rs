@@ -3,20 +3,33 @@
 //! A sensor works in two strokes. In the first it says what it needs ([`Sensor::plan`]); the engines then run once for
 //! all sensors of all worlds; in the second it writes into a buffer that the caller owns ([`Sensor::finish`]).
 
+mod albedo;
 mod audio;
+mod boxes_2d;
+mod boxes_3d;
 mod camera;
 mod compass;
 mod depth;
+mod flow;
 mod gps;
 mod gyro;
+mod image;
 mod instance;
 mod instruction;
 mod instruction_tokens;
+mod list;
+mod normals;
 mod rgb;
 mod semantic;
+mod semantic_fine;
+mod semantic_nyu40;
+mod surfels;
+mod visible_objects;
 mod wheel_odometry;
 
+pub(crate) use camera::mount;
 pub use camera::{CameraConfig, EyeCamera};
+pub use image::{Data, Observation};
 
 use crate::env::Episode;
 use crate::error::WorldError;
@@ -138,6 +151,8 @@ pub struct SensorKind {
     pub about: &'static str,
     /// Builds one from its settings (a JSON object; `{}` gives the defaults).
     pub build: Builder,
+    /// What [`World::look`] needs of a sensor of pictures.
+    pub(crate) image: Option<&'static image::Kind>,
 }
 
 /// All kinds of sensors.
@@ -147,6 +162,15 @@ pub fn all() -> &'static [SensorKind] {
         depth::KIND,
         instance::KIND,
         semantic::KIND,
+        semantic_fine::KIND,
+        semantic_nyu40::KIND,
+        normals::KIND,
+        albedo::KIND,
+        surfels::KIND,
+        flow::KIND,
+        visible_objects::KIND,
+        boxes_2d::KIND,
+        boxes_3d::KIND,
         audio::KIND,
         instruction::KIND,
         instruction_tokens::KIND,

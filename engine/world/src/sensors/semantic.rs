@@ -1,55 +1,40 @@
-//! Semantic classes: 0 void, then the table that the house's info prints; shape (height, width, 1).
+//! Coarse semantic classes: 0 void, then the rows of the category table, then the house's own (House.classes); shape (height, width, 1).
 
-use super::camera::{CameraConfig, EyeCamera};
-use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::image::{self, Kind, Look, Shape};
+use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use crate::requests::{Channel, Requests};
-use crate::world::World;
+use dwell_render::Channels;
 
-const ABOUT: &str = "Semantic classes: 0 void, then the table that the house's info prints; shape (height, width, 1).";
+const ABOUT: &str = "Coarse semantic classes: 0 void, then the rows of the category table, then the house's own (House.classes); shape (height, width, 1).";
 
 pub(super) const KIND: SensorKind = SensorKind {
-    name: "semantic",
+    name: IMAGE.name,
     about: ABOUT,
     build,
+    image: Some(&IMAGE),
 };
 
-#[derive(Debug)]
-struct Semantic {
-    config: CameraConfig,
-    eye: EyeCamera,
-}
+static IMAGE: Kind = Kind {
+    name: "semantic",
+    about: ABOUT,
+    shape: Shape::Image(1),
+    dtype: Dtype::Int32,
+    unit: "class",
+    low: 0.0,
+    high: i32::MAX as f64,
+    channels: Channels {
+        semantic: true,
+        ..Channels::NONE
+    },
+    write,
+};
 
 fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let config: CameraConfig = settings(value)?;
-    let eye = config.build(&site.config.agents)?;
-    Ok(Box::new(Semantic { config, eye }))
+    image::build(&IMAGE, value, site)
 }
 
-impl Sensor for Semantic {
-    fn spec(&self) -> SensorSpec {
-        SensorSpec {
-            name: "semantic".to_owned(),
-            shape: self.config.shape(1),
-            dtype: Dtype::Int32,
-            unit: "class",
-            low: 0.0,
-            high: f64::from(i32::MAX),
-            about: ABOUT,
-        }
-    }
-
-    fn eye(&self) -> Option<&EyeCamera> {
-        Some(&self.eye)
-    }
-
-    fn plan(&self, _world: &World, requests: &mut Requests) {
-        requests.view(&self.eye, Channel::Semantic);
-    }
-
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        if let (Some(view), Out::Int32(out)) = (seen.results.view(&self.eye), out) {
-            out.copy_from_slice(&view.semantic);
-        }
+fn write(look: Look<'_>, out: Out<'_>) {
+    if let Out::Int32(out) = out {
+        out.copy_from_slice(&look.frame.semantic);
     }
 }

@@ -1,34 +1,19 @@
 //! Cameras: where a pixel looks, and where a point appears.
 
+mod fisheye;
+mod lens;
+mod panorama;
+mod projection;
+#[cfg(test)]
+mod tests;
+
+pub use projection::Projection;
+
 use crate::error::RenderError;
 use dwell_scene::math;
 use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
-
-/// Where pixels look.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Projection {
-    /// All rays pass one point. OpenCV's form: image x = `fx` X/Z + `cx`, image y = `fy` Y/Z + `cy` with Y down and Z
-    /// forward, the origin at the top left **corner** of the image, so that pixel centres lie at +0.5.
-    Pinhole {
-        /// Focal length in pixel widths.
-        fx: f32,
-        /// Focal length in pixel heights.
-        fy: f32,
-        /// Principal point, pixels from the left edge.
-        cx: f32,
-        /// Principal point, pixels from the upper edge.
-        cy: f32,
-    },
-    /// All rays are parallel; the image is centred on the camera.
-    Orthographic {
-        /// What the image spans from left to right, m.
-        width_m: f32,
-        /// What the image spans from top to bottom, m.
-        height_m: f32,
-    },
-}
+use std::f32::consts::{PI, TAU};
 
 /// A camera without a place: image size, projection, and the range of depth in which things are seen.
 ///
@@ -120,27 +105,7 @@ impl Camera {
                 return fault(field, edge, "1 to 16384 pixels");
             }
         }
-        match projection {
-            Projection::Pinhole { fx, fy, cx, cy } => {
-                for (field, focal) in [("fx", fx), ("fy", fy)] {
-                    if !(1e-3..=1e7).contains(&focal) {
-                        return fault(field, focal, "0.001 to 1e7 pixels");
-                    }
-                }
-                for (field, center) in [("cx", cx), ("cy", cy)] {
-                    if !(-1e6..=1e6).contains(&center) {
-                        return fault(field, center, "-1e6 to 1e6 pixels");
-                    }
-                }
-            }
-            Projection::Orthographic { width_m, height_m } => {
-                for (field, span) in [("width_m", width_m), ("height_m", height_m)] {
-                    if !(1e-3..=1e5).contains(&span) {
-                        return fault(field, span, "0.001 to 100000 m");
-                    }
-                }
-            }
-        }
+        projection.check(width, height)?;
         Ok(Self {
             width,
             height,
@@ -217,6 +182,27 @@ impl Camera {
         })
     }
 
+    /// The same camera with another projection; as it was where that is out of range.
+    #[must_use]
+    pub(crate) fn with_projection(self, projection: Projection) -> Self {
+        match projection.check(self.width, self.height) {
+            Ok(()) => Self { projection, ..self },
+            Err(_) => self,
+        }
+    }
+
+    /// The same camera with other focal lengths and principal point `(fx, fy, cx, cy)`; as it was where it has none.
+    #[must_use]
+    pub(crate) fn with_changed_intrinsics(
+        self,
+        change: impl FnOnce((f32, f32, f32, f32)) -> (f32, f32, f32, f32),
+    ) -> Self {
+        let own = self.projection.intrinsics();
+        own.map_or(self, |own| {
+            self.with_projection(self.projection.with_intrinsics(change(own)))
+        })
+    }
+
     /// Pixels across.
     pub fn width(&self) -> u32 {
         self.width
@@ -247,8 +233,29 @@ impl Camera {
         self.far_m
     }
 
+    /// A camera that sees all around, `width` pixels for 360 degrees and half as many for 180.
+    ///
+    /// # Errors
+    /// [`RenderError::Camera`] names the number that is out of range.
+    pub fn equirectangular(width: u32) -> Result<Self, RenderError> {
+        Self::new(width, (width / 2).max(1), Projection::Equirectangular)
+    }
+
+    /// A camera that sees all around, as six pictures of `edge` by `edge` pixels below one another.
+    ///
+    /// # Errors
+    /// [`RenderError::Camera`] names the number that is out of range.
+    pub fn cubemap(edge: u32) -> Result<Self, RenderError> {
+        Self::new(edge, edge.saturating_mul(6), Projection::Cubemap)
+    }
+
+    fn size(&self) -> (f32, f32) {
+        (self.width as f32, self.height as f32)
+    }
+
     /// The ray through a point of the image, in camera space: where it starts (depth 0) and its direction **per metre of
-    /// depth** (z is -1), so that the point at depth d is `start + d * direction`.
+    /// depth**, so that the point at depth d is `start + d * direction`. For cameras whose depth is range the direction has
+    /// unit length, for others z is -1. A direction of zero: this point of the image sees nothing.
     ///
     /// `image`: pixels from the top left corner; the centre of the first pixel is (0.5, 0.5).
     #[inline]
@@ -263,35 +270,127 @@ impl Camera {
                 let y = (0.5 - image.y / self.height as f32) * height_m;
                 (Vec3::new(x, y, 0.0), Vec3::NEG_Z)
             }
+            _ => (Vec3::ZERO, self.bent_ray(image)),
+        }
+    }
+
+    /// The direction of [`Self::ray_in_camera`] for cameras that bend straight lines.
+    fn bent_ray(&self, image: Vec2) -> Vec3 {
+        match self.projection {
+            Projection::BrownConrady {
+                fx,
+                fy,
+                cx,
+                cy,
+                k1,
+                k2,
+                k3,
+                p1,
+                p2,
+            } => {
+                let seen = Vec2::new((image.x - cx) / fx, (image.y - cy) / fy);
+                lens::undistort([k1, k2, k3, p1, p2], seen)
+                    .map_or(Vec3::ZERO, |p| Vec3::new(p.x, -p.y, -1.0))
+            }
+            Projection::Fisheye {
+                fx,
+                fy,
+                cx,
+                cy,
+                k1,
+                k2,
+                k3,
+                k4,
+                half_angle_deg,
+            } => {
+                let at = Vec2::new((image.x - cx) / fx, (image.y - cy) / fy);
+                fisheye::direction(at, [k1, k2, k3, k4], half_angle_deg.to_radians())
+            }
+            Projection::Equirectangular => panorama::sphere_direction(image, self.size()),
+            Projection::Cubemap => panorama::cube_direction(image, self.width as f32),
+            Projection::Pinhole { .. } | Projection::Orthographic { .. } => {
+                self.ray_in_camera(image).1
+            }
         }
     }
 
     /// Where a point in camera space appears, pixels from the top left corner, and its depth, m; nothing for a point that
-    /// a pinhole camera has beside or behind it. The image may end before.
+    /// the camera cannot see wherever its image ends, such as one beside or behind a pinhole. The image may end before.
     pub fn project(&self, point_in_camera: Vec3) -> Option<(Vec2, f32)> {
         let depth = -point_in_camera.z;
-        let image = match self.projection {
+        let range = point_in_camera.length();
+        let flat = Vec2::new(point_in_camera.x, -point_in_camera.y) / depth;
+        match self.projection {
             Projection::Pinhole { fx, fy, cx, cy } => {
+                let image = Vec2::new(
+                    cx + fx * point_in_camera.x / depth,
+                    cy - fy * point_in_camera.y / depth,
+                );
+                (depth > 0.0).then_some((image, depth))
+            }
+            Projection::BrownConrady {
+                fx,
+                fy,
+                cx,
+                cy,
+                k1,
+                k2,
+                k3,
+                p1,
+                p2,
+            } => {
                 if depth <= 0.0 {
                     return None;
                 }
-                Vec2::new(
-                    cx + fx * point_in_camera.x / depth,
-                    cy - fy * point_in_camera.y / depth,
-                )
+                let bent = lens::distort([k1, k2, k3, p1, p2], flat)?;
+                Some((Vec2::new(cx + fx * bent.x, cy + fy * bent.y), depth))
             }
-            Projection::Orthographic { width_m, height_m } => Vec2::new(
-                (point_in_camera.x / width_m + 0.5) * self.width as f32,
-                (0.5 - point_in_camera.y / height_m) * self.height as f32,
-            ),
-        };
-        Some((image, depth))
+            Projection::Fisheye {
+                fx,
+                fy,
+                cx,
+                cy,
+                k1,
+                k2,
+                k3,
+                k4,
+                half_angle_deg,
+            } => {
+                let half_angle = half_angle_deg.to_radians();
+                let at = fisheye::project(point_in_camera, [k1, k2, k3, k4], half_angle)?;
+                Some((Vec2::new(cx + fx * at.x, cy + fy * at.y), range))
+            }
+            Projection::Equirectangular => Some((
+                panorama::sphere_project(point_in_camera, self.size())?,
+                range,
+            )),
+            Projection::Cubemap => {
+                let image = panorama::cube_project(point_in_camera, self.width as f32)?;
+                Some((image, range))
+            }
+            Projection::Orthographic { width_m, height_m } => Some((
+                Vec2::new(
+                    (point_in_camera.x / width_m + 0.5) * self.width as f32,
+                    (0.5 - point_in_camera.y / height_m) * self.height as f32,
+                ),
+                depth,
+            )),
+        }
     }
 
-    /// The area that a pixel covers of a plane across the axis: m² at depth 0, and m² per square metre of depth.
+    /// The area that a pixel covers of a plane across the axis (of a sphere where depth is range): m² at depth 0, and m² per
+    /// square metre of depth.
     pub(crate) fn pixel_area(&self) -> (f32, f32) {
         match self.projection {
-            Projection::Pinhole { fx, fy, .. } => (0.0, 1.0 / (fx * fy)),
+            Projection::Pinhole { fx, fy, .. }
+            | Projection::BrownConrady { fx, fy, .. }
+            | Projection::Fisheye { fx, fy, .. } => (0.0, 1.0 / (fx * fy)),
+            // Where pixels are largest.
+            Projection::Equirectangular => {
+                let (width, height) = self.size();
+                (0.0, (TAU / width) * (PI / height))
+            }
+            Projection::Cubemap => (0.0, (2.0 / self.width as f32).powi(2)),
             Projection::Orthographic { width_m, height_m } => (
                 (width_m / self.width as f32) * (height_m / self.height as f32),
                 0.0,
@@ -317,94 +416,4 @@ fn fault<T>(
         found: found.to_string(),
         allowed,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    #[test]
-    fn ninety_degrees_over_128_pixels_are_a_focal_length_of_64() {
-        let camera = Camera::from_fov(128, 96, 90.0).unwrap();
-        let Projection::Pinhole { fx, fy, cx, cy } = camera.projection() else {
-            panic!("a pinhole")
-        };
-        assert!((fx - 64.0).abs() < 1e-4 && (fy - 64.0).abs() < 1e-4);
-        assert_eq!((cx, cy), (64.0, 48.0));
-        let both = Camera::from_fovs(128, 96, 90.0, 90.0).unwrap();
-        let Projection::Pinhole { fy, .. } = both.projection() else {
-            panic!("a pinhole")
-        };
-        assert!((fy - 48.0).abs() < 1e-4);
-    }
-
-    #[test]
-    fn points_appear_where_opencv_puts_them() {
-        let projection = Projection::Pinhole {
-            fx: 500.0,
-            fy: 520.0,
-            cx: 310.0,
-            cy: 255.0,
-        };
-        let camera = Camera::new(640, 480, projection).unwrap();
-        // X right 0.4, Y down 0.3, Z forward 2 in OpenCV's frame.
-        let in_opencv = Vec3::new(0.4, 0.3, 2.0);
-        let (image, depth) = camera
-            .project(Camera::CAMERA_FROM_OPENCV * in_opencv)
-            .unwrap();
-        assert!(
-            (image - Vec2::new(500.0 * 0.2 + 310.0, 520.0 * 0.15 + 255.0)).length() < 1e-3,
-            "{image}"
-        );
-        assert!((depth - 2.0).abs() < 1e-6);
-        assert_eq!(camera.project(Vec3::new(0.0, 0.0, 1.0)), None);
-    }
-
-    #[test]
-    fn what_is_out_of_range_is_named() {
-        let message = |result: Result<Camera, RenderError>| result.unwrap_err().to_string();
-        assert_eq!(
-            message(Camera::from_fov(0, 4, 90.0)),
-            "camera: width is 0; allowed is 1 to 16384 pixels"
-        );
-        assert_eq!(
-            message(Camera::from_fov(4, 4, 180.0)),
-            "camera: horizontal_fov_deg is 180; allowed is 1 to 175 degrees"
-        );
-        assert!(message(Camera::from_fov(4, 4, f32::NAN)).contains("NaN"));
-        assert!(
-            message(Camera::from_fov(4, 4, 90.0).unwrap().with_range(1.0, 1.0)).contains("far_m")
-        );
-        assert!(
-            message(Camera::from_fov(4, 4, 90.0).unwrap().with_range(-1.0, 1.0)).contains("near_m")
-        );
-        assert!(message(Camera::orthographic(4, 4, 0.0, 1.0)).contains("width_m"));
-        let projection = Projection::Pinhole {
-            fx: f32::INFINITY,
-            fy: 1.0,
-            cx: 0.0,
-            cy: 0.0,
-        };
-        assert!(message(Camera::new(4, 4, projection)).contains("fx"));
-    }
-
-    proptest! {
-        #[test]
-        fn a_ray_meets_the_point_that_it_was_projected_from(
-            x in -3.0_f32..3.0, y in -3.0_f32..3.0, depth in 0.1_f32..20.0, fov in 20.0_f32..120.0, flat in any::<bool>(),
-        ) {
-            let camera = if flat {
-                Camera::orthographic(640, 480, 8.0, 6.0)
-            } else {
-                Camera::from_fov(640, 480, fov)
-            }.unwrap();
-            let point = Vec3::new(x, y, -depth);
-            let (image, found) = camera.project(point).unwrap();
-            let (start, direction) = camera.ray_in_camera(image);
-            prop_assert!((direction.z + 1.0).abs() < 1e-9);
-            let back = start + direction * found;
-            prop_assert!((back - point).length() < 1e-3 * (1.0 + depth), "{} {}", back, point);
-        }
-    }
 }

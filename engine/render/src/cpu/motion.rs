@@ -1,0 +1,83 @@
+//! Where points of the image were before.
+
+use super::CpuRenderer;
+use super::rays::Sight;
+use crate::camera::{Camera, Projection};
+use crate::frame::Before;
+use dwell_scene::{Id, State};
+use glam::{Vec2, Vec3};
+
+/// How a point that is seen at `image` has moved there, pixels; it was at `was` in the world.
+pub(super) fn flow(camera: &Camera, before: &Before<'_>, image: (f32, f32), was: Vec3) -> [f32; 2] {
+    let eye = &before.world_from_camera;
+    moved(camera, image, eye.rotation.inverse() * (was - eye.position))
+}
+
+/// As [`flow`] for what is seen in a direction infinitely far away.
+pub(super) fn far_flow(
+    camera: &Camera,
+    before: &Before<'_>,
+    image: (f32, f32),
+    direction: Vec3,
+) -> [f32; 2] {
+    if matches!(camera.projection(), Projection::Orthographic { .. }) {
+        return [0.0; 2];
+    }
+    let rotation = before.world_from_camera.rotation;
+    moved(camera, image, rotation.inverse() * direction)
+}
+
+fn moved(camera: &Camera, (x, y): (f32, f32), was_in_camera: Vec3) -> [f32; 2] {
+    let Some((was, _)) = camera.project(was_in_camera) else {
+        return [0.0; 2];
+    };
+    let mut flow = Vec2::new(x, y) - was;
+    let (width, face) = (camera.width() as f32, camera.width() as f32);
+    match camera.projection() {
+        // The image closes behind the camera.
+        Projection::Equirectangular => flow.x -= (flow.x / width).round() * width,
+        // Faces are pictures of their own.
+        Projection::Cubemap if (y / face).floor() != (was.y / face).floor() => {
+            return [0.0; 2];
+        }
+        _ => {}
+    }
+    if flow.is_finite() {
+        flow.to_array()
+    } else {
+        [0.0; 2]
+    }
+}
+
+impl CpuRenderer {
+    /// Where in the world the point that is seen was before.
+    pub(super) fn point_before(&self, sight: &Sight, state: &State, before: &Before<'_>) -> Vec3 {
+        let Some(instance) = sight.instance else {
+            return sight.point;
+        };
+        if let Some(agent) = self.surfaces.agent_of(instance) {
+            let was = before.agents.get(agent);
+            let now = state
+                .agents
+                .as_slice()
+                .get(agent)
+                .map(|agent| agent.position);
+            return match (was, now) {
+                (Some(was), Some(now)) => sight.point - now + *was,
+                _ => sight.point,
+            };
+        }
+        let Some(part) = self.surfaces.part_of(instance) else {
+            return sight.point;
+        };
+        let Ok(place) = before
+            .moved
+            .binary_search_by_key(&part.index(), |(part, _)| part.index())
+        else {
+            return sight.point;
+        };
+        let now = &state.part_pose[part];
+        let in_part = now.rotation.inverse() * (sight.point - now.position);
+        before.moved[place].1.transform_point(in_part)
+    }
+}

@@ -1,0 +1,359 @@
+//! What real cameras and depth sensors do to pictures. One file each, one line in the list.
+//!
+//! A law at its default is not installed, so that no bit changes. A law acts on the cameras of all agents, or of the agent whose
+//! number is its target; on the rays (lenses, shutters) or on the finished picture, in the order in which laws were installed.
+
+mod depth_scale_bias;
+mod disparity_quantization;
+mod exposure;
+mod flying_pixels;
+mod focal_length;
+mod kinect_depth;
+mod lens_distortion;
+mod motion_blur;
+mod principal_point;
+mod redwood_depth;
+mod rolling_shutter;
+mod shot_read_noise;
+#[cfg(test)]
+mod testing;
+mod vignetting;
+
+use crate::camera::Camera;
+use crate::color::Srgb;
+use crate::error::RenderError;
+use dwell_scene::random::Key;
+use dwell_scene::{AgentId, Id, LawInfo, LawSpec};
+use glam::Vec3;
+use std::sync::LazyLock;
+
+/// A law of this engine: what is known about it, and where it acts.
+struct Law {
+    info: LawInfo,
+    acts: Acts,
+}
+
+/// Where a law acts.
+enum Acts {
+    /// On where pixels look.
+    Lens(fn(Values<'_>, Camera) -> Camera),
+    /// On when pixels look.
+    Shutter(fn(Values<'_>, &mut Shutter)),
+    /// On depths, m. What is drawn depends on the key and the image's size alone.
+    Depth(fn(Values<'_>, &Scan<'_>, Key, &mut [f32])),
+    /// As [`Acts::Depth`], and needs normals.
+    DepthByNormals(fn(Values<'_>, &Scan<'_>, Key, &mut [f32])),
+    /// On light, linear, 1 for display white. Shape (height * width,).
+    Color(fn(Values<'_>, &Camera, Key, &mut [Vec3])),
+}
+
+/// The laws of this engine.
+static LAWS: &[Law] = &[
+    focal_length::LAW,
+    principal_point::LAW,
+    lens_distortion::LAW,
+    rolling_shutter::LAW,
+    motion_blur::LAW,
+    vignetting::LAW,
+    exposure::LAW,
+    shot_read_noise::LAW,
+    redwood_depth::LAW,
+    kinect_depth::LAW,
+    flying_pixels::LAW,
+    disparity_quantization::LAW,
+    depth_scale_bias::LAW,
+];
+
+/// What is known about each law of cameras.
+///
+/// ```
+/// let law = dwell_render::laws::all().iter().find(|law| law.id == "redwood_depth").unwrap();
+/// assert_eq!(law.params[0].name, "strength");
+/// ```
+pub fn all() -> &'static [LawInfo] {
+    static INFOS: LazyLock<Vec<LawInfo>> =
+        LazyLock::new(|| LAWS.iter().map(|law| law.info.clone()).collect());
+    &INFOS
+}
+
+/// The numbers of an installed law.
+#[derive(Clone, Copy)]
+struct Values<'a> {
+    spec: &'a LawSpec,
+    info: &'a LawInfo,
+}
+
+impl Values<'_> {
+    fn get(&self, name: &str) -> f32 {
+        self.spec.value(self.info, name).unwrap_or(0.0) as f32
+    }
+}
+
+/// What a law of depth knows beside the depths.
+struct Scan<'a> {
+    camera: &'a Camera,
+    /// Shape (height, width, 3); empty unless the law asked for normals.
+    normals: &'a [f32],
+}
+
+impl Scan<'_> {
+    /// Pixels across and down.
+    fn size(&self) -> (usize, usize) {
+        (self.camera.width() as usize, self.camera.height() as usize)
+    }
+}
+
+/// When the rows of a picture are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shutter {
+    /// How much later each row is taken than the one above, s; the last one is taken at the picture's time.
+    pub line_s: f32,
+    /// How long light is gathered for each row before it is taken, s.
+    pub exposure_s: f32,
+}
+
+impl Shutter {
+    /// Whether all rows are taken at one moment.
+    pub fn is_still(&self) -> bool {
+        self.line_s == 0.0 && self.exposure_s == 0.0
+    }
+}
+
+/// Checks that laws of cameras name agents that there are.
+///
+/// # Errors
+/// [`RenderError::LawTarget`].
+pub fn check(laws: &[LawSpec], agents: usize) -> Result<(), RenderError> {
+    for spec in laws {
+        let ours = LAWS.iter().any(|law| law.info.id == spec.id);
+        if let Some(target) = spec.target.as_ref().filter(|_| ours) {
+            let number = target.parse::<usize>().ok();
+            if number.is_none_or(|number| number >= agents) {
+                return Err(RenderError::LawTarget {
+                    law: spec.id.clone(),
+                    found: target.clone(),
+                    agents,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The laws that act on one agent's cameras.
+pub struct Optics<'a> {
+    laws: Vec<(Values<'a>, &'static Acts, u64)>,
+}
+
+impl std::fmt::Debug for Optics<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let specs = self.laws.iter().map(|(values, ..)| values.spec);
+        f.debug_list().entries(specs).finish()
+    }
+}
+
+impl<'a> Optics<'a> {
+    /// Those of `laws` that act on the cameras of `agent`.
+    pub fn of(laws: &'a [LawSpec], agent: AgentId) -> Self {
+        let own = |spec: &LawSpec| {
+            let number = spec.target.as_ref().map(|target| target.parse::<usize>());
+            number.is_none_or(|number| number == Ok(agent.index()))
+        };
+        let find = |(place, spec): (usize, &'a LawSpec)| {
+            let law = LAWS.iter().find(|law| law.info.id == spec.id)?;
+            let acts = !spec.is_default(&law.info) && own(spec);
+            let info = &law.info;
+            acts.then_some((Values { spec, info }, &law.acts, place as u64))
+        };
+        Self {
+            laws: laws.iter().enumerate().filter_map(find).collect(),
+        }
+    }
+
+    /// No laws.
+    pub fn ideal() -> Self {
+        Self { laws: Vec::new() }
+    }
+
+    /// The camera as it is, from the camera as it should be.
+    #[must_use]
+    pub fn camera(&self, mut camera: Camera) -> Camera {
+        for (values, acts, _) in &self.laws {
+            if let Acts::Lens(change) = acts {
+                camera = change(*values, camera);
+            }
+        }
+        camera
+    }
+
+    /// When rows are taken.
+    pub fn shutter(&self) -> Shutter {
+        let mut shutter = Shutter::default();
+        for (values, acts, _) in &self.laws {
+            if let Acts::Shutter(change) = acts {
+                change(*values, &mut shutter);
+            }
+        }
+        shutter
+    }
+
+    /// Whether [`Self::depth`] looks at normals.
+    pub fn needs_normals(&self) -> bool {
+        let by_normals = |acts: &Acts| matches!(acts, Acts::DepthByNormals(_));
+        self.laws.iter().any(|(_, acts, _)| by_normals(acts))
+    }
+
+    /// What the sensor reads where the depths are `image`, m; 0 to the camera's far end.
+    ///
+    /// `camera`: as it is. `normals`: as [`crate::FrameMut::normals`], if [`Self::needs_normals`].
+    ///
+    /// # Determinism
+    /// Equal keys, equal bits.
+    pub fn depth(&self, camera: &Camera, normals: &[f32], key: Key, image: &mut [f32]) {
+        let scan = Scan { camera, normals };
+        if image.len() != camera.pixels() {
+            return;
+        }
+        let mut changed = false;
+        for (values, acts, place) in &self.laws {
+            let change = match acts {
+                Acts::Depth(change) => change,
+                Acts::DepthByNormals(change) if normals.len() == 3 * image.len() => change,
+                _ => continue,
+            };
+            change(*values, &scan, key.child(*place), image);
+            changed = true;
+        }
+        if changed {
+            for depth in image {
+                // NaN, too, is no reading.
+                *depth = if *depth > 0.0 {
+                    depth.min(camera.far_m())
+                } else {
+                    0.0
+                };
+            }
+        }
+    }
+
+    /// What the sensor reads where colours are `image`, sRGB bytes. Shape (height, width, 3).
+    ///
+    /// # Determinism
+    /// Equal keys, equal bits.
+    pub fn color(&self, camera: &Camera, key: Key, image: &mut [u8]) {
+        let is_color = |acts: &Acts| matches!(acts, Acts::Color(_));
+        if !self.laws.iter().any(|(_, acts, _)| is_color(acts))
+            || image.len() != 3 * camera.pixels()
+        {
+            return;
+        }
+        let srgb = Srgb::tables();
+        let mut light: Vec<Vec3> = image
+            .chunks_exact(3)
+            .map(|rgb| {
+                Vec3::new(
+                    srgb.decode(rgb[0]),
+                    srgb.decode(rgb[1]),
+                    srgb.decode(rgb[2]),
+                )
+            })
+            .collect();
+        for (values, acts, place) in &self.laws {
+            if let Acts::Color(change) = acts {
+                change(*values, camera, key.child(*place), &mut light);
+            }
+        }
+        for (rgb, light) in image.chunks_exact_mut(3).zip(&light) {
+            rgb.copy_from_slice(&srgb.encode3(light.to_array()));
+        }
+    }
+}
+
+/// The mean of pictures of sRGB bytes, in linear light; writes into `out`, of the pictures' length.
+pub fn mean_color<'a>(pictures: impl Iterator<Item = &'a [u8]>, out: &mut [u8]) {
+    let srgb = Srgb::tables();
+    let mut sum = vec![0.0_f32; out.len()];
+    let mut count = 0.0_f32;
+    for picture in pictures {
+        for (sum, byte) in sum.iter_mut().zip(picture) {
+            *sum += srgb.decode(*byte);
+        }
+        count += 1.0;
+    }
+    for (out, sum) in out.iter_mut().zip(&sum) {
+        *out = srgb.encode(sum / count);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::{camera, law};
+    use super::*;
+
+    #[test]
+    fn every_law_is_consistent_and_does_nothing_by_default() {
+        let camera = camera();
+        let depth: Vec<f32> = (0..camera.pixels())
+            .map(|k| 0.5 + k as f32 * 0.01)
+            .collect();
+        let normals: Vec<f32> = depth.iter().flat_map(|_| [0.0, 0.0, 1.0]).collect();
+        let color: Vec<u8> = (0..3 * camera.pixels()).map(|k| (k % 256) as u8).collect();
+        for info in all() {
+            let texts = [
+                info.equation,
+                info.source,
+                info.separating_experiment,
+                info.name,
+            ];
+            assert!(texts.iter().all(|text| !text.is_empty()) && !info.rivals.is_empty());
+            for param in info.params {
+                let bounds = param.low..=param.high;
+                assert!(
+                    bounds.contains(&param.default),
+                    "{} {}",
+                    info.id,
+                    param.name
+                );
+                assert!(param.plausible.iter().all(|end| bounds.contains(end)));
+            }
+            let none = [law(info.id, &[])];
+            none[0].check(info).unwrap();
+            for laws in [&none[..], &[]] {
+                let optics = Optics::of(laws, AgentId(0));
+                let (mut z, mut rgb) = (depth.clone(), color.clone());
+                optics.depth(&camera, &normals, Key::root(1), &mut z);
+                optics.color(&camera, Key::root(1), &mut rgb);
+                assert!(z == depth && rgb == color && optics.camera(camera) == camera);
+                assert!(optics.shutter().is_still() && !optics.needs_normals());
+            }
+        }
+    }
+
+    #[test]
+    fn a_law_on_one_agent_leaves_the_others_alone() {
+        let mut spec = law("depth_scale_bias", &[("bias_m", 0.5)]);
+        spec.target = Some("1".to_owned());
+        let camera = camera();
+        let depth = |agent: u32| {
+            let mut image = vec![1.0; camera.pixels()];
+            let laws = [spec.clone()];
+            Optics::of(&laws, AgentId(agent)).depth(&camera, &[], Key::root(0), &mut image);
+            image[0]
+        };
+        assert_eq!((depth(0), depth(1), depth(2)), (1.0, 1.5, 1.0));
+        assert!(check(std::slice::from_ref(&spec), 2).is_ok());
+        let message = check(&[spec], 1).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "law depth_scale_bias: target \"1\" is no agent; there are 1, counted from 0"
+        );
+    }
+
+    /// Light, not bytes, is averaged: half of white is byte 188.
+    #[test]
+    fn a_mean_of_black_and_white_is_half_the_light() {
+        let mut out = [0_u8; 3];
+        mean_color([&[0_u8, 0, 255][..], &[255, 0, 255]].into_iter(), &mut out);
+        assert_eq!(out, [188, 0, 255]);
+    }
+}

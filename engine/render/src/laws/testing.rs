@@ -1,0 +1,49 @@
+//! What tests of laws share.
+
+use super::Optics;
+use crate::camera::Camera;
+use dwell_scene::random::Key;
+use dwell_scene::{AgentId, LawSpec};
+
+pub(super) fn camera() -> Camera {
+    Camera::from_fov(48, 32, 90.0).unwrap()
+}
+
+pub(super) fn law(id: &str, params: &[(&str, f64)]) -> LawSpec {
+    LawSpec {
+        id: id.to_owned(),
+        version: 1,
+        target: None,
+        params: params
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), *value))
+            .collect(),
+    }
+}
+
+/// Depths under a law that needs no normals.
+pub(super) fn read_depth(spec: &LawSpec, camera: &Camera, seed: u64, image: &[f32]) -> Vec<f32> {
+    let mut read = image.to_vec();
+    Optics::of(std::slice::from_ref(spec), AgentId(0)).depth(
+        camera,
+        &[],
+        Key::root(seed),
+        &mut read,
+    );
+    read
+}
+
+/// Colours under a law.
+pub(super) fn read_color(spec: &LawSpec, camera: &Camera, seed: u64, image: &[u8]) -> Vec<u8> {
+    let mut read = image.to_vec();
+    Optics::of(std::slice::from_ref(spec), AgentId(0)).color(camera, Key::root(seed), &mut read);
+    read
+}
+
+/// Mean and standard deviation.
+pub(super) fn moments(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
+    (mean, variance.sqrt())
+}

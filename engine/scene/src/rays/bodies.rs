@@ -1,0 +1,153 @@
+//! Agents' bodies as cameras see them: capsules of three pieces, each a mesh of unit size that is stretched to the agent.
+
+use crate::bvh::TriangleBvh;
+use crate::mesh::Mesh;
+use crate::state::AgentState;
+use glam::{Affine3A, Quat, Vec3};
+use std::f32::consts::{PI, TAU};
+use std::sync::{Arc, LazyLock};
+
+/// Pieces of a body: the lower end, the middle, the upper end.
+pub const BODY_PIECES: usize = 3;
+
+/// Corners around a piece.
+const AROUND: u16 = 24;
+/// Rows of triangles from pole to pole of an end.
+const ROWS: u16 = 12;
+
+struct Shapes {
+    meshes: [Mesh; BODY_PIECES],
+    trees: [Arc<TriangleBvh>; BODY_PIECES],
+}
+
+static SHAPES: LazyLock<Shapes> = LazyLock::new(|| {
+    let quarter = |k: u16| PI * f32::from(k) / f32::from(ROWS);
+    let ball: Vec<(f32, f32)> = (0..=ROWS)
+        .map(|k| {
+            let (sine, cosine) = crate::math::sin_cos(quarter(k));
+            (sine, -cosine)
+        })
+        .collect();
+    let round: Vec<(f32, f32)> = ball.clone();
+    let ball = turned(&ball, &round);
+    let tube = turned(&[(1.0, 0.0), (1.0, 1.0)], &[(1.0, 0.0), (1.0, 0.0)]);
+    let meshes = [ball.clone(), tube, ball];
+    let trees = [0, 1, 2].map(|k: usize| {
+        let mesh = &meshes[k];
+        Arc::new(TriangleBvh::build(&mesh.positions, &mesh.triangles))
+    });
+    Shapes { meshes, trees }
+});
+
+/// A surface of revolution about Y, facing outwards. `profile`: radius and height from below; `normals`: likewise.
+fn turned(profile: &[(f32, f32)], normals: &[(f32, f32)]) -> Mesh {
+    let mut mesh = Mesh::default();
+    for (place, normal) in profile.iter().zip(normals) {
+        for step in 0..AROUND {
+            let (sine, cosine) = crate::math::sin_cos(TAU * f32::from(step) / f32::from(AROUND));
+            let at =
+                |(radius, height): (f32, f32)| Vec3::new(radius * cosine, height, -radius * sine);
+            mesh.positions.push(at(*place));
+            mesh.normals.push(at(*normal));
+        }
+    }
+    let around = u32::from(AROUND);
+    for row in 1..profile.len() as u32 {
+        for step in 0..around {
+            let next = (step + 1) % around;
+            let corner = |row: u32, step: u32| row * around + step;
+            let (a, b) = (corner(row - 1, step), corner(row - 1, next));
+            let (c, d) = (corner(row, step), corner(row, next));
+            mesh.triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    mesh
+}
+
+/// The meshes of a body's pieces, of unit radius; the middle reaches from 0 to 1 along Y, the ends are centred.
+pub fn body_meshes() -> &'static [Mesh; BODY_PIECES] {
+    &SHAPES.meshes
+}
+
+pub(super) fn trees() -> &'static [Arc<TriangleBvh>; BODY_PIECES] {
+    &SHAPES.trees
+}
+
+/// Where an agent's pieces stand: a capsule of its radius from its feet to its height, as it is now.
+pub(super) fn places(agent: &AgentState) -> [Affine3A; BODY_PIECES] {
+    let radius = agent.body.radius_m;
+    let middle = (agent.height_m() - 2.0 * radius).max(0.0);
+    let at = |height: f32, scale: Vec3| {
+        let place = agent.position + Vec3::Y * height;
+        Affine3A::from_scale_rotation_translation(scale, Quat::IDENTITY, place)
+    };
+    [
+        at(radius, Vec3::splat(radius)),
+        at(radius, Vec3::new(radius, middle, radius)),
+        at(radius + middle, Vec3::splat(radius)),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::{Ray, RayMask};
+    use crate::rays::RayScene;
+    use crate::state::AgentBody;
+    use crate::{AgentState, House, ShoeboxMaterials, State};
+
+    /// Sideways the body ends at its radius, above at its height; only eyes for bodies meet it.
+    #[test]
+    fn a_body_is_a_capsule_for_rays_that_look_for_bodies() {
+        let house =
+            Arc::new(House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap());
+        let mut state = State::new(&house);
+        let mut scene = RayScene::new(house.clone());
+        let (feet, eye) = (Vec3::new(3.0, 0.0, 2.0), Vec3::new(1.0, 1.0, 2.0));
+        let ray = Ray::new(eye, Vec3::X);
+        scene.update(&state);
+        let wall = scene.closest(&ray, RayMask::EYE.or(RayMask::BODY)).unwrap();
+        let agent = AgentState::new(AgentBody::default(), feet, 0.3);
+        let id = state.agents.push(agent);
+        scene.update(&state);
+        let hit = scene.closest(&ray, RayMask::EYE.or(RayMask::BODY)).unwrap();
+        assert_eq!(hit.id, house.entity_of_agent(id).0);
+        let radius = agent.body.radius_m;
+        assert!(
+            (hit.distance_m - (2.0 - radius)).abs() < 0.01 * radius,
+            "{}",
+            hit.distance_m
+        );
+        for mask in [RayMask::EYE, RayMask::EAR, RayMask::AGENT, RayMask::ALL] {
+            assert_eq!(scene.closest(&ray, mask).unwrap(), wall);
+        }
+        let down = Ray::new(Vec3::new(3.0, 2.9, 2.0), Vec3::NEG_Y);
+        let hit = scene.closest(&down, RayMask::BODY).unwrap();
+        assert!((hit.distance_m - (2.9 - agent.height_m())).abs() < 1e-3);
+        state.agents[id].position.x = 4.0;
+        scene.update(&state);
+        let moved = scene.closest(&ray, RayMask::BODY).unwrap();
+        assert!((moved.distance_m - (3.0 - radius)).abs() < 0.01 * radius);
+        state.agents = crate::IdVec::new();
+        scene.update(&state);
+        assert_eq!(
+            scene.closest(&ray, RayMask::EYE.or(RayMask::BODY)).unwrap(),
+            wall
+        );
+    }
+
+    #[test]
+    fn pieces_face_outwards() {
+        for mesh in body_meshes() {
+            for triangle in 0..mesh.triangles.len() {
+                let [a, b, c] = mesh.corners(triangle);
+                let normal = (b - a).cross(c - a);
+                let mut middle = (a + b + c) / 3.0;
+                if mesh.positions.len() == 2 * usize::from(AROUND) {
+                    middle.y = 0.0;
+                }
+                assert!(normal.dot(middle) >= 0.0);
+            }
+        }
+    }
+}

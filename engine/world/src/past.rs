@@ -1,0 +1,134 @@
+//! Where things were a control step ago: what flow, blur and rolling shutters need to know.
+
+use dwell_scene::{AgentId, Id, PartId, Pose, State, math};
+use glam::{Quat, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// What has moved in the last step, with where it was before.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Past {
+    /// Parts that have moved, by part.
+    pub moved: Vec<(PartId, Pose)>,
+    /// Whether there was a step since the world began.
+    pub known: bool,
+    /// The agents' eyes. Shape (agent,); empty where nothing has been before.
+    pub eyes: Vec<Pose>,
+    /// The agents' feet, m. Shape (agent,); empty where nothing has been before.
+    pub feet: Vec<Vec3>,
+}
+
+impl Past {
+    /// Remembers what `before` has otherwise than `now`.
+    pub(crate) fn remember(&mut self, before: &Before, now: &State) {
+        self.known = true;
+        self.moved.clear();
+        let changed = before.parts.iter().zip(now.part_pose.iter_ids());
+        let changed = changed.filter(|(was, (_, is))| *was != *is);
+        self.moved
+            .extend(changed.map(|(was, (part, _))| (part, *was)));
+        self.eyes.clone_from(&before.eyes);
+        self.feet.clone_from(&before.feet);
+    }
+
+    /// Forgets all: nothing has been before.
+    pub(crate) fn clear(&mut self) {
+        self.known = false;
+        self.moved.clear();
+        self.eyes.clear();
+        self.feet.clear();
+    }
+
+    /// Where an agent's eyes were; where they are, when nothing has been before.
+    pub fn eye(&self, agent: AgentId, now: &State) -> Option<Pose> {
+        let is = now.agents.get(agent)?.world_from_eye();
+        Some(self.eyes.get(agent.index()).copied().unwrap_or(is))
+    }
+
+    /// Whether nothing but eyes has moved.
+    pub(crate) fn is_still(&self, now: &State) -> bool {
+        let feet = self.feet.iter().zip(now.agents.iter());
+        self.moved.is_empty() && feet.into_iter().all(|(was, is)| *was == is.position)
+    }
+
+    /// Puts parts and agents of a copy of the present to where they were the part `share` of a step ago.
+    pub(crate) fn rewind(&self, state: &mut State, share: f32) {
+        for (part, was) in &self.moved {
+            let is = &mut state.part_pose[*part];
+            *is = between(is, was, share);
+        }
+        for (was, is) in self.feet.iter().zip(state.agents.iter_mut()) {
+            is.position += (*was - is.position) * share;
+        }
+    }
+}
+
+/// What is kept of the state while a step is made. Memory is kept from step to step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Before {
+    parts: Vec<Pose>,
+    eyes: Vec<Pose>,
+    feet: Vec<Vec3>,
+}
+
+impl Before {
+    pub(crate) fn take(&mut self, state: &State) {
+        self.parts.clear();
+        self.parts.extend(state.part_pose.iter());
+        self.eyes.clear();
+        self.eyes.extend(
+            state
+                .agents
+                .iter()
+                .map(dwell_scene::AgentState::world_from_eye),
+        );
+        self.feet.clear();
+        self.feet
+            .extend(state.agents.iter().map(|agent| agent.position));
+    }
+}
+
+/// The pose the part `share` of the way from `is` back to `was`, along a straight line and about one axis; beyond 1 further back.
+pub(crate) fn between(is: &Pose, was: &Pose, share: f32) -> Pose {
+    let mut turn = is.rotation.inverse() * was.rotation;
+    if turn.w < 0.0 {
+        turn = -turn;
+    }
+    let axis = Vec3::new(turn.x, turn.y, turn.z);
+    let sine = axis.length();
+    let half_angle = math::atan2(sine, turn.w) * share;
+    let rotation = if sine > 0.0 {
+        let (part, cosine) = math::sin_cos(half_angle);
+        let axis = axis * (part / sine);
+        is.rotation * Quat::from_xyzw(axis.x, axis.y, axis.z, cosine)
+    } else {
+        is.rotation
+    };
+    Pose::new(
+        is.position + (was.position - is.position) * share,
+        rotation.normalize(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::space::rotation_from_yaw_pitch;
+
+    #[test]
+    fn halfway_back_is_half_the_turn_and_half_the_way() {
+        let is = Pose::new(Vec3::new(1.0, 2.0, 3.0), rotation_from_yaw_pitch(0.8, 0.0));
+        let was = Pose::new(Vec3::new(0.0, 2.0, 5.0), rotation_from_yaw_pitch(0.2, 0.0));
+        for (share, yaw, x) in [
+            (0.0, 0.8, 1.0),
+            (0.5, 0.5, 0.5),
+            (1.0, 0.2, 0.0),
+            (2.0, -0.4, -1.0),
+        ] {
+            let pose = between(&is, &was, share);
+            let expected = rotation_from_yaw_pitch(yaw, 0.0);
+            assert!(pose.rotation.dot(expected).abs() > 1.0 - 1e-6, "{share}");
+            assert!((pose.position.x - x).abs() < 1e-6);
+        }
+        assert_eq!(between(&is, &is, 0.7).rotation, is.rotation.normalize());
+    }
+}

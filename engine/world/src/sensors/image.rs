@@ -1,0 +1,224 @@
+//! What all sensors of pictures have in common.
+
+use super::camera::{CameraConfig, EyeCamera};
+use super::{Dtype, Out, Seen, Sensor, SensorSpec, Site, settings};
+use crate::error::WorldError;
+use crate::pictures::PictureRequest;
+use crate::requests::Requests;
+use crate::world::World;
+use dwell_render::{Camera, Channels, Frame, Optics, View};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+
+/// What tells one sensor of pictures from another.
+#[derive(Debug)]
+pub(crate) struct Kind {
+    pub(super) name: &'static str,
+    pub(super) about: &'static str,
+    pub(super) shape: Shape,
+    pub(super) dtype: Dtype,
+    pub(super) unit: &'static str,
+    pub(super) low: f64,
+    /// For depth the camera's far end.
+    pub(super) high: f64,
+    /// The images that it is made of.
+    pub(super) channels: Channels,
+    /// Writes the observation.
+    pub(super) write: fn(Look<'_>, Out<'_>),
+}
+
+/// The shape of an observation.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Shape {
+    /// (height, width, so many numbers).
+    Image(usize),
+    /// (`max_objects`, so many numbers).
+    List(usize),
+}
+
+impl Kind {
+    fn spec(&self, name: &str, camera: &Camera, max_objects: u32) -> SensorSpec {
+        SensorSpec {
+            name: name.to_owned(),
+            shape: match self.shape {
+                Shape::Image(parts) => {
+                    vec![camera.height() as usize, camera.width() as usize, parts]
+                }
+                Shape::List(parts) => vec![max_objects as usize, parts],
+            },
+            dtype: self.dtype,
+            unit: self.unit,
+            low: self.low,
+            high: if self.name == "depth" {
+                f64::from(camera.far_m())
+            } else {
+                self.high
+            },
+            about: self.about,
+        }
+    }
+}
+
+/// What a sensor of pictures looks at when it writes.
+#[derive(Clone, Copy)]
+pub(super) struct Look<'a> {
+    pub(super) world: &'a World,
+    pub(super) request: PictureRequest,
+    /// The camera as it was for the picture.
+    pub(super) camera: &'a Camera,
+    /// The images, without noise.
+    pub(super) frame: &'a Frame,
+    /// For the noise.
+    pub(super) key: Key,
+}
+
+impl Look<'_> {
+    /// The laws of the camera.
+    pub(super) fn optics(&self) -> Optics<'_> {
+        self.world.optics(&self.request.place)
+    }
+
+    /// From where.
+    pub(super) fn view(&self) -> View {
+        self.world.shot(&self.request).view
+    }
+}
+
+/// One sensor.
+#[derive(Debug)]
+struct Image {
+    kind: &'static Kind,
+    config: CameraConfig,
+    eye: EyeCamera,
+}
+
+/// Builds a sensor from its settings.
+pub(super) fn build(
+    kind: &'static Kind,
+    value: &serde_json::Value,
+    site: Site<'_>,
+) -> Result<Box<dyn Sensor>, WorldError> {
+    let config: CameraConfig = settings(value)?;
+    let eye = config.build(&site.config.agents)?;
+    Ok(Box::new(Image { kind, config, eye }))
+}
+
+impl Sensor for Image {
+    fn spec(&self) -> SensorSpec {
+        let name = self.config.name.as_deref().unwrap_or(self.kind.name);
+        let camera = &self.eye.camera;
+        self.kind.spec(name, camera, self.config.max_objects)
+    }
+
+    fn eye(&self) -> Option<&EyeCamera> {
+        Some(&self.eye)
+    }
+
+    fn plan(&self, _world: &World, requests: &mut Requests) {
+        requests.view(&self.eye, self.kind.channels);
+    }
+
+    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
+        if let Some(picture) = seen.results.view(&self.eye) {
+            let look = Look {
+                world: seen.world,
+                request: self.eye.request(seen.world.state()),
+                camera: &picture.camera,
+                frame: &picture.frame,
+                key: seen.key,
+            };
+            (self.kind.write)(look, out);
+        }
+    }
+}
+
+/// The numbers of an observation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Data {
+    /// Of [`Dtype::Uint8`].
+    Uint8(Vec<u8>),
+    /// Of [`Dtype::Float32`].
+    Float32(Vec<f32>),
+    /// Of [`Dtype::Int32`].
+    Int32(Vec<i32>),
+}
+
+/// What a sensor of pictures gives for a camera anywhere in a world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observation {
+    /// Shape, type, unit and range.
+    pub spec: SensorSpec,
+    /// Its numbers.
+    pub data: Data,
+}
+
+impl World {
+    /// What sensors of pictures, by name, give for a camera: one picture for all of them.
+    ///
+    /// `max_objects`: rows of those that list things, 1 to 4,096.
+    ///
+    /// # Errors
+    /// [`WorldError::Unknown`] lists the sensors there are; [`WorldError::Config`] for a wrong `max_objects`;
+    /// [`WorldError::Render`] for a pose that is not finite.
+    ///
+    /// # Determinism
+    /// What laws draw depends on the episode, the step and the sensor's name alone.
+    pub fn look(
+        &self,
+        request: &PictureRequest,
+        names: &[String],
+        max_objects: u32,
+        threads: Threads,
+    ) -> Result<Vec<Observation>, WorldError> {
+        if !(1..=4096).contains(&max_objects) {
+            return Err(WorldError::Config {
+                field: "max_objects",
+                found: max_objects.to_string(),
+                allowed: "1 to 4096".to_owned(),
+            });
+        }
+        let images = || super::all().iter().filter_map(|kind| kind.image);
+        let find = |name: &String| {
+            let found = images().find(|kind| kind.name == name);
+            found.ok_or_else(|| WorldError::Unknown {
+                kind: "image",
+                name: name.clone(),
+                known: images().map(|kind| kind.name.to_owned()).collect(),
+            })
+        };
+        let kinds: Vec<&Kind> = names.iter().map(find).collect::<Result<_, _>>()?;
+        let wanted = kinds.iter().map(|kind| kind.channels);
+        let channels = wanted.fold(Channels::NONE, Channels::and);
+        let (camera, frame) = self.picture(request, channels, threads)?;
+        let key = self.key.child("picture").child(self.state().step);
+        let observe = |kind: &&Kind| {
+            let spec = kind.spec(kind.name, &camera, max_objects);
+            let look = Look {
+                world: self,
+                request: *request,
+                camera: &camera,
+                frame: &frame,
+                key: key.child(kind.name),
+            };
+            let data = match kind.dtype {
+                Dtype::Uint8 => {
+                    let mut data = vec![0; spec.len()];
+                    (kind.write)(look, Out::Uint8(&mut data));
+                    Data::Uint8(data)
+                }
+                Dtype::Int32 => {
+                    let mut data = vec![0; spec.len()];
+                    (kind.write)(look, Out::Int32(&mut data));
+                    Data::Int32(data)
+                }
+                Dtype::Float32 | Dtype::Text => {
+                    let mut data = vec![0.0; spec.len()];
+                    (kind.write)(look, Out::Float32(&mut data));
+                    Data::Float32(data)
+                }
+            };
+            Observation { spec, data }
+        };
+        Ok(kinds.iter().map(observe).collect())
+    }
+}

@@ -1,0 +1,32 @@
+//! Sensors that list what a picture shows.
+
+use super::image::Look;
+use dwell_render::{Sighting, sightings};
+use dwell_scene::Entity;
+
+/// Writes a row for every object and agent in the picture, by id; of more than fit those with most pixels. Unused rows are 0.
+pub(super) fn fill<T: Copy + Default, const N: usize>(
+    look: &Look<'_>,
+    out: &mut [T],
+    row: impl Fn(&Sighting) -> [T; N],
+) {
+    let house = look.world.house();
+    let width = look.camera.width();
+    let mut things = sightings(&look.frame.instance, width);
+    things.retain(|thing| {
+        matches!(
+            house.entity(thing.entity),
+            Some(Entity::Object(_) | Entity::Agent(_))
+        )
+    });
+    let room = out.len() / N;
+    if things.len() > room {
+        things.sort_by_key(|thing| (std::cmp::Reverse(thing.pixels), thing.entity));
+        things.truncate(room);
+        things.sort_by_key(|thing| thing.entity);
+    }
+    out.fill(T::default());
+    for (out, thing) in out.chunks_exact_mut(N).zip(&things) {
+        out.copy_from_slice(&row(thing));
+    }
+}

@@ -1,0 +1,44 @@
+//! NYU-40 classes: 0 void, 1 wall, 2 floor to 40 otherprop (House.classes); shape (height, width, 1).
+
+use super::image::{self, Kind, Look, Shape};
+use super::{Dtype, Out, Sensor, SensorKind, Site};
+use crate::error::WorldError;
+use dwell_render::{Channels, Classes};
+
+const ABOUT: &str = "NYU-40 classes: 0 void, 1 wall, 2 floor to 40 otherprop (House.classes); shape (height, width, 1).";
+
+pub(super) const KIND: SensorKind = SensorKind {
+    name: IMAGE.name,
+    about: ABOUT,
+    build,
+    image: Some(&IMAGE),
+};
+
+static IMAGE: Kind = Kind {
+    name: "semantic_nyu40",
+    about: ABOUT,
+    shape: Shape::Image(1),
+    dtype: Dtype::Int32,
+    unit: "class",
+    low: 0.0,
+    high: i32::MAX as f64,
+    channels: Channels {
+        instance: true,
+        ..Channels::NONE
+    },
+    write,
+};
+
+fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    image::build(&IMAGE, value, site)
+}
+
+fn write(look: Look<'_>, out: Out<'_>) {
+    if let Out::Int32(out) = out {
+        let renderer = look.world.engines().renderer();
+        let classes = renderer.classes(Classes::Nyu40);
+        for (class, id) in out.iter_mut().zip(&look.frame.instance) {
+            *class = classes.of(*id);
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Objects and agents in view, by id: id, pixels, and how much of it others hide, 0 to 1; of more than fit those with most pixels, unused rows 0; shape (max_objects, 3).
+
+use super::image::{self, Kind, Look, Shape};
+use super::list;
+use super::{Dtype, Out, Sensor, SensorKind, Site};
+use crate::error::WorldError;
+use dwell_render::Channels;
+
+const ABOUT: &str = "Objects and agents in view, by id: id, pixels, and how much of it others hide, 0 to 1; of more than fit those with most pixels, unused rows 0; shape (max_objects, 3).";
+
+pub(super) const KIND: SensorKind = SensorKind {
+    name: IMAGE.name,
+    about: ABOUT,
+    build,
+    image: Some(&IMAGE),
+};
+
+static IMAGE: Kind = Kind {
+    name: "visible_objects",
+    about: ABOUT,
+    shape: Shape::List(3),
+    dtype: Dtype::Float32,
+    unit: "id, px, 1",
+    low: 0.0,
+    high: 1e9,
+    channels: Channels {
+        instance: true,
+        ..Channels::NONE
+    },
+    write,
+};
+
+fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    image::build(&IMAGE, value, site)
+}
+
+fn write(look: Look<'_>, out: Out<'_>) {
+    let Out::Float32(out) = out else { return };
+    let world = look.world;
+    let view = look.view();
+    list::fill(&look, out, |sighting| {
+        let renderer = world.engines().renderer();
+        let (scene, state) = (world.rays(), world.state());
+        let alone = renderer.pixels_alone(scene, state, &view, sighting.entity);
+        let hidden = 1.0 - sighting.pixels as f32 / alone.max(sighting.pixels) as f32;
+        [sighting.entity.0 as f32, sighting.pixels as f32, hidden]
+    });
+}

@@ -1,0 +1,130 @@
+"""Cameras of every kind, sensors of pictures, and the laws that spoil them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import dwell
+from dwell.envs import DwellEnv
+
+
+def test_every_camera_and_sensor_gives_arrays_of_its_shape(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    shapes = {
+        "rgb": ((24, 32, 3), np.uint8),
+        "depth": ((24, 32, 1), np.float32),
+        "instance": ((24, 32, 1), np.int32),
+        "semantic": ((24, 32, 1), np.int32),
+        "semantic_fine": ((24, 32, 1), np.int32),
+        "semantic_nyu40": ((24, 32, 1), np.int32),
+        "normals": ((24, 32, 3), np.float32),
+        "albedo": ((24, 32, 3), np.float32),
+        "surfels": ((24, 32, 9), np.float32),
+        "flow": ((24, 32, 2), np.float32),
+        "visible_objects": ((9, 3), np.float32),
+        "boxes_2d": ((9, 6), np.int32),
+        "boxes_3d": ((9, 11), np.float32),
+    }
+    camera = dwell.Camera(32, 24, max_objects=9)
+    images = world.render(agent=0, camera=camera, channels=list(shapes))
+    assert {name: (image.shape, image.dtype.type) for name, image in images.items()} == shapes
+    seen = images["instance"][..., 0] > 0
+    lengths = np.linalg.norm(images["normals"], axis=-1)
+    np.testing.assert_allclose(lengths, seen, atol=1e-4)
+    np.testing.assert_array_equal(images["surfels"][..., 3:6], images["normals"])
+    np.testing.assert_array_equal(images["surfels"][..., 6:], images["albedo"])
+    np.testing.assert_allclose(-images["surfels"][seen, 2], images["depth"][seen, 0], rtol=1e-5)
+    # The rows of the lists are those of the ids in the image.
+    for thing, box in zip(images["visible_objects"], images["boxes_2d"], strict=True):
+        rows, columns = np.nonzero(images["instance"][..., 0] == box[0])
+        if box[0] == 0:
+            assert not thing.any()
+            continue
+        assert (thing[0], thing[1], 0 <= thing[2] <= 1) == (box[0], rows.size, True)
+        ends = (columns.min(), rows.min(), columns.max() + 1, rows.max() + 1, rows.size)
+        assert tuple(box[1:]) == ends
+    names = apartment.semantic_classes("nyu40")
+    assert (len(names), names[1], names[40]) == (41, "wall", "otherprop")
+    with pytest.raises(dwell.ConfigError, match="nyu40"):
+        apartment.semantic_classes("rooms")  # type: ignore[arg-type] # what is refused
+
+
+def test_cameras_of_other_kinds_see_and_are_checked(shoebox: dwell.House) -> None:
+    world = dwell.World(shoebox, agents=0)
+    place = (2.0, 1.0, 2.0)
+
+    def depth(width: int, height: int, **numbers: Any) -> NDArray[Any]:
+        camera = dwell.Camera(width, height, projection=numbers)
+        return world.render(position=place, camera=camera, channels=["depth"])["depth"][..., 0]
+
+    around = depth(64, 32, kind="equirectangular")
+    # Left, ahead, right: the walls of the room of 6 by 3 by 5 m, two pixels beside each axis.
+    for column, metres in ((16, 2.0), (32, 2.0), (48, 4.0)):
+        assert abs(around[16, column] - metres) < 0.02
+    assert abs(around[0, 0] - 2.0) < 0.01
+    assert abs(around[-1, 0] - 1.0) < 0.01
+    assert depth(16, 96, kind="cubemap").shape == (96, 16)
+    fisheye = depth(40, 40, kind="fisheye", fx=12, fy=12, cx=20, cy=20)
+    assert fisheye[0, 0] == 50.0
+    assert abs(fisheye[20, 20] - 2.0) < 0.01
+    down = dwell.Camera(
+        20, 20, projection={"kind": "orthographic", "width_m": 2, "height_m": 2}, pitch_deg=-90
+    )
+    floor = world.render(position=place, camera=down, channels=["depth"])["depth"]
+    np.testing.assert_allclose(floor, 1.0, atol=1e-4)
+    moved = dwell.Camera(20, 20, position_m=(0.0, 0.0, -0.5))
+    near = world.render(position=place, camera=moved, channels=["depth"])["depth"]
+    np.testing.assert_allclose(near, 1.5, atol=1e-3)
+    for projection, part in (
+        ({"kind": "cubemap"}, "six times the width"),
+        ({"kind": "mirror_ball"}, "mirror_ball"),
+        ({"kind": "fisheye", "fx": 1}, "fy"),
+        ({"kind": "pinhole", "fx": "x"}, "camera.projection.fx is 'x'"),
+    ):
+        with pytest.raises(dwell.ConfigError, match=part):
+            world.render(position=place, camera=dwell.Camera(8, 8, projection=projection))
+
+
+def test_laws_of_cameras_reach_what_an_agent_carries(shoebox: dwell.House) -> None:
+    world = dwell.World(shoebox)
+    camera = dwell.Camera(16, 12)
+
+    def depth() -> NDArray[Any]:
+        return world.render(agent=0, camera=camera, channels=["depth"])["depth"]
+
+    before = depth()
+    world.set_parameter("law/depth_scale_bias/scale", 0.1)
+    np.testing.assert_allclose(depth(), 1.1 * before, rtol=1e-5)
+    world.set_parameter("law/depth_scale_bias/scale", 0.0)
+    world.set_parameter("law/redwood_depth/strength", 1.0)
+    noisy = depth()
+    assert (noisy != before).any()
+    np.testing.assert_array_equal(depth(), noisy)
+    with pytest.raises(dwell.DwellError, match="no agent"):
+        world.set_parameter("law/redwood_depth@5/strength", 1.0)
+
+
+def test_an_environment_carries_cameras_by_name() -> None:
+    size = {"width": 16, "height": 12, "preset": "flat"}
+    round_eye = {"kind": "fisheye", "fx": 6, "fy": 6, "cx": 8, "cy": 6}
+    sensors = {
+        "left": {"kind": "depth", "position_m": [-0.05, 0, 0], **size},
+        "right": {"kind": "depth", "position_m": [0.05, 0, 0], **size},
+        "round": {"kind": "rgb", "projection": round_eye, **size},
+        "flow": size,
+        "boxes_3d": {**size, "max_objects": 5},
+    }
+    env = DwellEnv(sensors=sensors)
+    seen, _ = env.reset(seed=3)
+    assert list(seen) == list(sensors)
+    assert (seen["left"] != seen["right"]).any()
+    assert not seen["flow"].any()
+    seen, *_ = env.step(3)
+    assert env.observation_space.contains(seen)
+    assert (seen["round"].shape, seen["boxes_3d"].shape) == ((12, 16, 3), (5, 11))
+    with pytest.raises(dwell.ConfigError, match="smell"):
+        DwellEnv(sensors={"nose": {"kind": "smell"}}).reset(seed=1)
