@@ -57,7 +57,7 @@ def test_cameras_of_other_kinds_see_and_are_checked(shoebox: dwell.House) -> Non
     world = dwell.World(shoebox, agents=0)
     place = (2.0, 1.0, 2.0)
 
-    def depth(width: int, height: int, **numbers: Any) -> NDArray[Any]:
+    def depth(width: int, height: int, **numbers: float | str) -> NDArray[Any]:
         camera = dwell.Camera(width, height, projection=numbers)
         return world.render(position=place, camera=camera, channels=["depth"])["depth"][..., 0]
 

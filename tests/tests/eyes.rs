@@ -114,7 +114,7 @@ fn a_rolling_shutter_takes_each_row_at_its_time() {
     }
 }
 
-/// Row V4: an upright edge moves by s line_s columns a row; s from the rate of turn, f / cos² of the edge's angle times it.
+/// Row V4: an upright edge moves by `s line_s` columns a row; s from the rate of turn, f / cos² of the edge's angle times it.
 #[test]
 fn a_rolling_shutter_shears_upright_edges() {
     let line_s = 1e-3;

@@ -29,7 +29,7 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
         nyu40_of_row: vec![VOID],
         nyu40: vec![String::new(); 41],
     };
-    table.nyu40[0] = "void".to_owned();
+    "void".clone_into(&mut table.nyu40[0]);
     for row in text.lines().skip(1) {
         let mut cells = row.split(',');
         let Some(name) = cells.next().filter(|name| !name.is_empty()) else {

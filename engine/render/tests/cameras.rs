@@ -207,7 +207,7 @@ fn an_orthographic_camera_from_above_draws_the_plan() {
         let inside = x > 0.05 && x < SIZE.x - 0.05 && z > 0.05 && z < SIZE.z - 0.05;
         if inside {
             assert!((frame.depth[pixel] - 2.5).abs() < 1e-4, "{x} {z}");
-        } else if x < -0.05 || x > SIZE.x + 0.05 {
+        } else if !(-0.05..=SIZE.x + 0.05).contains(&x) {
             assert_eq!(frame.instance[pixel], 0);
         }
     }

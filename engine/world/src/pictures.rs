@@ -7,7 +7,7 @@ use dwell_render::laws::mean_color;
 use dwell_render::{Before, Camera, Channels, Frame, FrameMut, Job, Optics, Preset, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentId, EntityId, Pose, State};
+use dwell_scene::{AgentId, AgentState, EntityId, Pose, State};
 
 /// Moments from which the light of an exposure is averaged.
 const EXPOSED: u16 = 16;
@@ -57,7 +57,7 @@ impl World {
         let (is, was, hide): (Pose, Pose, Option<EntityId>) = match request.place {
             Place::World(pose) => (pose, pose, None),
             Place::Agent(agent, eye_from_camera) => {
-                let is = state.agents.get(agent).map(|agent| agent.world_from_eye());
+                let is = state.agents.get(agent).map(AgentState::world_from_eye);
                 let is = is.unwrap_or_default();
                 let was = self.past().eye(agent, state).unwrap_or(is);
                 let hide = self.house().entity_of_agent(agent);

@@ -130,7 +130,7 @@ mod tests {
                 let read = read(
                     law("kinect_depth", &[("axial", 1.0)]),
                     seed,
-                    &[z; 10_000],
+                    &vec![z; 10_000],
                     normal,
                 );
                 let all: Vec<f64> = read.iter().map(|z| f64::from(*z)).collect();

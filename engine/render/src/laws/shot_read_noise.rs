@@ -153,7 +153,7 @@ mod tests {
                 change(values, &camera, Key::root(seed), &mut light);
                 let all: Vec<f64> = light
                     .iter()
-                    .flat_map(|light| light.to_array())
+                    .flat_map(Vec3::to_array)
                     .map(f64::from)
                     .collect();
                 let (mean, deviation) = moments(&all);

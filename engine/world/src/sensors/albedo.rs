@@ -1,11 +1,12 @@
-//! Reflectance of surfaces for red, green and blue, linear, 0 to 1, zeros where nothing is seen; shape (height, width, 3).
+//! Reflectance of surfaces.
 
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::Channels;
 
-const ABOUT: &str = "Reflectance of surfaces for red, green and blue, linear, 0 to 1, zeros where nothing is seen; shape (height, width, 3).";
+const ABOUT: &str = "Reflectance of surfaces for red, green and blue, linear, 0 to 1, zeros where nothing is seen; shape \
+                     (height, width, 3).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

@@ -1,4 +1,4 @@
-//! Boxes around objects and agents in the image, by id: id, first column and row, the column and row behind the last, pixels; rows as in visible_objects; shape (max_objects, 6).
+//! Boxes around things in the image.
 
 use super::image::{self, Kind, Look, Shape};
 use super::list;
@@ -6,7 +6,8 @@ use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::Channels;
 
-const ABOUT: &str = "Boxes around objects and agents in the image, by id: id, first column and row, the column and row behind the last, pixels; rows as in visible_objects; shape (max_objects, 6).";
+const ABOUT: &str = "Boxes around objects and agents in the image, by id: id, first column and row, the column and row \
+                     behind the last, pixels; rows as in visible_objects; shape (max_objects, 6).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

@@ -1,4 +1,4 @@
-//! Oriented boxes around objects and agents in view, in the camera's frame, by id: id, middle in m, edges in m, rotation x, y, z, w; rows as in visible_objects; shape (max_objects, 11).
+//! Oriented boxes around things in view.
 
 use super::image::{self, Kind, Look, Shape};
 use super::list;
@@ -6,7 +6,8 @@ use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::Channels;
 
-const ABOUT: &str = "Oriented boxes around objects and agents in view, in the camera's frame, by id: id, middle in m, edges in m, rotation x, y, z, w; rows as in visible_objects; shape (max_objects, 11).";
+const ABOUT: &str = "Oriented boxes around objects and agents in view, in the camera's frame, by id: id, middle in m, \
+                     edges in m, rotation x, y, z, w; rows as in visible_objects; shape (max_objects, 11).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

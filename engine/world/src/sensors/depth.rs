@@ -1,11 +1,12 @@
-//! Depth image: metres along the camera's -Z (range for fisheyes and cameras that see all around), shape (height, width, 1); misses are clamped to `far_m`.
+//! Depth image.
 
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::Channels;
 
-const ABOUT: &str = "Depth image: metres along the camera's -Z (range for fisheyes and cameras that see all around), shape (height, width, 1); misses are clamped to `far_m`.";
+const ABOUT: &str = "Depth image: metres along the camera's -Z (range for fisheyes and cameras that see all around), \
+                     shape (height, width, 1); misses are clamped to `far_m`.";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

@@ -1,11 +1,12 @@
-//! Optical flow: how far what a pixel shows has moved in the image since the step before, pixels to the right and down, by the camera's movement and its own; shape (height, width, 2).
+//! Optical flow.
 
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::Channels;
 
-const ABOUT: &str = "Optical flow: how far what a pixel shows has moved in the image since the step before, pixels to the right and down, by the camera's movement and its own; shape (height, width, 2).";
+const ABOUT: &str = "Optical flow: how far what a pixel shows has moved in the image since the step before, pixels to the \
+                     right and down, by the camera's movement and its own; shape (height, width, 2).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

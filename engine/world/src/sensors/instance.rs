@@ -1,11 +1,12 @@
-//! Instance ids: 0 void, then structure pieces, objects, agents, in file order; shape (height, width, 1).
+//! Instance ids.
 
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::Channels;
 
-const ABOUT: &str = "Instance ids: 0 void, then structure pieces, objects, agents, in file order; shape (height, width, 1).";
+const ABOUT: &str = "Instance ids: 0 void, then structure pieces, objects, agents, in file order; shape (height, width, \
+                     1).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

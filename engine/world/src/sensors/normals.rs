@@ -1,11 +1,12 @@
-//! Normals of surfaces in the camera's frame (to the right, up, back), on the side that is seen, unit length, zeros where nothing is seen; shape (height, width, 3).
+//! Normals of surfaces.
 
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::Channels;
 
-const ABOUT: &str = "Normals of surfaces in the camera's frame (to the right, up, back), on the side that is seen, unit length, zeros where nothing is seen; shape (height, width, 3).";
+const ABOUT: &str = "Normals of surfaces in the camera's frame (to the right, up, back), on the side that is seen, unit \
+                     length, zeros where nothing is seen; shape (height, width, 3).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

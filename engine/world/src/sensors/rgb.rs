@@ -1,4 +1,4 @@
-//! Colour image: shape (height, width, 3), sRGB bytes.
+//! Colour image.
 
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};

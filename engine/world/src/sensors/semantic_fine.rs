@@ -1,11 +1,12 @@
-//! Fine semantic classes, such as coffee_table: 0 void, then the rows of the category table, then the house's own (House.classes); shape (height, width, 1).
+//! Fine semantic classes.
 
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::{Channels, Classes};
 
-const ABOUT: &str = "Fine semantic classes, such as coffee_table: 0 void, then the rows of the category table, then the house's own (House.classes); shape (height, width, 1).";
+const ABOUT: &str = "Fine semantic classes, such as coffee_table: 0 void, then the rows of the category table, then the \
+                     house's own (House.semantic_classes); shape (height, width, 1).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

@@ -1,11 +1,12 @@
-//! NYU-40 classes: 0 void, 1 wall, 2 floor to 40 otherprop (House.classes); shape (height, width, 1).
+//! NYU-40 classes.
 
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::{Channels, Classes};
 
-const ABOUT: &str = "NYU-40 classes: 0 void, 1 wall, 2 floor to 40 otherprop (House.classes); shape (height, width, 1).";
+const ABOUT: &str = "NYU-40 classes: 0 void, 1 wall, 2 floor to 40 otherprop (House.semantic_classes); shape (height, \
+                     width, 1).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

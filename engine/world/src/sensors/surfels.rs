@@ -1,4 +1,4 @@
-//! Surface elements in the camera's frame: position in m (to the right, up, back), unit normal, reflectance 0 to 1 of red, green and blue; zeros where nothing is seen; shape (height, width, 9).
+//! Surface elements.
 
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
@@ -6,7 +6,8 @@ use crate::error::WorldError;
 use dwell_render::Channels;
 use glam::Vec2;
 
-const ABOUT: &str = "Surface elements in the camera's frame: position in m (to the right, up, back), unit normal, reflectance 0 to 1 of red, green and blue; zeros where nothing is seen; shape (height, width, 9).";
+const ABOUT: &str = "Surface elements in the camera's frame: position in m (to the right, up, back), unit normal, \
+                     reflectance 0 to 1 of red, green and blue; zeros where nothing is seen; shape (height, width, 9).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,

@@ -1,4 +1,4 @@
-//! Objects and agents in view, by id: id, pixels, and how much of it others hide, 0 to 1; of more than fit those with most pixels, unused rows 0; shape (max_objects, 3).
+//! What is in view, and how much of it is hidden.
 
 use super::image::{self, Kind, Look, Shape};
 use super::list;
@@ -6,7 +6,8 @@ use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
 use dwell_render::Channels;
 
-const ABOUT: &str = "Objects and agents in view, by id: id, pixels, and how much of it others hide, 0 to 1; of more than fit those with most pixels, unused rows 0; shape (max_objects, 3).";
+const ABOUT: &str = "Objects and agents in view, by id: id, pixels, and how much of it others hide, 0 to 1; of more than \
+                     fit those with most pixels, unused rows 0; shape (max_objects, 3).";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
