@@ -216,8 +216,7 @@ impl Moments {
             };
             let pixels = ((end - first) * shot.view.camera.width()) as usize;
             jobs.push(Job {
-                // What has been a step before is as far away as it is now.
-                before: world.before(between(&is, &was, share + 1.0)),
+                before: world.before(was),
                 rows: Some((first, end)),
                 ..Job::new(scene, state, view, rest.take_pixels(pixels))
             });
