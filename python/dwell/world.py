@@ -60,8 +60,8 @@ class World:
             agents: How many agents live in it, all of the default body; or a body for each, as a
                 mapping of what differs: ``radius_m``, ``height_m``, ``eye_height_m``,
                 ``step_height_m``, ``max_slope_rad``, ``lift_kg``, ``reach_m``, ``push_force_n``,
-                ``hand_effort``, ``max_carry_size_m``, ``camera_fov_deg`` and ``locomotion``, which is
-                ``{"walking": {...}}`` (``max_speed_m_s``, ``max_crouched_speed_m_s``,
+                ``hand_effort``, ``max_carry_size_m``, ``camera_fov_deg`` and ``locomotion``, which
+                is ``{"walking": {...}}`` (``max_speed_m_s``, ``max_crouched_speed_m_s``,
                 ``crouched_height_m``),
                 ``{"differential_drive": {...}}`` (``wheel_base_m``, ``left_wheel_radius_m``,
                 ``right_wheel_radius_m``, ``max_wheel_speed_rad_s``,

@@ -1,10 +1,6 @@
 //! Parameters of laws, bodies and cameras by their addresses, in worlds that join all engines.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "tests fail by panicking, and may say what they saw"
-)]
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell::sensors::Out;
 use dwell::{Batch, Env, EnvConfig, SensorConfig, World, WorldConfig};
