@@ -1,9 +1,8 @@
 //! Plain data as bytes that pack well: what stands under one name stands side by side.
 //!
 //! A thousand contacts, written one after the other, mix places, forces and numbers of faces. Here every field of every type
-//! has a column of its own, and every column of floats one stream a byte: signs and exponents, which are much alike, lie
-//! apart from the last digits, which are noise. Of 500 things that fell in a heap the packed bytes are a third of those in
-//! rows, of a house whose things lie strewn about seven eighths.
+//! has a column of its own, in which floats lie as they pack best (`Layout`). Of 500 things that fell in a heap the packed
+//! bytes are a third of those in rows, of a house whose things lie strewn about seven eighths.
 //!
 //! Readers must know the type, as with `postcard`: nothing is named in the bytes. Columns stand in the order in which the type
 //! comes to them.
@@ -19,10 +18,28 @@ use std::fmt::Display;
 
 /// Bytes of a float.
 const FLOAT: usize = size_of::<f32>();
-/// Streams of a column: one for each byte of a float, and one for all else.
-const STREAMS: usize = FLOAT + 1;
-/// The stream for all else.
-const REST: usize = FLOAT;
+/// How the floats of a column lie.
+#[derive(Clone, Copy, PartialEq)]
+#[repr(u8)]
+enum Layout {
+    /// The first bytes of all, then the second ones: signs and exponents, which are much alike, lie apart from the last digits.
+    ByByte = 0,
+    /// One after the other: what comes back, such as the turn of a thing that touches ten others, is found as a whole.
+    Whole = 1,
+}
+
+impl Layout {
+    fn of(byte: u8) -> Result<Self, ColumnsError> {
+        match byte {
+            0 => Ok(Self::ByByte),
+            1 => Ok(Self::Whole),
+            found => Err(ColumnsError::Large {
+                found: found.into(),
+                place: "a layout",
+            }),
+        }
+    }
+}
 
 /// Why data cannot be written or read as columns.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Columns to data.
 
-use super::{ColumnsError, FLOAT, Names, REST, STREAMS};
+use super::{ColumnsError, FLOAT, Layout, Names};
 use serde::Deserialize;
 use serde::de::value::U32Deserializer;
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
@@ -12,22 +12,28 @@ use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, ColumnsError> {
     let mut head = bytes;
     let count = whole(&mut head)?;
-    // Each column says the lengths of its streams.
-    if count > (head.len() / STREAMS) as u64 {
+    // Each column says three numbers.
+    if count > (head.len() / 3) as u64 {
         return Err(ColumnsError::Ended);
     }
-    let mut lengths = Vec::with_capacity(count as usize * STREAMS);
-    for _ in 0..count as usize * STREAMS {
-        let length = whole(&mut head)?;
-        lengths.push(usize::try_from(length).map_err(|_| ColumnsError::Ended)?);
+    let mut sizes = Vec::with_capacity(count as usize);
+    for _ in 0..count {
+        let floats = length(&mut head)?.checked_mul(FLOAT);
+        let layout = Layout::of(byte(&mut head)?)?;
+        sizes.push((
+            floats.ok_or(ColumnsError::Ended)?,
+            layout,
+            length(&mut head)?,
+        ));
     }
     let mut columns = Vec::with_capacity(count as usize);
-    for lengths in lengths.chunks_exact(STREAMS) {
-        let mut column = [&[][..]; STREAMS];
-        for (stream, length) in column.iter_mut().zip(lengths) {
-            *stream = take(&mut head, *length)?;
-        }
-        columns.push(column);
+    for (floats, layout, rest) in sizes {
+        columns.push(Column {
+            floats: take(&mut head, floats)?,
+            read: 0,
+            layout,
+            rest: take(&mut head, rest)?,
+        });
     }
     let mut reader = Reader {
         names: Names::new(),
@@ -35,8 +41,7 @@ pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, Colum
         at: 0,
     };
     let data = T::deserialize(&mut reader)?;
-    let streams = reader.columns.iter().flatten();
-    let left = head.len() + streams.map(|stream| stream.len()).sum::<usize>();
+    let left = head.len() + reader.columns.iter().map(Column::left).sum::<usize>();
     if left > 0 {
         return Err(ColumnsError::Left(left));
     }
@@ -70,9 +75,44 @@ fn whole(bytes: &mut &[u8]) -> Result<u64, ColumnsError> {
     })
 }
 
+fn length(bytes: &mut &[u8]) -> Result<usize, ColumnsError> {
+    let found = whole(bytes)?;
+    let place = "a length";
+    usize::try_from(found).map_err(|_| ColumnsError::Large { found, place })
+}
+
+/// What stands under one name.
+struct Column<'de> {
+    floats: &'de [u8],
+    /// How many floats were read.
+    read: usize,
+    layout: Layout,
+    rest: &'de [u8],
+}
+
+impl Column<'_> {
+    fn float(&mut self) -> Result<f32, ColumnsError> {
+        let count = self.floats.len() / FLOAT;
+        if self.read == count {
+            return Err(ColumnsError::Ended);
+        }
+        let bytes = std::array::from_fn(|k| match self.layout {
+            Layout::Whole => self.floats[self.read * FLOAT + k],
+            Layout::ByByte => self.floats[k * count + self.read],
+        });
+        self.read += 1;
+        Ok(f32::from_le_bytes(bytes))
+    }
+
+    /// Bytes that were not read.
+    fn left(&self) -> usize {
+        self.floats.len() - self.read * FLOAT + self.rest.len()
+    }
+}
+
 struct Reader<'de> {
     names: Names,
-    columns: Vec<[&'de [u8]; STREAMS]>,
+    columns: Vec<Column<'de>>,
     /// The column of what comes next.
     at: usize,
 }
@@ -80,7 +120,7 @@ struct Reader<'de> {
 impl<'de> Reader<'de> {
     fn rest(&mut self) -> Result<&mut &'de [u8], ColumnsError> {
         let column = self.columns.get_mut(self.at);
-        Ok(&mut column.ok_or(ColumnsError::Ended)?[REST])
+        Ok(&mut column.ok_or(ColumnsError::Ended)?.rest)
     }
 
     fn byte(&mut self) -> Result<u8, ColumnsError> {
@@ -97,9 +137,7 @@ impl<'de> Reader<'de> {
     }
 
     fn length(&mut self) -> Result<usize, ColumnsError> {
-        let found = self.whole()?;
-        let place = "a length";
-        usize::try_from(found).map_err(|_| ColumnsError::Large { found, place })
+        length(self.rest()?)
     }
 
     fn taken(&mut self) -> Result<&'de [u8], ColumnsError> {
@@ -181,11 +219,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
     fn deserialize_f32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
         let column = self.columns.get_mut(self.at);
         let column = column.ok_or(ColumnsError::Ended)?;
-        let mut bytes = [0; FLOAT];
-        for (to, stream) in bytes.iter_mut().zip(column) {
-            *to = byte(stream)?;
-        }
-        visitor.visit_f32(f32::from_le_bytes(bytes))
+        visitor.visit_f32(column.float()?)
     }
 
     fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {

@@ -1,6 +1,6 @@
 //! Data to columns.
 
-use super::{ColumnsError, FLOAT, Names, REST, STREAMS};
+use super::{ColumnsError, FLOAT, Layout, Names};
 use serde::Serialize;
 use serde::ser::{self, Serializer};
 
@@ -11,36 +11,75 @@ use serde::ser::{self, Serializer};
 pub fn to_bytes<T: Serialize + ?Sized>(data: &T) -> Result<Vec<u8>, ColumnsError> {
     let mut writer = Writer {
         names: Names::new(),
-        columns: vec![Default::default()],
+        columns: vec![Column::default()],
         at: 0,
     };
     data.serialize(&mut writer)?;
     Ok(writer.bytes())
 }
 
+/// What stands under one name.
+#[derive(Default)]
+struct Column {
+    /// The bits of floats.
+    floats: Vec<u32>,
+    /// All else.
+    rest: Vec<u8>,
+}
+
+impl Column {
+    fn layout(&self) -> Layout {
+        let mut sorted = self.floats.clone();
+        sorted.sort_unstable();
+        sorted.dedup();
+        if sorted.len() * SELDOM < self.floats.len() {
+            Layout::Whole
+        } else {
+            Layout::ByByte
+        }
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        match self.layout() {
+            Layout::Whole => bytes.extend(self.floats.iter().flat_map(|bits| bits.to_le_bytes())),
+            Layout::ByByte => {
+                for k in 0..FLOAT {
+                    bytes.extend(self.floats.iter().map(|bits| bits.to_le_bytes()[k]));
+                }
+            }
+        }
+        bytes.extend_from_slice(&self.rest);
+    }
+}
+
+/// Floats that come back this often on the mean are left whole.
+const SELDOM: usize = 2;
+
 struct Writer {
     names: Names,
-    columns: Vec<[Vec<u8>; STREAMS]>,
+    columns: Vec<Column>,
     /// The column of what comes next.
     at: usize,
 }
 
 impl Writer {
-    /// The number of columns, the length of every stream, then the streams.
+    /// The number of columns; of each its floats' number and layout and the length of the rest; then the columns.
     fn bytes(self) -> Vec<u8> {
         let mut bytes = Vec::new();
         put(&mut bytes, self.columns.len() as u64);
-        for stream in self.columns.iter().flatten() {
-            put(&mut bytes, stream.len() as u64);
+        for column in &self.columns {
+            put(&mut bytes, column.floats.len() as u64);
+            bytes.push(column.layout() as u8);
+            put(&mut bytes, column.rest.len() as u64);
         }
-        for stream in self.columns.iter().flatten() {
-            bytes.extend_from_slice(stream);
+        for column in &self.columns {
+            column.write(&mut bytes);
         }
         bytes
     }
 
     fn rest(&mut self) -> &mut Vec<u8> {
-        &mut self.columns[self.at][REST]
+        &mut self.columns[self.at].rest
     }
 
     #[expect(clippy::unnecessary_wraps, reason = "as serde's methods end")]
@@ -84,7 +123,7 @@ impl Fields<'_> {
     ) -> Result<(), ColumnsError> {
         let column = self.writer.names.column(self.owner, name);
         if column == self.writer.columns.len() {
-            self.writer.columns.push(Default::default());
+            self.writer.columns.push(Column::default());
         }
         self.writer.at = column;
         let done = value.serialize(&mut *self.writer);
@@ -152,10 +191,7 @@ impl<'a> Serializer for &'a mut Writer {
     }
 
     fn serialize_f32(self, v: f32) -> Result<(), ColumnsError> {
-        let column = &mut self.columns[self.at];
-        for (stream, byte) in column[..FLOAT].iter_mut().zip(v.to_le_bytes()) {
-            stream.push(byte);
-        }
+        self.columns[self.at].floats.push(v.to_bits());
         Ok(())
     }
 
