@@ -23,7 +23,7 @@ impl PhysicsWorld {
         let (distance, reach) = ((point - eye).length(), actor.body.body.reach_m);
         if distance > reach {
             let sentence = format!(
-                "That place is {distance:.1} m away; your reach is {reach:.1} m. Walk closer."
+                "That place is {distance:.2} m away; your reach is {reach:.2} m. Walk closer."
             );
             return refuse(ActionCode::TooFar, sentence);
         }

@@ -34,7 +34,7 @@ impl PhysicsWorld {
         let reach = agent.body.reach_m;
         if distance > reach {
             let sentence = format!(
-                "The {name} is {distance:.1} m away; your reach is {reach:.1} m. Walk closer."
+                "The {name} is {distance:.2} m away; your reach is {reach:.2} m. Walk closer."
             );
             return Some(fail(ActionCode::TooFar, sentence, Some(object)));
         }

@@ -101,7 +101,7 @@ fn every_refusal_says_why_and_what_to_do() {
     assert_eq!(told.code, ActionCode::TooFar);
     assert_eq!(
         told.sentence,
-        "The mug is 2.8 m away; your reach is 1.5 m. Walk closer."
+        "The mug is 2.78 m away; your reach is 1.50 m. Walk closer."
     );
     k.run
         .world

@@ -365,7 +365,11 @@ fn every_listed_number_is_set_read_back_and_restored() {
         run.state = start.0.clone();
         run.world.restore(&mut run.state, &start.1).unwrap();
         assert!(run.hash() == start.2, "{address}");
-        // What used to happen: an override that says what the house says stayed, and with it another hash.
+        // What used to happen: an override that says what the house says stayed, and with it another hash. Bands of materials
+        // stay set.
+        if matches!(address.words()[..], ["material", _, _, _]) {
+            continue;
+        }
         run.state.set_parameter(&house, address, value).unwrap();
         let back = run.state.set_parameter(&house, address, there.value);
         back.unwrap();

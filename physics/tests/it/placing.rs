@@ -155,7 +155,7 @@ fn a_thing_is_put_at_a_point_and_nowhere_else() {
         (
             Vec3::new(3.0, 0.0, 5.5),
             ActionCode::TooFar,
-            "That place is 3.0 m away; your reach is 1.5 m. Walk closer.",
+            "That place is 2.98 m away; your reach is 1.50 m. Walk closer.",
         ),
         (
             Vec3::new(3.2, 1.2, 2.2),

@@ -143,9 +143,12 @@ impl Instruction {
         };
         let found = |object: &ObjectId| {
             let extent = scene.extent(*object);
-            // A thing on another storey is not near, however straight above it one stands.
-            let level = extent.bounds.max.y > body.position.y - 0.5
-                && extent.bounds.min.y < body.position.y + body.body.height_m + 1.0;
+            // A thing on another storey is not near, however straight above it one stands; a lamp under the ceiling is.
+            let room = scene.room_of_agent(agent);
+            let ceiling = room.map_or(f32::MIN, |room| scene.house().rooms[room].ceiling_y);
+            let overhead = ceiling.max(body.position.y + body.body.height_m + 1.0);
+            let level =
+                extent.bounds.max.y > body.position.y - 0.5 && extent.bounds.min.y < overhead;
             let near = extent.footprint.distance_to(here) <= self.goal.radius_m;
             let seen = || sees(scene, rays, &viewer, *object, FOUND_HALF_ANGLE_RAD);
             body.holding == Some(*object) || (level && near && (!self.goal.in_sight || seen()))

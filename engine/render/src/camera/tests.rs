@@ -171,7 +171,8 @@ fn pinholes_see_nothing_behind_them_and_all_around_cameras_see_everything() {
 fn fisheyes_show_angles_as_radii() {
     let [equidistant, kannala] = [2, 3].map(|k: usize| cameras()[k]);
     let at = |camera: &Camera, angle: f32| {
-        let point = Vec3::new(angle.sin(), 0.0, -angle.cos()) * 3.0;
+        let (sine, cosine) = dwell_scene::math::sin_cos(angle);
+        let point = Vec3::new(sine, 0.0, -cosine) * 3.0;
         camera.project(point).map(|(image, _)| image.x - 318.0)
     };
     for degrees in [1.0_f32, 30.0, 60.0, 90.0, 109.0] {

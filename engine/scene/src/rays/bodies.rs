@@ -1,6 +1,6 @@
 //! Agents' bodies as cameras see them: capsules of three pieces, each a mesh of unit size that is stretched to the agent.
 
-use crate::bvh::TriangleBvh;
+use crate::bvh::{RayMask, TriangleBvh, TriangleTag};
 use crate::mesh::Mesh;
 use crate::state::AgentState;
 use glam::{Affine3A, Quat, Vec3};
@@ -21,20 +21,27 @@ struct Shapes {
 }
 
 static SHAPES: LazyLock<Shapes> = LazyLock::new(|| {
-    let quarter = |k: u16| PI * f32::from(k) / f32::from(ROWS);
     let ball: Vec<(f32, f32)> = (0..=ROWS)
         .map(|k| {
-            let (sine, cosine) = crate::math::sin_cos(quarter(k));
-            (sine, -cosine)
+            let (sine, cosine) = crate::math::sin_cos(PI * f32::from(k) / f32::from(ROWS));
+            // The sine of what an f32 holds of pi is below 0.
+            (if k == ROWS { 0.0 } else { sine }, -cosine)
         })
         .collect();
-    let round: Vec<(f32, f32)> = ball.clone();
-    let ball = turned(&ball, &round);
+    let ball = turned(&ball, &ball);
     let tube = turned(&[(1.0, 0.0), (1.0, 1.0)], &[(1.0, 0.0), (1.0, 0.0)]);
     let meshes = [ball.clone(), tube, ball];
     let trees = [0, 1, 2].map(|k: usize| {
         let mesh = &meshes[k];
-        Arc::new(TriangleBvh::build(&mesh.positions, &mesh.triangles))
+        let tag = |_| TriangleTag {
+            id: 0,
+            mask: RayMask::BODY,
+        };
+        Arc::new(TriangleBvh::build_tagged(
+            &mesh.positions,
+            &mesh.triangles,
+            tag,
+        ))
     });
     Shapes { meshes, trees }
 });
@@ -58,7 +65,13 @@ fn turned(profile: &[(f32, f32)], normals: &[(f32, f32)]) -> Mesh {
             let corner = |row: u32, step: u32| row * around + step;
             let (a, b) = (corner(row - 1, step), corner(row - 1, next));
             let (c, d) = (corner(row, step), corner(row, next));
-            mesh.triangles.extend([[a, b, d], [a, d, c]]);
+            // At a pole a row is one point: one of its triangles has no area.
+            if profile[row as usize - 1].0 > 0.0 {
+                mesh.triangles.push([a, b, d]);
+            }
+            if profile[row as usize].0 > 0.0 {
+                mesh.triangles.push([a, d, c]);
+            }
         }
     }
     mesh
@@ -91,7 +104,7 @@ pub(super) fn places(agent: &AgentState) -> [Affine3A; BODY_PIECES] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bvh::{Ray, RayMask};
+    use crate::bvh::Ray;
     use crate::rays::RayScene;
     use crate::state::AgentBody;
     use crate::{AgentState, House, ShoeboxMaterials, State};

@@ -190,13 +190,15 @@ impl State {
     }
 
     /// Keeps no override that says what stands there without it, so that a number that is set and set back leaves no trace. Only
-    /// when all are set: what stands there may follow from the others.
+    /// when all are set: what stands there may follow from the others. A band of a material is kept, since bands without a value
+    /// of their own lie between their neighbours: one that is pinned stays when a neighbour changes.
     fn forget_defaults(
         &mut self,
         house: &House,
         known: &BTreeSet<Address>,
     ) -> Result<(), SceneError> {
-        for canonical in known {
+        let follows = |known: &&Address| matches!(known.words()[..], ["material", _, _, _]);
+        for canonical in known.iter().filter(|known| !follows(known)) {
             if let Some(value) = self.overrides.remove(canonical)
                 && self.parameter(house, canonical)?.value as f32 != value as f32
             {

@@ -11,9 +11,9 @@ use crate::expert::{Guide, face};
 use crate::metrics::Progress;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::navigation::{Cell, NavGrid};
+use dwell_scene::navigation::{Cell, Door, NavGrid};
 use dwell_scene::random::Key;
-use dwell_scene::{AgentId, Pose, State};
+use dwell_scene::{Aabb, AgentId, Pose, State};
 use dwell_semantics::instruct::{self, Instruction, InstructionKind};
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
@@ -22,6 +22,8 @@ const NAME: &str = "InstructionFollowing";
 /// Reward for success, and for every step (habitat-lab's defaults for navigation).
 const SUCCESS_REWARD: f64 = 2.5;
 const SLACK_REWARD: f64 = -0.01;
+/// Goals nearer than this to where the expert looked in vain are not tried again, m.
+const ELSEWHERE_M: f32 = 0.3;
 
 pub(super) const KIND: TaskKind = TaskKind {
     name: NAME,
@@ -97,7 +99,30 @@ struct Offer {
 #[derive(Clone, Debug)]
 struct Now {
     instruction: Instruction,
+    /// Measures the way that is left.
     guide: Guide,
+    /// Leads the expert, to those goals from which it has not looked in vain.
+    lead: Guide,
+    goals: Vec<Cell>,
+}
+
+impl Now {
+    /// Leads to goals elsewhere from now on; `false` when there are none. Of a cell on whose border the agent stands the
+    /// thing may be hidden, though it is seen from the middle.
+    fn leave_out_goals_here(&mut self, world: &World, stride: &Stride) -> bool {
+        let Some(agent) = world.state().agents.get(AgentId(0)) else {
+            return false;
+        };
+        let grid = self.lead.grid().clone();
+        let before = self.goals.len();
+        self.goals
+            .retain(|cell| (grid.position(*cell) - agent.position).length() > ELSEWHERE_M);
+        if self.goals.is_empty() || self.goals.len() == before {
+            return false;
+        }
+        self.lead = Guide::new(AgentId(0), grid, &self.goals, *stride);
+        true
+    }
 }
 
 #[derive(Debug)]
@@ -159,15 +184,45 @@ fn goal_cells(world: &World, grid: &NavGrid, instruction: &Instruction) -> Vec<C
                 {
                     return false;
                 }
-                let eye = at + Vec3::Y * eye_m;
-                let ray = Ray::new(eye, extent.bounds.center() - eye);
-                let hit = world.rays().closest(&ray, RayMask::EYE);
-                hit.is_some_and(|hit| {
-                    world.rays().surface(&hit).entity == house.entity_of_object(*object)
+                let sides = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
+                sides.iter().all(|(dx, dz)| {
+                    let beside = Vec3::new(*dx, 0.0, *dz) * (0.5 * edge);
+                    let eye = at + beside + Vec3::Y * eye_m;
+                    let ray = Ray::new(eye, extent.bounds.center() - eye);
+                    let hit = world.rays().closest(&ray, RayMask::EYE);
+                    hit.is_some_and(|hit| {
+                        world.rays().surface(&hit).entity == house.entity_of_object(*object)
+                    })
                 })
             })
         })
         .collect()
+}
+
+/// A door's leaf as it stands now: a box in its own frame.
+struct Leaf {
+    leaf_from_world: Pose,
+    bounds: Aabb,
+}
+
+impl Leaf {
+    fn of(world: &World, door: &Door) -> Self {
+        let house = world.house();
+        let child = house.joints[door.joint].child;
+        let part = &house.parts[child];
+        let corners = house.meshes[part.mesh].positions.iter();
+        Self {
+            leaf_from_world: world.state().part_pose[child].inverse(),
+            bounds: Aabb::from_points(corners.map(|p| part.part_from_mesh.transform_point3(*p))),
+        }
+    }
+
+    /// Distance from feet that stand at `at`, seen from above, m; leaves of other storeys are far.
+    fn apart_m(&self, at: Vec3) -> f32 {
+        // At half the height of a leaf, where handles stand out.
+        let point = self.leaf_from_world.transform_point(at + Vec3::Y);
+        (point.clamp(self.bounds.min, self.bounds.max) - point).length()
+    }
 }
 
 impl Task for InstructionFollowing {
@@ -187,14 +242,16 @@ impl Task for InstructionFollowing {
             house: world.house().name.clone(),
             why: why.to_owned(),
         };
-        let leaves: Vec<Vec3> = (grid.doors().iter())
-            .flat_map(|door| door.cells.iter().map(|cell| grid.position(*cell)))
+        let apart_m = grid.config().radius_m + 0.5 * grid.config().cell_m;
+        let leaves: Vec<Leaf> = grid
+            .doors()
+            .iter()
+            .map(|door| Leaf::of(world, door))
             .collect();
-        // The grid has all doors open; an agent that starts must not stand in a leaf that is shut.
-        let apart_m = grid.config().radius_m + 1.5 * grid.config().cell_m;
+        // The grid has all doors open; an agent that starts must not stand in a leaf as it stands.
         let in_a_leaf = |cell: Cell| {
             let at = grid.position(cell);
-            leaves.iter().any(|leaf| (*leaf - at).length() < apart_m)
+            leaves.iter().any(|leaf| leaf.apart_m(at) < apart_m)
         };
         let mut order: Vec<usize> = (0..self.offers.len()).collect();
         key.child("order").stream().shuffle(&mut order);
@@ -208,15 +265,15 @@ impl Task for InstructionFollowing {
                     && !in_a_leaf(cell)
             };
             let start = grid.sample(key.child("start"), allowed)?;
-            Some((offer.instruction.clone(), guide, start))
+            Some((offer, guide, start))
         });
-        let Some((instruction, guide, start)) = found else {
+        let Some((offer, guide, start)) = found else {
             return Err(unplayable(
                 "no instruction has a goal that can be walked to from the asked distance",
             ));
         };
-        let instruction =
-            instruct::choose(&[instruction], key).ok_or_else(|| unplayable("no wording fits"))?;
+        let instruction = instruct::choose(std::slice::from_ref(&offer.instruction), key)
+            .ok_or_else(|| unplayable("no wording fits"))?;
         let yaw_rad = key
             .child("yaw")
             .stream()
@@ -230,7 +287,13 @@ impl Task for InstructionFollowing {
             start: Pose::from_position_yaw(position, yaw_rad),
             progress: Progress::new(position, distance_m),
         };
-        self.now = Some(Now { instruction, guide });
+        let (lead, goals) = (guide.clone(), offer.goals.clone());
+        self.now = Some(Now {
+            instruction,
+            guide,
+            lead,
+            goals,
+        });
         Ok(episode)
     }
 
@@ -264,12 +327,20 @@ impl Task for InstructionFollowing {
         let Some(now) = &mut self.now else {
             return DiscreteAction::Stop;
         };
-        if let Some(step) = now.guide.walk(world) {
+        if let Some(step) = now.lead.walk(world) {
             return step;
         }
         let Some(object) = now.instruction.goal.objects.first() else {
             return DiscreteAction::Stop;
         };
-        face(world, AgentId(0), *object, &self.stride).unwrap_or(DiscreteAction::Stop)
+        if let Some(turn) = face(world, AgentId(0), *object, &self.stride) {
+            return turn;
+        }
+        let scene = world.engines().semantics().scene(world.state());
+        let judged = (now.instruction).verify(&scene, world.rays(), AgentId(0));
+        if judged == instruct::Progress::Continue && now.leave_out_goals_here(world, &self.stride) {
+            return DiscreteAction::Wait;
+        }
+        DiscreteAction::Stop
     }
 }

@@ -1,14 +1,17 @@
 //! A guide who knows the house: follows shortest ways, opens doors, turns to things.
 
+mod swing;
+
 use crate::action::{DiscreteAction, Stride};
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::math::wrap_angle;
 use dwell_scene::navigation::{Cell, DistanceField, NavGrid};
 use dwell_scene::space::{pitch_from_forward, yaw_from_forward};
-use dwell_scene::{AgentId, Entity, ObjectId};
+use dwell_scene::{AgentId, AgentState, Entity, ObjectId};
 use glam::Vec3;
 use std::sync::Arc;
+use swing::Opening;
 
 /// How far ahead of itself it looks for closed doors, m: further than a door leaf is wide, nearer than its arm is long.
 const DOOR_AHEAD_M: f32 = 1.4;
@@ -22,7 +25,7 @@ const PASSABLE: f32 = 0.8;
 pub struct Guide {
     agent: AgentId,
     grid: Arc<NavGrid>,
-    field: DistanceField,
+    field: Arc<DistanceField>,
     stride: Stride,
     /// How often it was blocked of late.
     blocked: u32,
@@ -30,12 +33,14 @@ pub struct Guide {
     escape: u32,
     /// Manoeuvres so far; they turn left and right by turns.
     escapes: u32,
+    /// The door that it opens now.
+    opening: Option<Opening>,
 }
 
 impl Guide {
     /// A guide that leads `agent` to the nearest of `goals`.
     pub fn new(agent: AgentId, grid: Arc<NavGrid>, goals: &[Cell], stride: Stride) -> Self {
-        let field = grid.distance_field(goals);
+        let field = Arc::new(grid.distance_field(goals));
         Self {
             agent,
             grid,
@@ -44,7 +49,13 @@ impl Guide {
             blocked: 0,
             escape: 0,
             escapes: 0,
+            opening: None,
         }
+    }
+
+    /// The grid on which it leads.
+    pub fn grid(&self) -> &Arc<NavGrid> {
+        &self.grid
     }
 
     /// The agent that it leads.
@@ -70,17 +81,47 @@ impl Guide {
         if self.field.at(here)? <= 0.0 {
             return None;
         }
+        if let Some(step) = self.step_aside(world, here) {
+            return Some(step);
+        }
         if let Some(door) = self.closed_door_ahead(world, here) {
             return Some(self.open(world, door));
         }
+        self.follow(&self.field.clone(), &agent, here)
+    }
+
+    /// A step down a distance field, or one that frees the agent where it is stuck.
+    fn follow(
+        &mut self,
+        field: &DistanceField,
+        agent: &AgentState,
+        here: Cell,
+    ) -> Option<DiscreteAction> {
         if let Some(step) = self.escape(agent.collided) {
             return Some(step);
         }
-        let aim = self.aim(here, agent.position)?;
+        let aim = self.aim(field, here, agent.position)?;
         Some(
             turn_towards(agent.yaw_rad, aim - agent.position, &self.stride)
                 .unwrap_or(DiscreteAction::MoveForward),
         )
+    }
+
+    /// Out of the way of a door that swings towards it, and from there opens it wholly; `None` when no door is held up.
+    fn step_aside(&mut self, world: &World, here: Cell) -> Option<DiscreteAction> {
+        let opening = self.opening.take()?;
+        let open = world.state().openness(world.house(), opening.door);
+        if open.is_none_or(|open| open >= PASSABLE) {
+            return None;
+        }
+        let (door, aside) = (opening.door, opening.aside.clone());
+        self.opening = Some(opening);
+        let agent = *world.state().agents.get(self.agent)?;
+        let aside = aside?;
+        if aside.at(here)? <= 0.0 {
+            return Some(self.open(world, door));
+        }
+        self.follow(&aside, &agent, here)
     }
 
     /// Grazing a corner or a door: some turns away from the way and a few steps usually free it.
@@ -107,8 +148,8 @@ impl Guide {
     }
 
     /// The point of the way that it walks to next: the furthest one within reach of the eye.
-    fn aim(&self, here: Cell, position: Vec3) -> Option<Vec3> {
-        let way = self.grid.descend(&self.field, here)?;
+    fn aim(&self, field: &DistanceField, here: Cell, position: Vec3) -> Option<Vec3> {
+        let way = self.grid.descend(field, here)?;
         let near = way
             .iter()
             .take_while(|cell| (self.grid.position(**cell) - position).length() <= AIM_AHEAD_M);
@@ -132,6 +173,10 @@ impl Guide {
         let mut walked = 0.0;
         for cell in way {
             let to = self.grid.position(cell);
+            walked += (to - from).length();
+            if walked > DOOR_AHEAD_M {
+                return None;
+            }
             let lift = Vec3::Y * (agent.body.height_m * 0.6);
             let ray = Ray::segment(from + lift, to + lift, 0.0);
             if let Some(hit) = world.rays().closest(&ray, RayMask::AGENT)
@@ -144,24 +189,24 @@ impl Guide {
             {
                 return Some(object);
             }
-            walked += (to - from).length();
-            if walked > DOOR_AHEAD_M {
-                return None;
-            }
             from = to;
         }
         None
     }
 
     /// Turns to a door and opens it; waits while it opens.
-    fn open(&self, world: &World, door: ObjectId) -> DiscreteAction {
-        face(world, self.agent, door, &self.stride).unwrap_or_else(|| {
-            if world.gaze_target(self.agent) == Some(door) {
-                DiscreteAction::Open
-            } else {
-                DiscreteAction::MoveForward
-            }
-        })
+    fn open(&mut self, world: &World, door: ObjectId) -> DiscreteAction {
+        if let Some(turn) = face(world, self.agent, door, &self.stride) {
+            return turn;
+        }
+        if world.gaze_target(self.agent) != Some(door) {
+            return DiscreteAction::MoveForward;
+        }
+        let opening = self.opening.take().filter(|opening| opening.door == door);
+        let mut opening = opening.unwrap_or_else(|| Opening::of(door));
+        opening.ordered(world, &self.grid, self.agent);
+        self.opening = Some(opening);
+        DiscreteAction::Open
     }
 }
 

@@ -1,0 +1,90 @@
+//! Doors that swing towards whoever opens them: where to stand so that the leaf passes.
+
+use crate::world::World;
+use dwell_scene::navigation::{Cell, DistanceField, NavGrid};
+use dwell_scene::{AgentId, JointKind, ObjectId};
+use glam::{Vec2, Vec3, Vec3Swizzles};
+use std::sync::Arc;
+
+/// Orders to open after which a door that does not move counts as held up.
+const PATIENCE: u32 = 5;
+/// How little of its way a door moves between two orders when it is held up.
+const STILL: f32 = 0.002;
+/// Room left between the swinging leaf and the body, m.
+const CLEARANCE_M: f32 = 0.1;
+/// How much nearer than the arm reaches it stands, m.
+const WITHIN_REACH_M: f32 = 0.1;
+
+/// A door that is being opened.
+#[derive(Clone, Debug)]
+pub(super) struct Opening {
+    pub(super) door: ObjectId,
+    openness: f32,
+    still: u32,
+    /// The way to where the leaf does not reach, once it was held up.
+    pub(super) aside: Option<Arc<DistanceField>>,
+}
+
+impl Opening {
+    pub(super) fn of(door: ObjectId) -> Self {
+        Self {
+            door,
+            openness: 0.0,
+            still: 0,
+            aside: None,
+        }
+    }
+
+    /// One more order to open: steps aside where the door stands still for long.
+    pub(super) fn ordered(&mut self, world: &World, grid: &NavGrid, agent: AgentId) {
+        let now = world
+            .state()
+            .openness(world.house(), self.door)
+            .unwrap_or(1.0);
+        let moved = (now - self.openness).abs() > STILL;
+        self.openness = now;
+        self.still = if moved { 0 } else { self.still + 1 };
+        if self.still > PATIENCE {
+            self.still = 0;
+            let free = out_of_the_swing(world, grid, agent, self.door);
+            self.aside = (!free.is_empty()).then(|| Arc::new(grid.distance_field(&free)));
+        }
+    }
+}
+
+/// Cells on the agent's side of a hinged door from which its arm reaches the leaf and which the leaf does not sweep.
+fn out_of_the_swing(world: &World, grid: &NavGrid, agent: AgentId, door: ObjectId) -> Vec<Cell> {
+    let (house, state) = (world.house(), world.state());
+    let hinge = house.joints_of(door).find(|joint| {
+        house.joints[*joint].opens() && house.joints[*joint].kind == JointKind::Hinge
+    });
+    let (Some(hinge), Some(agent)) = (hinge, state.agents.get(agent)) else {
+        return Vec::new();
+    };
+    let joint = &house.joints[hinge];
+    let hung = joint.parent_from_joint.position;
+    let axis = joint
+        .parent
+        .map_or(hung, |parent| state.part_pose[parent].transform_point(hung));
+    let axis = axis.xz();
+    let leaf = house.part_bounds(state, joint.child);
+    let part = &house.parts[joint.child];
+    let world_from_mesh = state.part_pose[joint.child].to_affine() * part.part_from_mesh;
+    let swept_m = (house.meshes[part.mesh].positions.iter())
+        .map(|corner| (world_from_mesh.transform_point3(*corner).xz() - axis).length())
+        .fold(0.0, f32::max);
+    let across = (leaf.center().xz() - axis).perp();
+    let side = |at: Vec2| (at - axis).dot(across);
+    let here = side(agent.position.xz());
+    let eye = Vec3::Y * agent.body.eye_height_m;
+    let free = |cell: &Cell| {
+        let at = grid.position(*cell);
+        let from = at + eye;
+        let apart_m = (from.clamp(leaf.min, leaf.max) - from).length();
+        let reached = apart_m < agent.body.reach_m - WITHIN_REACH_M;
+        let same_side = side(at.xz()) * here > 0.0;
+        let aside = (at.xz() - axis).length() > swept_m + agent.body.radius_m + CLEARANCE_M;
+        reached && same_side && aside && (at.y - agent.position.y).abs() < 0.5
+    };
+    grid.walkable().filter(free).collect()
+}
