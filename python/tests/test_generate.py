@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import subprocess
 import sys
 import time
+import weakref
 from pathlib import Path
 from typing import Any
 
+import gymnasium
 import pytest
 
 import dwell
-from dwell.envs.config import HouseShelf
+from dwell.envs.config import KEPT, HouseShelf
 
 
 def test_a_seed_is_a_furnished_house_and_always_the_same() -> None:
@@ -37,6 +40,23 @@ def test_a_range_of_seeds_is_several_houses() -> None:
         dwell.House.expand("seed:5..3")
     shelf = HouseShelf(["builtin:studio", "seed:0..3"])
     assert shelf.names == ["builtin:studio", "seed:0", "seed:1", "seed:2"]
+
+
+def test_houses_of_thousands_of_seeds_are_not_all_kept() -> None:
+    shelf = HouseShelf(f"seed:0..{2 * KEPT}?home=studio")
+    first = shelf[0]
+    assert shelf[0] is first
+    held = [weakref.ref(shelf[k]) for k in range(2 * KEPT)]
+    del first
+    gc.collect()
+    assert sum(ref() is not None for ref in held) == KEPT
+    env = gymnasium.make("dwell/InstructionFollowing-v0", houses=f"seed:0..{KEPT + 2}?home=studio")
+    start, _ = env.reset(seed=1, options={"house": 0})
+    for house in range(1, KEPT + 2):
+        env.reset(options={"house": house})
+    again, _ = env.reset(seed=1, options={"house": 0})
+    assert (start["rgb"] == again["rgb"]).all()
+    env.close()
 
 
 def test_built_in_houses_are_listed_and_open() -> None:

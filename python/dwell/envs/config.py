@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -18,8 +19,16 @@ Sensors = Sequence[str] | Mapping[str, Mapping[str, Any]] | None
 _STRIDE = {"forward_m": finite, "turn_deg": finite, "look_deg": finite}
 
 
+#: Houses, with their environments, that are kept for the next episode in them: enough for those
+#: who go around a few, and few enough for those who go through thousands.
+KEPT = 16
+
+
 class HouseShelf:
-    """Houses by number, those given by HOUSE string opened at first use and kept."""
+    """Houses by number.
+
+    Those given by HOUSE string are opened at first use; the last :data:`KEPT` stay open.
+    """
 
     def __init__(self, houses: Houses) -> None:
         """Keeps what it is given, one house counting as a list of one; opens nothing."""
@@ -31,13 +40,14 @@ class HouseShelf:
         rows = [one for row in given for one in _expanded(row)]
         if not rows:
             raise ConfigError("houses: expected at least one HOUSE string or House, found none")
-        self._open: dict[str, House] = {}
+        self._given: dict[str, House] = {}
+        self._open = functools.lru_cache(KEPT)(House.open)
         #: HOUSE strings; for a house that was handed over, its name, numbered where that is taken.
         self.names: list[str] = []
         for k, row in enumerate(rows):
             if isinstance(row, House):
                 self.names.append(row.name if row.name not in self.names else f"{row.name}~{k}")
-                self._open[self.names[-1]] = row
+                self._given[self.names[-1]] = row
             elif isinstance(row, str | os.PathLike):
                 self.names.append(os.fspath(row))
             else:
@@ -46,9 +56,7 @@ class HouseShelf:
     def __getitem__(self, index: int) -> House:
         """House ``index`` modulo their number."""
         name = self.names[index % len(self.names)]
-        if name not in self._open:
-            self._open[name] = House.open(name)
-        return self._open[name]
+        return self._given.get(name) or self._open(name)
 
 
 def _expanded(row: object) -> list[object]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Mapping
 from typing import Any
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import mapping, to_json, whole
 from dwell.camera import Camera, camera_settings
-from dwell.envs.config import Houses, HouseShelf, Sensors, env_json
+from dwell.envs.config import KEPT, Houses, HouseShelf, Sensors, env_json
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.spaces import action_space, observation_space
 from dwell.settings import Laws
@@ -94,7 +95,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._shelf = HouseShelf(houses)
         self._threads = None if threads is None else whole("threads", threads, low=1)
         self._closed = False
-        self._runners: dict[int, Runner] = {}
+        self._runner_of = functools.lru_cache(KEPT)(self._run)
         self._house = 0
         self._episode = 0
         self._seed = 0
@@ -106,10 +107,10 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def _runner(self) -> Runner:
         if self._closed:
             raise UsageError("this environment is closed; make a new one")
-        if self._house not in self._runners:
-            houses = [self._shelf[self._house]]
-            self._runners[self._house] = Runner(houses, self._config, self._threads)
-        return self._runners[self._house]
+        return self._runner_of(self._house)
+
+    def _run(self, house: int) -> Runner:
+        return Runner([self._shelf[house]], self._config, self._threads)
 
     def _observation(self) -> dict[str, Any]:
         self._runner.observe(self._alone)
@@ -190,7 +191,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
     def close(self) -> None:
         """Lets go of the worlds; may be called again. After it everything else is refused."""
-        self._runners.clear()
+        self._runner_of.cache_clear()
         self._closed = True
 
     def expert_action(self) -> int:

@@ -177,13 +177,14 @@ fn play_watched(engines: &Arc<Engines>, steps: usize) -> u64 {
         if share(k + 1) == share(k) {
             continue;
         }
-        let held = memory.look(&play.world);
+        let [held, needed] = memory.look(&play.world);
         if share(k + 1) % 10 == 0 {
             let (size, most) = (play.world.snapshot().len(), largest_snapshot(&play.world));
             println!(
-                "  {:3} %: {:.2} MB held, {:.1} MB resident, {:?}, snapshot {size} bytes of {most}",
+                "  {:3} %: {:.2} MB held, {:.2} MB needed, {:.1} MB resident, {:?}, snapshot {size} bytes of {most}",
                 share(k + 1),
                 held as f64 / 1e6,
+                needed as f64 / 1e6,
                 memory::resident_bytes() / 1e6,
                 play.world.pair_counts(),
             );

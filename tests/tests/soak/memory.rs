@@ -1,7 +1,8 @@
 //! How memory is watched: every byte that is allocated and freed is counted.
 //!
 //! Agents strew things about, so that ever more pieces of theirs are near each other, and physics keeps the contacts of each
-//! such pair. What is held beyond that may not grow.
+//! such pair. How much that is, a world says that is restored from a snapshot: it holds what the state needs. What is held
+//! beyond that may not grow.
 
 use dwell::World;
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
@@ -10,9 +11,6 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// What a pair of pieces near each other takes: 2.3 KiB on the mean of the apartment (a node of the graph of contacts, planes
-/// of contact, their points and those of the solver), in vectors that hold up to twice what is in them.
-const PAIR_BYTES: i64 = 4096;
 /// How far the rest may grow from the second tenth of a run to the last ("flat memory").
 const GROWTH_BYTES: i64 = 1024 * 1024;
 /// Looks in a run.
@@ -28,7 +26,7 @@ fn in_use() -> i64 {
 pub(crate) struct Watch {
     /// Before there was a world.
     empty: i64,
-    /// What was held beyond the pairs, bytes, at each look.
+    /// What was held beyond need, bytes, at each look.
     rest: Vec<i64>,
 }
 
@@ -40,12 +38,16 @@ impl Watch {
         }
     }
 
-    /// Looks at a world, the only one there is; what it holds, bytes.
-    pub(crate) fn look(&mut self, world: &World) -> i64 {
-        let held = in_use() - self.empty;
-        let pairs = world.pair_counts().near as i64;
-        self.rest.push(held - pairs * PAIR_BYTES);
-        held
+    /// Looks at a world, the only one there is; what it holds and what another one that is restored from its snapshot holds,
+    /// bytes. Vectors that things are pushed to hold up to twice what is in them, those of the other world no more.
+    pub(crate) fn look(&mut self, world: &World) -> [i64; 2] {
+        let before = in_use();
+        let mut other = World::new(world.engines().clone(), world.config()).unwrap();
+        other.restore(&world.snapshot()).unwrap();
+        let needed = in_use() - before;
+        let held = before - self.empty;
+        self.rest.push(held - 2 * needed);
+        [held, needed]
     }
 
     /// The rest did not grow. The least of ten looks counts, since a crowd that is awake takes room to work in for a while.
@@ -56,7 +58,7 @@ impl Watch {
         };
         let tenths: Vec<i64> = (0..10).map(least).collect();
         let growth = tenths[9] - tenths[1];
-        println!("  memory beyond pairs grew by {growth} bytes: {tenths:?}");
+        println!("  memory beyond need grew by {growth} bytes: {tenths:?}");
         assert!(growth <= GROWTH_BYTES, "memory grew by {growth} bytes");
     }
 }
