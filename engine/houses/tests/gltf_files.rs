@@ -354,6 +354,88 @@ fn lamps_shine_as_bright_and_where_they_stand() {
     );
 }
 
+/// Lamps come back where they stood, as bright, on or off, and on the same object.
+#[test]
+fn lamps_come_back_from_our_own_glb() {
+    let (house, _) = open("builtin:apartment").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.glb");
+    gltf::write(&house, &path).unwrap();
+    let (again, report) = open(&path.to_string_lossy()).unwrap();
+    assert_eq!(again.lights.len(), house.lights.len(), "{report}");
+    let in_world = |house: &House, light: &dwell_scene::Light| {
+        let pose = house.parts[light.part].world_from_part;
+        let (at, along) = match light.shape {
+            LightShape::Point => (light.position, None),
+            LightShape::Line { end } => ((light.position + end) / 2.0, None),
+            LightShape::Spot {
+                direction,
+                cutoff_rad,
+                ..
+            } => (
+                light.position,
+                Some((pose.transform_vector(direction).normalize(), cutoff_rad)),
+            ),
+        };
+        (pose.transform_point(at), along)
+    };
+    for light in &house.lights {
+        let (at, along) = in_world(&house, light);
+        let found = again.lights.iter().find(|twin| {
+            let (there, turned) = in_world(&again, twin);
+            let same_way = match (along, turned) {
+                (Some(a), Some(b)) => a.0.abs_diff_eq(b.0, 1e-4) && (a.1 - b.1).abs() < 1e-4,
+                (None, None) => true,
+                _ => false,
+            };
+            there.abs_diff_eq(at, 1e-4) && same_way && twin.color == light.color
+        });
+        let name = &house.objects[light.object].name;
+        let twin = found.unwrap_or_else(|| panic!("no light of {name} at {at}: {light:?}"));
+        assert_eq!(twin.power_w, light.power_w, "{name}");
+        let carrier = &again.objects[twin.object];
+        assert!(
+            carrier.source_id.starts_with(name.as_str()),
+            "{name}: {}",
+            carrier.source_id
+        );
+        let shines = house.objects[light.object].switch != Some(false);
+        assert_eq!(carrier.switch, Some(shines), "{name}");
+    }
+}
+
+/// 50 cd in all directions are 2 pi W at 100 lm each; a spot of 60 degrees half angle spreads its 50 cd over pi sr.
+#[test]
+fn lights_of_a_foreign_file_are_lamps() {
+    let nodes = r#"[{"name": "all", "children": [1, 2, 3, 4]}, {"mesh": 0, "name": "chair"},
+        {"translation": [3, 2, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+        {"rotation": [-0.70710678, 0, 0, 0.70710678], "extensions": {"KHR_lights_punctual": {"light": 1}}},
+        {"extensions": {"KHR_lights_punctual": {"light": 2}}}]"#;
+    let lights = r#", "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
+        {"type": "point", "intensity": 50, "color": [1, 0.5, 0.25]},
+        {"type": "spot", "intensity": 50, "spot": {"outerConeAngle": 1.0471976}},
+        {"type": "directional"}]}}"#;
+    let (house, report) = open_text(&text(nodes, lights)).unwrap();
+    let [point, spot] = &house.lights[..] else {
+        panic!("{} lights: {report}", house.lights.len());
+    };
+    assert!((point.power_w - std::f32::consts::TAU).abs() < 1e-4);
+    assert_eq!(point.color, [1.0, 0.5, 0.25]);
+    let pose = house.parts[point.part].world_from_part;
+    let at = pose.transform_point(point.position);
+    assert!(at.abs_diff_eq(Vec3::new(3.0, 2.0, 1.0), 1e-5));
+    let LightShape::Spot { direction, .. } = spot.shape else {
+        panic!("{spot:?}");
+    };
+    assert!(
+        pose.transform_vector(direction)
+            .abs_diff_eq(Vec3::NEG_Y, 1e-5)
+    );
+    assert!((spot.power_w - 0.5 * std::f32::consts::PI).abs() < 1e-4);
+    assert_eq!(house.objects[point.object].switch, Some(true));
+    assert!(report.to_string().contains("directional light"), "{report}");
+}
+
 #[test]
 fn rooms_storeys_and_sky_come_back_from_our_own_glb() {
     let (house, _) = open("seed:2?home=house&storeys=2&clutter=0").unwrap();

@@ -1,6 +1,7 @@
 //! What several formats need to make a [`HouseData`](dwell_scene::HouseData) out of their files.
 
 mod components;
+mod lamps;
 mod looks;
 mod names;
 mod pieces;
@@ -10,6 +11,7 @@ mod textures;
 pub(crate) use components::{Component, components, submesh};
 pub(crate) use dwell_furniture::shapes::triangulate;
 pub(crate) use dwell_furniture::tables::{CategoryRow, category, room_kind, substance_of};
+pub(crate) use lamps::FileLamp;
 pub(crate) use looks::{Look, LookTable};
 pub(crate) use names::Names;
 pub(crate) use pieces::convex_pieces;

@@ -13,6 +13,7 @@ use dwell_scene::{
 use glam::{Affine3A, Vec2, Vec3};
 
 use super::CategoryRow;
+use super::lamps::{self, FileLamp};
 use super::{LookTable, Names, category, convex_pieces};
 use crate::damage::Damage;
 use crate::error::HousesError;
@@ -79,6 +80,7 @@ pub(crate) struct Scene {
     /// Rooms that the file names; empty: one over all floors.
     pub(crate) rooms: Vec<FileRoom>,
     pub(crate) sky: Option<Sky>,
+    pub(crate) lamps: Vec<FileLamp>,
 }
 
 impl Scene {
@@ -138,6 +140,7 @@ impl Scene {
             builder.object(thing, alone, at, report);
         }
         builder.settle(alone);
+        lamps::hang(self.lamps, &mut builder.data, &builder.bounds);
         House::new(builder.data).map_err(HousesError::scene(at))
     }
 }

@@ -100,6 +100,7 @@ pub(super) fn convert(
         levels: tree.levels,
         rooms: tree.rooms,
         sky: tree.sky,
+        lamps: tree.lamps,
     })
 }
 

@@ -6,6 +6,7 @@ mod container;
 mod convert;
 mod geometry;
 mod glb;
+mod lights;
 mod nodes;
 mod surface;
 mod write;
@@ -34,8 +35,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 
 /// Opens a `.glb` or `.gltf` file. Every node with a mesh is a thing; names mean structure or a category.
 ///
-/// Animations, skins and cameras are not read and reported once each; lights are passed over, and of
-/// `extras.dwell` all but rooms, what is the building, and the sky.
+/// Points and spots of light hang on the nearest object. Animations, skins, cameras and directional lights are not read and
+/// reported; of `extras.dwell` all is passed over but rooms, what is the building, lamps, and the sky.
 ///
 /// # Errors
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no valid glTF 2.0,

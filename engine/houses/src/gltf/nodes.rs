@@ -5,7 +5,8 @@ use dwell_scene::{Sky, StructureKind};
 use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
 use serde::Deserialize;
 
-use crate::build::{FileRoom, Role};
+use super::lights::{self, Said};
+use crate::build::{FileLamp, FileRoom, Role};
 use crate::damage::Damage;
 use crate::report::{At, Report};
 
@@ -28,6 +29,7 @@ pub(super) struct Tree {
     pub(super) levels: Vec<String>,
     pub(super) rooms: Vec<FileRoom>,
     pub(super) sky: Option<Sky>,
+    pub(super) lamps: Vec<FileLamp>,
 }
 
 /// A node's `extras`.
@@ -56,6 +58,12 @@ struct Known {
     object: Option<String>,
     #[serde(default)]
     sky: Option<Sky>,
+    #[serde(default)]
+    power_w: Option<f32>,
+    #[serde(default)]
+    on: Option<bool>,
+    #[serde(default)]
+    light_of: Option<String>,
 }
 
 /// A node on the way down.
@@ -127,6 +135,14 @@ pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
             continue;
         }
         let known = known(node, &node_at, report);
+        let said = Said {
+            power_w: known.power_w,
+            on: known.on,
+            light_of: known.light_of.clone(),
+            sky: known.sky.is_some(),
+        };
+        let lamp = lights::lamp(json, node, world_from_mesh, said, &node_at, report);
+        found.lamps.extend(lamp);
         found.sky = found.sky.or(known.sky);
         let own = file_room(
             known.room.as_deref(),

@@ -99,6 +99,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         levels: Vec::new(),
         rooms: Vec::new(),
         sky: None,
+        lamps: Vec::new(),
     }
     .into_house(&at, &mut report)?;
     Ok((house, report))

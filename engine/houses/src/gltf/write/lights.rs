@@ -12,15 +12,11 @@ use dwell_scene::{HouseData, Light, LightShape, Sky};
 use glam::{Quat, Vec3};
 use serde_json::{Value, json};
 
+use super::super::lights::{LEAST_CONE_RAD, LUMENS_PER_WATT};
 use crate::loss::Losses;
 
-/// lm of a lamp of 1 W.
-const LUMENS_PER_WATT: f32 = 100.0;
 /// The name of the extension.
 pub(super) const EXTENSION: &str = "KHR_lights_punctual";
-
-/// The narrowest cone that the format's viewers draw, rad.
-const LEAST_CONE_RAD: f32 = 1e-3;
 
 /// A light of the file, and the node that carries it: in the world, as it stands at the start.
 pub(super) struct Lamp {
