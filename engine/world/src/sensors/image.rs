@@ -6,7 +6,7 @@ use crate::error::WorldError;
 use crate::pictures::PictureRequest;
 use crate::requests::Requests;
 use crate::world::World;
-use dwell_render::{Camera, Channels, Frame, Optics, View};
+use dwell_render::{Camera, Channels, Classes, Frame, Optics, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 
@@ -81,6 +81,17 @@ impl Look<'_> {
     /// From where.
     pub(super) fn view(&self) -> View {
         self.world.shot(&self.request).view
+    }
+
+    /// The class of what each pixel shows.
+    pub(super) fn write_classes(&self, classes: Classes, out: Out<'_>) {
+        if let Out::Int32(out) = out {
+            let renderer = self.world.engines().renderer();
+            let classes = renderer.classes(classes);
+            for (class, id) in out.iter_mut().zip(&self.frame.instance) {
+                *class = classes.of(*id);
+            }
+        }
     }
 }
 

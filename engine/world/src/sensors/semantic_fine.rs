@@ -35,11 +35,5 @@ fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, W
 }
 
 fn write(look: Look<'_>, out: Out<'_>) {
-    if let Out::Int32(out) = out {
-        let renderer = look.world.engines().renderer();
-        let classes = renderer.classes(Classes::Fine);
-        for (class, id) in out.iter_mut().zip(&look.frame.instance) {
-            *class = classes.of(*id);
-        }
-    }
+    look.write_classes(Classes::Fine, out);
 }
