@@ -1,5 +1,7 @@
 //! What crosses engines is tested here; this crate holds what those tests share.
 
+pub mod flip;
+pub mod golden;
 pub mod validity;
 
 use dwell::{Engines, Env, EnvConfig, SensorConfig};

@@ -155,6 +155,13 @@ pub struct SensorKind {
     pub(crate) image: Option<&'static image::Kind>,
 }
 
+impl SensorKind {
+    /// Whether it is one of pictures: [`World::look`] knows it.
+    pub fn shows_pictures(&self) -> bool {
+        self.image.is_some()
+    }
+}
+
 /// All kinds of sensors.
 pub fn all() -> &'static [SensorKind] {
     &[

@@ -1,0 +1,221 @@
+//! Every sensor, every kind of camera and every preset against the pictures of `tests/golden`.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use dwell::sensors::{Data, Observation, SensorSpec};
+use dwell::{Engines, PictureRequest, Place, World};
+use dwell_physics::AgentControl;
+use dwell_render::Preset;
+use dwell_scene::{AgentId, House, HouseData, Pose, StructureKind};
+use dwell_tests::golden::views::{self, PRESETS, ROOMS};
+use dwell_tests::golden::{Golden, Kept, LOOKS};
+use std::path::Path;
+use std::sync::Arc;
+
+fn golden() -> Golden {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden");
+    Golden::new(
+        &folder,
+        &Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden"),
+    )
+}
+
+/// Names of the sensors that give pictures or lists of what pictures show.
+fn sensors() -> Vec<&'static str> {
+    let all = dwell::sensors::all().iter();
+    all.filter(|kind| kind.shows_pictures())
+        .map(|kind| kind.name)
+        .collect()
+}
+
+#[test]
+fn pictures_are_the_golden_ones() {
+    let mut golden = golden();
+    for viewpoint in ROOMS {
+        let (name, house, ..) = viewpoint;
+        let world = views::world(house);
+        let camera = views::plain_camera(96, 72).unwrap();
+        for (preset, light) in PRESETS {
+            for rgb in views::look(&world, viewpoint, camera, light, &["rgb"]).unwrap() {
+                golden.check(&format!("preset_{preset}_{name}"), &rgb);
+            }
+        }
+        if house != "builtin:apartment" {
+            continue;
+        }
+        for (name, camera) in views::cameras().unwrap() {
+            let seen = ["rgb", "depth", "instance"];
+            for image in views::look(&world, viewpoint, camera, Preset::Lit, &seen).unwrap() {
+                golden.check(&format!("camera_{name}_{}", image.spec.name), &image);
+            }
+        }
+    }
+    let world = turned(views::company());
+    for image in views::at(&world, eyes(), &sensors()).unwrap() {
+        golden.check(&format!("sensor_{}", image.spec.name), &image);
+    }
+    let faults = golden.finish();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// What the first agent sees.
+fn eyes() -> PictureRequest {
+    PictureRequest {
+        camera: views::plain_camera(80, 60).unwrap(),
+        place: Place::Agent(AgentId(0), Pose::IDENTITY),
+        preset: Preset::Lit,
+    }
+}
+
+/// A pixel of what [`eyes`] see that shows nothing but a wall.
+const WALL: usize = 20 * 80 + 20;
+
+/// The first agent has turned to the left, and the second has walked to its right.
+fn turned(mut world: World) -> World {
+    let turn = AgentControl {
+        yaw_rate_rad_s: 0.8,
+        ..AgentControl::default()
+    };
+    let walk = AgentControl {
+        right_m_s: 0.6,
+        ..AgentControl::default()
+    };
+    world.step(&[turn, walk]).unwrap();
+    world
+}
+
+/// The golden view in which defects hide.
+fn lit(world: &World) -> Observation {
+    let camera = views::plain_camera(96, 72).unwrap();
+    let seen = views::look(world, ROOMS[0], camera, Preset::Lit, &["rgb"]);
+    seen.unwrap().remove(0)
+}
+
+/// Mean difference and share of rough pixels from the golden picture, and whether that is allowed.
+fn judge(observation: &Observation) -> (f64, f64, bool) {
+    let kept = Kept::of(observation).unwrap();
+    let difference = golden()
+        .difference("preset_lit_living_room", &kept)
+        .unwrap();
+    (
+        difference.mean(),
+        difference.rough_share(),
+        difference.judge().is_ok(),
+    )
+}
+
+fn edited(edit: impl FnOnce(&mut HouseData)) -> World {
+    let mut data = dwell_tests::apartment().house().data().clone();
+    edit(&mut data);
+    views::world_over(Engines::new(Arc::new(House::new(data).unwrap())))
+}
+
+#[test]
+fn hidden_defects_are_found() {
+    let sound = lit(&views::world("builtin:apartment"));
+    let (_, _, allowed) = judge(&sound);
+    assert!(allowed, "the picture itself is allowed");
+
+    // One lamp of the room is dark.
+    let engines = dwell_tests::apartment();
+    let rooms = engines.house().rooms.iter_ids();
+    let mut rooms = rooms.filter(|(_, room)| room.name == "living_room");
+    let room = rooms.next().map(|(id, _)| id);
+    let dark = edited(|data| {
+        let objects = &data.objects;
+        let mut lights = data.lights.iter();
+        let lamp = lights.position(|light| objects[light.object].room == room);
+        data.lights
+            .remove(lamp.expect("the living room has a lamp"));
+    });
+    let (mean, share, allowed) = judge(&lit(&dark));
+    println!("one lamp off: mean {mean:.4}, rough {share:.4}");
+    assert!(!allowed, "one lamp off: {mean} {share}");
+
+    // The floor has the texture of something else.
+    let swapped = edited(|data| {
+        let pieces = data.structure.iter();
+        let mut floors = pieces.filter(|one| one.kind == StructureKind::Floor && one.room == room);
+        let floor = floors.next().expect("a floor").materials[0];
+        let own = data.materials[floor].texture;
+        let others = || data.materials.iter().map(|one| one.texture);
+        let other = others().find(|texture| texture.is_some() && *texture != own);
+        data.materials[floor].texture = other.expect("two textures");
+    });
+    let (mean, share, allowed) = judge(&lit(&swapped));
+    println!("a texture swapped: mean {mean:.4}, rough {share:.4}");
+    assert!(!allowed, "a texture swapped: {mean} {share}");
+
+    // The whole picture is a hundredth brighter.
+    let Data::Uint8(rgb) = &sound.data else {
+        panic!("colours are bytes")
+    };
+    let brighter = rgb
+        .iter()
+        .map(|byte| (f32::from(*byte) * 1.01).round().min(255.0) as u8);
+    let brighter = Observation {
+        spec: sound.spec.clone(),
+        data: Data::Uint8(brighter.collect()),
+    };
+    let (mean, share, allowed) = judge(&brighter);
+    println!("a hundredth brighter: mean {mean:.4}, rough {share:.4}");
+    assert!(!allowed, "a hundredth brighter: {mean} {share}");
+    assert!(mean > 1.5 * LOOKS.mean, "not by chance: {mean}");
+}
+
+/// A depth that is a millimetre off somewhere, an id that is another away from edges, and a list without its last row.
+#[test]
+fn small_errors_of_exact_sensors_are_found() {
+    let world = turned(views::company());
+    for image in views::at(&world, eyes(), &["depth", "instance", "boxes_2d"]).unwrap() {
+        let name = format!("sensor_{}", image.spec.name);
+        let judge = |data: Data| {
+            let spoilt = Observation {
+                spec: image.spec.clone(),
+                data,
+            };
+            golden()
+                .difference(&name, &Kept::of(&spoilt).unwrap())
+                .and_then(|found| found.judge())
+        };
+        assert_eq!(judge(image.data.clone()), Ok(()), "{name}");
+        let fault = match image.data.clone() {
+            Data::Float32(mut depth) => {
+                depth[WALL] += 1e-3;
+                judge(Data::Float32(depth))
+            }
+            Data::Int32(mut ids) if image.spec.shape.len() == 3 => {
+                ids[WALL] += 1;
+                judge(Data::Int32(ids))
+            }
+            Data::Int32(mut rows) => {
+                let parts = image.spec.shape[1];
+                let end = rows.chunks(parts).take_while(|row| row[0] != 0).count() * parts;
+                rows[end - parts..end].fill(0);
+                judge(Data::Int32(rows))
+            }
+            Data::Uint8(_) => Ok(()),
+        };
+        assert!(fault.is_err(), "{name}");
+    }
+}
+
+#[test]
+fn a_missing_golden_picture_fails_with_a_sentence() {
+    let spec = SensorSpec {
+        name: "rgb".to_owned(),
+        shape: vec![1, 1, 3],
+        ..lit(&views::world("builtin:apartment")).spec
+    };
+    let pixel = Observation {
+        spec,
+        data: Data::Uint8(vec![0; 3]),
+    };
+    let sentence = golden()
+        .difference("nowhere", &Kept::of(&pixel).unwrap())
+        .unwrap_err();
+    assert!(
+        sentence.contains("there is no") && sentence.contains("UPDATE_GOLDEN=1"),
+        "{sentence}"
+    );
+}
