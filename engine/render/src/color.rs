@@ -27,6 +27,11 @@ impl Srgb {
         &TABLES
     }
 
+    /// Their entries: linear light by byte, and bytes by even steps of linear light.
+    pub(crate) fn entries(&self) -> (&[f32], &[u8]) {
+        (&self.decode, &self.encode)
+    }
+
     /// Linear light of a byte, 0 to 1.
     #[inline]
     pub(crate) fn decode(&self, byte: u8) -> f32 {

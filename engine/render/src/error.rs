@@ -60,6 +60,48 @@ pub enum RenderError {
         /// How many there are.
         count: usize,
     },
+    /// No graphics adapter that may be used.
+    #[error(
+        "no graphics adapter {wanted}; found: {found}. Software adapters are taken by name only; `cpu` needs none"
+    )]
+    NoAdapter {
+        /// What was asked for.
+        wanted: String,
+        /// The adapters that there are.
+        found: String,
+    },
+    /// Something that does not fit into an adapter's memory or limits.
+    #[error(
+        "{what} needs {needed} {unit}; {adapter} allows {allowed}. The `cpu` back end has no such limit"
+    )]
+    TooLarge {
+        /// What is too large, with the house or batch that it belongs to.
+        what: String,
+        /// Its size.
+        needed: u64,
+        /// Of the sizes.
+        unit: &'static str,
+        /// The largest size.
+        allowed: u64,
+        /// The adapter.
+        adapter: String,
+    },
+    /// A view that only the `cpu` back end renders.
+    #[error("view {view}: its preset is one of the `cpu` back end; a batch under way allows flat")]
+    OnlyCpu {
+        /// The position in the list of jobs.
+        view: usize,
+    },
+    /// A graphics driver that failed.
+    #[error("{adapter} failed {doing}: {message}")]
+    Driver {
+        /// The adapter.
+        adapter: String,
+        /// What was being done.
+        doing: &'static str,
+        /// What the driver said.
+        message: String,
+    },
     /// A law of cameras on an agent that there is not.
     #[error("law {law}: target {found:?} is no agent; there are {agents}, counted from 0")]
     LawTarget {

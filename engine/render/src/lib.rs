@@ -1,4 +1,4 @@
-//! What a camera sees: the `cpu` back end.
+//! What a camera sees: by the `cpu` back end, and by graphics cards.
 //!
 //! A [`CpuRenderer`] is made once for a house and renders [`View`]s of any world over it into memory of the caller:
 //! colour, depth, ids of things, ids of their classes. [`Map`] is a storey from above.
@@ -28,6 +28,7 @@ mod color;
 mod cpu;
 mod error;
 mod frame;
+mod gpu;
 pub mod laws;
 mod light;
 mod look;
@@ -41,6 +42,7 @@ pub use camera::{Camera, Projection};
 pub use cpu::{CpuRenderer, Job};
 pub use error::RenderError;
 pub use frame::{Before, Channels, Frame, FrameMut, Preset, View};
+pub use gpu::{Adapter, AdapterKind, Gpu, GpuRenderer, Submitted, adapters};
 pub use laws::{Optics, Shutter};
 pub use map::Map;
 pub use semantic::{Classes, EntityClasses, semantic_classes};

@@ -2,6 +2,7 @@
 
 use crate::color::Srgb;
 use crate::texture::Textures;
+use dwell_scene::bvh::flat::Row;
 use dwell_scene::{House, Id, Material};
 
 /// No texture.
@@ -93,6 +94,16 @@ impl Look {
     #[inline]
     pub(crate) fn texture(&self) -> Option<u32> {
         (self.texture != NONE).then_some(self.texture)
+    }
+
+    /// As rows: colour and opacity; emission and pixels of the image; the image and whether it is a mirror.
+    pub(crate) fn flat(&self) -> [Row; 3] {
+        let row = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last].map(f32::to_bits);
+        [
+            row(self.base, self.opacity),
+            row(self.emission, self.texels),
+            [self.texture, u32::from(self.mirror), 0, 0],
+        ]
     }
 
     /// The bytes of an opaque colour without texture.

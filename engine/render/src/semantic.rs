@@ -181,6 +181,11 @@ impl EntityClasses {
         Self { classes }
     }
 
+    /// Of void, structure pieces, objects in order, and of agents.
+    pub(crate) fn all(&self) -> &[i32] {
+        &self.classes
+    }
+
     /// The class of an entity's number; agents follow the objects.
     #[inline]
     pub fn of(&self, entity: i32) -> i32 {

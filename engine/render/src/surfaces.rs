@@ -1,6 +1,7 @@
 //! What each triangle of a house looks like, in the order in which hits name triangles.
 
 use crate::look::Look;
+use dwell_scene::bvh::flat::Row;
 use dwell_scene::rays::{BODY_PIECES, body_meshes};
 use dwell_scene::{House, Id, Mesh, PartId, Placed, Pose, State, SurfaceOwner};
 use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
@@ -141,6 +142,23 @@ impl Surfaces {
             Some([r, g, b]) => [r, g, b, 255],
             None => [0, 0, 0, SLOW],
         });
+    }
+
+    /// As rows, four a triangle: the map to texture coordinates, normal and density, material and normals of the corners.
+    pub(crate) fn flat(&self) -> Vec<Row> {
+        let bits = |row: Vec4| row.to_array().map(f32::to_bits);
+        let mut rows = Vec::with_capacity(self.triangles.len() * 4);
+        for (triangle, [a, b, c]) in self.triangles.iter().zip(&self.corner_normals) {
+            rows.extend(triangle.uv.map(bits));
+            rows.push(bits(triangle.normal.extend(triangle.density)));
+            rows.push([triangle.material, *a, *b, *c]);
+        }
+        rows
+    }
+
+    /// The first triangle of each part that moves, and of each piece of an agent's body.
+    pub(crate) fn firsts(&self) -> impl Iterator<Item = u32> {
+        self.first.iter().chain(&self.bodies).copied()
     }
 
     /// Where a hit's triangle stands in the tables.

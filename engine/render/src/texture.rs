@@ -1,6 +1,7 @@
 //! Textures as cameras sample them: sRGB bytes with alpha, smaller and smaller copies, bilinear.
 
 use crate::color::Srgb;
+use dwell_scene::bvh::flat::Row;
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Id, Texture, TextureId};
 use glam::{Vec2, Vec4};
@@ -106,6 +107,25 @@ impl Textures {
     /// Memory held, bytes.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(self.texels.as_slice())
+    }
+
+    /// As rows: of each level its first texel, width and height; of each image its first level, last level and whether some
+    /// texel lets light through. Then all texels, as bytes R, G, B, A.
+    pub(crate) fn flat(&self) -> (Vec<Row>, Vec<Row>, &[[u8; 4]]) {
+        let level = |level: &Level| [level.offset, level.width, level.height, 0];
+        let image = |image: &Image| {
+            [
+                image.first_level,
+                image.last_level,
+                u32::from(image.clear),
+                0,
+            ]
+        };
+        (
+            self.levels.iter().map(level).collect(),
+            self.images.iter().map(image).collect(),
+            &self.texels,
+        )
     }
 
     /// Linear colour and alpha at `uv` (v up, repeating), of the level whose texels are about as large as the pixel:

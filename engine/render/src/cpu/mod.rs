@@ -19,6 +19,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, State};
 use glam::Vec3;
+pub(crate) use rays::SEEN;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Rows of an image that one thread takes at a time; a multiple of a packet's edge.
@@ -54,9 +55,9 @@ const PANES: usize = 8;
 #[derive(Debug)]
 pub struct CpuRenderer {
     house: Arc<House>,
-    textures: Textures,
-    looks: Vec<Look>,
-    surfaces: Surfaces,
+    pub(crate) textures: Textures,
+    pub(crate) looks: Vec<Look>,
+    pub(crate) surfaces: Surfaces,
     /// Class of every entity, by each table.
     classes: [EntityClasses; 3],
     /// Around the surface of each part, in its own space. Shape (part,).
@@ -100,7 +101,7 @@ impl<'a> Job<'a> {
     }
 
     /// The first row and the one behind the last.
-    fn row_range(&self) -> (usize, usize) {
+    pub(crate) fn row_range(&self) -> (usize, usize) {
         let height = self.view.camera.height();
         let (first, end) = self.rows.unwrap_or((0, height));
         let end = end.min(height);
@@ -208,7 +209,7 @@ impl CpuRenderer {
         Ok(())
     }
 
-    fn check(&self, view: usize, job: &Job<'_>) -> Result<(), RenderError> {
+    pub(crate) fn check(&self, view: usize, job: &Job<'_>) -> Result<(), RenderError> {
         if !Arc::ptr_eq(&self.house, job.scene.house()) {
             return Err(RenderError::OtherHouse { view });
         }

@@ -11,7 +11,7 @@ pub(super) const COLUMNS: usize = 8;
 /// Pixels down a packet.
 pub(super) const ROWS: usize = 4;
 /// What cameras see.
-pub(super) const SEEN: RayMask = RayMask::EYE.or(RayMask::BODY);
+pub(crate) const SEEN: RayMask = RayMask::EYE.or(RayMask::BODY);
 /// Rays of a packet.
 pub(super) const LANES: usize = COLUMNS * ROWS;
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, DMat3, Vec3};
+use glam::{Affine3A, DMat3, Vec3, Vec4};
 
 use super::binary::{self, BinaryTree};
 use super::node::{Link, WIDTH};
@@ -64,6 +64,11 @@ impl MeshFromWorld {
             origin: origin.to_array(),
             longest,
         })
+    }
+
+    /// Its rows, each with a coordinate of the origin behind.
+    pub(super) fn numbers(&self) -> [Vec4; 3] {
+        [0, 1, 2].map(|k| Vec3::from_array(self.rows[k]).extend(self.origin[k]))
     }
 
     #[inline(always)]

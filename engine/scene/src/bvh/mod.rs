@@ -16,6 +16,7 @@
 
 mod binary;
 mod build;
+pub mod flat;
 mod instances;
 mod kernels;
 mod node;

@@ -28,6 +28,11 @@ impl Link {
         Self(index as u32 | Self::LEAF)
     }
 
+    /// As a number: bit 31 marks leaves.
+    pub(super) fn bits(self) -> u32 {
+        self.0
+    }
+
     /// Whether it is a leaf, and its position.
     #[inline(always)]
     pub(super) fn parts(self) -> (bool, usize) {

@@ -82,7 +82,8 @@ pub fn body_meshes() -> &'static [Mesh; BODY_PIECES] {
     &SHAPES.meshes
 }
 
-pub(super) fn trees() -> &'static [Arc<TriangleBvh>; BODY_PIECES] {
+/// The trees of [`body_meshes`].
+pub fn body_trees() -> &'static [Arc<TriangleBvh>; BODY_PIECES] {
     &SHAPES.trees
 }
 

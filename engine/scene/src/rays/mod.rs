@@ -2,7 +2,7 @@
 
 mod bodies;
 
-pub use bodies::{BODY_PIECES, body_meshes};
+pub use bodies::{BODY_PIECES, body_meshes, body_trees};
 
 use crate::bvh::{Hit, Instance, InstanceSet, PacketHits, Ray, RayMask, RayPacket, SceneBvh};
 use crate::house::{House, Placed, Surface, SurfaceOwner, normals_map};
@@ -68,7 +68,7 @@ impl RayScene {
         let house = &self.house;
         let instances = parts(house).chain(state.agents.ids().flat_map(|id| {
             let entity = house.entity_of_agent(id).0;
-            bodies::trees().iter().map(move |mesh| Instance {
+            body_trees().iter().map(move |mesh| Instance {
                 mesh: mesh.clone(),
                 world_from_mesh: Affine3A::IDENTITY,
                 id: entity,

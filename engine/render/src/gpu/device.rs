@@ -1,0 +1,161 @@
+//! An adapter in use.
+
+use super::adapter::{Adapter, find, ready};
+use super::kernels::{Kernels, Layouts};
+use crate::error::RenderError;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// An adapter in use, shared by the renderers of all houses.
+#[derive(Debug)]
+pub struct Gpu {
+    adapter: Adapter,
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    pub(super) layouts: Layouts,
+    /// By the links that their stacks hold.
+    kernels: Mutex<BTreeMap<usize, Arc<Kernels>>>,
+    buffers_made: AtomicUsize,
+    /// The first message of the driver that nobody has seen.
+    fault: Arc<Mutex<Option<String>>>,
+}
+
+/// A lock, whoever panicked with it.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Gpu {
+    /// Opens an adapter: the first whose name holds `name`, in upper or lower case; without a name the likely quickest that is
+    /// not software.
+    ///
+    /// # Errors
+    /// [`RenderError::NoAdapter`] says what was found instead, [`RenderError::TooLarge`] what the adapter is too small for,
+    /// [`RenderError::Driver`] what its driver said.
+    pub fn open(name: Option<&str>) -> Result<Arc<Self>, RenderError> {
+        let (adapter, handle) = find(name)?;
+        let limits = handle.limits();
+        let needed = u64::from(Layouts::BUFFERS);
+        let allowed = u64::from(limits.max_storage_buffers_per_shader_stage);
+        if allowed < needed {
+            return Err(RenderError::TooLarge {
+                what: "a kernel".into(),
+                needed,
+                unit: "buffers",
+                allowed,
+                adapter: adapter.to_string(),
+            });
+        }
+        let description = wgpu::DeviceDescriptor {
+            label: Some("dwell"),
+            required_limits: limits,
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let opened = ready(handle.request_device(&description));
+        let (device, queue) = opened.map_err(|error| RenderError::Driver {
+            adapter: adapter.to_string(),
+            doing: "to open",
+            message: error.to_string(),
+        })?;
+        let fault = Arc::new(Mutex::new(None));
+        let note = fault.clone();
+        // Without a handler wgpu would panic.
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            lock(&note).get_or_insert_with(|| error.to_string());
+        }));
+        let note = fault.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                lock(&note).get_or_insert_with(|| format!("device lost: {message}"));
+            }
+        });
+        let gpu = Self {
+            layouts: Layouts::new(&device),
+            adapter,
+            device,
+            queue,
+            kernels: Mutex::new(BTreeMap::new()),
+            buffers_made: AtomicUsize::new(0),
+            fault,
+        };
+        gpu.check("to prepare")?;
+        tracing::debug!(adapter = %gpu.adapter, "graphics adapter opened");
+        Ok(Arc::new(gpu))
+    }
+
+    /// The adapter.
+    pub fn adapter(&self) -> &Adapter {
+        &self.adapter
+    }
+
+    /// Buffers made so far: no more after the first batch of a kind.
+    pub fn buffers_made(&self) -> usize {
+        self.buffers_made.load(Ordering::Relaxed)
+    }
+
+    /// What the driver said since the last time, as an error.
+    pub(super) fn check(&self, doing: &'static str) -> Result<(), RenderError> {
+        match lock(&self.fault).take() {
+            None => Ok(()),
+            Some(message) => Err(self.driver(doing, message)),
+        }
+    }
+
+    pub(super) fn driver(&self, doing: &'static str, message: String) -> RenderError {
+        RenderError::Driver {
+            adapter: self.adapter.to_string(),
+            doing,
+            message,
+        }
+    }
+
+    /// The largest buffer that kernels can use, bytes.
+    pub(super) fn most_bytes(&self) -> u64 {
+        let limits = self.device.limits();
+        limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size)
+    }
+
+    /// A buffer of at least 64 bytes.
+    pub(super) fn buffer(
+        &self,
+        what: &str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, RenderError> {
+        let allowed = self.most_bytes();
+        if bytes > allowed {
+            return Err(RenderError::TooLarge {
+                what: what.to_owned(),
+                needed: bytes,
+                unit: "bytes",
+                allowed,
+                adapter: self.adapter.to_string(),
+            });
+        }
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes.max(64).next_multiple_of(16),
+            usage,
+            mapped_at_creation: false,
+        });
+        self.buffers_made.fetch_add(1, Ordering::Relaxed);
+        self.check("to make a buffer")?;
+        Ok(buffer)
+    }
+
+    /// Kernels whose stacks hold at least so many links; made when first asked for.
+    pub(super) fn kernels(&self, stack: usize) -> Result<Arc<Kernels>, RenderError> {
+        let stack = stack.next_multiple_of(32);
+        let mut made = lock(&self.kernels);
+        if let Some(kernels) = made.get(&stack) {
+            return Ok(kernels.clone());
+        }
+        let kernels = Arc::new(Kernels::new(&self.device, &self.layouts, stack));
+        self.check("to compile")?;
+        made.insert(stack, kernels.clone());
+        Ok(kernels)
+    }
+}

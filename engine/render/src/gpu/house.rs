@@ -1,0 +1,151 @@
+//! A house in the adapter's memory: trees, triangles, textures and tables.
+
+use super::device::Gpu;
+use crate::color::Srgb;
+use crate::cpu::{CpuRenderer, SEEN};
+use crate::error::RenderError;
+use crate::semantic::Classes;
+use dwell_scene::bvh::flat::{FlatTree, NO_LINK, Row};
+use dwell_scene::rays::{BODY_PIECES, body_trees};
+use dwell_scene::{IdVec, MeshId};
+use glam::Vec3;
+
+/// Rows before the tables; `shaders/common.wgsl` and `skin.wgsl` read them by number.
+const HEADER_ROWS: usize = 8;
+
+/// Where the tables begin, and what never changes about a house.
+#[derive(Debug)]
+pub(super) struct HouseBuffers {
+    pub(super) group: wgpu::BindGroup,
+    /// Most links that wait while the tree of what never moves is walked.
+    pub(super) stack: usize,
+    /// As `stack`, for the deepest mesh of an instance.
+    pub(super) mesh_stack: usize,
+    /// Memory held, bytes.
+    pub(super) bytes: u64,
+}
+
+/// A point as the first three numbers of a row.
+pub(super) fn point(point: Vec3, last: u32) -> Row {
+    let [x, y, z] = point.to_array().map(f32::to_bits);
+    [x, y, z, last]
+}
+
+/// Words as rows, the last one filled up with zeros.
+fn rows_of_words(words: impl Iterator<Item = u32>) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (k, word) in words.enumerate() {
+        if k % 4 == 0 {
+            rows.push([0; 4]);
+        }
+        if let Some(row) = rows.last_mut() {
+            row[k % 4] = word;
+        }
+    }
+    rows
+}
+
+/// Tables one behind the other, after the header.
+struct Tables(Vec<Row>);
+
+impl Tables {
+    /// Appends a table and returns its first row.
+    fn add(&mut self, rows: impl IntoIterator<Item = Row>) -> u32 {
+        let first = self.0.len() as u32;
+        self.0.extend(rows);
+        first
+    }
+}
+
+impl HouseBuffers {
+    /// Writes a house as `cpu` has prepared it.
+    ///
+    /// # Errors
+    /// [`RenderError::TooLarge`] names the house and what of it does not fit.
+    pub(super) fn new(gpu: &Gpu, cpu: &CpuRenderer) -> Result<Self, RenderError> {
+        let (house, geometry) = (cpu.house(), cpu.house().geometry());
+        let (mut nodes, mut blocks) = (Vec::new(), Vec::new());
+        let fixed = geometry.static_bvh.flatten(SEEN, &mut nodes, &mut blocks);
+        // Each mesh once, however many parts show it.
+        let mut flat: IdVec<MeshId, Option<FlatTree>> = IdVec::filled(None, house.meshes.len());
+        let mut trees: Vec<FlatTree> = Vec::new();
+        for part in &geometry.movable {
+            let mesh = geometry.placed_part(*part).mesh;
+            let tree = flat[mesh].get_or_insert_with(|| match &geometry.mesh_bvh[mesh] {
+                Some(tree) => tree.flatten(SEEN, &mut nodes, &mut blocks),
+                None => FlatTree {
+                    top: NO_LINK,
+                    bounds: dwell_scene::Aabb::EMPTY,
+                    stack: 0,
+                },
+            });
+            trees.push(*tree);
+        }
+        for tree in body_trees() {
+            trees.push(tree.flatten(SEEN, &mut nodes, &mut blocks));
+        }
+        debug_assert_eq!(trees.len(), geometry.movable.len() + BODY_PIECES);
+        let mut tables = Tables(vec![[0; 4]; HEADER_ROWS]);
+        let (levels, images, texels) = cpu.textures.flat();
+        let levels = tables.add(levels);
+        let images = tables.add(images);
+        let looks = tables.add(cpu.looks.iter().flat_map(crate::look::Look::flat));
+        let classes = cpu.classes(Classes::Coarse).all();
+        let class_rows = tables.add(rows_of_words(classes.iter().map(|class| *class as u32)));
+        let (decode, encode) = Srgb::tables().entries();
+        let decode = tables.add(rows_of_words(decode.iter().map(|light| light.to_bits())));
+        let steps = encode.as_chunks::<4>().0.iter();
+        let encode = tables.add(rows_of_words(steps.map(|bytes| u32::from_le_bytes(*bytes))));
+        let meshes = trees.iter().zip(cpu.surfaces.firsts());
+        let meshes = tables.add(meshes.flat_map(|(tree, first)| {
+            [
+                point(tree.bounds.min, tree.top),
+                point(tree.bounds.max, first),
+            ]
+        }));
+        let texels = tables.add(rows_of_words(
+            texels.iter().map(|texel| u32::from_le_bytes(*texel)),
+        ));
+        tables.0[0] = [levels, images, looks, class_rows];
+        tables.0[1] = [decode, encode, meshes, texels];
+        let parts = geometry.movable.len() as u32;
+        tables.0[2] = [fixed.top, 0, parts, classes.len() as u32];
+        tables.0[3] = point(fixed.bounds.min, 0);
+        tables.0[4] = point(fixed.bounds.max, 0);
+        let triangles = cpu.surfaces.flat();
+        let name = &house.name;
+        let mut bytes = 0;
+        let mut upload = |what: &str, rows: &[Row]| {
+            let data: &[u8] = bytemuck::cast_slice(rows);
+            bytes += data.len() as u64;
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+            let what = format!("house {name:?}: its {what}");
+            let buffer = gpu.buffer(&what, data.len() as u64, usage)?;
+            gpu.queue.write_buffer(&buffer, 0, data);
+            Ok(buffer)
+        };
+        let buffers = [
+            upload("tree", &nodes)?,
+            upload("corners", &blocks)?,
+            upload("triangles", &triangles)?,
+            upload("textures", &tables.0)?,
+        ];
+        let entries = [0, 1, 2, 3].map(|k: usize| wgpu::BindGroupEntry {
+            binding: k as u32,
+            resource: buffers[k].as_entire_binding(),
+        });
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("house"),
+            layout: &gpu.layouts.house,
+            entries: &entries,
+        });
+        gpu.check("to take a house")?;
+        tracing::debug!(bytes, "house in the adapter's memory");
+        Ok(Self {
+            group,
+            stack: fixed.stack,
+            mesh_stack: trees.iter().map(|tree| tree.stack).max().unwrap_or(0),
+            bytes,
+        })
+    }
+}

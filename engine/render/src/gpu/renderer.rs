@@ -1,0 +1,284 @@
+//! Batches of views by an adapter.
+
+use super::device::{Gpu, lock};
+use super::house::HouseBuffers;
+use super::rows::{Places, words_per_pixel};
+use super::slot::{SEEN_BYTES, Slot};
+use crate::cpu::{CpuRenderer, Job};
+use crate::error::RenderError;
+use crate::frame::{FrameMut, Preset};
+use dwell_scene::parallel::Threads;
+use std::sync::{Arc, Mutex, mpsc};
+
+/// Most groups of a kernel along one axis.
+const MOST_GROUPS: usize = 65_535;
+
+/// Renders views of one house, in any of its worlds, by a graphics adapter.
+///
+/// What pictures show is what [`CpuRenderer`] shows, within a bound: where a pixel and its eight neighbours show one thing
+/// without a jump of depth, ids are equal and depths differ by less than a millimetre.
+#[derive(Debug)]
+pub struct GpuRenderer {
+    gpu: Arc<Gpu>,
+    cpu: Arc<CpuRenderer>,
+    house: HouseBuffers,
+    /// Memory of earlier batches.
+    slots: Mutex<Vec<Slot>>,
+}
+
+/// Batches under way; see [`GpuRenderer::submit`].
+#[derive(Debug)]
+pub struct Submitted {
+    parts: Vec<Part>,
+}
+
+/// Views that were submitted together.
+#[derive(Debug)]
+struct Part {
+    slot: Slot,
+    index: wgpu::SubmissionIndex,
+    mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+/// Where one view's images lie, and where they go.
+struct Delivery<'a, 'b> {
+    places: Places,
+    frame: &'a mut FrameMut<'b>,
+}
+
+impl GpuRenderer {
+    /// Sends the tables that `cpu` has prepared for its house to an adapter.
+    ///
+    /// # Errors
+    /// [`RenderError::TooLarge`] when the house does not fit, [`RenderError::Driver`].
+    pub fn new(gpu: Arc<Gpu>, cpu: Arc<CpuRenderer>) -> Result<Self, RenderError> {
+        let house = HouseBuffers::new(&gpu, &cpu)?;
+        Ok(Self {
+            gpu,
+            cpu,
+            house,
+            slots: Mutex::new(Vec::new()),
+        })
+    }
+
+    /// The adapter.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Memory that the house takes on the adapter, bytes.
+    pub fn house_bytes(&self) -> u64 {
+        self.house.bytes
+    }
+
+    /// Renders views of any worlds over the house. Those with a preset that only `cpu` has are rendered by it.
+    ///
+    /// # Errors
+    /// As [`CpuRenderer::render_batch`]; [`RenderError::TooLarge`] and [`RenderError::Driver`]. Then some images may be
+    /// written.
+    pub fn render_batch(&self, jobs: &mut [Job<'_>], threads: Threads) -> Result<(), RenderError> {
+        if jobs.iter().all(|job| is_ours(job)) {
+            let submitted = self.submit(jobs)?;
+            let frames = jobs.iter_mut().map(|job| &mut job.frame);
+            return self.deliver(submitted, frames, threads);
+        }
+        for (k, job) in jobs.iter().enumerate() {
+            self.cpu.check(k, job)?;
+        }
+        for run in jobs.chunk_by_mut(|a, b| is_ours(a) == is_ours(b)) {
+            if is_ours(&run[0]) {
+                self.render_batch(run, threads)?;
+            } else {
+                self.cpu.render_batch(run, threads)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Starts a batch and does not wait: the worlds may go on meanwhile. Which images are wanted is read from the frames of
+    /// the jobs; they are written by [`Self::collect`].
+    ///
+    /// # Errors
+    /// As [`Self::render_batch`]; and [`RenderError::OnlyCpu`] for a preset that only `cpu` has.
+    pub fn submit(&self, jobs: &[Job<'_>]) -> Result<Submitted, RenderError> {
+        for (k, job) in jobs.iter().enumerate() {
+            self.cpu.check(k, job)?;
+            if !is_ours(job) {
+                return Err(RenderError::OnlyCpu { view: k });
+            }
+        }
+        let mut parts = Vec::new();
+        let mut rest = jobs;
+        while !rest.is_empty() {
+            let (some, more) = rest.split_at(self.fitting(rest));
+            parts.push(self.submit_part(some)?);
+            rest = more;
+        }
+        Ok(Submitted { parts })
+    }
+
+    /// Waits for a batch and writes its images. `frames`: as those of the jobs, in their order.
+    ///
+    /// # Errors
+    /// [`RenderError::Count`] or [`RenderError::Length`] for other frames than were announced; [`RenderError::Driver`].
+    pub fn collect(
+        &self,
+        submitted: Submitted,
+        frames: &mut [FrameMut<'_>],
+        threads: Threads,
+    ) -> Result<(), RenderError> {
+        self.deliver(submitted, frames.iter_mut(), threads)
+    }
+
+    /// How many of the first jobs fit into one submission; at least one.
+    fn fitting(&self, jobs: &[Job<'_>]) -> usize {
+        let most = self.gpu.most_bytes();
+        let (mut seen, mut words) = (0, 0);
+        let fits = |job: &&Job<'_>| {
+            let (first, end) = job.row_range();
+            let pixels = ((end - first) * job.view.camera.width() as usize) as u64;
+            seen += pixels * SEEN_BYTES;
+            words += pixels * words_per_pixel(&job.frame) as u64 * 4;
+            seen <= most && words <= most
+        };
+        jobs.iter().take_while(fits).count().max(1)
+    }
+
+    fn submit_part(&self, jobs: &[Job<'_>]) -> Result<Part, RenderError> {
+        let gpu = &*self.gpu;
+        let mut slot = lock(&self.slots).pop().unwrap_or_else(Slot::new);
+        slot.batch.fill(jobs);
+        slot.upload(gpu)?;
+        // Of the tree over n instances, halved again and again, three links wait at each of at most log2 n nodes.
+        let levels = usize::BITS - slot.batch.instances.saturating_sub(1).leading_zeros();
+        let moving = 3 * levels as usize + self.house.mesh_stack;
+        let kernels = gpu.kernels(self.house.stack.max(moving) + 1)?;
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let groups_x = slot.batch.tiles.clamp(1, MOST_GROUPS);
+        let groups_y = slot.batch.tiles.div_ceil(groups_x).max(1);
+        if let Some(group) = slot.group() {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_bind_group(0, &self.house.group, &[]);
+            pass.set_bind_group(1, group, &[]);
+            let steps = [
+                (true, &kernels.trace),
+                (slot.batch.describes, &kernels.describe),
+                (slot.batch.paints, &kernels.paint),
+            ];
+            for (_, kernel) in steps.into_iter().filter(|(wanted, _)| *wanted) {
+                pass.set_pipeline(kernel);
+                pass.dispatch_workgroups(groups_x as u32, groups_y as u32, 1);
+            }
+        }
+        let bytes = slot.image_bytes();
+        let (images, back) = slot.ways(gpu)?;
+        if bytes > 0 {
+            encoder.copy_buffer_to_buffer(images, 0, back, 0, bytes);
+        }
+        let index = gpu.queue.submit([encoder.finish()]);
+        let (sender, mapped) = mpsc::channel();
+        back.map_async(wgpu::MapMode::Read, 0..bytes.max(16), move |result| {
+            // Nobody waits any more when the batch was dropped.
+            let _ = sender.send(result);
+        });
+        gpu.check("to render")?;
+        Ok(Part {
+            slot,
+            index,
+            mapped,
+        })
+    }
+
+    fn deliver<'a, 'b: 'a>(
+        &self,
+        submitted: Submitted,
+        frames: impl ExactSizeIterator<Item = &'a mut FrameMut<'b>>,
+        threads: Threads,
+    ) -> Result<(), RenderError> {
+        let views = submitted
+            .parts
+            .iter()
+            .map(|part| part.slot.batch.places.len());
+        let views = views.sum();
+        if frames.len() != views {
+            return Err(RenderError::Count {
+                views,
+                frames: frames.len(),
+            });
+        }
+        let mut frames = frames.enumerate();
+        for part in submitted.parts {
+            let mut deliveries = Vec::with_capacity(part.slot.batch.places.len());
+            for places in &part.slot.batch.places {
+                if let Some((view, frame)) = frames.next() {
+                    frame.check(view, places.pixels)?;
+                    deliveries.push(Delivery {
+                        places: *places,
+                        frame,
+                    });
+                }
+            }
+            self.wait(&part)?;
+            let (_, back) = part.slot.ways(&self.gpu)?;
+            let range = 0..part.slot.image_bytes().max(16);
+            let held = back.get_mapped_range(range);
+            let held = held.map_err(|error| self.gpu.driver("to read", error.to_string()))?;
+            let bytes: &[u8] = &held;
+            threads.for_each(&mut deliveries, |_, delivery| delivery.write(bytes));
+            drop(held);
+            back.unmap();
+            lock(&self.slots).push(part.slot);
+        }
+        Ok(())
+    }
+
+    fn wait(&self, part: &Part) -> Result<(), RenderError> {
+        let gpu = &*self.gpu;
+        let until = wgpu::PollType::Wait {
+            submission_index: Some(part.index.clone()),
+            timeout: None,
+        };
+        let polled = gpu.device.poll(until);
+        polled.map_err(|error| gpu.driver("to render", error.to_string()))?;
+        gpu.check("to render")?;
+        match part.mapped.recv() {
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(error)) => Err(gpu.driver("to read", error.to_string())),
+            Err(error) => Err(gpu.driver("to read", error.to_string())),
+        }
+    }
+}
+
+/// Whether a view is one for the adapter.
+fn is_ours(job: &Job<'_>) -> bool {
+    matches!(job.view.preset, Preset::Flat)
+}
+
+impl Delivery<'_, '_> {
+    /// Copies the images out of the bytes that came back.
+    fn write(&mut self, bytes: &[u8]) {
+        let Places { pixels, .. } = self.places;
+        let words = |first: usize, parts: usize| &bytes[first * 4..(first + pixels * parts) * 4];
+        if let (Some(first), Some(rgb)) = (self.places.rgb, &mut self.frame.rgb) {
+            let found = words(first, 1).as_chunks::<4>().0;
+            for (pixel, [r, g, b, _]) in rgb.as_chunks_mut::<3>().0.iter_mut().zip(found) {
+                *pixel = [*r, *g, *b];
+            }
+        }
+        macro_rules! copy {
+            ($image:ident, $parts:expr) => {
+                if let (Some(first), Some(image)) = (self.places.$image, &mut self.frame.$image) {
+                    bytemuck::cast_slice_mut::<_, u8>(image).copy_from_slice(words(first, $parts));
+                }
+            };
+        }
+        copy!(depth, 1);
+        copy!(instance, 1);
+        copy!(semantic, 1);
+        copy!(normals, 3);
+        copy!(albedo, 3);
+        copy!(flow, 2);
+    }
+}

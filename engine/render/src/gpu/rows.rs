@@ -1,0 +1,303 @@
+//! A batch as the kernels read it: views, worlds, and where images go.
+
+use super::house::point;
+use crate::camera::{Camera, Projection};
+use crate::cpu::{Job, SEEN};
+use crate::frame::{Before, FrameMut};
+use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, Row, flat_pose};
+use dwell_scene::rays::BODY_PIECES;
+use dwell_scene::{Id, Pose, State};
+use glam::{Quat, Vec2, Vec3, Vec4};
+
+/// As in `shaders/common.wgsl`.
+const VIEW_ROWS: usize = 16;
+/// No image.
+const NOT_WANTED: u32 = u32::MAX;
+/// Edge of a tile, pixels.
+const TILE: u32 = 8;
+
+/// Where the images of one view lie among the words that come back.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Places {
+    /// Pixels of each image.
+    pub(super) pixels: usize,
+    pub(super) rgb: Option<usize>,
+    pub(super) depth: Option<usize>,
+    pub(super) instance: Option<usize>,
+    pub(super) semantic: Option<usize>,
+    pub(super) normals: Option<usize>,
+    pub(super) albedo: Option<usize>,
+    pub(super) flow: Option<usize>,
+}
+
+/// Words of all wanted images for each pixel.
+pub(super) fn words_per_pixel(frame: &FrameMut<'_>) -> usize {
+    usize::from(frame.rgb.is_some())
+        + usize::from(frame.depth.is_some())
+        + usize::from(frame.instance.is_some())
+        + usize::from(frame.semantic.is_some())
+        + 3 * usize::from(frame.normals.is_some())
+        + 3 * usize::from(frame.albedo.is_some())
+        + 2 * usize::from(frame.flow.is_some())
+}
+
+/// The rays of cameras that bend straight lines.
+#[derive(Debug, Default)]
+pub(super) struct LensRays {
+    cameras: Vec<(Camera, u32)>,
+    /// Directions per metre of depth in the camera's frame. Shape (ray,).
+    pub(super) rays: Vec<[f32; 4]>,
+    /// Whether there are new ones.
+    pub(super) changed: bool,
+}
+
+/// Rays kept for cameras that may come again.
+const MOST_LENS_RAYS: usize = 1 << 22;
+
+impl LensRays {
+    /// Forgets old cameras when there are too many; before a batch.
+    fn tidy(&mut self) {
+        if self.rays.len() > MOST_LENS_RAYS {
+            self.cameras.clear();
+            self.rays.clear();
+        }
+    }
+
+    /// The position of a camera's first ray.
+    fn of(&mut self, camera: &Camera) -> u32 {
+        if let Some((_, first)) = self.cameras.iter().find(|(known, _)| known == camera) {
+            return *first;
+        }
+        let first = self.rays.len() as u32;
+        for row in 0..camera.height() {
+            for column in 0..camera.width() {
+                let image = Vec2::new(column as f32 + 0.5, row as f32 + 0.5);
+                let direction = camera.ray_in_camera(image).1;
+                self.rays.push(direction.extend(0.0).to_array());
+            }
+        }
+        self.cameras.push((*camera, first));
+        self.changed = true;
+        first
+    }
+}
+
+/// The rows of a batch, and where its images go. Its memory is used again.
+#[derive(Debug, Default)]
+pub(super) struct Batch {
+    pub(super) rows: Vec<Row>,
+    pub(super) places: Vec<Places>,
+    pub(super) lenses: LensRays,
+    pub(super) pixels: usize,
+    pub(super) words: usize,
+    pub(super) tiles: usize,
+    /// Most instances of a world.
+    pub(super) instances: usize,
+    pub(super) paints: bool,
+    pub(super) describes: bool,
+}
+
+fn quaternion(rotation: Quat) -> Row {
+    Vec4::from(rotation).to_array().map(f32::to_bits)
+}
+
+impl Batch {
+    /// Writes the rows of some jobs.
+    pub(super) fn fill(&mut self, jobs: &[Job<'_>]) {
+        self.rows.clear();
+        self.places.clear();
+        (self.pixels, self.words, self.tiles, self.instances) = (0, 0, 0, 0);
+        (self.paints, self.describes) = (false, false);
+        self.lenses.tidy();
+        self.rows.resize(1 + jobs.len() * VIEW_ROWS, [0; 4]);
+        let mut last: Option<(&Job<'_>, u32)> = None;
+        for (k, job) in jobs.iter().enumerate() {
+            let world = match last {
+                Some((other, world))
+                    if std::ptr::eq(other.scene, job.scene)
+                        && std::ptr::eq(other.state, job.state) =>
+                {
+                    world
+                }
+                _ => self.add_world(job),
+            };
+            last = Some((job, world));
+            self.add_view(k, job, world);
+        }
+        self.rows[0] = [jobs.len() as u32, self.tiles as u32, 0, 0];
+    }
+
+    /// The tree over a world's instances, then the instances; returns the first row.
+    fn add_world(&mut self, job: &Job<'_>) -> u32 {
+        let moving = job.scene.bvh().moving;
+        let world = self.rows.len();
+        self.rows.resize(world + 3, [0; 4]);
+        let top = moving.flatten_tree(&mut self.rows);
+        debug_assert_eq!((self.rows.len() - world - 3) % NODE_ROWS, 0);
+        let first = self.rows.len() as u32;
+        let parts = &job.scene.house().geometry().movable;
+        for instance in 0..moving.len() {
+            let hidden = [[0; 4]; INSTANCE_ROWS];
+            let rows = moving.flat_instance(instance, SEEN).unwrap_or(hidden);
+            self.rows.extend(rows);
+            let pose = parts
+                .get(instance)
+                .and_then(|part| job.state.part_pose.get(*part));
+            self.rows.extend(flat_pose(pose.unwrap_or(&Pose::IDENTITY)));
+        }
+        let bounds = moving.bounds();
+        self.rows[world] = [top, first, moving.len() as u32, 0];
+        self.rows[world + 1] = point(bounds.min, 0);
+        self.rows[world + 2] = point(bounds.max, 0);
+        self.instances = self.instances.max(moving.len());
+        world as u32
+    }
+
+    fn add_view(&mut self, k: usize, job: &Job<'_>, world: u32) {
+        let (view, camera) = (&job.view, &job.view.camera);
+        let rotation = view.world_from_camera.rotation.normalize();
+        let (first_row, end) = job.row_range();
+        let rows = (end - first_row) as u32;
+        let pixels = rows as usize * camera.width() as usize;
+        let places = self.place(&job.frame, pixels);
+        let bits = |numbers: [f32; 4]| numbers.map(f32::to_bits);
+        let (kind, lens, bend, more) = lens_of(camera);
+        let lens_rays = if kind == PINHOLE || kind == ORTHOGRAPHIC {
+            0
+        } else {
+            self.lenses.of(camera)
+        };
+        let before = job.before.as_ref().filter(|_| places.flow.is_some());
+        let before_rows = before.map_or(0, |before| self.add_before(job, before));
+        let (fixed, growing) = camera.pixel_area();
+        let eye_before = before.map_or(view.world_from_camera, |before| before.world_from_camera);
+        let word = |place: Option<usize>| place.map_or(NOT_WANTED, |place| place as u32);
+        let hidden = view.hide.map_or(0, |entity| entity.0) as u32;
+        let written = [
+            point(rotation * Vec3::X, camera.near_m().to_bits()),
+            point(rotation * Vec3::Y, camera.far_m().to_bits()),
+            point(rotation * Vec3::Z, hidden),
+            point(view.world_from_camera.position, world),
+            bits(lens),
+            bits(bend),
+            [more[0].to_bits(), more[1].to_bits(), kind, lens_rays],
+            [camera.width(), camera.height(), first_row as u32, rows],
+            [self.tiles as u32, self.pixels as u32, 0, 0],
+            [places.rgb, places.depth, places.instance, places.semantic].map(word),
+            [places.normals, places.albedo, places.flow, None].map(word),
+            [
+                fixed.to_bits(),
+                growing.to_bits(),
+                u32::from(before.is_some()),
+                before_rows,
+            ],
+            quaternion(eye_before.rotation),
+            point(eye_before.position, 0),
+        ];
+        let first = 1 + k * VIEW_ROWS;
+        self.rows[first..first + written.len()].copy_from_slice(&written);
+        self.tiles += (camera.width().div_ceil(TILE) * rows.div_ceil(TILE)) as usize;
+        self.pixels += pixels;
+        self.places.push(places);
+        let frame = &job.frame;
+        self.paints |= frame.rgb.is_some();
+        self.describes |= words_per_pixel(frame) > usize::from(frame.rgb.is_some());
+    }
+
+    fn place(&mut self, frame: &FrameMut<'_>, pixels: usize) -> Places {
+        let mut next = |wanted: bool, parts: usize| {
+            let first = self.words;
+            self.words += if wanted { pixels * parts } else { 0 };
+            wanted.then_some(first)
+        };
+        Places {
+            pixels,
+            rgb: next(frame.rgb.is_some(), 1),
+            depth: next(frame.depth.is_some(), 1),
+            instance: next(frame.instance.is_some(), 1),
+            semantic: next(frame.semantic.is_some(), 1),
+            normals: next(frame.normals.is_some(), 3),
+            albedo: next(frame.albedo.is_some(), 3),
+            flow: next(frame.flow.is_some(), 2),
+        }
+    }
+
+    /// Where each instance was; returns the first row.
+    fn add_before(&mut self, job: &Job<'_>, before: &Before<'_>) -> u32 {
+        let first = self.rows.len() as u32;
+        for part in &job.scene.house().geometry().movable {
+            let moved = &before.moved;
+            let was = moved.binary_search_by_key(&part.index(), |(part, _)| part.index());
+            let pose = match was {
+                Ok(place) => moved[place].1,
+                Err(_) => job
+                    .state
+                    .part_pose
+                    .get(*part)
+                    .copied()
+                    .unwrap_or(Pose::IDENTITY),
+            };
+            self.rows.extend(flat_pose(&pose));
+        }
+        for way in agents_back(job.state, before) {
+            for _ in 0..BODY_PIECES {
+                self.rows.extend(flat_pose(&Pose::from_position(way)));
+            }
+        }
+        first
+    }
+}
+
+/// From where each agent is to where it was.
+fn agents_back<'a>(state: &'a State, before: &'a Before<'_>) -> impl Iterator<Item = Vec3> + 'a {
+    let agents = state.agents.as_slice().iter().enumerate();
+    agents.map(|(k, agent)| {
+        before
+            .agents
+            .get(k)
+            .map_or(Vec3::ZERO, |was| *was - agent.position)
+    })
+}
+
+const PINHOLE: u32 = 0;
+const ORTHOGRAPHIC: u32 = 5;
+
+/// The kind of a camera and its numbers, as `shaders/camera.wgsl` reads them.
+fn lens_of(camera: &Camera) -> (u32, [f32; 4], [f32; 4], [f32; 2]) {
+    let none = [0.0; 4];
+    match camera.projection() {
+        Projection::Pinhole { fx, fy, cx, cy } => (PINHOLE, [fx, fy, cx, cy], none, [0.0; 2]),
+        Projection::BrownConrady {
+            fx,
+            fy,
+            cx,
+            cy,
+            k1,
+            k2,
+            k3,
+            p1,
+            p2,
+        } => (1, [fx, fy, cx, cy], [k1, k2, k3, p1], [p2, 0.0]),
+        Projection::Fisheye {
+            fx,
+            fy,
+            cx,
+            cy,
+            k1,
+            k2,
+            k3,
+            k4,
+            half_angle_deg,
+        } => (
+            2,
+            [fx, fy, cx, cy],
+            [k1, k2, k3, k4],
+            [0.0, half_angle_deg.to_radians()],
+        ),
+        Projection::Equirectangular => (3, none, none, [0.0; 2]),
+        Projection::Cubemap => (4, none, none, [0.0; 2]),
+        Projection::Orthographic { width_m, height_m } => {
+            (ORTHOGRAPHIC, [width_m, height_m, 0.0, 0.0], none, [0.0; 2])
+        }
+    }
+}

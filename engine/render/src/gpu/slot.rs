@@ -1,0 +1,131 @@
+//! Memory for one batch under way; kept for later ones, and only grown.
+
+use super::device::Gpu;
+use super::rows::Batch;
+use crate::error::RenderError;
+
+/// A buffer that grows.
+#[derive(Debug)]
+struct Grown {
+    what: &'static str,
+    usage: wgpu::BufferUsages,
+    buffer: Option<wgpu::Buffer>,
+}
+
+impl Grown {
+    fn new(what: &'static str, usage: wgpu::BufferUsages) -> Self {
+        Self {
+            what,
+            usage,
+            buffer: None,
+        }
+    }
+
+    /// Makes room; returns whether the buffer is another one now.
+    fn reserve(&mut self, gpu: &Gpu, bytes: u64) -> Result<bool, RenderError> {
+        if self
+            .buffer
+            .as_ref()
+            .is_some_and(|held| held.size() >= bytes)
+        {
+            return Ok(false);
+        }
+        // A little more than is needed: worlds gain agents and views.
+        let roomy = bytes + bytes / 8;
+        let what = format!("a batch of views: its {}", self.what);
+        let made = gpu
+            .buffer(&what, roomy, self.usage)
+            .or_else(|_| gpu.buffer(&what, bytes, self.usage))?;
+        self.buffer = Some(made);
+        Ok(true)
+    }
+
+    fn held(&self, gpu: &Gpu) -> Result<&wgpu::Buffer, RenderError> {
+        let missing = || gpu.driver("to find a buffer", format!("no {} yet", self.what));
+        self.buffer.as_ref().ok_or_else(missing)
+    }
+}
+
+/// The buffers of one batch.
+#[derive(Debug)]
+pub(super) struct Slot {
+    pub(super) batch: Batch,
+    rows: Grown,
+    lenses: Grown,
+    seen: Grown,
+    images: Grown,
+    back: Grown,
+    group: Option<wgpu::BindGroup>,
+}
+
+/// Bytes of a pixel's first hit.
+pub(super) const SEEN_BYTES: u64 = 16;
+
+impl Slot {
+    pub(super) fn new() -> Self {
+        use wgpu::BufferUsages as Use;
+        let written = Use::STORAGE | Use::COPY_DST;
+        Self {
+            batch: Batch::default(),
+            rows: Grown::new("worlds", written),
+            lenses: Grown::new("lenses", written),
+            seen: Grown::new("first hits", Use::STORAGE),
+            images: Grown::new("images", Use::STORAGE | Use::COPY_SRC),
+            back: Grown::new("images", Use::MAP_READ | Use::COPY_DST),
+            group: None,
+        }
+    }
+
+    /// Sends the rows of the batch, and makes room for its images.
+    pub(super) fn upload(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
+        let rows: &[u8] = bytemuck::cast_slice(&self.batch.rows);
+        let rays: &[u8] = bytemuck::cast_slice(&self.batch.lenses.rays);
+        let words = self.batch.words as u64 * 4;
+        let mut changed = self.rows.reserve(gpu, rows.len() as u64)?;
+        let new_lenses = self.lenses.reserve(gpu, rays.len().max(16) as u64)?;
+        changed |= new_lenses;
+        changed |= self
+            .seen
+            .reserve(gpu, (self.batch.pixels as u64 * SEEN_BYTES).max(16))?;
+        changed |= self.images.reserve(gpu, words.max(16))?;
+        self.back.reserve(gpu, words.max(16))?;
+        gpu.queue.write_buffer(self.rows.held(gpu)?, 0, rows);
+        if (self.batch.lenses.changed || new_lenses) && !rays.is_empty() {
+            gpu.queue.write_buffer(self.lenses.held(gpu)?, 0, rays);
+            self.batch.lenses.changed = false;
+        }
+        if changed || self.group.is_none() {
+            let buffers = [
+                self.rows.held(gpu)?,
+                self.lenses.held(gpu)?,
+                self.seen.held(gpu)?,
+                self.images.held(gpu)?,
+            ];
+            let entries = [0, 1, 2, 3].map(|k: usize| wgpu::BindGroupEntry {
+                binding: k as u32,
+                resource: buffers[k].as_entire_binding(),
+            });
+            let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("batch"),
+                layout: &gpu.layouts.batch,
+                entries: &entries,
+            });
+            self.group = Some(group);
+        }
+        Ok(())
+    }
+
+    pub(super) fn group(&self) -> Option<&wgpu::BindGroup> {
+        self.group.as_ref()
+    }
+
+    /// Where kernels write images, and where they come back to.
+    pub(super) fn ways(&self, gpu: &Gpu) -> Result<(&wgpu::Buffer, &wgpu::Buffer), RenderError> {
+        Ok((self.images.held(gpu)?, self.back.held(gpu)?))
+    }
+
+    /// Bytes of all images.
+    pub(super) fn image_bytes(&self) -> u64 {
+        self.batch.words as u64 * 4
+    }
+}

@@ -1,0 +1,118 @@
+//! Agreement for every camera, with things and agents that have moved.
+
+use super::agreement::{Count, Pair};
+use super::houses::views;
+use dwell_render::{Before, Camera, Projection};
+use dwell_scene::{AgentBody, AgentState, Id, PartId, Pose};
+use glam::{Quat, Vec3};
+use std::sync::Arc;
+
+fn cameras() -> Vec<(&'static str, Camera)> {
+    let new = |projection| Camera::new(64, 48, projection).unwrap();
+    let (fx, fy, cx, cy) = (30.0, 29.0, 31.0, 25.0);
+    vec![
+        ("pinhole", new(Projection::Pinhole { fx, fy, cx, cy })),
+        (
+            "lens",
+            new(Projection::BrownConrady {
+                fx,
+                fy,
+                cx,
+                cy,
+                k1: -0.12,
+                k2: 0.02,
+                k3: 0.001,
+                p1: 0.002,
+                p2: -0.001,
+            }),
+        ),
+        (
+            "fisheye",
+            new(Projection::Fisheye {
+                fx: 17.0,
+                fy: 18.0,
+                cx,
+                cy,
+                k1: 0.01,
+                k2: 0.001,
+                k3: 0.0,
+                k4: 0.0,
+                half_angle_deg: 100.0,
+            }),
+        ),
+        ("all around", Camera::equirectangular(64).unwrap()),
+        ("cube map", Camera::cubemap(24).unwrap()),
+        ("map", Camera::orthographic(64, 48, 5.0, 4.0).unwrap()),
+        (
+            "near and far",
+            new(Projection::Pinhole { fx, fy, cx, cy })
+                .with_range(1.5, 3.0)
+                .unwrap(),
+        ),
+    ]
+}
+
+/// What has moved, and where it was.
+type Moved = (Pair, Vec<(PartId, Pose)>, Vec<Vec3>);
+
+/// A furnished house in which parts and two agents have moved.
+fn moved() -> Option<Moved> {
+    let house = Arc::new(dwell_houses::open("seed:5").unwrap().0);
+    let mut pair = Pair::new(house)?;
+    let start: Vec<_> = views(&pair.house, Camera::cubemap(4).unwrap(), 2)
+        .iter()
+        .map(|view| view.world_from_camera.position)
+        .collect();
+    let feet: Vec<Vec3> = start
+        .iter()
+        .map(|eye| Vec3::new(eye.x, 0.05, eye.z))
+        .collect();
+    for feet in &feet {
+        let body = AgentState::new(AgentBody::default(), *feet + Vec3::new(0.1, 0.0, 0.05), 0.4);
+        pair.state.agents.push(body);
+    }
+    let mut before = Vec::new();
+    for (k, part) in pair.house.geometry().movable.iter().enumerate() {
+        if k % 3 == 0 {
+            continue;
+        }
+        before.push((*part, pair.state.part_pose[*part]));
+        let pose = &mut pair.state.part_pose[*part];
+        pose.position += Vec3::new(0.03, 0.02, -0.04);
+        pose.rotation = Quat::from_rotation_y(0.1) * pose.rotation;
+    }
+    before.sort_by_key(|(part, _)| part.index());
+    pair.scene.update(&pair.state);
+    Some((pair, before, feet))
+}
+
+#[test]
+fn every_camera_sees_the_same_by_cpu_and_gpu_after_things_moved() {
+    let Some((pair, parts, agents)) = moved() else {
+        return;
+    };
+    for (name, camera) in cameras() {
+        let views = views(&pair.house, camera, 24);
+        let mut compared = Count::default();
+        for (k, view) in views.iter().enumerate() {
+            let mut was = view.world_from_camera;
+            was.position += Vec3::new(0.02, -0.01, 0.03);
+            was.rotation *= Quat::from_rotation_y(0.02);
+            let before = Before {
+                world_from_camera: was,
+                moved: &parts,
+                agents: &agents,
+            };
+            let mut view = *view;
+            // Every other camera is the first agent's.
+            view.hide = (k % 2 == 0).then(|| {
+                pair.house
+                    .entity_of_agent(dwell_scene::AgentId::from_index(0))
+            });
+            for frames in pair.shoot_after(&[view], Some(before)) {
+                compared.compare(&format!("{name}, view {k}"), &camera, &frames);
+            }
+        }
+        compared.finish(name, 0.03);
+    }
+}

@@ -1,0 +1,71 @@
+//! Agreement in whole houses.
+
+use super::agreement::{Count, Pair};
+use dwell_render::{Camera, View};
+use dwell_scene::random::Key;
+use dwell_scene::{House, Pose, space};
+use glam::Vec3;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Views from places in rooms, in all directions.
+pub(crate) fn views(house: &House, camera: Camera, count: usize) -> Vec<View> {
+    let mut stream = Key::root(11).stream();
+    let mut views = Vec::new();
+    while views.len() < count {
+        let room = &house.rooms[dwell_scene::RoomId(stream.below(house.rooms.len()) as u32)];
+        let triangle = room.footprint[stream.below(room.footprint.len())];
+        let (a, b) = (stream.range(0.0, 1.0_f32), stream.range(0.0, 1.0_f32));
+        let (a, b) = if a + b > 1.0 {
+            (1.0 - a, 1.0 - b)
+        } else {
+            (a, b)
+        };
+        let place = triangle[0] + (triangle[1] - triangle[0]) * a + (triangle[2] - triangle[0]) * b;
+        let eye = Vec3::new(place.x, room.floor_y + stream.range(0.4, 1.8), place.y);
+        let rotation =
+            space::rotation_from_yaw_pitch(stream.range(-3.1, 3.1), stream.range(-0.7, 0.4));
+        views.push(View::new(camera, Pose::new(eye, rotation)));
+    }
+    views
+}
+
+/// The sample house of SUNCG.
+pub(crate) fn suncg() -> Option<Arc<House>> {
+    let data = std::env::var_os("DWELL_SHARED_DATA").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        PathBuf::from,
+    );
+    let root = data.join("suncg");
+    if !root.is_dir() {
+        println!("skipped: no SUNCG data at {}", root.display());
+        return None;
+    }
+    Some(Arc::new(dwell_houses::open(root.to_str()?).unwrap().0))
+}
+
+fn agree(name: &str, house: Arc<House>, count: usize) {
+    let Some(pair) = Pair::new(house) else { return };
+    let camera = Camera::from_fov(64, 48, 90.0).unwrap();
+    let views = views(&pair.house, camera, count);
+    let mut compared = Count::default();
+    for (k, frames) in pair.shoot(&views).iter().enumerate() {
+        compared.compare(&format!("{name}, view {k}"), &camera, frames);
+    }
+    // Slanted floors jump by more than 2 % from pixel to pixel of small pictures.
+    compared.finish(name, 0.05);
+}
+
+#[test]
+fn the_sample_house_looks_the_same_by_cpu_and_gpu() {
+    if let Some(house) = suncg() {
+        agree("SUNCG", house, 200);
+    }
+}
+
+#[test]
+fn generated_houses_look_the_same_by_cpu_and_gpu() {
+    for seed in ["seed:3", "seed:8"] {
+        agree(seed, Arc::new(dwell_houses::open(seed).unwrap().0), 40);
+    }
+}

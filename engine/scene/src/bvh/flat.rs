@@ -1,0 +1,224 @@
+//! Trees as rows of four numbers, for processors that walk them without this crate.
+
+use glam::{Vec3, Vec4};
+
+use super::instances::InstanceSet;
+use super::node::{Link, Node, WIDTH};
+use super::ray::RayMask;
+use super::triangles::TriangleBvh;
+use super::wide::WideTree;
+use crate::bounds::Aabb;
+use crate::space::Pose;
+
+/// Four numbers as bits: `f32`, `i32` or `u32`.
+pub type Row = [u32; 4];
+
+/// Rows of a node: lower corners of its children's boxes along x, y and z, upper corners, and links. A link is [`NO_LINK`],
+/// the position of a node, or, with bit 31 set, of a block (an instance in the tree of an [`InstanceSet`]).
+pub const NODE_ROWS: usize = 7;
+
+/// Rows of a block of four triangles: first corners along x, y and z, second and third corners, normals, ids, and positions
+/// in the list that the tree was built of, `u32::MAX` for a place that is not used.
+pub const BLOCK_ROWS: usize = 14;
+
+/// Rows of an instance. Three: a row of the inverse of its transform's linear part, and in the last place a coordinate of
+/// its origin. Two: lower and upper corner of its box, with the longest row of that inverse (0: hidden) and its id.
+pub const INSTANCE_ROWS: usize = 5;
+
+/// The link to nothing.
+pub const NO_LINK: u32 = u32::MAX;
+
+/// A tree of which [`TriangleBvh::flatten`] has written the rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatTree {
+    /// The link to its top.
+    pub top: u32,
+    /// Around all triangles, m.
+    pub bounds: Aabb,
+    /// Most links that wait while the tree is walked.
+    pub stack: usize,
+}
+
+fn bits(row: Vec4) -> Row {
+    row.to_array().map(f32::to_bits)
+}
+
+fn corner(point: Vec3, last: u32) -> Row {
+    let [x, y, z] = point.to_array().map(f32::to_bits);
+    [x, y, z, last]
+}
+
+/// A link in lists in which its tree starts at the given node and block.
+fn moved(link: Link, first_node: usize, first_leaf: usize) -> u32 {
+    if link == Link::NONE {
+        return NO_LINK;
+    }
+    let link = match link.parts() {
+        (true, leaf) => Link::leaf(first_leaf + leaf),
+        (false, node) => Link::node(first_node + node),
+    };
+    link.bits()
+}
+
+fn write_nodes(tree: &WideTree, first_node: usize, first_leaf: usize, rows: &mut Vec<Row>) {
+    for Node {
+        planes,
+        links,
+        present: _,
+    } in &tree.nodes
+    {
+        rows.extend(planes.map(bits));
+        rows.push(links.map(|link| moved(link, first_node, first_leaf)));
+    }
+}
+
+/// Most links that wait below a link.
+fn waiting(tree: &WideTree, link: Link) -> usize {
+    let (true, node) = (link != Link::NONE, link.parts()) else {
+        return 0;
+    };
+    let (false, index) = node else { return 0 };
+    let children = tree.nodes[index].links.iter();
+    let children: Vec<usize> = children
+        .filter(|link| **link != Link::NONE)
+        .map(|link| waiting(tree, *link))
+        .collect();
+    children.len().saturating_sub(1) + children.iter().max().copied().unwrap_or(0)
+}
+
+impl TriangleBvh {
+    /// Appends the tree's rows to those of others. Triangles that `mask` does not meet are left out.
+    pub fn flatten(&self, mask: RayMask, nodes: &mut Vec<Row>, blocks: &mut Vec<Row>) -> FlatTree {
+        let (first_node, first_block) = (nodes.len() / NODE_ROWS, blocks.len() / BLOCK_ROWS);
+        write_nodes(&self.tree, first_node, first_block, nodes);
+        for (block, surfaces) in self.blocks.iter().zip(self.surfaces.as_chunks::<WIDTH>().0) {
+            let seen = surfaces.map(|s| s.index != u32::MAX && s.mask.meets(mask));
+            for row in [block.a, block.b, block.c, block.normal].as_flattened() {
+                let row = row.to_array();
+                blocks.push(std::array::from_fn(|k| {
+                    if seen[k] { row[k].to_bits() } else { 0 }
+                }));
+            }
+            blocks.push(surfaces.map(|surface| surface.id as u32));
+            blocks.push(std::array::from_fn(|k| {
+                if seen[k] { surfaces[k].index } else { u32::MAX }
+            }));
+        }
+        FlatTree {
+            top: moved(self.tree.top, first_node, first_block),
+            bounds: self.tree.bounds,
+            stack: waiting(&self.tree, self.tree.top),
+        }
+    }
+}
+
+impl InstanceSet {
+    /// Appends the rows of the tree over the instances; returns the link to its top. Positions in links count from the first
+    /// of these rows, and from the first instance.
+    pub fn flatten_tree(&self, nodes: &mut Vec<Row>) -> u32 {
+        write_nodes(&self.tree, 0, 0, nodes);
+        moved(self.tree.top, 0, 0)
+    }
+
+    /// The rows of an instance; one that `mask` does not meet is hidden.
+    pub fn flat_instance(&self, instance: usize, mask: RayMask) -> Option<[Row; INSTANCE_ROWS]> {
+        let placed = self.placed.get(instance)?;
+        let [x, y, z] = placed.mesh_from_world.numbers();
+        let longest = if placed.mask.meets(mask) {
+            placed.mesh_from_world.longest
+        } else {
+            0.0
+        };
+        Some([
+            bits(x),
+            bits(y),
+            bits(z),
+            corner(placed.bounds.min, longest.to_bits()),
+            corner(placed.bounds.max, placed.id as u32),
+        ])
+    }
+}
+
+/// A pose as two rows: its rotation as a quaternion, and its position.
+pub fn flat_pose(pose: &Pose) -> [Row; 2] {
+    [bits(Vec4::from(pose.rotation)), corner(pose.position, 0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::TriangleTag;
+    use crate::random::Key;
+
+    /// Walking the rows from the top meets every triangle of the list once, inside the boxes on the way.
+    #[test]
+    fn rows_hold_every_triangle_within_its_boxes() {
+        let mut stream = Key::root(5).stream();
+        let positions: Vec<Vec3> = (0..900)
+            .map(|_| {
+                Vec3::new(
+                    stream.range(-5.0, 5.0),
+                    stream.range(0.0, 3.0),
+                    stream.range(-5.0, 5.0),
+                )
+            })
+            .collect();
+        let triangles: Vec<[u32; 3]> = (0..300).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let bvh = TriangleBvh::build_tagged(&positions, &triangles, |k| TriangleTag {
+            id: k as i32 + 7,
+            mask: if k % 3 == 0 {
+                RayMask::EAR
+            } else {
+                RayMask::ALL
+            },
+        });
+        // Behind another tree.
+        let other = TriangleBvh::build(&positions[..30], &triangles[..10]);
+        let (mut nodes, mut blocks) = (Vec::new(), Vec::new());
+        other.flatten(RayMask::EYE, &mut nodes, &mut blocks);
+        let flat = bvh.flatten(RayMask::EYE, &mut nodes, &mut blocks);
+        let number = |row: &Row, k: usize| f32::from_bits(row[k]);
+        let mut seen = vec![0; 300];
+        let mut open = vec![(flat.top, flat.bounds)];
+        let mut most = 0;
+        while let Some((link, bounds)) = open.pop() {
+            most = most.max(open.len());
+            if link >> 31 == 0 {
+                let node = &nodes[link as usize * NODE_ROWS..][..NODE_ROWS];
+                for k in (0..4).filter(|k| node[6][*k] != NO_LINK) {
+                    let at = |first: usize| {
+                        let coordinate = |axis: usize| number(&node[first + axis], k);
+                        Vec3::new(coordinate(0), coordinate(1), coordinate(2))
+                    };
+                    open.push((
+                        node[6][k],
+                        Aabb {
+                            min: at(0),
+                            max: at(3),
+                        },
+                    ));
+                }
+                continue;
+            }
+            let block = &blocks[(link & !(1 << 31)) as usize * BLOCK_ROWS..][..BLOCK_ROWS];
+            for k in (0..4).filter(|k| block[13][*k] != u32::MAX) {
+                let index = block[13][k] as usize;
+                seen[index] += 1;
+                assert_eq!(block[12][k] as usize, index + 7);
+                for corner in 0..3 {
+                    let coordinate = |axis: usize| number(&block[3 * corner + axis], k);
+                    let point = Vec3::new(coordinate(0), coordinate(1), coordinate(2));
+                    assert_eq!(point, positions[3 * index + corner]);
+                    assert!(
+                        point.cmpge(bounds.min).all() && point.cmple(bounds.max).all(),
+                        "{index}"
+                    );
+                }
+            }
+        }
+        for (k, count) in seen.iter().enumerate() {
+            assert_eq!(*count, i32::from(k % 3 != 0), "{k}");
+        }
+        assert!(most <= flat.stack, "{most} {}", flat.stack);
+    }
+}
