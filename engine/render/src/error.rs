@@ -87,7 +87,9 @@ pub enum RenderError {
         adapter: String,
     },
     /// A view that only the `cpu` back end renders.
-    #[error("view {view}: its preset is one of the `cpu` back end; a batch under way allows flat")]
+    #[error(
+        "view {view}: its preset is one of the `cpu` back end; a batch under way allows flat and lit"
+    )]
     OnlyCpu {
         /// The position in the list of jobs.
         view: usize,

@@ -225,7 +225,7 @@ impl CpuRenderer {
         job.frame.check(view, pixels)
     }
 
-    fn house_light(&self) -> &HouseLight {
+    pub(crate) fn house_light(&self) -> &HouseLight {
         self.light
             .get_or_init(|| HouseLight::new(&self.house, &self.looks, &self.textures))
     }
@@ -252,7 +252,8 @@ impl CpuRenderer {
         false
     }
 
-    fn lighting(&self, scene: &RayScene, state: &State) -> Lighting {
+    /// The light of a world as it stands; see [`Self::keep_lighting`].
+    pub(crate) fn lighting(&self, scene: &RayScene, state: &State) -> Lighting {
         let used = self
             .lightings
             .lock()
@@ -263,6 +264,15 @@ impl CpuRenderer {
             self.sun_reaches(scene.bvh(), point)
         });
         lighting
+    }
+
+    /// Takes back the memory of [`Self::lighting`].
+    pub(crate) fn keep_lighting(&self, lighting: Lighting) {
+        let mut kept = self
+            .lightings
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        kept.push(lighting);
     }
 
     /// The class of every entity, by a table.

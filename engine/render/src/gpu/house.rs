@@ -112,6 +112,9 @@ impl HouseBuffers {
         tables.0[2] = [fixed.top, 0, parts, classes.len() as u32];
         tables.0[3] = point(fixed.bounds.min, 0);
         tables.0[4] = point(fixed.bounds.max, 0);
+        let light = tables.0.len();
+        tables.add(cpu.house_light().flat(light));
+        tables.0[2][1] = light as u32;
         let triangles = cpu.surfaces.flat();
         let name = &house.name;
         let mut bytes = 0;

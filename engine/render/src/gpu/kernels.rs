@@ -1,5 +1,7 @@
 //! The programs that run on the adapter, and the buffers that they see.
 
+use std::sync::OnceLock;
+
 /// What all kernels see: a house, and a batch of views.
 #[derive(Debug)]
 pub(super) struct Layouts {
@@ -46,50 +48,73 @@ impl Layouts {
     }
 }
 
-/// The kernels.
+/// The kernels, for trees in which at most so many links wait.
 #[derive(Debug)]
 pub(super) struct Kernels {
+    stack: usize,
     /// What each pixel sees first, by rays.
     pub(super) trace: wgpu::ComputePipeline,
     /// All images but colour.
     pub(super) describe: wgpu::ComputePipeline,
-    /// Colour.
+    /// Flat colour.
     pub(super) paint: wgpu::ComputePipeline,
+    /// Made for the first lit view.
+    lit: OnceLock<wgpu::ComputePipeline>,
 }
 
+const SKIN: &str = include_str!("shaders/skin.wgsl");
+const COLORS: &str = include_str!("shaders/colors.wgsl");
+
 impl Kernels {
-    /// Compiles them, for trees in which at most `stack` links wait.
+    /// Compiles all but that of lit pictures.
     pub(super) fn new(device: &wgpu::Device, layouts: &Layouts, stack: usize) -> Self {
-        let kernel = |entry: &str, parts: &[&str]| {
-            let shared = [
-                include_str!("shaders/common.wgsl"),
-                include_str!("shaders/camera.wgsl"),
-                include_str!("shaders/walk.wgsl"),
-            ];
-            let stack = format!("const STACK: u32 = {stack}u;\n");
-            let source: String = [stack.as_str()]
-                .into_iter()
-                .chain(shared)
-                .chain(parts.iter().copied())
-                .collect();
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(entry),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&layouts.pipeline),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            })
-        };
-        let skin = include_str!("shaders/skin.wgsl");
+        let kernel = |entry: &str, parts: &[&str]| compile(device, layouts, stack, entry, parts);
         Self {
+            stack,
             trace: kernel("trace", &[include_str!("shaders/trace.wgsl")]),
-            describe: kernel("describe", &[skin, include_str!("shaders/describe.wgsl")]),
-            paint: kernel("paint", &[skin, include_str!("shaders/paint.wgsl")]),
+            describe: kernel("describe", &[SKIN, include_str!("shaders/describe.wgsl")]),
+            paint: kernel("paint", &[SKIN, COLORS, include_str!("shaders/paint.wgsl")]),
+            lit: OnceLock::new(),
         }
     }
+
+    /// Lit colour.
+    pub(super) fn lit(&self, device: &wgpu::Device, layouts: &Layouts) -> &wgpu::ComputePipeline {
+        self.lit.get_or_init(|| {
+            let light = include_str!("shaders/light.wgsl");
+            let paint = include_str!("shaders/paint_lit.wgsl");
+            let parts = [SKIN, COLORS, light, paint];
+            compile(device, layouts, self.stack, "paint_lit", &parts)
+        })
+    }
+}
+
+/// One kernel: what all share, then its own parts.
+fn compile(
+    device: &wgpu::Device,
+    layouts: &Layouts,
+    stack: usize,
+    entry: &str,
+    parts: &[&str],
+) -> wgpu::ComputePipeline {
+    let stack = format!("const STACK: u32 = {stack}u;\n");
+    let shared = [
+        stack.as_str(),
+        include_str!("shaders/common.wgsl"),
+        include_str!("shaders/camera.wgsl"),
+        include_str!("shaders/walk.wgsl"),
+    ];
+    let source: String = shared.iter().chain(parts).copied().collect();
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(entry),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry),
+        layout: Some(&layouts.pipeline),
+        module: &module,
+        entry_point: Some(entry),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
 }

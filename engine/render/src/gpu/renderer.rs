@@ -147,7 +147,7 @@ impl GpuRenderer {
     fn submit_part(&self, jobs: &[Job<'_>]) -> Result<Part, RenderError> {
         let gpu = &*self.gpu;
         let mut slot = lock(&self.slots).pop().unwrap_or_else(Slot::new);
-        slot.batch.fill(jobs);
+        slot.batch.fill(&self.cpu, jobs);
         slot.upload(gpu)?;
         // Of the tree over n instances, halved again and again, three links wait at each of at most log2 n nodes.
         let levels = usize::BITS - slot.batch.instances.saturating_sub(1).leading_zeros();
@@ -167,7 +167,11 @@ impl GpuRenderer {
                 (slot.batch.describes, &kernels.describe),
                 (slot.batch.paints, &kernels.paint),
             ];
-            for (_, kernel) in steps.into_iter().filter(|(wanted, _)| *wanted) {
+            let lit = slot.batch.paints_lit.then(|| {
+                let kernel = kernels.lit(&gpu.device, &gpu.layouts);
+                (true, kernel)
+            });
+            for (_, kernel) in steps.into_iter().chain(lit).filter(|(wanted, _)| *wanted) {
                 pass.set_pipeline(kernel);
                 pass.dispatch_workgroups(groups_x as u32, groups_y as u32, 1);
             }
@@ -253,7 +257,7 @@ impl GpuRenderer {
 
 /// Whether a view is one for the adapter.
 fn is_ours(job: &Job<'_>) -> bool {
-    matches!(job.view.preset, Preset::Flat)
+    matches!(job.view.preset, Preset::Flat | Preset::Lit)
 }
 
 impl Delivery<'_, '_> {

@@ -2,8 +2,9 @@
 
 use super::house::point;
 use crate::camera::{Camera, Projection};
-use crate::cpu::{Job, SEEN};
-use crate::frame::{Before, FrameMut};
+use crate::cpu::{CpuRenderer, Job, SEEN};
+use crate::frame::{Before, FrameMut, Preset};
+use crate::light::Lighting;
 use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, Row, flat_pose};
 use dwell_scene::rays::BODY_PIECES;
 use dwell_scene::{Id, Pose, State};
@@ -94,6 +95,7 @@ pub(super) struct Batch {
     /// Most instances of a world.
     pub(super) instances: usize,
     pub(super) paints: bool,
+    pub(super) paints_lit: bool,
     pub(super) describes: bool,
 }
 
@@ -103,14 +105,16 @@ fn quaternion(rotation: Quat) -> Row {
 
 impl Batch {
     /// Writes the rows of some jobs.
-    pub(super) fn fill(&mut self, jobs: &[Job<'_>]) {
+    pub(super) fn fill(&mut self, cpu: &CpuRenderer, jobs: &[Job<'_>]) {
         self.rows.clear();
         self.places.clear();
         (self.pixels, self.words, self.tiles, self.instances) = (0, 0, 0, 0);
-        (self.paints, self.describes) = (false, false);
+        (self.paints, self.paints_lit, self.describes) = (false, false, false);
         self.lenses.tidy();
         self.rows.resize(1 + jobs.len() * VIEW_ROWS, [0; 4]);
         let mut last: Option<(&Job<'_>, u32)> = None;
+        // Views of one world follow one another as a rule: its light is made once.
+        let mut light: Option<(&State, Lighting, u32)> = None;
         for (k, job) in jobs.iter().enumerate() {
             let world = match last {
                 Some((other, world))
@@ -122,7 +126,33 @@ impl Batch {
                 _ => self.add_world(job),
             };
             last = Some((job, world));
-            self.add_view(k, job, world);
+            let shown = match job.view.preset {
+                Preset::Lit => {
+                    let made = light.take();
+                    let same = made
+                        .as_ref()
+                        .is_some_and(|made| std::ptr::eq(made.0, job.state));
+                    let made = match made {
+                        Some(made) if same => made,
+                        other => {
+                            if let Some((_, lighting, _)) = other {
+                                cpu.keep_lighting(lighting);
+                            }
+                            self.add_light(cpu, job)
+                        }
+                    };
+                    let eye = job.view.world_from_camera.position;
+                    let exposure = made.1.exposure(cpu.house_light(), eye);
+                    let row = [1, made.2, exposure.per_lx().to_bits(), 0];
+                    light = Some(made);
+                    row
+                }
+                Preset::Flat => [0; 4],
+            };
+            self.add_view(k, job, world, shown);
+        }
+        if let Some((_, lighting, _)) = light {
+            cpu.keep_lighting(lighting);
         }
         self.rows[0] = [jobs.len() as u32, self.tiles as u32, 0, 0];
     }
@@ -153,7 +183,26 @@ impl Batch {
         world as u32
     }
 
-    fn add_view(&mut self, k: usize, job: &Job<'_>, world: u32) {
+    /// The light of a world, and which things are switched off; returns the first row.
+    fn add_light<'a>(&mut self, cpu: &CpuRenderer, job: &Job<'a>) -> (&'a State, Lighting, u32) {
+        let lighting = cpu.lighting(job.scene, job.state);
+        let first = self.rows.len() as u32;
+        lighting.flatten(&mut self.rows);
+        let house = cpu.house();
+        let bits = self.rows.len();
+        let entities = 1 + house.structure.len() + house.objects.len();
+        self.rows.resize(bits + entities.div_ceil(128), [0; 4]);
+        for object in house.objects.ids() {
+            if !job.state.is_on(house, object) {
+                let id = house.entity_of_object(object).0 as usize;
+                self.rows[bits + id / 128][id / 32 % 4] |= 1 << (id % 32);
+            }
+        }
+        (job.state, lighting, first)
+    }
+
+    /// `shown`: the preset, the first row of its light, and the exposure.
+    fn add_view(&mut self, k: usize, job: &Job<'_>, world: u32, shown: Row) {
         let (view, camera) = (&job.view, &job.view.camera);
         let rotation = view.world_from_camera.rotation.normalize();
         let (first_row, end) = job.row_range();
@@ -193,6 +242,7 @@ impl Batch {
             ],
             quaternion(eye_before.rotation),
             point(eye_before.position, 0),
+            shown,
         ];
         let first = 1 + k * VIEW_ROWS;
         self.rows[first..first + written.len()].copy_from_slice(&written);
@@ -200,7 +250,9 @@ impl Batch {
         self.pixels += pixels;
         self.places.push(places);
         let frame = &job.frame;
-        self.paints |= frame.rgb.is_some();
+        let is_lit = shown[0] == 1;
+        self.paints |= frame.rgb.is_some() && !is_lit;
+        self.paints_lit |= frame.rgb.is_some() && is_lit;
         self.describes |= words_per_pixel(frame) > usize::from(frame.rgb.is_some());
     }
 

@@ -13,17 +13,17 @@ const STEPS: [u32; 2] = [16, 32];
 /// Sun, sky and ground.
 #[derive(Debug)]
 pub(crate) struct Air {
-    dome: Dome,
+    pub(super) dome: Dome,
     /// Unit length.
     pub(crate) to_sun: Vec3,
     /// Across its rays, lx.
     pub(crate) sun_lx: Vec3,
     /// Luminance of the sky as spherical harmonics, cd/m². Shape (9,).
-    harmonics: [Vec3; 9],
+    pub(super) harmonics: [Vec3; 9],
     /// What the ground sends out, lm/m².
-    ground_lx: Vec3,
+    pub(super) ground_lx: Vec3,
     /// Display white per lx out there.
-    per_lx: f32,
+    pub(super) per_lx: f32,
 }
 
 /// The first nine spherical harmonics in a direction.

@@ -14,23 +14,23 @@ const OUTSIDE: u16 = u16::MAX;
 
 /// The rooms of one storey from above.
 #[derive(Debug)]
-struct Storey {
+pub(super) struct Storey {
     /// Heights between which the storey is meant, m.
-    low_y: f32,
-    high_y: f32,
+    pub(super) low_y: f32,
+    pub(super) high_y: f32,
     /// Shape (cells along z, cells along x).
-    cells: Vec<u16>,
+    pub(super) cells: Vec<u16>,
 }
 
 /// All storeys.
 #[derive(Debug)]
 pub(crate) struct RoomGrid {
-    storeys: Vec<Storey>,
+    pub(super) storeys: Vec<Storey>,
     /// The corner of the first cell, (x, z), m.
-    corner: Vec2,
-    cells_per_m: f32,
-    width: usize,
-    depth: usize,
+    pub(super) corner: Vec2,
+    pub(super) cells_per_m: f32,
+    pub(super) width: usize,
+    pub(super) depth: usize,
 }
 
 impl RoomGrid {

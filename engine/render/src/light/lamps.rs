@@ -19,10 +19,10 @@ const LINE_PARTS: [f32; 4] = [0.125, 0.375, 0.625, 0.875];
 pub(crate) struct Lamp {
     pub(crate) position: Vec3,
     /// Intensity along the axis, cd, for red, green and blue.
-    intensity: Vec3,
+    pub(super) intensity: Vec3,
     /// The cone, if it is a spot: axis, cosine of the half angle, exponent.
-    cone: Option<(Vec3, f32, f32)>,
-    attenuation: [f32; 3],
+    pub(super) cone: Option<(Vec3, f32, f32)>,
+    pub(super) attenuation: [f32; 3],
     /// The thing that it belongs to; light passes that thing's surfaces (shades).
     pub(crate) entity: i32,
     /// Position of its room.

@@ -1,6 +1,7 @@
 //! The light of [`Preset::Lit`](crate::Preset): lamps, daylight through windows, and what rooms throw back.
 
 mod air;
+mod flat;
 mod grid;
 mod lamps;
 mod openings;

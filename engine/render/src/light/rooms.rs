@@ -40,7 +40,7 @@ pub(crate) struct HouseLight {
     /// By room.
     pub(crate) windows: Vec<Window>,
     /// Where the windows of each room start, and where the last end. Shape (room + 1,).
-    window_starts: Vec<usize>,
+    pub(super) window_starts: Vec<usize>,
     passages: Vec<Passage>,
     /// Shape (room,).
     rooms: Vec<Walls>,

@@ -1,7 +1,7 @@
 //! Agreement in whole houses.
 
 use super::agreement::{Count, Pair};
-use dwell_render::{Camera, View};
+use dwell_render::{Camera, Preset, View};
 use dwell_scene::random::Key;
 use dwell_scene::{House, Pose, space};
 use glam::Vec3;
@@ -60,6 +60,49 @@ fn agree(name: &str, house: Arc<House>, count: usize) {
 fn the_sample_house_looks_the_same_by_cpu_and_gpu() {
     if let Some(house) = suncg() {
         agree("SUNCG", house, 200);
+    }
+}
+
+/// Lit views look as bright and as coloured, from inside and from the open air, by day and with lamps.
+fn lit_agrees(name: &str, house: Arc<House>, count: usize) {
+    let Some(mut pair) = Pair::new(house) else {
+        return;
+    };
+    let camera = Camera::from_fov(64, 48, 90.0).unwrap();
+    let mut lit = views(&pair.house, camera, count);
+    let bounds = pair.house.geometry().static_bvh.bounds();
+    for view in &mut lit {
+        view.preset = Preset::Lit;
+    }
+    for (k, corner) in bounds.corners().into_iter().enumerate().skip(4) {
+        let eye = corner + (corner - bounds.center()) * 0.3 + Vec3::Y * k as f32;
+        let rotation = space::rotation_from_forward(bounds.center() - eye).unwrap();
+        let place = Pose::new(eye, rotation);
+        lit.push(View {
+            preset: Preset::Lit,
+            ..View::new(camera, place)
+        });
+    }
+    for is_on in [true, false] {
+        for switch in &mut pair.state.switched_on {
+            *switch = is_on;
+        }
+        let mut compared = Count::default();
+        for (k, frames) in pair.shoot(&lit).iter().enumerate() {
+            let name = format!("{name}, lit view {k}, switches {is_on}");
+            compared.compare(&name, &camera, frames);
+        }
+        compared.finish(&format!("{name}, lit, switches {is_on}"), 0.03);
+    }
+}
+
+#[test]
+fn lit_houses_look_the_same_by_cpu_and_gpu() {
+    if let Some(house) = suncg() {
+        lit_agrees("SUNCG", house, 12);
+    }
+    for seed in ["seed:2", "seed:9"] {
+        lit_agrees(seed, Arc::new(dwell_houses::open(seed).unwrap().0), 6);
     }
 }
 

@@ -74,6 +74,23 @@ impl Dome {
         }
     }
 
+    /// The numbers of [`Self::luminance`], for processors that compute it without this crate: where the sun stands, and 1 for a
+    /// clear sky; chromaticity overhead and scale; then coefficients A to E for Y, x and y.
+    pub fn numbers(&self) -> [[f32; 4]; 6] {
+        let [x, y, z] = self.to_sun.to_array();
+        let (clear, zenith, perez) = match &self.spread {
+            Spread::Clear { perez, zenith } => (1.0, *zenith, *perez),
+            Spread::Overcast => (0.0, Vec2::ZERO, [[0.0; 5]; 3]),
+        };
+        let mut numbers = [[0.0; 4]; 6];
+        numbers[0] = [x, y, z, clear];
+        numbers[1] = [zenith.x, zenith.y, self.scale_cd_m2, 0.0];
+        for (k, number) in perez.iter().flatten().enumerate() {
+            numbers[2 + k / 4][k % 4] = *number;
+        }
+        numbers
+    }
+
     /// Perez' function in a direction over that overhead, equation 3.
     fn perez(&self, [a, b, c, d, e]: &[f32; 5], direction: Vec3) -> f32 {
         let part = |cosine: f32, to_sun: f32| {

@@ -1,22 +1,4 @@
-// Colour, from what each pixel sees first and, where light passes, behind it. As in `cpu/shade.rs`.
-
-const LAYERS: u32 = 8u;
-const OPAQUE: f32 = 0.998046875;
-const GAP: vec2<f32> = vec2<f32>(2e-4, 2e-6);
-
-fn encode(linear: f32) -> u32 {
-    // Not a number is black.
-    let positive = select(0.0, linear, linear > 0.0);
-    let step = u32(round(min(positive, 1.0) * 8191.0));
-    return (table_word(tables[1].y, step >> 2u) >> ((step & 3u) * 8u)) & 255u;
-}
-
-fn plain_sky(direction: vec3<f32>) -> vec3<f32> {
-    if direction.y >= 0.0 {
-        return mix(vec3<f32>(0.85, 0.92, 1.0), vec3<f32>(0.35, 0.55, 0.9), min(sqrt(direction.y), 1.0));
-    }
-    return vec3<f32>(0.42, 0.42, 0.38);
-}
+// Flat colour, from what each pixel sees first and, where light passes, behind it. As in `cpu/shade.rs`.
 
 @compute @workgroup_size(8, 8)
 fn paint(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
@@ -26,7 +8,7 @@ fn paint(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     }
     let v = pixel.view;
     let place = frame[v.row + 9u].x;
-    if place == NOTHING {
+    if place == NOTHING || frame[v.row + 14u].x != FLAT {
         return;
     }
     var ray = ray_of(v, pixel.x, pixel.y);
@@ -54,7 +36,7 @@ fn paint(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
         }
         light += skin.color * (skin.opacity * rest);
         rest *= 1.0 - skin.opacity;
-        ray.near = (sight.depth * (1.0 + GAP.y) + GAP.x) / ray.per_length;
+        ray.near = behind(distance, ray.per_length);
         let next = closest(ray, v.hidden, v.world);
         source = next.source;
         slot = next.slot;

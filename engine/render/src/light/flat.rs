@@ -1,0 +1,134 @@
+//! Light as rows of four numbers, as `gpu/shaders/light.wgsl` reads it.
+
+use super::air::Air;
+use super::openings::Window;
+use super::rooms::HouseLight;
+use super::{Exposure, Lamp, Lighting};
+use dwell_scene::bvh::flat::Row;
+use glam::Vec3;
+
+fn row(vector: Vec3, last: f32) -> Row {
+    vector.extend(last).to_array().map(f32::to_bits)
+}
+
+/// Words one behind the other, the last row filled up with zeros.
+fn words(words: impl IntoIterator<Item = u32>) -> Vec<Row> {
+    let words: Vec<u32> = words.into_iter().collect();
+    let rows = words.chunks(4);
+    rows.map(|chunk| std::array::from_fn(|k| chunk.get(k).copied().unwrap_or(0)))
+        .collect()
+}
+
+/// A direction and its length.
+fn split(vector: Vec3) -> (Vec3, f32) {
+    let length = vector.length().max(1e-6);
+    (vector / length, length)
+}
+
+fn window_rows(window: &Window) -> [Row; 6] {
+    let [(across, width), (along, height)] = window.half.map(split);
+    let [up, down] = window.luminance_cd_m2;
+    [
+        row(window.center, window.area_m2()),
+        row(window.normal, 0.0),
+        row(across, width),
+        row(along, height),
+        row(up, 0.0),
+        row(down, 0.0),
+    ]
+}
+
+fn air_rows(air: &Air) -> Vec<Row> {
+    let mut rows = vec![
+        row(air.to_sun, air.per_lx),
+        row(air.sun_lx, 0.0),
+        row(air.ground_lx, 0.0),
+    ];
+    rows.extend(air.harmonics.map(|part| row(part, 0.0)));
+    rows.extend(air.dome.numbers().map(|part| part.map(f32::to_bits)));
+    rows
+}
+
+impl HouseLight {
+    /// All that never changes, when its first row is `first`: four rows of heads, storeys, windows, where those of each room
+    /// start, the open air, and cells of storeys.
+    pub(crate) fn flat(&self, first: usize) -> Vec<Row> {
+        let grid = &self.grid;
+        let storeys = first + 4;
+        let windows = storeys + grid.storeys.len();
+        let starts = windows + self.windows.len() * 6;
+        let start_rows = words(self.window_starts.iter().map(|start| *start as u32));
+        let air = starts + start_rows.len();
+        let air_rows = self.air.as_ref().map_or_else(Vec::new, air_rows);
+        let mut cells = air + air_rows.len();
+        let mut rows = vec![
+            [
+                grid.corner.x.to_bits(),
+                grid.corner.y.to_bits(),
+                grid.cells_per_m.to_bits(),
+                grid.storeys.len() as u32,
+            ],
+            [
+                grid.width as u32,
+                grid.depth as u32,
+                windows as u32,
+                starts as u32,
+            ],
+            row(self.sun.0, f32::from(u8::from(self.air.is_some()))),
+            row(self.sun.1, 0.0),
+        ];
+        rows[3][3] = air as u32;
+        let mut cell_rows = Vec::new();
+        for storey in &grid.storeys {
+            let (low, high) = (storey.low_y.to_bits(), storey.high_y.to_bits());
+            rows.push([low, high, cells as u32, 0]);
+            let pair = |pair: &[u16]| {
+                u32::from(pair[0]) | u32::from(pair.get(1).copied().unwrap_or(0)) << 16
+            };
+            let mine = words(storey.cells.chunks(2).map(pair));
+            cells += mine.len();
+            cell_rows.extend(mine);
+        }
+        rows.extend(self.windows.iter().flat_map(window_rows));
+        rows.extend(start_rows);
+        rows.extend(air_rows);
+        rows.extend(cell_rows);
+        rows
+    }
+}
+
+fn lamp_rows(lamp: &Lamp) -> [Row; 4] {
+    let (axis, cutoff, exponent) = lamp.cone.unwrap_or((Vec3::ZERO, -2.0, 0.0));
+    let mut position = row(lamp.position, 0.0);
+    position[3] = lamp.entity as u32;
+    [
+        position,
+        row(lamp.intensity, cutoff),
+        row(axis, exponent),
+        row(Vec3::from_array(lamp.attenuation), 0.0),
+    ]
+}
+
+impl Lighting {
+    /// Appends the light of one state: a row of heads (first rows of lamps, of where those of each room start, of rooms, and
+    /// behind all), then these.
+    pub(crate) fn flatten(&self, rows: &mut Vec<Row>) {
+        let lamps = rows.len() + 1;
+        let starts = lamps + self.lamps.len() * 4;
+        let start_rows = words(self.lamp_starts.iter().map(|start| *start as u32));
+        let rooms = starts + start_rows.len();
+        let end = rooms + self.rooms.len();
+        rows.push([lamps as u32, starts as u32, rooms as u32, end as u32]);
+        rows.extend(self.lamps.iter().flat_map(lamp_rows));
+        rows.extend(start_rows);
+        let room_rows = self.rooms.iter();
+        rows.extend(room_rows.map(|room| row(room.indirect, room.mean)));
+    }
+}
+
+impl Exposure {
+    /// Display white per lx.
+    pub(crate) fn per_lx(self) -> f32 {
+        self.per_lx
+    }
+}
