@@ -49,7 +49,7 @@ pub use config::AcousticConfig;
 pub use echogram::{Bin, Echogram, Histogram, Path, TraceStatistics};
 pub use error::AcousticsError;
 pub use explain::{Explanation, MaterialRow};
-pub use images::NEAREST_M;
+pub use images::{EarlyPath, NEAREST_M};
 pub use impact::ImpactSound;
 pub use planes::{NO_PLANE, Plane, PlaneTable};
 pub use receiver::{Receiver, Source};

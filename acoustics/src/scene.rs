@@ -172,6 +172,24 @@ impl AcousticScene {
         Explanation::new(self)
     }
 
+    /// Whether points are somewhere, and rays meet this house.
+    pub(crate) fn check(
+        &self,
+        rays: &RayScene,
+        source: Vec3,
+        receiver: Vec3,
+    ) -> Result<(), AcousticsError> {
+        finite("the source", source)?;
+        finite("the receiver", receiver)?;
+        if !Arc::ptr_eq(rays.house(), &self.house) && **rays.house() != *self.house {
+            return Err(AcousticsError::OtherHouse {
+                rays: rays.house().name.clone(),
+                scene: self.house.name.clone(),
+            });
+        }
+        Ok(())
+    }
+
     /// The energies that reach `receiver` from `source`: exact early paths and the traced tail, without any noise.
     ///
     /// `rays` must show the house of this scene in the state that was last given to [`Self::update`].
@@ -189,14 +207,7 @@ impl AcousticScene {
         key: Key,
         threads: Threads,
     ) -> Result<Echogram, AcousticsError> {
-        finite("the source", source.position)?;
-        finite("the receiver", receiver)?;
-        if !Arc::ptr_eq(rays.house(), &self.house) && **rays.house() != *self.house {
-            return Err(AcousticsError::OtherHouse {
-                rays: rays.house().name.clone(),
-                scene: self.house.name.clone(),
-            });
-        }
+        self.check(rays, source.position, receiver)?;
         let early = images::find(self, rays, source.position, receiver);
         let late = tail::trace(
             self,

@@ -34,12 +34,18 @@ __all__ = [
     "charset",
     "check_measured",
     "doctor_json",
+    "dollhouse",
     "expand",
+    "fixtures_json",
+    "floor_plan_json",
     "laws_json",
+    "map",
     "max_text_length",
     "sensors_json",
+    "surfaces",
     "synthesize",
     "tasks_json",
+    "texture",
     "vocabulary",
 ]
 
@@ -133,8 +139,6 @@ class World:
     def start_report_json(self) -> str: ...
     def render(self, view_json: str, channels: Sequence[str]) -> dict[str, NDArray[Any]]:
         """``view_json``: ``{camera, position, yaw_deg, pitch_deg | forward}`` or ``{camera, agent}``."""
-    def map(self, longest_edge: int) -> tuple[NDArray[np.uint8], float, float, float]:
-        """The lowest storey from above (height, width, 3), with the x and z of the upper left corner and pixels a metre."""
     def listen(self, agent: int, samples: int) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, shape (2, samples), Pa. Call once after each step, for each agent that listens."""
     def navigation(self, config_json: str = ...) -> Navigation: ...
@@ -219,6 +223,10 @@ class AcousticScene:
         self, source: tuple[float, float, float], mic: tuple[float, float, float], seed: int = ...
     ) -> str:
         """Band centres and T20, T30, EDT, C50, C80, D50, Ts, DRR by band."""
+    def early_paths_json(
+        self, source: tuple[float, float, float], mic: tuple[float, float, float]
+    ) -> str:
+        """``[{points, path: {planes, length_m, energy, arrival, departure, walls}}, ...]``, by length."""
     def explain_json(self) -> str: ...
     @property
     def rate_hz(self) -> int: ...
@@ -246,5 +254,25 @@ def calibration_example(folder: str, seed: int = ...) -> str:
 
 def check_measured(measured: str) -> int:
     """Reads and checks a measured bundle; answers how many episodes it has."""
+
+def map(
+    world: World, level: int, longest_edge: int
+) -> tuple[NDArray[np.uint8], float, float, float]:
+    """A storey from above (height, width, 3), with the x and z of the upper left corner and pixels a metre."""
+
+def dollhouse(world: World, level: int, config_json: str) -> NDArray[np.uint8]:
+    """A storey from outside, cut open (height, width, 3); ``config_json``: ``{width, yaw_deg, down_deg, cut_m}``."""
+
+def floor_plan_json(world: World, level: int) -> str:
+    """``{floor_y, rooms: [{name, kinds, area_m2, place}], doors: [{name, hinge, shut, half, open}]}``, points (x, z)."""
+
+def fixtures_json(world: World) -> str:
+    """``{lamps, sources, joints, boxes}`` as they stand."""
+
+def surfaces(world: World) -> list[dict[str, Any]]:
+    """For each room and material: room, ceiling, material, color (linear, with opacity), texture, positions, normals, uvs, triangles."""
+
+def texture(house: House, texture: int) -> NDArray[np.uint8]:
+    """A texture's image, sRGB with opacity (height, width, 4)."""
 
 def bench_json(what: str, house: str, options_json: str = ...) -> str: ...

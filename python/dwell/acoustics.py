@@ -85,6 +85,22 @@ class AcousticScene:
         )
         return metrics
 
+    def early_paths(self, source: Sequence[float], mic: Sequence[float]) -> list[dict[str, Any]]:
+        """The direct sound and early reflections, by length.
+
+        Returns:
+            For each ``points`` (the source, where it is reflected, the microphone; m) and ``path``:
+            ``length_m``, ``energy`` of each octave band from 62.5 Hz against a free path of 1 m,
+            ``arrival`` and ``departure`` (directions), ``walls`` that it passes through.
+
+        Raises:
+            DwellError: A point is not finite.
+        """
+        paths: list[dict[str, Any]] = json.loads(
+            self._native.early_paths_json(point("source", source), point("mic", mic))
+        )
+        return paths
+
     def explain(self) -> dict[str, Any]:
         """What sound meets: areas, mean absorption, which materials are guesses."""
         explained: dict[str, Any] = json.loads(self._native.explain_json())

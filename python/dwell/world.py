@@ -322,15 +322,17 @@ class World:
             view["pitch_deg"] = finite("pitch_deg", pitch_deg)
         return self._native.render(to_json(view), texts("channels", channels))
 
-    def map(self, longest_edge: int = 512) -> tuple[NDArray[np.uint8], tuple[float, float], float]:
-        """The lowest storey from above.
+    def map(
+        self, longest_edge: int = 512, *, level: int = 0
+    ) -> tuple[NDArray[np.uint8], tuple[float, float], float]:
+        """A storey from above, cut open below its ceilings; :mod:`dwell.plans` writes names on it.
 
         Returns:
             The image (height, width, 3), the x and z of its upper left corner in m, pixels a metre.
         """
-        image, x, z, scale = self._native.map(
-            whole("longest_edge", longest_edge, low=1, high=2**32 - 1)
-        )
+        edge = whole("longest_edge", longest_edge, low=1, high=_MOST_IDS)
+        level = whole("level", level, high=_MOST_IDS)
+        image, x, z, scale = _native.map(self._native, level, edge)
         return image, (x, z), scale
 
     def navigation(self, walker: Walker | None = None) -> Navigation:

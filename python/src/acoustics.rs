@@ -35,6 +35,19 @@ impl PyAcousticScene {
         })
     }
 
+    fn early_paths_json(
+        &self,
+        py: Python<'_>,
+        source: [f32; 3],
+        mic: [f32; 3],
+    ) -> PyResult<String> {
+        py.engine(|| -> Result<_, Fault> {
+            let (source, mic) = (Vec3::from_array(source), Vec3::from_array(mic));
+            let paths = self.scene.early_paths(&self.rays, source, mic)?;
+            Ok(serde_json::to_string(&paths)?)
+        })
+    }
+
     #[pyo3(signature = (source, mic, *, yaw_deg=0.0, ears=false, seed=0, threads=None))]
     #[expect(clippy::too_many_arguments, reason = "keyword-only in Python")]
     fn impulse_response<'py>(

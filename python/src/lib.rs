@@ -16,6 +16,7 @@ mod house;
 mod navigation;
 mod picture;
 mod running;
+mod show;
 mod world;
 
 use pyo3::prelude::*;
@@ -42,6 +43,12 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(calibrate::calibrate, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::calibration_example, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::check_measured, module)?)?;
+    module.add_function(wrap_pyfunction!(show::map, module)?)?;
+    module.add_function(wrap_pyfunction!(show::dollhouse, module)?)?;
+    module.add_function(wrap_pyfunction!(show::floor_plan_json, module)?)?;
+    module.add_function(wrap_pyfunction!(show::fixtures_json, module)?)?;
+    module.add_function(wrap_pyfunction!(show::surfaces, module)?)?;
+    module.add_function(wrap_pyfunction!(show::texture, module)?)?;
     module.add_function(wrap_pyfunction!(bench::bench_json, module)?)?;
     Ok(())
 }

@@ -8,12 +8,10 @@ use crate::picture;
 use crate::running::Running;
 use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
-use dwell_render::{Channels, Frame, Map};
-use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
-use dwell_scene::{Address, JointCommand, JointId, LevelId, Pose, Velocity};
+use dwell_scene::{Address, JointCommand, JointId, Pose, Velocity};
 use glam::{Quat, Vec3};
-use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde_json::json;
@@ -26,7 +24,7 @@ pub(crate) struct PyWorld {
 }
 
 impl PyWorld {
-    fn with<T: Send>(
+    pub(crate) fn with<T: Send>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&mut Running) -> Result<T, Fault> + Send,
@@ -207,46 +205,6 @@ impl PyWorld {
             images.set_item(channel, picture::array(py, observation)?)?;
         }
         Ok(images)
-    }
-
-    fn map<'py>(
-        &self,
-        py: Python<'py>,
-        longest_edge: u32,
-    ) -> PyResult<(Bound<'py, PyArray3<u8>>, f32, f32, f32)> {
-        let (rgb, height, width, corner, scale) = self.with(py, |running| {
-            let world = &running.world;
-            let map = Map::new(world.house(), LevelId(0), longest_edge)?;
-            let mut frame = Frame::new(
-                &map.view.camera,
-                Channels {
-                    rgb: true,
-                    ..Channels::NONE
-                },
-            );
-            let threads = Threads::requested(None)?;
-            world.engines().renderer().render(
-                world.rays(),
-                world.state(),
-                &[map.view],
-                &mut [frame.as_mut()],
-                threads,
-            )?;
-            let camera = &map.view.camera;
-            Ok((
-                frame.rgb,
-                camera.height() as usize,
-                camera.width() as usize,
-                map.corner,
-                map.pixels_per_m,
-            ))
-        })?;
-        Ok((
-            rgb.into_pyarray(py).reshape([height, width, 3])?,
-            corner.x,
-            corner.y,
-            scale,
-        ))
     }
 
     fn listen<'py>(

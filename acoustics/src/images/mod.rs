@@ -1,6 +1,7 @@
 //! Early sound: the direct path and mirror images up to a low order, each checked against the geometry.
 
 mod sequences;
+mod track;
 mod transmission;
 mod validate;
 
@@ -9,6 +10,7 @@ use crate::echogram::Path;
 use crate::scene::AcousticScene;
 use dwell_scene::rays::RayScene;
 use glam::{DVec3, Vec3};
+pub use track::EarlyPath;
 use validate::Validator;
 
 /// The closest that source and receiver count as being, m: nearer, 1/d has no meaning for real sources.

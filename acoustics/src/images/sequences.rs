@@ -55,7 +55,12 @@ pub(super) fn for_each(
 }
 
 /// The images of `source` behind each mirror in turn; false where one lies on its mirror.
-fn mirror(planes: &[Plane], source: DVec3, sequence: &[u32], images: &mut Vec<DVec3>) -> bool {
+pub(super) fn mirror(
+    planes: &[Plane],
+    source: DVec3,
+    sequence: &[u32],
+    images: &mut Vec<DVec3>,
+) -> bool {
     images.clear();
     let mut image = source;
     for id in sequence {

@@ -1,7 +1,7 @@
 //! What a camera sees: by the `cpu` back end, and by graphics cards.
 //!
 //! A [`CpuRenderer`] is made once for a house and renders [`View`]s of any world over it into memory of the caller:
-//! colour, depth, ids of things, ids of their classes. [`Map`] is a storey from above.
+//! colour, depth, ids of things, ids of their classes. [`Map`] is a storey from above, [`Dollhouse`] one from outside.
 //!
 //! # Light
 //! [`Preset::Flat`] shows texture times colour: no lamps, the same at every time of day, the sky where nothing is.
@@ -44,6 +44,6 @@ pub use error::RenderError;
 pub use frame::{Before, Channels, Frame, FrameMut, Preset, View};
 pub use gpu::{Adapter, AdapterKind, Gpu, GpuRenderer, Submitted, adapters};
 pub use laws::{Optics, Shutter};
-pub use map::Map;
+pub use map::{Dollhouse, DollhouseConfig, Map};
 pub use semantic::{Classes, EntityClasses, semantic_classes};
 pub use sightings::{OrientedBox, Sighting, sightings};

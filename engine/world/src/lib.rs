@@ -11,6 +11,8 @@ mod engines;
 mod env;
 mod error;
 mod expert;
+mod fixtures;
+mod floor_plan;
 mod info;
 pub mod laws;
 pub mod metrics;
@@ -22,6 +24,7 @@ mod saving;
 pub mod sensors;
 mod sound;
 mod start;
+mod surfaces;
 pub mod tasks;
 mod world;
 
@@ -32,11 +35,14 @@ pub use engines::Engines;
 pub use env::{Env, EnvConfig, Episode, SensorConfig, StepInfo, Verdict};
 pub use error::WorldError;
 pub use expert::{Guide, face};
+pub use fixtures::{Fixtures, JointNow, Lamp, ObjectBox, SoundSource, fixtures};
+pub use floor_plan::{FloorPlan, PlanDoor, PlanRoom, floor_plan};
 pub use info::{ObjectNow, Viewpoint, info, objects_now, viewpoints};
 pub use past::Past;
 pub use pictures::{PictureRequest, Place};
 pub use request::{ActionRequest, Named, PixelCamera};
 pub use requests::{Picture, Requests, Results, ViewRequest};
+pub use surfaces::{RoomSurface, room_surfaces};
 pub use world::World;
 
 /// Where a camera is against the eyes that carry it: position in m, then yaw, pitch and roll in degrees.

@@ -1,48 +1,46 @@
-"""``dwell render``: pictures from a place in a house."""
+"""``dwell render``: pictures from a place in a house, and of houses."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
+from dwell.camera import Camera, Channel
 from dwell.cli.common import atomic, count, number, point, print_json
 
 if TYPE_CHECKING:
-    from dwell.camera import Camera
+    from PIL import Image
 
-_SENSORS = (
-    "rgb",
-    "depth",
-    "instance",
-    "semantic",
-    "semantic_fine",
-    "semantic_nyu40",
-    "normals",
-    "albedo",
-    "surfels",
-    "flow",
-    "visible_objects",
-    "boxes_2d",
-    "boxes_3d",
+    from dwell.world import World
+
+_SENSORS: tuple[Channel, ...] = get_args(Channel)
+_PROJECTIONS = (
+    "pinhole",
+    "brown_conrady",
+    "fisheye",
+    "equirectangular",
+    "cubemap",
+    "orthographic",
 )
-_PROJECTIONS = ("pinhole", "fisheye", "equirectangular", "cubemap", "orthographic")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    parser.add_argument("house", metavar="HOUSE")
+    parser.add_argument("house", metavar="HOUSE", nargs="+", help="several only with --sheet")
     parser.add_argument(
         "--at", type=point, metavar="X,Y,Z", help="where the eye is, m; default: every room"
     )
     parser.add_argument(
-        "--yaw-deg", type=number, default=0.0, help="positive to the left; 0 looks along -Z"
+        "--yaw-deg",
+        type=number,
+        help="positive to the left; 0 looks along -Z (default 0, --dollhouse 25)",
     )
     parser.add_argument("--pitch-deg", type=number, default=0.0, help="positive up")
     parser.add_argument("--sensors", default="rgb", help=f"some of {','.join(_SENSORS)}")
-    parser.add_argument("--width", type=count, default=640)
+    parser.add_argument("--width", type=count, help="default 640; --map and --dollhouse 1200")
     parser.add_argument("--height", type=count, default=480)
     parser.add_argument("--fov-deg", type=number, default=90.0, help="horizontal field of view")
     parser.add_argument(
@@ -52,41 +50,51 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="fisheye: equidistant, --fov-deg across; all around: --height follows --width",
     )
     parser.add_argument(
+        "--intrinsics",
+        type=_numbers,
+        default={},
+        metavar="fx=..,fy=..,cx=..,cy=..,k1=..",
+        help="numbers of the projection instead of those that --fov-deg gives, pixels from the "
+        "top left corner (docs/cameras.md)",
+    )
+    parser.add_argument(
         "--width-m", type=number, default=6.0, help="what an orthographic image spans"
     )
     parser.add_argument("--preset", choices=("flat", "lit"), default="lit")
+    parser.add_argument(
+        "--map", action="store_true", help="the plan of every storey, with names and a scale"
+    )
+    parser.add_argument(
+        "--dollhouse", action="store_true", help="every storey from outside, cut open"
+    )
+    parser.add_argument(
+        "--sheet",
+        action="store_true",
+        help="one picture with all of a house, or with the doll's houses of several",
+    )
+    parser.add_argument("--cut-m", type=number, default=1.6, help="height of --dollhouse's cut")
+    parser.add_argument("--columns", type=count, default=4, help="pictures in a row of --sheet")
     parser.add_argument("--out", type=Path, required=True, help="folder for the files")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
 def run(args: argparse.Namespace) -> int:
     """Renders, writes PNG (pictures) and NPY (exact depth and ids), and names the files."""
-    from dwell.camera import Channel
     from dwell.house import House
     from dwell.world import World
 
-    channels = args.sensors.split(",")
-    if unknown := [name for name in channels if name not in _SENSORS]:
-        raise ValueError(f"--sensors: no {unknown[0]!r}; allowed are {', '.join(_SENSORS)}")
-    house = House.open(args.house)
-    world = World(house, agents=0)
-    camera = _camera(args)
-    views: list[tuple[str, Any, float]] = [("view", args.at, args.yaw_deg)]
-    if args.at is None:
-        views = [
-            (f"room_{k}", room["eye"], room["yaw_deg"]) for k, room in enumerate(house.rooms())
-        ]
-    files: list[str] = []
-    for name, eye, yaw_deg in views:
-        images = world.render(
-            position=eye,
-            yaw_deg=yaw_deg,
-            pitch_deg=args.pitch_deg,
-            camera=camera,
-            channels=cast("list[Channel]", channels),
-        )
-        for channel, image in images.items():
-            files += _write(args.out, f"{name}_{channel}", channel, image)
+    channels = [_sensor(name) for name in args.sensors.split(",")]
+    houses = [one for name in args.house for one in House.expand(name)]
+    if args.sheet and len(houses) > 1:
+        from dwell.plans import houses_sheet
+
+        files = [_save(args.out / "sheet.png", houses_sheet(houses, columns=args.columns))]
+    elif len(houses) > 1:
+        raise ValueError(f"{len(houses)} houses; several are taken by --sheet alone")
+    else:
+        world = World(House.open(houses[0]), agents=0)
+        pictured = args.map or args.dollhouse or args.sheet
+        files = _whole(args, world) if pictured else _views(args, world, channels)
     if args.json:
         print_json({"files": files})
     else:
@@ -94,25 +102,93 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
+def _sensor(name: str) -> Channel:
+    for known in _SENSORS:
+        if name == known:
+            return known
+    raise ValueError(f"--sensors: no {name!r}; allowed are {', '.join(_SENSORS)}")
+
+
+def _whole(args: argparse.Namespace, world: World) -> list[str]:
+    """Pictures of the whole house."""
+    from dwell import plans
+
+    width, files = args.width or 1200, []
+    if args.map:
+        for level in range(plans.levels_of(world.house)):
+            plan = plans.floor_plan(world, level, longest_edge=width)
+            files.append(_save(args.out / f"map_{level}.png", plan))
+    if args.dollhouse:
+        yaw_deg = 25.0 if args.yaw_deg is None else args.yaw_deg
+        doll = plans.dollhouse(world, width=width, yaw_deg=yaw_deg, cut_m=args.cut_m)
+        files.append(_save(args.out / "dollhouse.png", doll))
+    if args.sheet:
+        sheet = plans.house_sheet(world, columns=args.columns, preset=args.preset)
+        files.append(_save(args.out / "sheet.png", sheet))
+    return files
+
+
+def _views(args: argparse.Namespace, world: World, channels: list[Channel]) -> list[str]:
+    """What sensors give from a place, or from the viewpoint of every room."""
+    camera = _camera(args)
+    views: list[tuple[str, Any, float]] = [("view", args.at, args.yaw_deg or 0.0)]
+    if args.at is None:
+        rooms = enumerate(world.house.rooms())
+        views = [(f"room_{k}", room["eye"], room["yaw_deg"]) for k, room in rooms]
+    files: list[str] = []
+    for name, eye, yaw_deg in views:
+        images = world.render(
+            position=eye,
+            yaw_deg=yaw_deg,
+            pitch_deg=args.pitch_deg,
+            camera=camera,
+            channels=channels,
+        )
+        for channel, image in images.items():
+            files += _write(args.out, f"{name}_{channel}", channel, image)
+    return files
+
+
+def _numbers(text: str) -> dict[str, float]:
+    """Reads ``fx=500,fy=500``."""
+    numbers = {}
+    for part in text.split(","):
+        name, found, value = part.partition("=")
+        if not found or not name.strip().isidentifier():
+            raise argparse.ArgumentTypeError(f"expected NAME=NUMBER,..., found {text!r}")
+        numbers[name.strip()] = number(value)
+    return numbers
+
+
 def _camera(args: argparse.Namespace) -> Camera:
     """The camera that the options describe."""
     import math
 
-    from dwell.camera import Camera
-
-    width, height, preset = args.width, args.height, args.preset
-    if args.projection == "pinhole":
+    kind, width, height, preset = args.projection, args.width or 640, args.height, args.preset
+    if kind == "pinhole" and not args.intrinsics:
         return Camera(width, height, args.fov_deg, preset=preset)
     numbers: dict[str, Any] = {}
-    if args.projection == "fisheye":
-        focal = width / math.radians(args.fov_deg)
+    if kind in ("pinhole", "brown_conrady", "fisheye"):
+        half_rad = math.radians(args.fov_deg / 2)
+        focal = width / 2 / (half_rad if kind == "fisheye" else math.tan(half_rad))
         numbers = {"fx": focal, "fy": focal, "cx": width / 2, "cy": height / 2}
+    if kind == "brown_conrady":
+        numbers |= dict.fromkeys(("k1", "k2", "k3", "p1", "p2"), 0.0)
+    elif kind == "fisheye":
         numbers["half_angle_deg"] = min(args.fov_deg / 2, 180.0)
-    elif args.projection == "orthographic":
+    elif kind == "orthographic":
         numbers = {"width_m": args.width_m, "height_m": args.width_m * height / width}
-    else:
-        height = max(width // 2, 1) if args.projection == "equirectangular" else 6 * width
-    return Camera(width, height, preset=preset, projection={"kind": args.projection, **numbers})
+    elif kind in ("equirectangular", "cubemap"):
+        height = max(width // 2, 1) if kind == "equirectangular" else 6 * width
+    projection = {"kind": kind, **numbers, **args.intrinsics}
+    return Camera(width, height, preset=preset, projection=projection)
+
+
+def _save(path: Path, picture: Image.Image) -> str:
+    """Writes a PNG whole or not at all."""
+    with atomic(path) as temporary:
+        picture.save(temporary, format="PNG")
+    return str(path)
 
 
 def _write(folder: Path, name: str, channel: str, image: np.ndarray[Any, Any]) -> list[str]:
@@ -121,11 +197,10 @@ def _write(folder: Path, name: str, channel: str, image: np.ndarray[Any, Any]) -
 
     paths = []
     if has_picture(channel):
-        paths.append(folder / f"{name}.png")
-        with atomic(paths[-1]) as path:
-            picture(channel, image).save(path, format="PNG")
+        paths.append(_save(folder / f"{name}.png", picture(channel, image)))
     if channel != "rgb":
-        paths.append(folder / f"{name}.npy")
-        with atomic(paths[-1]) as path, path.open("wb") as file:
+        path = folder / f"{name}.npy"
+        with atomic(path) as temporary, temporary.open("wb") as file:
             np.save(file, image)
-    return [str(path) for path in paths]
+        paths.append(str(path))
+    return paths

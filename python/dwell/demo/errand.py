@@ -18,7 +18,8 @@ from dwell.house import House
 from dwell.sounds import write_wav
 from dwell.world import World, actions
 
-_CAMERA = Camera(256, 192)
+#: What it sees with.
+CAMERA = Camera(256, 192)
 _SAMPLES = 800
 _RATE_HZ = 16_000
 #: Steps that one walk may take, and that all may take together.
@@ -54,7 +55,7 @@ class Walker:
         self.sound.append(self.world.listen(_SAMPLES))
         self.way.append(self.position())
         if len(self.way) % 4 == 0:
-            image = self.world.render(camera=_CAMERA)["rgb"]
+            image = self.world.render(camera=CAMERA)["rgb"]
             self.frames.append(image)
             self.poses.append({"step": len(self.way), **self.world.agents()[0]})
         return outcome
@@ -234,7 +235,7 @@ def walk(house: House, folder: Path, progress: Callable[[float], None]) -> dict[
         part(walker)
         progress((k + 1) / 3)
     save_film(
-        walker.frames or [walker.world.render(camera=_CAMERA)["rgb"]],
+        walker.frames or [walker.world.render(camera=CAMERA)["rgb"]],
         folder / "errand.gif",
         frame_s=0.12,
     )

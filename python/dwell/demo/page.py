@@ -134,6 +134,7 @@ def html(story: dict[str, Any]) -> str:
         f'<p class="soft">dwell demo</p><h1>{escape(story["house"])}</h1>'
         f"<p>{len(info['rooms'])} rooms, {info['objects']} objects, {info['triangles']:,} triangles, "
         f"{info['lights']} lights, {info['emitters']} sources of sound.</p>"
+        '<figure><img src="dollhouse.png" alt="the house from outside, cut open"></figure>'
         f"<h2>Every room</h2>{_rooms(story)}"
         f"<h2>The house in words</h2>{text}"
         f"<h2>An instruction</h2>{_instruction(story['instruction'])}"

@@ -5,36 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from dwell.house import House
+from dwell import UsageError
+from dwell.camera import Camera
+from dwell.recording import Recording, record_house
+from dwell.world import World
 
 
-def write(house: House, errand: dict[str, Any], folder: Path) -> dict[str, str]:
+def write(errand: dict[str, Any], camera: Camera, folder: Path) -> dict[str, str]:
     """Writes ``errand.rrd``; returns its file, or a sentence why there is none."""
-    try:
-        import rerun as rr
-    except ImportError:
-        return {"missing": "No recording: the Rerun SDK is not installed (pip install rerun-sdk)."}
     path = folder / "errand.rrd"
-    rr.init("dwell demo")
-    rr.save(str(path))
-    rr.log("world", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
-    rr.log("world/way", rr.LineStrips3D([errand["way"]]), static=True)
-    boxes = [
-        thing for thing in errand["world"].objects() if thing["category"] not in ("", "person")
-    ]
-    rr.log(
-        "world/objects",
-        rr.Boxes3D(
-            centers=[thing["center"] for thing in boxes],
-            sizes=[thing["size"] for thing in boxes],
-            labels=[thing["name"] for thing in boxes],
-        ),
-        static=True,
-    )
+    try:
+        recording = Recording("dwell demo", path)
+    except UsageError as error:
+        return {"missing": f"No recording: {error}."}
+    world: World = errand["world"]
+    record_house(recording, world)
+    recording.way("errand", errand["way"])
     for pose, frame in zip(errand["poses"], errand["frames"], strict=True):
-        rr.set_time("step", sequence=pose["step"])
-        rr.log("world/agent", rr.Points3D([pose["position"]], radii=[0.2]))
-        rr.log("eye", rr.Image(frame))
-    rr.log("house", rr.TextDocument("\n".join(house.describe("house"))), static=True)
-    rr.disconnect()
+        recording.step(pose["step"], pose, frame, camera)
+    recording.close()
     return {"file": path.name}

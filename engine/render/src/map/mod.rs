@@ -1,11 +1,19 @@
-//! Maps: a storey from above.
+//! Maps: a storey from above, and from outside as a doll's house.
 
+mod cut;
+mod dollhouse;
 mod walls;
 
+pub use dollhouse::{Dollhouse, DollhouseConfig};
+
 use crate::camera::Camera;
+use crate::cpu::CpuRenderer;
 use crate::error::RenderError;
 use crate::frame::View;
-use dwell_scene::{Aabb, House, Id, LevelId, Pose, space};
+use cut::Cut;
+use dwell_scene::parallel::Threads;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{Aabb, House, Id, LevelId, Pose, State, space};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
@@ -50,11 +58,8 @@ impl Map {
         let ceiling = rooms()
             .map(|room| room.ceiling_y)
             .fold(f32::INFINITY, f32::min);
-        let floor = rooms()
-            .map(|room| room.floor_y)
-            .fold(f32::INFINITY, f32::min);
-        let cut_y = if ceiling.is_finite() && floor.is_finite() {
-            (ceiling - BELOW_CEILING_M).max(floor + 0.5)
+        let cut_y = if ceiling.is_finite() {
+            (ceiling - BELOW_CEILING_M).max(floor_y(house, level) + 0.5)
         } else {
             storey.bounds.max.y + 1.0
         };
@@ -78,10 +83,50 @@ impl Map {
         })
     }
 
+    /// What the image spans, (x, z), m.
+    pub fn size_m(&self) -> Vec2 {
+        let camera = &self.view.camera;
+        Vec2::new(camera.width() as f32, camera.height() as f32) / self.pixels_per_m
+    }
+
+    /// The map as a picture: flat colours, walls dark where they are cut, paper where nothing of the storey is. Shape (height,
+    /// width, 3) of [`Self::view`]'s camera.
+    ///
+    /// # Errors
+    /// [`RenderError::OtherHouse`] for a scene over another house than the renderer's.
+    pub fn picture(
+        &self,
+        renderer: &CpuRenderer,
+        scene: &RayScene,
+        state: &State,
+        threads: Threads,
+    ) -> Result<Vec<u8>, RenderError> {
+        let cut = Cut {
+            view: self.view,
+            level_y: self.cut_y,
+            floor_y: self.cut_y - self.view.camera.far_m(),
+            plan: self,
+        };
+        cut.picture(renderer, scene, state, threads)
+    }
+
     /// Where a point appears, pixels from the upper left corner of the image.
     pub fn image_from_world(&self, point: Vec3) -> Vec2 {
         (Vec2::new(point.x, point.z) - self.corner) * self.pixels_per_m
     }
+}
+
+/// The lowest floor of a storey, m.
+fn floor_y(house: &House, level: LevelId) -> f32 {
+    let rooms = house.rooms.iter().filter(|room| room.level == level);
+    let lowest = rooms.map(|room| room.floor_y).fold(f32::INFINITY, f32::min);
+    if lowest.is_finite() {
+        return lowest;
+    }
+    house
+        .levels
+        .get(level)
+        .map_or(0.0, |storey| storey.bounds.min.y)
 }
 
 #[cfg(test)]

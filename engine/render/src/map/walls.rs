@@ -7,7 +7,7 @@ use glam::Vec2;
 /// Width of the lines around walls, m: the skins of a wall are about so thick.
 const LINE_M: f32 = 0.06;
 /// The colour of walls.
-const SRGB: [u8; 3] = [40, 40, 44];
+pub(super) const SRGB: [u8; 3] = [40, 40, 44];
 
 impl Map {
     /// Fills the places where the cut meets walls in a picture of the map.

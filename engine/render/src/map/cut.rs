@@ -1,0 +1,173 @@
+//! Pictures of what lies below a level cut: each ray begins where it passes the cut.
+
+use super::{Map, walls};
+use crate::camera::Camera;
+use crate::color::Srgb;
+use crate::cpu::{CpuRenderer, Job};
+use crate::error::RenderError;
+use crate::frame::{Channels, Frame, View};
+use dwell_scene::parallel::Threads;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{Entity, EntityId, State, StructureKind};
+use glam::{Vec2, Vec3};
+
+/// Where nothing is.
+const PAPER: [u8; 3] = [250, 249, 246];
+/// Where light comes from in the camera's frame: from above, the left, and the viewer.
+const LIGHT: Vec3 = Vec3::new(-0.35, 0.72, 0.6);
+/// Light that comes from everywhere, as a share of that on what faces the light.
+const AMBIENT: f32 = 0.5;
+
+const WANTED: Channels = Channels {
+    rgb: true,
+    depth: true,
+    instance: true,
+    normals: true,
+    ..Channels::NONE
+};
+
+/// A level cut through a storey.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut<'a> {
+    /// From above, without roll: then a row of the image meets the cut at one depth.
+    pub(super) view: View,
+    /// Height of the cut, m.
+    pub(super) level_y: f32,
+    /// What lies deeper belongs to another storey and is left out, m.
+    pub(super) floor_y: f32,
+    /// The map on which walls at the cut are looked up.
+    pub(super) plan: &'a Map,
+}
+
+impl Cut<'_> {
+    /// The picture in flat colours, darker where a surface turns away, with dark walls at the cut. Shape (height, width, 3).
+    pub(super) fn picture(
+        &self,
+        renderer: &CpuRenderer,
+        scene: &RayScene,
+        state: &State,
+        threads: Threads,
+    ) -> Result<Vec<u8>, RenderError> {
+        let mut frame = self.frame(renderer, scene, state, threads)?;
+        self.shade(renderer, &mut frame);
+        self.fill_walls(renderer, &mut frame.rgb);
+        Ok(frame.rgb)
+    }
+
+    /// The depth at which a row meets the cut; nothing for one that looks level or up.
+    fn near_m(&self, row: u32) -> Option<f32> {
+        let pose = &self.view.world_from_camera;
+        let (start, direction) = self
+            .view
+            .camera
+            .ray_in_camera(Vec2::new(0.5, row as f32 + 0.5));
+        let (start, direction) = (
+            pose.transform_point(start),
+            pose.transform_vector(direction),
+        );
+        (direction.y < -1e-3).then(|| ((self.level_y - start.y) / direction.y).max(0.0))
+    }
+
+    fn frame(
+        &self,
+        renderer: &CpuRenderer,
+        scene: &RayScene,
+        state: &State,
+        threads: Threads,
+    ) -> Result<Frame, RenderError> {
+        let camera = self.view.camera;
+        let mut frame = Frame::new(&camera, WANTED);
+        let mut rest = frame.as_mut();
+        let mut jobs = Vec::new();
+        let mut first = 0;
+        while first < camera.height() {
+            let near = self.near_m(first);
+            let mut end = first + 1;
+            while end < camera.height() && self.near_m(end) == near {
+                end += 1;
+            }
+            let pixels = (end - first) as usize * camera.width() as usize;
+            let part = rest.take_pixels(pixels);
+            if let Some(near_m) = near.filter(|near_m| *near_m < camera.far_m()) {
+                let view = View {
+                    camera: camera.with_range(near_m, camera.far_m())?,
+                    ..self.view
+                };
+                jobs.push(Job {
+                    rows: Some((first, end)),
+                    ..Job::new(scene, state, view, part)
+                });
+            }
+            first = end;
+        }
+        renderer.render_batch(&mut jobs, threads)?;
+        drop(jobs);
+        Ok(frame)
+    }
+
+    /// Colours by how surfaces stand to the light; paper where nothing of the storey is.
+    fn shade(&self, renderer: &CpuRenderer, frame: &mut Frame) {
+        let srgb = Srgb::tables();
+        let house = renderer.house();
+        let pose = &self.view.world_from_camera;
+        let light = LIGHT.normalize_or_zero();
+        let facing = |normal: Vec3| AMBIENT + (1.0 - AMBIENT) * normal.dot(light).max(0.0);
+        // Floors keep their colour.
+        let level = facing(pose.rotation.inverse() * Vec3::Y);
+        let ground = |id: i32| match house.entity(EntityId(id)) {
+            Some(Entity::Structure(piece)) => house.structure[piece].kind == StructureKind::Ground,
+            found => found.is_none(),
+        };
+        for (k, rgb) in frame.rgb.chunks_exact_mut(3).enumerate() {
+            let point = self.point(k, frame.depth[k]);
+            if frame.instance[k] == 0 || point.y < self.floor_y || ground(frame.instance[k]) {
+                rgb.copy_from_slice(&PAPER);
+                continue;
+            }
+            let normal = Vec3::from_slice(&frame.normals[k * 3..k * 3 + 3]);
+            let share = facing(normal) / level;
+            for byte in rgb {
+                *byte = srgb.encode(srgb.decode(*byte) * share);
+            }
+        }
+    }
+
+    /// The point that a pixel shows at a depth.
+    fn point(&self, pixel: usize, depth_m: f32) -> Vec3 {
+        let camera: &Camera = &self.view.camera;
+        let width = camera.width() as usize;
+        let image = Vec2::new((pixel % width) as f32 + 0.5, (pixel / width) as f32 + 0.5);
+        let (start, direction) = camera.ray_in_camera(image);
+        let in_camera = start + direction * depth_m;
+        self.view.world_from_camera.transform_point(in_camera)
+    }
+
+    /// Paints the places where rays pass the cut inside walls.
+    fn fill_walls(&self, renderer: &CpuRenderer, rgb: &mut [u8]) {
+        let mut plan = vec![0; self.plan.view.camera.pixels() * 3];
+        self.plan.draw_walls(renderer.house(), &mut plan);
+        let (width, height) = (
+            self.plan.view.camera.width(),
+            self.plan.view.camera.height(),
+        );
+        let across = self.view.camera.width() as usize;
+        for (row, rgb) in rgb.chunks_exact_mut(across * 3).enumerate() {
+            let Some(near_m) = self.near_m(row as u32) else {
+                continue;
+            };
+            for (column, rgb) in rgb.chunks_exact_mut(3).enumerate() {
+                let place = self
+                    .plan
+                    .image_from_world(self.point(row * across + column, near_m));
+                let (x, y) = (place.x.floor(), place.y.floor());
+                if x < 0.0 || y < 0.0 || x >= width as f32 || y >= height as f32 {
+                    continue;
+                }
+                let byte = (y as usize * width as usize + x as usize) * 3;
+                if plan[byte] != 0 {
+                    rgb.copy_from_slice(&walls::SRGB);
+                }
+            }
+        }
+    }
+}

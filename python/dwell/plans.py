@@ -1,0 +1,276 @@
+"""Houses as pictures for people: floor plans, doll's houses, contact sheets."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from PIL import Image, ImageDraw, ImageFont
+
+from dwell import _native
+from dwell.arguments import finite, whole
+from dwell.camera import Camera
+from dwell.house import House
+from dwell.world import World
+
+#: Pictures are drawn this much larger and then made smaller, so that edges are smooth.
+_FINER = 2
+_PAPER = (250, 249, 246)
+_INK = (38, 40, 46)
+_SOFT = (110, 113, 122)
+_DOOR = (176, 92, 44)
+#: Lengths that a scale may show, m.
+_SCALES_M = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+_MOST_PIXELS = 8192
+
+_Font = ImageFont.FreeTypeFont | ImageFont.ImageFont
+
+
+def floor_plan(
+    world: World,
+    level: int = 0,
+    *,
+    longest_edge: int = 1000,
+    ways: Sequence[tuple[str, Sequence[Sequence[float]]]] = (),
+) -> Image.Image:
+    """A storey from above with its rooms' names and sizes, the swing of its doors, and a scale.
+
+    Args:
+        world: The world as it stands.
+        level: The storey, from 0.
+        longest_edge: Pixels of the plan's longer edge, 16 to 8192; the scale stands below it.
+        ways: Lines to draw over it: for each a colour and positions (x, y, z) in m.
+
+    Raises:
+        DwellError: There is no such storey.
+    """
+    edge = whole("longest_edge", longest_edge, low=16, high=_MOST_PIXELS)
+    picture, (left, top), scale = world.map(_FINER * edge, level=level)
+    plan = json.loads(_native.floor_plan_json(world.native, whole("level", level)))
+    foot = round(max(_FINER * edge * 0.05, 40.0))
+    canvas = Image.new("RGB", (picture.shape[1], picture.shape[0] + foot), _PAPER)
+    canvas.paste(Image.fromarray(picture))
+    draw = ImageDraw.Draw(canvas)
+    line = max(round(_FINER * edge / 700), 1)
+
+    def place(x: float, z: float) -> tuple[float, float]:
+        return (x - left) * scale, (z - top) * scale
+
+    for door in plan["doors"]:
+        hinge = place(*door["hinge"])
+        draw.line([hinge, place(*door["open"])], fill=_DOOR, width=2 * line)
+        draw.line([place(*point) for point in _swing(door)], fill=_DOOR, width=line)
+    for color, way in ways:
+        _way(draw, color, [place(x, z) for x, _, z in way], line)
+    for room in plan["rooms"]:
+        _name(draw, room, place(*room["place"]), _FINER * edge)
+    _scale(draw, canvas.size, scale, foot, line)
+    return _smooth(canvas)
+
+
+def dollhouse(
+    world: World,
+    *,
+    width: int = 1000,
+    yaw_deg: float = 25.0,
+    down_deg: float = 52.0,
+    cut_m: float = 1.6,
+) -> Image.Image:
+    """The house as a doll's house: every storey from outside, cut open, the lowest at the bottom.
+
+    Args:
+        world: The world as it stands.
+        width: Pixels across, 16 to 8192.
+        yaw_deg: Where one looks, to the left of -Z.
+        down_deg: How far one looks down, 20 to 90.
+        cut_m: Height of the cut over each floor, m, 0.3 to 10.
+    """
+    wide = _FINER * whole("width", width, low=16, high=_MOST_PIXELS)
+    config = {
+        "width": wide,
+        "yaw_deg": finite("yaw_deg", yaw_deg),
+        "down_deg": finite("down_deg", down_deg),
+        "cut_m": finite("cut_m", cut_m),
+    }
+    levels = range(levels_of(world.house))
+    storeys = [
+        Image.fromarray(_native.dollhouse(world.native, level, json.dumps(config)))
+        for level in reversed(levels)
+    ]
+    return _smooth(_stacked(storeys))
+
+
+def levels_of(house: House) -> int:
+    """How many storeys a house has."""
+    return int(house.info()["levels"])
+
+
+def sheet(
+    pictures: Sequence[tuple[str, Image.Image]],
+    *,
+    columns: int = 4,
+    tile: tuple[int, int] = (360, 270),
+) -> Image.Image:
+    """Pictures beside and below one another, each with a line below it.
+
+    Args:
+        pictures: A title and a picture each; they are made smaller to fit, never larger.
+        columns: Pictures in a row, from 1.
+        tile: Pixels across and down for each.
+    """
+    across, down = (whole("tile", edge, low=8, high=_MOST_PIXELS) for edge in tile)
+    columns = min(whole("columns", columns, low=1, high=64), max(len(pictures), 1))
+    gap, foot = 10, 24
+    rows = math.ceil(len(pictures) / columns)
+    size = (columns * (across + gap) + gap, rows * (down + foot + gap) + gap)
+    canvas = Image.new("RGB", size, _PAPER)
+    draw = ImageDraw.Draw(canvas)
+    for k, (title, picture) in enumerate(pictures):
+        x, y = gap + k % columns * (across + gap), gap + k // columns * (down + foot + gap)
+        small = picture.convert("RGB")
+        small.thumbnail((across, down), Image.Resampling.LANCZOS)
+        canvas.paste(small, (x + (across - small.width) // 2, y + (down - small.height) // 2))
+        _text(draw, (x + 2, y + down + 18), title, 15, _INK)
+    return canvas
+
+
+def house_sheet(world: World, *, columns: int = 4, preset: str = "lit") -> Image.Image:
+    """One house: the doll's house, the plan of each storey, a view of each room."""
+    house, levels = world.house, range(levels_of(world.house))
+    pictures = [(house.name, dollhouse(world, width=720))]
+    for level in levels:
+        title = f"storey {level + 1}" if len(levels) > 1 else "plan"
+        pictures.append((title, floor_plan(world, level, longest_edge=720)))
+    for room in house.rooms():
+        image = room_view(world, room, Camera(720, 540, preset=preset))  # type: ignore[arg-type] # checked there
+        pictures.append((f"{_called(room)}, {room['area_m2']:.1f} m²", image))
+    return sheet(pictures, columns=columns)
+
+
+def houses_sheet(houses: Sequence[str], *, columns: int = 4) -> Image.Image:
+    """Many houses: the doll's house of each, with its name and its number of rooms.
+
+    Args:
+        houses: HOUSE strings, each of one house.
+        columns: Pictures in a row.
+    """
+    pictures = []
+    for name in houses:
+        house = House.open(name)
+        world = World(house, agents=0)
+        rooms = len(house.rooms())
+        title = f"{name}, {rooms} room{'' if rooms == 1 else 's'}"
+        pictures.append((title, dollhouse(world, width=540)))
+    return sheet(pictures, columns=columns)
+
+
+def room_view(world: World, room: dict[str, Any], camera: Camera) -> Image.Image:
+    """What one sees of a room from its viewpoint, a row of ``House.rooms()``."""
+    seen = world.render(
+        position=room["eye"], yaw_deg=room["yaw_deg"], pitch_deg=-6.0, camera=camera
+    )
+    return Image.fromarray(seen["rgb"])
+
+
+def _called(room: dict[str, Any]) -> str:
+    return str(room["kinds"][0] if room["kinds"] else room["name"])
+
+
+def _font(size: float) -> _Font:
+    try:
+        return ImageFont.load_default(size)
+    except TypeError:  # Pillow before 10.1 has one size
+        return ImageFont.load_default()
+
+
+def _smooth(canvas: Image.Image) -> Image.Image:
+    size = (max(canvas.width // _FINER, 1), max(canvas.height // _FINER, 1))
+    return canvas.resize(size, Image.Resampling.BOX)
+
+
+def _stacked(pictures: list[Image.Image]) -> Image.Image:
+    """Below one another, middles in line."""
+    width = max(picture.width for picture in pictures)
+    canvas = Image.new("RGB", (width, sum(picture.height for picture in pictures)), _PAPER)
+    top = 0
+    for picture in pictures:
+        canvas.paste(picture, ((width - picture.width) // 2, top))
+        top += picture.height
+    return canvas
+
+
+def _swing(door: dict[str, Any]) -> list[tuple[float, float]]:
+    """The way of a leaf's edge from shut to open, past the middle."""
+    hinge_x, hinge_z = door["hinge"]
+    turns = [
+        math.atan2(door[key][1] - hinge_z, door[key][0] - hinge_x)
+        for key in ("shut", "half", "open")
+    ]
+    for k in (1, 2):
+        turns[k] = turns[k - 1] + math.remainder(turns[k] - turns[k - 1], math.tau)
+    radius = math.dist(door["hinge"], door["shut"])
+    steps = [turns[0] + (turns[2] - turns[0]) * k / 24 for k in range(25)]
+    return [(hinge_x + radius * math.cos(a), hinge_z + radius * math.sin(a)) for a in steps]
+
+
+def _way(
+    draw: ImageDraw.ImageDraw, color: str, points: list[tuple[float, float]], line: int
+) -> None:
+    """A line with a halo, its start white and its end filled."""
+    if not points:
+        return
+    if len(points) > 1:
+        draw.line(points, fill="white", width=7 * line, joint="curve")
+        draw.line(points, fill=color, width=4 * line, joint="curve")
+    for (x, y), fill in zip((points[0], points[-1]), ("white", color), strict=True):
+        r = 6 * line
+        draw.ellipse((x - r, y - r, x + r, y + r), fill=fill, outline="black", width=2 * line)
+
+
+def _name(
+    draw: ImageDraw.ImageDraw, room: dict[str, Any], at: tuple[float, float], edge: int
+) -> None:
+    """The room's word with its area below it."""
+    halo = max(edge // 500, 1)
+    _text(draw, (at[0], at[1] - edge * 0.004), _called(room), edge * 0.02, _INK, halo, 0.5)
+    area = f"{room['area_m2']:.1f} m²"
+    _text(draw, (at[0], at[1] + edge * 0.016), area, edge * 0.016, _SOFT, halo, 0.5)
+
+
+def _text(
+    draw: ImageDraw.ImageDraw,
+    at: tuple[float, float],
+    words: str,
+    size: float,
+    color: tuple[int, int, int],
+    halo: int = 0,
+    before: float = 0.0,
+) -> None:
+    """A line of words on the baseline at a place, of which a part stands before it.
+
+    The font that comes with Pillow has no raised 2: one at the end is a small one, raised.
+    """
+    raised = words.endswith("²")
+    words, font, small = words.removesuffix("²"), _font(size), _font(0.7 * size)
+    width = draw.textlength(words, font) + (draw.textlength("2", small) if raised else 0.0)
+    x, y = at[0] - before * width, at[1]
+    halo_color = _PAPER if halo else None
+    draw.text((x, y), words, color, font, "ls", stroke_width=halo, stroke_fill=halo_color)
+    if raised:
+        place = (x + draw.textlength(words, font), y - 0.35 * size)
+        draw.text(place, "2", color, small, "ls", stroke_width=halo, stroke_fill=halo_color)
+
+
+def _scale(
+    draw: ImageDraw.ImageDraw, size: tuple[int, int], scale: float, foot: int, line: int
+) -> None:
+    """A bar of a round length, at most a quarter of the width."""
+    length_m = max((m for m in _SCALES_M if m * scale <= size[0] / 4), default=_SCALES_M[0])
+    x, y = foot / 2, size[1] - foot / 2
+    end = x + length_m * scale
+    draw.line([(x, y), (end, y)], fill=_INK, width=2 * line)
+    for at in (x, end):
+        draw.line([(at, y - foot / 6), (at, y + foot / 6)], fill=_INK, width=2 * line)
+    _text(draw, (end + foot / 4, y + foot * 0.15), f"{length_m:g} m", foot * 0.45, _INK)

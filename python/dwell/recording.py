@@ -1,0 +1,356 @@
+"""Worlds as recordings for the Rerun viewer: what ``dwell view`` and the demo show there."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from dwell import UsageError, _native
+from dwell.acoustics import AcousticScene
+from dwell.camera import Camera
+from dwell.house import House
+from dwell.pictures import light_colors, scale_colors
+from dwell.world import World
+
+MISSING = "the Rerun SDK is not installed; pip install 'dwell[viewer]' (or rerun-sdk) gets it"
+#: Textures are made smaller for the viewer, which keeps one for each mesh, pixels.
+_TEXTURE_EDGE = 256
+#: Where ears are over a floor, m.
+_EAR_M = 1.5
+#: Paths this much weaker than the strongest are darkest, dB.
+_RANGE_DB = 40.0
+#: The octave band of 1 kHz among those of ``early_paths``.
+_BAND_OF_1_KHZ = 4
+
+
+def sdk() -> ModuleType:
+    """The Rerun SDK.
+
+    Raises:
+        UsageError: It is not installed; the message says how to get it.
+    """
+    try:
+        import rerun
+    except ImportError:
+        raise UsageError(MISSING) from None
+    module: ModuleType = rerun
+    return module
+
+
+class Recording:
+    """A recording in the making. Everything stands below ``world``; its frame is dwell's, +Y up."""
+
+    def __init__(self, application: str, out: Path | None) -> None:
+        """Begins a recording.
+
+        Args:
+            application: The name that the viewer shows.
+            out: The ``.rrd`` file to write; ``None`` opens the viewer.
+
+        Raises:
+            UsageError: The Rerun SDK is not installed.
+        """
+        self._rr = sdk()
+        self._stream = self._rr.RecordingStream(application)
+        if out is None:
+            self._stream.spawn()
+        else:
+            self._stream.save(str(out))
+        self._cameras: list[str] = []
+        self._log(["world"], self._rr.ViewCoordinates.RIGHT_HAND_Y_UP)
+
+    def close(self) -> None:
+        """Writes what is left, and how the viewer shows it at first."""
+        self._stream.send_blueprint(self._blueprint())
+        self._stream.flush()
+        self._stream.disconnect()
+
+    def house(self, world: World) -> None:
+        """Surfaces by room and material, boxes with names, lamps, joints, sources of sound."""
+        rr = self._rr
+        house = world.house
+        textures: dict[int, NDArray[np.uint8]] = {}
+        for k, surface in enumerate(_native.surfaces(world.native)):
+            number = surface["texture"]
+            if number is not None and number not in textures:
+                textures[number] = _texture(house, number)
+            red, green, blue, opacity = surface["color"]
+            color = light_colors(np.array([red, green, blue]))
+            uvs = surface["uvs"] * np.float32([1, -1]) + np.float32([0, 1])
+            self._log(
+                [
+                    "world",
+                    "ceilings" if surface["ceiling"] else "house",
+                    surface["room"] or "building",
+                    f"{k} {surface['material']}",
+                ],
+                rr.Mesh3D(
+                    vertex_positions=surface["positions"],
+                    vertex_normals=surface["normals"],
+                    vertex_texcoords=None if number is None else uvs,
+                    triangle_indices=surface["triangles"],
+                    albedo_texture=None if number is None else textures[number],
+                    albedo_factor=[*map(int, color), round(255 * opacity)],
+                ),
+            )
+        fixtures = json.loads(_native.fixtures_json(world.native))
+        self._boxes(fixtures["boxes"])
+        self._points(fixtures["lamps"], ["world", "lamps"], _lamp)
+        self._points(fixtures["sources"], ["world", "sound", "sources"], _source)
+        joints = fixtures["joints"]
+        if joints:
+            self._log(
+                ["world", "joints"],
+                rr.Arrows3D(
+                    origins=[joint["position"] for joint in joints],
+                    vectors=[[0.25 * x for x in joint["axis"]] for joint in joints],
+                    labels=[f"{joint['name']}, {joint['kind']}" for joint in joints],
+                    show_labels=False,
+                ),
+            )
+        names = [(row["id"], row["name"]) for row in fixtures["boxes"]]
+        self._log(["world"], rr.AnnotationContext(names))
+        text = "\n".join(house.describe("house"))
+        self._log(["description"], rr.TextDocument(text))
+
+    def view(
+        self,
+        world: World,
+        name: str,
+        eye: Sequence[float],
+        yaw_deg: float,
+        pitch_deg: float = -6.0,
+        camera: Camera | None = None,
+    ) -> None:
+        """A camera's frustum with its colour, depth and ids.
+
+        Args:
+            world: The world as it stands.
+            name: What the camera is called.
+            eye: Where it is, m.
+            yaw_deg: Where it looks, to the left of -Z.
+            pitch_deg: And up.
+            camera: A pinhole with ``fov_deg``; 320 by 240 and 90 degrees, if left out.
+        """
+        rr = self._rr
+        camera = Camera(320, 240, 90.0) if camera is None else camera
+        images = world.render(
+            position=eye,
+            yaw_deg=yaw_deg,
+            pitch_deg=pitch_deg,
+            camera=camera,
+            channels=("rgb", "depth", "instance"),
+        )
+        path = ["world", "cameras", name]
+        self._cameras.append(rr.new_entity_path(path))
+        self._pinhole(path, camera, eye, yaw_deg, pitch_deg, static=True)
+        self._log([*path, "rgb"], rr.Image(images["rgb"]))
+        self._log([*path, "depth"], rr.DepthImage(images["depth"][..., 0], meter=1.0))
+        ids = images["instance"][..., 0].astype(np.uint16)
+        self._log([*path, "ids"], rr.SegmentationImage(ids))
+
+    def way(self, name: str, way: Sequence[Sequence[float]]) -> None:
+        """Where an agent went: positions (x, y, z), m."""
+        self._log(["world", "ways", name], self._rr.LineStrips3D([way], radii=[0.02]))
+
+    def step(
+        self, step: int, agent: Mapping[str, Any], image: NDArray[Any], camera: Camera
+    ) -> None:
+        """An agent at a step of its way, with what it saw.
+
+        Args:
+            step: The step's number.
+            agent: A row of ``World.agents()``.
+            image: Its colours.
+            camera: What they were taken with: a pinhole at the eyes.
+        """
+        rr = self._rr
+        self._stream.set_time("step", sequence=step)
+        path = ["world", "agent"]
+        x, y, z = agent["position"]
+        body = agent["body"]
+        middle = [x, y + body["height_m"] / 2, z]
+        size = [2 * body["radius_m"], body["height_m"], 2 * body["radius_m"]]
+        self._log([*path, "body"], rr.Boxes3D(centers=[middle], sizes=[size]), static=False)
+        eye = (x, y + body["eye_height_m"], z)
+        yaw_deg, pitch_deg = map(math.degrees, (agent["yaw_rad"], agent["pitch_rad"]))
+        self._pinhole([*path, "eye"], camera, eye, yaw_deg, pitch_deg, static=False)
+        self._log([*path, "eye", "rgb"], rr.Image(image), static=False)
+
+    def sound(
+        self, name: str, paths: Sequence[Mapping[str, Any]], listener: Sequence[float]
+    ) -> None:
+        """The ways of early sound to a listener, the louder the brighter.
+
+        Args:
+            name: What sounds.
+            paths: What ``AcousticScene.early_paths`` found.
+            listener: Where they lead, m.
+        """
+        rr = self._rr
+        place = ["world", "sound", "rays", name]
+        self._log([*place, "listener"], rr.Points3D([listener], radii=[0.06], labels=["listener"]))
+        if not paths:
+            return
+        energy = np.array([path["path"]["energy"][_BAND_OF_1_KHZ] for path in paths])
+        levels_db = 10.0 * np.log10(np.maximum(energy, 1e-30))
+        colors = scale_colors(1.0 + (levels_db - levels_db.max()) / _RANGE_DB)
+        words = [
+            f"{_reflections(path)}, {path['path']['length_m']:.2f} m, {level:.1f} dB re 1 m"
+            for path, level in zip(paths, levels_db, strict=True)
+        ]
+        strips = [path["points"] for path in paths]
+        self._log(
+            place,
+            rr.LineStrips3D(strips, colors=colors, labels=words, radii=[0.008], show_labels=False),
+        )
+
+    def _blueprint(self) -> object:
+        """The house without ceilings, the cameras' images beside it."""
+        from rerun import blueprint
+
+        hidden = [f"- {camera}/{image}" for camera in self._cameras for image in ("depth", "ids")]
+        contents = ["+ /world/**", "- /world/ceilings/**", *hidden]
+        house = blueprint.Spatial3DView(origin="/world", contents=contents, name="house")
+        text = blueprint.TextDocumentView(origin="/description", name="description")
+
+        def images(image: str) -> object:
+            views = [
+                blueprint.Spatial2DView(
+                    origin=camera, contents=[f"+ {camera}/{image}"], name=camera.split("/")[-1]
+                )
+                for camera in self._cameras
+            ]
+            return blueprint.Grid(*views, name=image)
+
+        tabs = [images(image) for image in ("rgb", "depth", "ids") if self._cameras]
+        beside = blueprint.Tabs(*tabs, text)
+        return blueprint.Blueprint(blueprint.Horizontal(house, beside, column_shares=[3, 2]))
+
+    def _log(self, path: list[str], what: object, *, static: bool = True) -> None:
+        self._stream.log(path, what, static=static)
+
+    def _boxes(self, boxes: Sequence[Mapping[str, Any]]) -> None:
+        rooms: dict[str, list[Mapping[str, Any]]] = {}
+        for row in boxes:
+            rooms.setdefault(row["room"] or "building", []).append(row)
+        for room, rows in rooms.items():
+            self._log(
+                ["world", "boxes", room],
+                self._rr.Boxes3D(
+                    centers=[row["center"] for row in rows],
+                    sizes=[row["size"] for row in rows],
+                    quaternions=[row["rotation"] for row in rows],
+                    labels=[row["name"] for row in rows],
+                    class_ids=[row["id"] for row in rows],
+                    show_labels=False,
+                ),
+            )
+
+    def _points(
+        self,
+        rows: Sequence[Mapping[str, Any]],
+        path: list[str],
+        tell: Any,  # noqa: ANN401 - a row to its label and colour
+    ) -> None:
+        if not rows:
+            return
+        told = [tell(row) for row in rows]
+        self._log(
+            path,
+            self._rr.Points3D(
+                [row["position"] for row in rows],
+                radii=[0.05],
+                labels=[label for label, _ in told],
+                colors=[color for _, color in told],
+                show_labels=False,
+            ),
+        )
+
+    def _pinhole(
+        self,
+        path: list[str],
+        camera: Camera,
+        eye: Sequence[float],
+        yaw_deg: float,
+        pitch_deg: float,
+        *,
+        static: bool,
+    ) -> None:
+        rr = self._rr
+        half_rad = math.radians(90.0 if camera.fov_deg is None else camera.fov_deg) / 2
+        focal = camera.width / 2 / math.tan(half_rad)
+        turn = rr.Quaternion(xyzw=_rotation(yaw_deg, pitch_deg))
+        self._log(path, rr.Transform3D(translation=list(eye), quaternion=turn), static=static)
+        pinhole = rr.Pinhole(
+            focal_length=focal,
+            width=camera.width,
+            height=camera.height,
+            camera_xyz=rr.ViewCoordinates.RUB,
+            image_plane_distance=0.4,
+        )
+        self._log(path, pinhole, static=static)
+
+
+def record_house(recording: Recording, world: World) -> None:
+    """All of a house as it stands: surfaces and fixtures, a view of each room, what sounds."""
+    recording.house(world)
+    rooms = world.house.rooms()
+    for room in rooms:
+        recording.view(world, room["name"], room["eye"], room["yaw_deg"])
+    sources = json.loads(_native.fixtures_json(world.native))["sources"]
+    sounding = [source for source in sources if source["on"]]
+    if not sounding or not rooms:
+        return
+    scene = AcousticScene(world.house)
+    for source in sounding:
+        listener = _listener(source["position"], rooms)
+        paths = scene.early_paths(source["position"], listener)
+        recording.sound(source["name"], paths, listener)
+
+
+def _listener(source: Sequence[float], rooms: Sequence[Mapping[str, Any]]) -> list[float]:
+    """Ears in the middle of the room whose middle is nearest."""
+
+    def distance(room: Mapping[str, Any]) -> float:
+        return math.dist(room["stand"], source)
+
+    x, y, z = min(rooms, key=distance)["stand"]
+    return [x, y + _EAR_M, z]
+
+
+def _texture(house: House, number: int) -> NDArray[np.uint8]:
+    image = Image.fromarray(_native.texture(house.native, number)[..., :3])
+    image.thumbnail((_TEXTURE_EDGE, _TEXTURE_EDGE))
+    return np.asarray(image)
+
+
+def _lamp(row: Mapping[str, Any]) -> tuple[str, list[int]]:
+    state = f"{row['power_w']:g} W" if row["on"] else "off"
+    color = light_colors(np.array(row["color"])) if row["on"] else [70, 70, 70]
+    return f"{row['name']}, {state}", [int(part) for part in color]
+
+
+def _source(row: Mapping[str, Any]) -> tuple[str, list[int]]:
+    state = f"{row['signal']}, {row['level_db']:g} dB SPL at 1 m" if row["on"] else "silent"
+    return f"{row['name']}: {state}", [255, 140, 40] if row["on"] else [120, 120, 120]
+
+
+def _reflections(path: Mapping[str, Any]) -> str:
+    count = len(path["points"]) - 2
+    return "direct" if count == 0 else f"{count} reflection{'' if count == 1 else 's'}"
+
+
+def _rotation(yaw_deg: float, pitch_deg: float) -> list[float]:
+    """The quaternion (x, y, z, w) of a yaw to the left and then a pitch up."""
+    yaw, pitch = math.radians(yaw_deg) / 2, math.radians(pitch_deg) / 2
+    sy, cy, sp, cp = math.sin(yaw), math.cos(yaw), math.sin(pitch), math.cos(pitch)
+    return [cy * sp, sy * cp, -sy * sp, cy * cp]

@@ -1,0 +1,137 @@
+"""Plans, doll's houses, contact sheets, and cameras of any intrinsics on the command line."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import dwell
+from dwell import _native, plans
+from dwell.camera import Channel
+
+WALL = (40, 40, 44)
+
+
+def render(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "dwell.cli", "render", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+
+
+def files(*arguments: str | Path) -> list[Path]:
+    done = render(*arguments, "--json")
+    assert done.returncode == 0, done.stderr
+    return [Path(name) for name in json.loads(done.stdout)["files"]]
+
+
+def size(path: Path) -> tuple[int, int]:
+    with Image.open(path) as image:
+        return image.size
+
+
+def test_channels_are_the_sensors_of_pictures(shoebox: dwell.House) -> None:
+    world = dwell.World(shoebox)
+    sensors = [row["name"] for row in json.loads(_native.sensors_json())]
+
+    def shows(name: str) -> bool:
+        try:
+            world.render(camera=dwell.Camera(4, 4), channels=[name])  # type: ignore[list-item] # all names there are
+        except dwell.DwellError:
+            return False
+        return True
+
+    assert [name for name in sensors if shows(name)] == list(get_args(Channel))
+
+
+def test_maps_show_walls_where_they_stand(shoebox: dwell.House) -> None:
+    world = dwell.World(shoebox, agents=0)
+    image, (left, top), scale = world.map(400)
+
+    def at(x: float, z: float) -> tuple[int, ...]:
+        return tuple(image[int((z - top) * scale), int((x - left) * scale)])
+
+    # The room of 6 by 5 m; its walls are sheets.
+    assert {at(0.0, 2.5), at(6.0, 2.5), at(3.0, 0.0), at(3.0, 5.0)} == {WALL}
+    assert WALL not in {at(3.0, 2.5), at(0.3, 0.3)}
+    assert at(-0.3, 2.5) == (250, 249, 246)
+    with pytest.raises(dwell.DwellError, match="no storey 1"):
+        world.map(400, level=1)
+
+
+def test_pictures_of_houses_hold_every_storey() -> None:
+    world = dwell.World("builtin:house", agents=0)
+    assert plans.levels_of(world.house) == 2
+    both = [plans.floor_plan(world, level, longest_edge=300) for level in (0, 1)]
+    assert [max(plan.size) for plan in both] == [300, 300]
+    assert np.asarray(both[0]).tolist() != np.asarray(both[1]).tolist()
+    doll = plans.dollhouse(world, width=300)
+    assert doll.width == 300
+    for half in (
+        doll.crop((0, 0, 300, doll.height // 2)),
+        doll.crop((0, doll.height // 2, *doll.size)),
+    ):
+        pixels = np.asarray(half).reshape(-1, 3)
+        # Half of the picture is house, and some of that is wall that was cut.
+        assert 0.3 < (pixels != (250, 249, 246)).any(-1).mean() < 0.9
+        assert (pixels == WALL).all(-1).mean() > 0.01
+    with pytest.raises(dwell.DwellError, match="down_deg is 5"):
+        plans.dollhouse(world, down_deg=5.0)
+
+
+def test_ways_are_drawn_where_they_lead(shoebox: dwell.House) -> None:
+    world = dwell.World(shoebox, agents=0)
+    plain = np.asarray(plans.floor_plan(world, longest_edge=300)).astype(int)
+    way = [(1.0, 0.0, 4.0), (5.0, 0.0, 4.0)]
+    drawn = np.asarray(plans.floor_plan(world, longest_edge=300, ways=[("#ff0000", way)]))
+    changed = np.argwhere(np.abs(drawn - plain).sum(-1) > 60)
+    _, (left, top), scale = world.map(300)
+    low, high = changed.min(0), changed.max(0)
+    assert abs(changed[:, 0].mean() - (4.0 - top) * scale) < 4
+    assert abs(low[1] - (1.0 - left) * scale) < 12
+    assert abs(high[1] - (5.0 - left) * scale) < 12
+
+
+def test_render_writes_plans_and_sheets(tmp_path: Path) -> None:
+    house = "builtin:studio"
+    paths = files(house, "--map", "--dollhouse", "--sheet", "--width", "200", "--out", tmp_path)
+    assert [path.name for path in paths] == ["map_0.png", "dollhouse.png", "sheet.png"]
+    assert size(paths[1])[0] == 200
+    rooms = len(dwell.House.open(house).rooms())
+    rows = -(-(rooms + 2) // 4)
+    assert size(paths[2])[1] == rows * (270 + 24 + 10) + 10
+    (sheet,) = files("seed:1..3", house, "--sheet", "--columns", "2", "--out", tmp_path)
+    assert size(sheet) == (2 * 370 + 10, 2 * 304 + 10)
+    refused = render("seed:1..3", house, "--map", "--out", tmp_path)
+    assert (refused.returncode, refused.stdout) == (1, "")
+    assert "--sheet" in refused.stderr
+
+
+def test_the_command_line_takes_any_intrinsics(tmp_path: Path, shoebox: dwell.House) -> None:
+    house = "builtin:studio"
+    world = dwell.World(house, agents=0)
+    view = ("--width", "40", "--height", "30", "--at", "3,1.2,4", "--yaw-deg", "30")
+    lens = {"fx": 31.0, "fy": 33.0, "cx": 22.0, "cy": 12.0, "k1": -0.2, "k2": 0.03}
+    cases = {
+        "pinhole": {name: lens[name] for name in ("fx", "fy", "cx", "cy")},
+        "brown_conrady": lens | {"k3": 0.0, "p1": 0.001, "p2": 0.0},
+        "fisheye": lens | {"fx": 14.0, "k3": 0.0, "k4": 0.0, "half_angle_deg": 80.0, "k1": 0.02},
+        "orthographic": {"width_m": 3.0, "height_m": 2.0},
+    }
+    for kind, numbers in cases.items():
+        text = ",".join(f"{name}={value}" for name, value in numbers.items())
+        options = ("--projection", kind, "--intrinsics", text, "--sensors", "depth")
+        paths = files(house, *view, *options, "--out", tmp_path / kind)
+        camera = dwell.Camera(40, 30, projection={"kind": kind, **numbers})
+        place = {"position": (3.0, 1.2, 4.0), "yaw_deg": 30.0}
+        expected = world.render(camera=camera, channels=["depth"], **place)["depth"]  # type: ignore[arg-type] # by name
+        np.testing.assert_array_equal(np.load(paths[-1]), expected)
+    assert render(house, *view, "--intrinsics", "fx", "--out", tmp_path).returncode == 2
+    unknown = render(house, *view, "--intrinsics", "zoom=2", "--out", tmp_path)
+    assert unknown.returncode == 1
+    assert "zoom" in unknown.stderr
