@@ -78,7 +78,9 @@ def dollhouse(
     down_deg: float = 52.0,
     cut_m: float = 1.6,
 ) -> Image.Image:
-    """The house as a doll's house: every storey from outside, cut open, the lowest at the bottom.
+    """The house as a doll's house: every storey from outside, cut open.
+
+    The lowest storey is at the bottom; of narrow houses, whose storeys stand side by side, left.
 
     Args:
         world: The world as it stands.
@@ -94,12 +96,15 @@ def dollhouse(
         "down_deg": finite("down_deg", down_deg),
         "cut_m": finite("cut_m", cut_m),
     }
-    levels = range(levels_of(world.house))
     storeys = [
         Image.fromarray(_native.dollhouse(world.native, level, json.dumps(config)))
-        for level in reversed(levels)
+        for level in range(levels_of(world.house))
     ]
-    return _smooth(_stacked(storeys))
+    joined = _joined(storeys)
+    return joined.resize(
+        (wide // _FINER, max(round(joined.height * wide / joined.width / _FINER), 1)),
+        Image.Resampling.BOX if joined.width == wide else Image.Resampling.LANCZOS,
+    )
 
 
 def levels_of(house: House) -> int:
@@ -190,14 +195,17 @@ def _smooth(canvas: Image.Image) -> Image.Image:
     return canvas.resize(size, Image.Resampling.BOX)
 
 
-def _stacked(pictures: list[Image.Image]) -> Image.Image:
-    """Below one another, middles in line."""
-    width = max(picture.width for picture in pictures)
-    canvas = Image.new("RGB", (width, sum(picture.height for picture in pictures)), _PAPER)
-    top = 0
-    for picture in pictures:
-        canvas.paste(picture, ((width - picture.width) // 2, top))
-        top += picture.height
+def _joined(storeys: list[Image.Image]) -> Image.Image:
+    """Below one another, or side by side if they are higher than wide; all have one width."""
+    wide, high = storeys[0].width, max(picture.height for picture in storeys)
+    beside = high > wide
+    size = (wide * len(storeys), high) if beside else (wide, sum(one.height for one in storeys))
+    canvas = Image.new("RGB", size, _PAPER)
+    left, top = 0, size[1]
+    for picture in storeys:
+        top -= picture.height
+        canvas.paste(picture, (left, high - picture.height) if beside else (0, top))
+        left += picture.width
     return canvas
 
 

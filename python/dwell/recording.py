@@ -27,6 +27,8 @@ _TEXTURE_EDGE = 256
 _EAR_M = 1.5
 #: Paths this much weaker than the strongest are darkest, dB.
 _RANGE_DB = 40.0
+#: After so many steps an episode is left.
+_MOST_STEPS = 2000
 #: The octave band of 1 kHz among those of ``early_paths``.
 _BAND_OF_1_KHZ = 4
 
@@ -65,6 +67,8 @@ class Recording:
         else:
             self._stream.save(str(out))
         self._cameras: list[str] = []
+        self._texts: list[str] = []
+        self._walks = False
         self._log(["world"], self._rr.ViewCoordinates.RIGHT_HAND_Y_UP)
 
     def close(self) -> None:
@@ -84,7 +88,8 @@ class Recording:
                 textures[number] = _texture(house, number)
             red, green, blue, opacity = surface["color"]
             color = light_colors(np.array([red, green, blue]))
-            uvs = surface["uvs"] * np.float32([1, -1]) + np.float32([0, 1])
+            uvs = surface["uvs"].copy()
+            uvs[:, 1] = 1.0 - uvs[:, 1]
             self._log(
                 [
                     "world",
@@ -118,8 +123,12 @@ class Recording:
             )
         names = [(row["id"], row["name"]) for row in fixtures["boxes"]]
         self._log(["world"], rr.AnnotationContext(names))
-        text = "\n".join(house.describe("house"))
-        self._log(["description"], rr.TextDocument(text))
+        self.text("description", "\n".join(house.describe("house")))
+
+    def text(self, name: str, text: str) -> None:
+        """Words beside the house."""
+        self._texts.append(name)
+        self._log([name], self._rr.TextDocument(text))
 
     def view(
         self,
@@ -173,6 +182,7 @@ class Recording:
             camera: What they were taken with: a pinhole at the eyes.
         """
         rr = self._rr
+        self._walks = True
         self._stream.set_time("step", sequence=step)
         path = ["world", "agent"]
         x, y, z = agent["position"]
@@ -197,7 +207,10 @@ class Recording:
         """
         rr = self._rr
         place = ["world", "sound", "rays", name]
-        self._log([*place, "listener"], rr.Points3D([listener], radii=[0.06], labels=["listener"]))
+        self._log(
+            [*place, "listener"],
+            rr.Points3D([listener], radii=[0.06], labels=["listener"], show_labels=False),
+        )
         if not paths:
             return
         energy = np.array([path["path"]["energy"][_BAND_OF_1_KHZ] for path in paths])
@@ -220,9 +233,11 @@ class Recording:
         hidden = [f"- {camera}/{image}" for camera in self._cameras for image in ("depth", "ids")]
         contents = ["+ /world/**", "- /world/ceilings/**", *hidden]
         house = blueprint.Spatial3DView(origin="/world", contents=contents, name="house")
-        text = blueprint.TextDocumentView(origin="/description", name="description")
+        texts = [blueprint.TextDocumentView(origin=f"/{name}", name=name) for name in self._texts]
+        eye = "/world/agent/eye"
+        eyes = [blueprint.Spatial2DView(origin=eye, contents=[f"+ {eye}/rgb"], name="agent")]
 
-        def images(image: str) -> object:
+        def images(image: str) -> Any:  # noqa: ANN401 - a container, where the SDK has types
             views = [
                 blueprint.Spatial2DView(
                     origin=camera, contents=[f"+ {camera}/{image}"], name=camera.split("/")[-1]
@@ -232,7 +247,7 @@ class Recording:
             return blueprint.Grid(*views, name=image)
 
         tabs = [images(image) for image in ("rgb", "depth", "ids") if self._cameras]
-        beside = blueprint.Tabs(*tabs, text)
+        beside = blueprint.Tabs(*(eyes if self._walks else []), *tabs, *texts)
         return blueprint.Blueprint(blueprint.Horizontal(house, beside, column_shares=[3, 2]))
 
     def _log(self, path: list[str], what: object, *, static: bool = True) -> None:
@@ -315,6 +330,36 @@ def record_house(recording: Recording, world: World) -> None:
         listener = _listener(source["position"], rooms)
         paths = scene.early_paths(source["position"], listener)
         recording.sound(source["name"], paths, listener)
+
+
+def record_episode(recording: Recording, house: House, task: str, seed: int) -> int:
+    """An episode as the task's scripted expert plays it: its way, and what it saw at every step.
+
+    Returns:
+        How many steps it took.
+
+    Raises:
+        ConfigError: There is no such task.
+        DwellError: The house has nothing to do for it.
+    """
+    from dwell.envs.single import DwellEnv
+
+    camera = Camera(256, 192, 90.0)
+    sensors = {"rgb": {"width": camera.width, "height": camera.height, "fov_deg": 90.0}}
+    env = DwellEnv(task, houses=house, sensors={**sensors, "instruction": {}})
+    observation, _ = env.reset(seed=seed)
+    recording.text("instruction", str(observation["instruction"]))
+    way, done, steps = [], False, 0
+    while True:
+        agent = env.agents()[0]
+        way.append(agent["position"])
+        recording.step(steps, agent, observation["rgb"], camera)
+        if done or steps >= _MOST_STEPS:
+            break
+        observation, _, done, _, _ = env.step(np.int64(env.expert_action()))
+        steps += 1
+    recording.way(task, way)
+    return steps
 
 
 def _listener(source: Sequence[float], rooms: Sequence[Mapping[str, Any]]) -> list[float]:

@@ -8,10 +8,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import dwell
 from dwell import _native
+from dwell.envs import DwellEnv
 
 HOUSE = "builtin:studio"
 
@@ -30,19 +32,25 @@ def test_without_the_sdk_one_sentence_says_how_to_get_it(tmp_path: Path) -> None
     assert not out.exists()
 
 
-def test_a_recording_holds_the_whole_house(tmp_path: Path) -> None:
+def recorded(*arguments: str | Path) -> dict[str, list[tuple[str, Any]]]:
+    """What ``dwell view`` wrote: for each column its chunks' entity paths and cells."""
     chunk = pytest.importorskip("rerun.chunk", reason="needs the Rerun SDK of `make demo`")
-    out = tmp_path / "studio.rrd"
-    command = [sys.executable, "-m", "dwell.cli", "view", HOUSE, "--out", str(out), "--json"]
+    out = arguments[-1]
+    command = [sys.executable, "-m", "dwell.cli", "view", *map(str, arguments), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == {"file": str(out)}
-
     columns: dict[str, list[tuple[str, Any]]] = {}
     for piece in chunk.RrdReader(str(out)).stream().to_chunks():
         rows = piece.to_record_batch()
         for name in rows.schema.names:
-            columns.setdefault(name, []).append((str(piece.entity_path), rows.column(name)[0]))
+            cells = columns.setdefault(name, [])
+            cells += [(str(piece.entity_path), cell) for cell in rows.column(name)]
+    return columns
+
+
+def test_a_recording_holds_the_whole_house(tmp_path: Path) -> None:
+    columns = recorded(HOUSE, "--out", tmp_path / "studio.rrd")
 
     def count(column: str, under: str) -> int:
         cells = columns.get(column, [])
@@ -66,6 +74,24 @@ def test_a_recording_holds_the_whole_house(tmp_path: Path) -> None:
     sounding = [row for row in fixtures["sources"] if row["on"]]
     listeners = count("Points3D:positions", "/world/sound/rays")
     assert listeners == len(sounding)
+
+
+def test_an_episode_is_recorded_step_by_step(tmp_path: Path) -> None:
+    task = ("--task", "InstructionFollowing", "--seed", "5")
+    columns = recorded(HOUSE, *task, "--out", tmp_path / "episode.rrd")
+    env = DwellEnv("InstructionFollowing", houses=HOUSE, sensors=["instruction"])
+    observation, _ = env.reset(seed=5)
+    way, done = [env.agents()[0]["position"]], False
+    while not done:
+        *_, done, _, _ = env.step(np.int64(env.expert_action()))
+        way.append(env.agents()[0]["position"])
+    (drawn,) = [cell for path, cell in columns["LineStrips3D:strips"] if "ways" in path]
+    np.testing.assert_allclose(drawn.as_py()[0], way, atol=1e-6)
+    seen = [cell for path, cell in columns["Image:buffer"] if "agent/eye" in path]
+    eyes = [cell for path, cell in columns["Transform3D:translation"] if "agent/eye" in path]
+    assert len(seen) == len(eyes) == len(way) > 5
+    texts = [cell.as_py() for path, cell in columns["TextDocument:text"] if "instruction" in path]
+    assert texts == [[str(observation["instruction"])]]
 
 
 def test_early_paths_lead_from_the_source_to_the_microphone(shoebox: dwell.House) -> None:

@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from dwell.cli.common import atomic, print_json
+from dwell.cli.common import atomic, count, print_json
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -19,28 +19,36 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.rrd",
         help="write a recording; without it the viewer opens",
     )
+    parser.add_argument(
+        "--task", help="the scripted expert of this task plays an episode, recorded step by step"
+    )
+    parser.add_argument("--seed", type=count, default=0, help="of --task's episode")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Shows surfaces, boxes, lamps, joints, a camera in every room, and the ways of sound."""
+    """Shows surfaces, boxes, lamps, joints, cameras, ways of sound, and how an episode goes."""
     from dwell.house import House
-    from dwell.recording import Recording, record_house, sdk
+    from dwell.recording import Recording, record_episode, record_house, sdk
     from dwell.world import World
 
     sdk()
     if args.out is None and not _has_display():
         raise ValueError("no display for the viewer; --out FILE.rrd writes a recording for it")
-    world = World(House.open(args.house), agents=0)
-    if args.out is None:
-        recording = Recording(f"dwell {args.house}", None)
-        record_house(recording, world)
+    house = House.open(args.house)
+
+    def fill(path: Path | None) -> None:
+        recording = Recording(f"dwell {args.house}", path)
+        record_house(recording, World(house, agents=0))
+        if args.task is not None:
+            record_episode(recording, house, args.task, args.seed)
         recording.close()
+
+    if args.out is None:
+        fill(None)
         return 0
     with atomic(args.out) as path:
-        recording = Recording(f"dwell {args.house}", path)
-        record_house(recording, world)
-        recording.close()
+        fill(path)
     if args.json:
         print_json({"file": str(args.out)})
     else:
