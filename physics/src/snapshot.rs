@@ -17,7 +17,7 @@ use crate::joints::{self, Drives, Pull};
 use crate::laws::{self, Installed};
 use crate::world::{Assembly, PhysicsWorld, Weights, assemble, pose_of};
 use dwell_scene::columns;
-use dwell_scene::packing::{pack, unpack};
+use dwell_scene::packing::{pack_within, unpack};
 use dwell_scene::{AgentId, Id, State};
 use rapier3d::dynamics::{ImpulseJointSet, IslandManager, RigidBodySet};
 use rapier3d::geometry::{BroadPhaseBvh, NarrowPhase};
@@ -29,7 +29,7 @@ use xxhash_rust::xxh3::xxh3_64;
 /// What a snapshot begins with, and what a moment begins with, which is not packed.
 const MAGIC: &[u8; 4] = b"dwph";
 const MAGIC_OF_MOMENTS: &[u8; 4] = b"dwpm";
-const VERSION: u32 = 11;
+const VERSION: u32 = 12;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.
@@ -92,7 +92,13 @@ impl PhysicsWorld {
     /// # Panics
     /// Never: writing plain data to memory cannot fail.
     pub fn snapshot(&self) -> Vec<u8> {
-        self.with_header(MAGIC, &pack(&self.body(), &[]))
+        let most = self.largest_snapshot() - HEADER;
+        self.with_header(MAGIC, &pack_within(&self.body(), &[], most))
+    }
+
+    /// What a snapshot should take at most: 256 KiB and 2 KiB for each body that can move. What would be larger is packed harder.
+    pub fn largest_snapshot(&self) -> usize {
+        (256 + 2 * self.bodies.len()) * 1024
     }
 
     /// As [`PhysicsWorld::snapshot`], but not packed: some three times as large and many times as fast, to go back within

@@ -11,7 +11,7 @@ use crate::sound::Sound;
 use crate::start::Start;
 use crate::world::World;
 use dwell_physics::PhysicsWorld;
-use dwell_scene::packing::{pack, unpack};
+use dwell_scene::packing::{pack_within, unpack};
 use dwell_scene::random::Key;
 use dwell_scene::{AgentBody, House, Id, State};
 use std::collections::BTreeMap;
@@ -111,7 +111,8 @@ impl World {
             physics,
             (self.sound.to_bytes(), self.key, self.past.clone()),
         );
-        told.extend_from_slice(&pack(&body, &base.bytes));
+        let most = physics.largest_snapshot() - told.len() - MAGIC.len() - size_of::<u64>();
+        told.extend_from_slice(&pack_within(&body, &base.bytes, most));
         let mut bytes = MAGIC.to_vec();
         bytes.extend_from_slice(&xxh3_64(&told).to_le_bytes());
         bytes.extend_from_slice(&told);

@@ -1,6 +1,6 @@
 //! Columns to data.
 
-use super::{ColumnsError, FLOAT, Layout, Names};
+use super::{ColumnsError, FLOAT, Layout, Names, byte, layout, take, whole};
 use serde::Deserialize;
 use serde::de::value::U32Deserializer;
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
@@ -12,26 +12,21 @@ use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, ColumnsError> {
     let mut head = bytes;
     let count = whole(&mut head)?;
-    // Each column says three numbers.
-    if count > (head.len() / 3) as u64 {
+    // Each column says four numbers.
+    if count > (head.len() / 4) as u64 {
         return Err(ColumnsError::Ended);
     }
     let mut sizes = Vec::with_capacity(count as usize);
     for _ in 0..count {
-        let floats = length(&mut head)?.checked_mul(FLOAT);
+        let floats = length(&mut head)?;
         let layout = Layout::of(byte(&mut head)?)?;
-        sizes.push((
-            floats.ok_or(ColumnsError::Ended)?,
-            layout,
-            length(&mut head)?,
-        ));
+        sizes.push((floats, layout, length(&mut head)?, length(&mut head)?));
     }
     let mut columns = Vec::with_capacity(count as usize);
-    for (floats, layout, rest) in sizes {
+    for (floats, layout, bytes, rest) in sizes {
         columns.push(Column {
-            floats: take(&mut head, floats)?,
+            floats: layout::read(layout, floats, take(&mut head, bytes)?)?,
             read: 0,
-            layout,
             rest: take(&mut head, rest)?,
         });
     }
@@ -48,33 +43,6 @@ pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, Colum
     Ok(data)
 }
 
-fn take<'de>(bytes: &mut &'de [u8], length: usize) -> Result<&'de [u8], ColumnsError> {
-    let (taken, rest) = bytes.split_at_checked(length).ok_or(ColumnsError::Ended)?;
-    *bytes = rest;
-    Ok(taken)
-}
-
-fn byte(bytes: &mut &[u8]) -> Result<u8, ColumnsError> {
-    let (first, rest) = bytes.split_first().ok_or(ColumnsError::Ended)?;
-    *bytes = rest;
-    Ok(*first)
-}
-
-fn whole(bytes: &mut &[u8]) -> Result<u64, ColumnsError> {
-    let mut number = 0;
-    for shift in (0..64).step_by(7) {
-        let byte = byte(bytes)?;
-        number |= u64::from(byte & 0x7f) << shift;
-        if byte < 0x80 {
-            return Ok(number);
-        }
-    }
-    Err(ColumnsError::Large {
-        found: number,
-        place: "a number of 64 bits",
-    })
-}
-
 fn length(bytes: &mut &[u8]) -> Result<usize, ColumnsError> {
     let found = whole(bytes)?;
     let place = "a length";
@@ -83,30 +51,23 @@ fn length(bytes: &mut &[u8]) -> Result<usize, ColumnsError> {
 
 /// What stands under one name.
 struct Column<'de> {
-    floats: &'de [u8],
+    /// The bits of floats.
+    floats: Vec<u32>,
     /// How many floats were read.
     read: usize,
-    layout: Layout,
     rest: &'de [u8],
 }
 
 impl Column<'_> {
     fn float(&mut self) -> Result<f32, ColumnsError> {
-        let count = self.floats.len() / FLOAT;
-        if self.read == count {
-            return Err(ColumnsError::Ended);
-        }
-        let bytes = std::array::from_fn(|k| match self.layout {
-            Layout::Whole => self.floats[self.read * FLOAT + k],
-            Layout::ByByte => self.floats[k * count + self.read],
-        });
+        let bits = self.floats.get(self.read).ok_or(ColumnsError::Ended)?;
         self.read += 1;
-        Ok(f32::from_le_bytes(bytes))
+        Ok(f32::from_bits(*bits))
     }
 
     /// Bytes that were not read.
     fn left(&self) -> usize {
-        self.floats.len() - self.read * FLOAT + self.rest.len()
+        (self.floats.len() - self.read) * FLOAT + self.rest.len()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Data to columns.
 
-use super::{ColumnsError, FLOAT, Layout, Names};
+use super::{ColumnsError, Names, layout, put};
 use serde::Serialize;
 use serde::ser::{self, Serializer};
 
@@ -27,34 +27,6 @@ struct Column {
     rest: Vec<u8>,
 }
 
-impl Column {
-    fn layout(&self) -> Layout {
-        let mut sorted = self.floats.clone();
-        sorted.sort_unstable();
-        sorted.dedup();
-        if sorted.len() * SELDOM < self.floats.len() {
-            Layout::Whole
-        } else {
-            Layout::ByByte
-        }
-    }
-
-    fn write(&self, bytes: &mut Vec<u8>) {
-        match self.layout() {
-            Layout::Whole => bytes.extend(self.floats.iter().flat_map(|bits| bits.to_le_bytes())),
-            Layout::ByByte => {
-                for k in 0..FLOAT {
-                    bytes.extend(self.floats.iter().map(|bits| bits.to_le_bytes()[k]));
-                }
-            }
-        }
-        bytes.extend_from_slice(&self.rest);
-    }
-}
-
-/// Floats that come back this often on the mean are left whole.
-const SELDOM: usize = 2;
-
 struct Writer {
     names: Names,
     columns: Vec<Column>,
@@ -63,19 +35,22 @@ struct Writer {
 }
 
 impl Writer {
-    /// The number of columns; of each its floats' number and layout and the length of the rest; then the columns.
+    /// The number of columns; of each the number of its floats, their layout, the length of their bytes and of the rest; then the
+    /// columns.
     fn bytes(self) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        put(&mut bytes, self.columns.len() as u64);
+        let (mut head, mut body) = (Vec::new(), Vec::new());
+        put(&mut head, self.columns.len() as u64);
         for column in &self.columns {
-            put(&mut bytes, column.floats.len() as u64);
-            bytes.push(column.layout() as u8);
-            put(&mut bytes, column.rest.len() as u64);
+            let start = body.len();
+            let layout = layout::write(&column.floats, &mut body);
+            put(&mut head, column.floats.len() as u64);
+            head.push(layout.byte());
+            put(&mut head, (body.len() - start) as u64);
+            put(&mut head, column.rest.len() as u64);
+            body.extend_from_slice(&column.rest);
         }
-        for column in &self.columns {
-            column.write(&mut bytes);
-        }
-        bytes
+        head.extend(body);
+        head
     }
 
     fn rest(&mut self) -> &mut Vec<u8> {
@@ -97,15 +72,6 @@ impl Writer {
         let length = length.ok_or(ColumnsError::Shape("data of unknown length"))?;
         self.whole(length as u64)
     }
-}
-
-/// Seven bits a byte, the lowest first.
-fn put(bytes: &mut Vec<u8>, mut number: u64) {
-    while number >= 0x80 {
-        bytes.push(number as u8 | 0x80);
-        number >>= 7;
-    }
-    bytes.push(number as u8);
 }
 
 /// Within a type whose fields have names.

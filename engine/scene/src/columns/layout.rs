@@ -1,0 +1,241 @@
+//! How the floats of a column lie.
+
+use super::{ColumnsError, FLOAT, Layout, put, take, whole};
+use std::collections::HashMap;
+
+/// Columns with fewer floats than this are not looked at for rows that come back.
+const FEW: usize = 64;
+/// Floats that come back this often on the mean are left whole, and so are rows told by how far back they were.
+const SELDOM: usize = 2;
+/// How far the square of a unit row's length may be from 1.
+const UNIT: f32 = 1e-5;
+/// By how many steps of a float the last part of a unit row may differ from what the others say.
+const STEPS: i32 = 15;
+
+/// Floats in the layout that packs best, as a rule.
+pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> Layout {
+    for width in Layout::WIDTHS {
+        if floats.len() >= FEW && floats.len() % width == 0 {
+            let rows = Rows::of(floats, width);
+            let unit = rows.units.is_some();
+            if unit || rows.count_new(width) * SELDOM < rows.back.len() {
+                rows.write(bytes);
+                return Layout::Rows { width, unit };
+            }
+        }
+    }
+    let mut sorted = floats.to_vec();
+    sorted.sort_unstable();
+    sorted.dedup();
+    if sorted.len() * SELDOM < floats.len() {
+        bytes.extend(floats.iter().flat_map(|bits| bits.to_le_bytes()));
+        return Layout::Whole;
+    }
+    write_by_byte(floats, bytes);
+    Layout::ByByte
+}
+
+/// What [`write`] wrote: so many floats.
+pub(super) fn read(layout: Layout, count: usize, bytes: &[u8]) -> Result<Vec<u32>, ColumnsError> {
+    match layout {
+        Layout::Rows { width, unit } => read_rows(width, unit, count, bytes),
+        _ if count.checked_mul(FLOAT) != Some(bytes.len()) => Err(ColumnsError::Ended),
+        Layout::ByByte => Ok(read_by_byte(bytes)),
+        Layout::Whole => Ok(bytes
+            .as_chunks()
+            .0
+            .iter()
+            .map(|four| u32::from_le_bytes(*four))
+            .collect()),
+    }
+}
+
+fn write_by_byte(floats: &[u32], bytes: &mut Vec<u8>) {
+    for k in 0..FLOAT {
+        bytes.extend(floats.iter().map(|bits| bits.to_le_bytes()[k]));
+    }
+}
+
+fn read_by_byte(bytes: &[u8]) -> Vec<u32> {
+    let count = bytes.len() / FLOAT;
+    (0..count)
+        .map(|at| u32::from_le_bytes(std::array::from_fn(|k| bytes[k * count + at])))
+        .collect()
+}
+
+/// Rows of floats of which many come back: the turn of a thing that touches ten others, the direction of a floor.
+struct Rows {
+    /// Of each row: 0 for one that is new, else how many new ones ago it came first.
+    back: Vec<u64>,
+    /// The new ones, one after the other.
+    new: Vec<u32>,
+    /// Of each new one, if most are of unit length: what tells its largest part, or 0; of that, only the others are kept in
+    /// `new`.
+    units: Option<Vec<u8>>,
+}
+
+impl Rows {
+    fn of(floats: &[u32], width: usize) -> Self {
+        let mut met: HashMap<&[u32], u64> = HashMap::new();
+        let (mut back, mut new) = (Vec::with_capacity(floats.len() / width), Vec::new());
+        for row in floats.chunks_exact(width) {
+            let next = met.len() as u64;
+            let first = *met.entry(row).or_insert(next);
+            back.push(if first == next { 0 } else { next - first });
+            if first == next {
+                new.extend_from_slice(row);
+            }
+        }
+        let codes: Vec<u8> = new.chunks_exact(width).map(unit_code).collect();
+        let unit = codes.iter().filter(|code| **code > 0).count();
+        let units = (unit * 2 > codes.len()).then_some(codes);
+        if let Some(codes) = &units {
+            let rows = new.chunks_exact(width).zip(codes);
+            let kept = |(row, code): (&[u32], &u8)| {
+                let left_out = if *code == 0 {
+                    width
+                } else {
+                    usize::from(code & 3)
+                };
+                let parts = row.iter().enumerate();
+                parts
+                    .filter(move |(k, _)| *k != left_out)
+                    .map(|(_, bits)| *bits)
+                    .collect::<Vec<_>>()
+            };
+            new = rows.flat_map(kept).collect();
+        }
+        Self { back, new, units }
+    }
+
+    fn count_new(&self, width: usize) -> usize {
+        self.units.as_ref().map_or(self.new.len() / width, Vec::len)
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        for back in &self.back {
+            put(bytes, *back);
+        }
+        bytes.extend(self.units.iter().flatten());
+        write_by_byte(&self.new, bytes);
+    }
+}
+
+fn read_rows(
+    width: usize,
+    unit: bool,
+    count: usize,
+    mut bytes: &[u8],
+) -> Result<Vec<u32>, ColumnsError> {
+    // Each row takes a byte at least.
+    let rows = count / width;
+    if count % width > 0 || rows > bytes.len() {
+        return Err(ColumnsError::Ended);
+    }
+    let mut back = Vec::with_capacity(rows);
+    for _ in 0..rows {
+        back.push(whole(&mut bytes)?);
+    }
+    let count_new = back.iter().filter(|back| **back == 0).count();
+    let codes = if unit {
+        take(&mut bytes, count_new)?
+    } else {
+        &[]
+    };
+    let kept = read_by_byte(bytes);
+    let mut kept_at = 0;
+    let mut next = |wanted: usize| {
+        let found = kept
+            .get(kept_at..kept_at + wanted)
+            .ok_or(ColumnsError::Ended);
+        kept_at += wanted;
+        found
+    };
+    let mut new: Vec<u32> = Vec::with_capacity(count_new * width);
+    for k in 0..count_new {
+        match codes.get(k) {
+            None | Some(0) => new.extend_from_slice(next(width)?),
+            Some(code) => new.extend(unit_row(*code, next(width - 1)?)?),
+        }
+    }
+    if kept_at * FLOAT != bytes.len() {
+        return Err(ColumnsError::Left(
+            bytes.len().saturating_sub(kept_at * FLOAT),
+        ));
+    }
+    let (mut floats, mut met) = (Vec::with_capacity(count), 0_usize);
+    for back in back {
+        let first = match back {
+            0 => met,
+            _ => usize::try_from(back)
+                .ok()
+                .and_then(|back| met.checked_sub(back))
+                .ok_or(ColumnsError::Ended)?,
+        };
+        met += usize::from(back == 0);
+        floats.extend_from_slice(&new[first * width..(first + 1) * width]);
+    }
+    Ok(floats)
+}
+
+/// Which part of a row is the largest (2 bits), its sign, and by how many steps it is more than the others say, in one byte; 0
+/// for what is not of unit length.
+fn unit_code(row: &[u32]) -> u8 {
+    let size = |k: usize| f32::from_bits(row[k]).abs();
+    let largest = (1..row.len()).fold(0, |best, k| if size(k) > size(best) { k } else { best });
+    let others = || {
+        row.iter()
+            .enumerate()
+            .filter(|(k, _)| *k != largest)
+            .map(|(_, bits)| *bits)
+    };
+    let Some(expected) = last_part(others()) else {
+        return 0;
+    };
+    let found = size(largest);
+    let steps = (found.to_bits().cast_signed()).wrapping_sub(expected.to_bits().cast_signed());
+    let near = (found * found - expected * expected).abs() < UNIT && steps.abs() <= STEPS;
+    if !near {
+        return 0;
+    }
+    let negative = row[largest] >> 31;
+    let code = ((steps + STEPS + 1).cast_unsigned() * 2 + negative) * 4 + largest as u32;
+    code as u8
+}
+
+/// The row that [`unit_code`] told of.
+fn unit_row(code: u8, others: &[u32]) -> Result<impl Iterator<Item = u32>, ColumnsError> {
+    let place = "the largest part of a row";
+    let refused = ColumnsError::Large {
+        found: code.into(),
+        place,
+    };
+    let (largest, negative) = (usize::from(code & 3), u32::from(code >> 2 & 1));
+    let steps = i32::from(code >> 3) - STEPS - 1;
+    let expected = last_part(others.iter().copied());
+    let (Some(expected), true) = (expected, largest <= others.len()) else {
+        return Err(refused);
+    };
+    let size = expected
+        .to_bits()
+        .cast_signed()
+        .wrapping_add(steps)
+        .cast_unsigned();
+    let part = size & 0x7fff_ffff | negative << 31;
+    Ok(others[..largest]
+        .iter()
+        .copied()
+        .chain([part])
+        .chain(others[largest..].iter().copied())
+        .collect::<Vec<_>>()
+        .into_iter())
+}
+
+/// How large the last part of a unit row is by its others.
+fn last_part(others: impl Iterator<Item = u32>) -> Option<f32> {
+    let squares = others
+        .map(f32::from_bits)
+        .fold(0.0, |sum, part| sum + part * part);
+    let square = 1.0 - squares;
+    (square > 0.0).then(|| square.sqrt())
+}
