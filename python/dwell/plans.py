@@ -161,14 +161,15 @@ def houses_sheet(houses: Sequence[str], *, columns: int = 4) -> Image.Image:
         houses: HOUSE strings, each of one house.
         columns: Pictures in a row.
     """
-    pictures = []
-    for name in houses:
-        house = House.open(name)
-        world = World(house, agents=0)
-        rooms = len(house.rooms())
-        title = f"{name}, {rooms} room{'' if rooms == 1 else 's'}"
-        pictures.append((title, dollhouse(world, width=540)))
-    return sheet(pictures, columns=columns)
+    return sheet([house_tile(name) for name in houses], columns=columns)
+
+
+def house_tile(name: str) -> tuple[str, Image.Image]:
+    """A title and the doll's house of a HOUSE string, for :func:`sheet`."""
+    house = House.open(name)
+    rooms = len(house.info()["rooms"])
+    title = f"{name}, {rooms} room{'' if rooms == 1 else 's'}"
+    return title, dollhouse(World(house, agents=0), width=540)
 
 
 def room_view(world: World, room: dict[str, Any], camera: Camera) -> Image.Image:

@@ -69,6 +69,7 @@ class Recording:
         self._cameras: list[str] = []
         self._texts: list[str] = []
         self._walks = False
+        self._corners: tuple[NDArray[Any], NDArray[Any]] | None = None
         self._log(["world"], self._rr.ViewCoordinates.RIGHT_HAND_Y_UP)
 
     def close(self) -> None:
@@ -107,6 +108,9 @@ class Recording:
                 ),
             )
         fixtures = json.loads(_native.fixtures_json(world.native))
+        if fixtures["boxes"]:
+            centers = np.array([row["center"] for row in fixtures["boxes"]])
+            self._corners = centers.min(0), centers.max(0)
         self._boxes(fixtures["boxes"])
         self._points(fixtures["lamps"], ["world", "lamps"], _lamp)
         self._points(fixtures["sources"], ["world", "sound", "sources"], _source)
@@ -227,15 +231,22 @@ class Recording:
         )
 
     def _blueprint(self) -> object:
-        """The house without ceilings, the cameras' images beside it."""
+        """The house without ceilings from above, the cameras' images beside it."""
         from rerun import blueprint
 
         hidden = [f"- {camera}/{image}" for camera in self._cameras for image in ("depth", "ids")]
         contents = ["+ /world/**", "- /world/ceilings/**", *hidden]
-        house = blueprint.Spatial3DView(origin="/world", contents=contents, name="house")
+        eye = getattr(blueprint, "EyeControls3D", None)
+        look = {}
+        if eye is not None and self._corners is not None:
+            low, high = self._corners
+            middle, size = (low + high) / 2, float(np.linalg.norm(high - low))
+            place = middle + size * np.array([0.25, 0.75, 0.45])
+            look["eye_controls"] = eye(position=place.tolist(), look_target=middle.tolist())
+        house = blueprint.Spatial3DView(origin="/world", contents=contents, name="house", **look)
         texts = [blueprint.TextDocumentView(origin=f"/{name}", name=name) for name in self._texts]
-        eye = "/world/agent/eye"
-        eyes = [blueprint.Spatial2DView(origin=eye, contents=[f"+ {eye}/rgb"], name="agent")]
+        agent = "/world/agent/eye"
+        eyes = [blueprint.Spatial2DView(origin=agent, contents=[f"+ {agent}/rgb"], name="agent")]
 
         def images(image: str) -> Any:  # noqa: ANN401 - a container, where the SDK has types
             views = [
@@ -266,6 +277,7 @@ class Recording:
                     quaternions=[row["rotation"] for row in rows],
                     labels=[row["name"] for row in rows],
                     class_ids=[row["id"] for row in rows],
+                    fill_mode=self._rr.components.FillMode.MajorWireframe,
                     show_labels=False,
                 ),
             )

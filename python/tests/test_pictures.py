@@ -107,6 +107,10 @@ def test_render_writes_plans_and_sheets(tmp_path: Path) -> None:
     assert size(paths[2])[1] == rows * (270 + 24 + 10) + 10
     (sheet,) = files("seed:1..3", house, "--sheet", "--columns", "2", "--out", tmp_path)
     assert size(sheet) == (2 * 370 + 10, 2 * 304 + 10)
+    done = render(house, "builtin:castle", "--sheet", "--out", tmp_path / "some", "--json")
+    assert done.returncode == 1
+    assert "castle" in done.stderr
+    assert size(Path(json.loads(done.stdout)["files"][0])) == (380, 314)
     refused = render("seed:1..3", house, "--map", "--out", tmp_path)
     assert (refused.returncode, refused.stdout) == (1, "")
     assert "--sheet" in refused.stderr

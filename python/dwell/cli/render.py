@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from dwell.camera import Camera, Channel
-from dwell.cli.common import atomic, count, number, point, print_json
+from dwell.cli.common import Bar, atomic, count, number, point, print_json
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -83,12 +84,11 @@ def run(args: argparse.Namespace) -> int:
     from dwell.house import House
     from dwell.world import World
 
-    channels = [_sensor(name) for name in args.sensors.split(",")]
+    channels, refused = [_sensor(name) for name in args.sensors.split(",")], 0
     houses = [one for name in args.house for one in House.expand(name)]
+    files: list[str] = []
     if args.sheet and len(houses) > 1:
-        from dwell.plans import houses_sheet
-
-        files = [_save(args.out / "sheet.png", houses_sheet(houses, columns=args.columns))]
+        files, refused = _sheet(args, houses)
     elif len(houses) > 1:
         raise ValueError(f"{len(houses)} houses; several are taken by --sheet alone")
     else:
@@ -99,7 +99,7 @@ def run(args: argparse.Namespace) -> int:
         print_json({"files": files})
     else:
         print("\n".join(files))
-    return 0
+    return 1 if refused else 0
 
 
 def _sensor(name: str) -> Channel:
@@ -107,6 +107,25 @@ def _sensor(name: str) -> Channel:
         if name == known:
             return known
     raise ValueError(f"--sensors: no {name!r}; allowed are {', '.join(_SENSORS)}")
+
+
+def _sheet(args: argparse.Namespace, houses: list[str]) -> tuple[list[str], int]:
+    """The doll's houses of many; one that cannot be opened is told of and left out."""
+    from dwell import DwellError, plans
+
+    tiles, bar, refused = [], Bar(), 0
+    for k, name in enumerate(houses):
+        bar(k / len(houses), name)
+        try:
+            tiles.append(plans.house_tile(name))
+        except DwellError as error:
+            refused += 1
+            print(f"dwell render: {error}", file=sys.stderr)
+    bar(1.0, f"{len(tiles)} houses")
+    if not tiles:
+        return [], refused
+    picture = plans.sheet(tiles, columns=args.columns)
+    return [_save(args.out / "sheet.png", picture)], refused
 
 
 def _whole(args: argparse.Namespace, world: World) -> list[str]:
