@@ -1,0 +1,79 @@
+"""What a recording tells: a house as it stands, and an episode."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from dwell import _native
+from dwell.acoustics import AcousticScene
+from dwell.camera import Camera
+from dwell.house import House
+from dwell.recording.viewer import Recording
+from dwell.world import World
+
+#: Where ears are over a floor, m.
+_EAR_M = 1.5
+#: After so many steps an episode is left.
+_MOST_STEPS = 2000
+
+
+def record_house(recording: Recording, world: World) -> None:
+    """All of a house as it stands: surfaces and fixtures, a view of each room, what sounds."""
+    recording.house(world)
+    rooms = world.house.rooms()
+    for room in rooms:
+        recording.view(world, room["name"], room["eye"], room["yaw_deg"])
+    sources = json.loads(_native.fixtures_json(world.native))["sources"]
+    sounding = [source for source in sources if source["on"]]
+    if not sounding or not rooms:
+        return
+    scene = AcousticScene(world.house)
+    for source in sounding:
+        listener = _listener(source["position"], rooms)
+        paths = scene.early_paths(source["position"], listener)
+        recording.sound(source["name"], paths, listener)
+
+
+def record_episode(recording: Recording, house: House, task: str, seed: int) -> int:
+    """An episode as the task's scripted expert plays it: its way, and what it saw at every step.
+
+    Returns:
+        How many steps it took.
+
+    Raises:
+        ConfigError: There is no such task.
+        DwellError: The house has nothing to do for it.
+    """
+    from dwell.envs.single import DwellEnv
+
+    camera = Camera(256, 192, 90.0)
+    sensors = {"rgb": {"width": camera.width, "height": camera.height, "fov_deg": 90.0}}
+    env = DwellEnv(task, houses=house, sensors={**sensors, "instruction": {}})
+    observation, _ = env.reset(seed=seed)
+    recording.text("instruction", str(observation["instruction"]))
+    way, done, steps = [], False, 0
+    while True:
+        agent = env.agents()[0]
+        way.append(agent["position"])
+        recording.step(steps, agent, observation["rgb"], camera)
+        if done or steps >= _MOST_STEPS:
+            break
+        observation, _, done, _, _ = env.step(np.int64(env.expert_action()))
+        steps += 1
+    recording.way(task, way)
+    return steps
+
+
+def _listener(source: Sequence[float], rooms: Sequence[Mapping[str, Any]]) -> list[float]:
+    """Ears in the middle of the room whose middle is nearest."""
+
+    def distance(room: Mapping[str, Any]) -> float:
+        return math.dist(room["stand"], source)
+
+    x, y, z = min(rooms, key=distance)["stand"]
+    return [x, y + _EAR_M, z]
