@@ -13,7 +13,7 @@ pub enum Preset {
     /// Texture times colour, no lamps: fast, and the same for every time of day.
     #[default]
     Flat,
-    /// Lamps, sun and sky, light that rooms throw back, tone-mapped; only the sun casts shadows. See the crate's page.
+    /// Lamps, sun and sky with at most two shadow rays a pixel, light that rooms throw back, tone-mapped. See the crate's page.
     Lit,
 }
 

@@ -6,8 +6,10 @@
 //! # Light
 //! [`Preset::Flat`] shows texture times colour: no lamps, the same at every time of day, the sky where nothing is.
 //!
-//! [`Preset::Lit`] adds light. Only the sun of a house that knows its sky casts shadows: nothing dims what a lamp or the sky
-//! in a window sends to that room's surfaces, and walls stop all of it. In linear light it sums up
+//! [`Preset::Lit`] adds light. Each pixel asks for shadows of the two strongest sources that shine on it, by a ray each: the sun of a
+//! house that knows its sky, or all lamps of one thing as a point in their middle. Other light is stopped by the walls of its room
+//! only. Glass and the shade of a lamp let its light pass; a lamp that is walled in, as some of SUNCG's above their ceilings, casts
+//! no shadows. In linear light it sums up
 //!
 //! - lamps that are on: a watt counts as 100 lm, sent evenly by points and lines (a line is four points) and into their
 //!   cone by spots, with the attenuation of the file (usually the inverse square); a lamp shines through its own shade;

@@ -157,6 +157,62 @@ fn a_lamp_that_is_off_or_in_another_room_gives_no_light() {
     assert!(mean(&none) > 20 && mean(&none) < mean(&on));
 }
 
+/// A plate of half a metre hangs 1.5 m below a lamp at 2.5 m: its shadow on the floor is 0.5 * 2.5 / 1.5 m wide.
+#[test]
+fn a_plate_under_a_lamp_throws_its_shadow_and_glass_none() {
+    let at = Vec3::new(3.0, 2.5, 3.0);
+    let shadow = |plate: Option<f32>| {
+        let mut world = with_lamp(LightShape::Point, 60.0, at, true);
+        if let Some(opacity) = plate {
+            let mut builder = Builder::from(&world.house);
+            let half = Vec3::new(0.25, 0.005, 0.25);
+            let material = dwell_scene::Material {
+                opacity,
+                ..Builder::plaster("plate")
+            };
+            let place = Pose::from_position(Vec3::new(3.0, 1.0, 3.0));
+            builder.add("plate", Mesh::cuboid(-half, half), material, false, place);
+            world = builder.build();
+        }
+        // From below the plate, at the height of which 100 pixels are 0.9 m of floor each way.
+        let view = downwards(0.9);
+        let frame = world.shot(&view);
+        let row = (0..200).map(|x| pixel(&frame, &view.camera, x, 100)[1]);
+        row.map(before_tone_mapping).collect::<Vec<f32>>()
+    };
+    let (free, plate, glass) = (shadow(None), shadow(Some(1.0)), shadow(Some(0.2)));
+    // The exposure is that of the room, and what it throws back is the same.
+    let dark = |x: usize| plate[x] < 0.8 * free[x];
+    let half_width = 0.5 * 0.5 * 2.5 / 1.5;
+    for x in 0..200 {
+        let floor_x = (x as f32 + 0.5 - 100.0) * 0.009;
+        let from_edge = floor_x.abs() - half_width;
+        if from_edge.abs() > 0.012 {
+            assert_eq!(
+                dark(x),
+                from_edge < 0.0,
+                "{x}: {floor_x} {} {}",
+                plate[x],
+                free[x]
+            );
+        }
+        assert!((glass[x] - free[x]).abs() < 0.03 * free[x], "{x}");
+    }
+}
+
+/// Between the ceiling and the floor above: such lamps stand in SUNCG's houses.
+#[test]
+fn a_lamp_that_is_walled_in_lights_its_room_all_the_same() {
+    let view = downwards(2.0);
+    let light = |y: f32| {
+        let world = with_lamp(LightShape::Point, 60.0, Vec3::new(3.0, y, 3.0), true);
+        let frame = world.shot(&view);
+        before_tone_mapping(pixel(&frame, &view.camera, 100, 100)[1])
+    };
+    let (below, above) = (light(2.99), light(3.01));
+    assert!((below - above).abs() < 0.03 * below, "{below} {above}");
+}
+
 #[test]
 fn switching_a_lamp_changes_the_next_picture() {
     let mut world = with_lamp(LightShape::Point, 20.0, Vec3::new(3.0, 1.5, 3.0), false);

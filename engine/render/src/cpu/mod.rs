@@ -5,6 +5,7 @@ mod band;
 mod motion;
 mod rays;
 mod shade;
+mod shadow;
 
 use crate::error::RenderError;
 use crate::frame::{Before, FrameMut, Preset, View};
@@ -14,21 +15,15 @@ use crate::semantic::{Classes, EntityClasses};
 use crate::surfaces::Surfaces;
 use crate::texture::Textures;
 use band::Band;
-use dwell_scene::bvh::{Ray, SceneBvh, TriangleBvh};
+use dwell_scene::bvh::{Ray, TriangleBvh};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, State};
-use glam::Vec3;
 pub(crate) use rays::SEEN;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Rows of an image that one thread takes at a time; a multiple of a packet's edge.
 const BAND_ROWS: usize = 8;
-/// How far what gives shadow may be, m.
-const SUN_RAY_M: f32 = 500.0;
-/// Most surfaces of glass that the sun passes; behind more it counts as shadow.
-const PANES: usize = 8;
-
 /// Renders views of one house, in any of its worlds.
 ///
 /// What pictures show: RGB is what a camera sees, glass and other materials that let light through included. Depth,
@@ -230,28 +225,6 @@ impl CpuRenderer {
             .get_or_init(|| HouseLight::new(&self.house, &self.looks, &self.textures))
     }
 
-    /// Whether nothing but glass stands between a point and the sun.
-    fn sun_reaches(&self, scene: SceneBvh<'_>, point: Vec3) -> bool {
-        let mut ray = Ray {
-            origin: point,
-            direction: self.house_light().sun.0,
-            near_m: 0.0,
-            far_m: SUN_RAY_M,
-        };
-        for _ in 0..PANES {
-            let Some(hit) = scene.closest(&ray, rays::SEEN) else {
-                return true;
-            };
-            let position = self.surfaces.position(hit.instance, hit.triangle);
-            let material = self.surfaces.triangle(position).material;
-            if self.looks[material as usize].opacity > 0.5 {
-                return false;
-            }
-            ray.near_m = hit.distance_m * (1.0 + 1e-5) + 1e-3;
-        }
-        false
-    }
-
     /// The light of a world as it stands; see [`Self::keep_lighting`].
     pub(crate) fn lighting(&self, scene: &RayScene, state: &State) -> Lighting {
         let used = self
@@ -260,9 +233,14 @@ impl CpuRenderer {
             .unwrap_or_else(PoisonError::into_inner)
             .pop();
         let mut lighting = used.unwrap_or_default();
-        lighting.update(&self.house, self.house_light(), state, |point| {
-            self.sun_reaches(scene.bvh(), point)
-        });
+        let bvh = scene.bvh();
+        lighting.update(
+            &self.house,
+            self.house_light(),
+            state,
+            |point| self.sun_reaches(bvh, point),
+            |from, to, hidden| self.passes(bvh, &Ray::segment(from, to, 0.0), hidden),
+        );
         lighting
     }
 

@@ -5,7 +5,7 @@ use super::band::Band;
 use super::rays::Rays;
 use super::rays::{COLUMNS, LANES, Packet, SEEN, Sight};
 use crate::color::Srgb;
-use crate::light::{beside_surface, display, sky};
+use crate::light::{Incoming, beside_surface, display, sky};
 use crate::look::Look;
 use crate::surfaces::SLOW;
 use dwell_scene::bvh::Ray;
@@ -76,9 +76,60 @@ impl OpenLanes {
     }
 }
 
+/// Sources of light of which each pixel asks whether they are hidden.
+const SHADOW_RAYS: usize = 2;
+
+/// A surface that a pixel sees, whose shadows are not yet known.
+#[derive(Clone, Copy)]
+pub(super) struct Pending {
+    lane: usize,
+    /// How much of what lies behind it hides.
+    opacity: f32,
+    /// What it sends to the camera.
+    pub(super) incoming: Incoming<SHADOW_RAYS>,
+    /// Where its shadow rays end.
+    pub(super) off: Vec3,
+    /// Normal of the flat triangle towards the viewer.
+    pub(super) facing: Vec3,
+    /// Where a ray goes on behind it, m of depth.
+    from: f32,
+}
+
+impl Pending {
+    const NONE: Self = Self {
+        lane: 0,
+        opacity: 1.0,
+        incoming: Incoming::NONE,
+        off: Vec3::ZERO,
+        facing: Vec3::ZERO,
+        from: 0.0,
+    };
+}
+
+/// What a surface sends to the camera.
+struct Sent {
+    incoming: Incoming<SHADOW_RAYS>,
+    /// How much of what lies behind it hides.
+    opacity: f32,
+    off: Vec3,
+    facing: Vec3,
+}
+
+impl Sent {
+    fn plain(light: Vec3, opacity: f32) -> Self {
+        Self {
+            incoming: Incoming::plain(light),
+            opacity,
+            off: Vec3::ZERO,
+            facing: Vec3::ZERO,
+        }
+    }
+}
+
 /// Memory for many packets.
 pub(super) struct Palette {
     pub(super) bytes: [[u8; 3]; LANES],
+    pending: [Pending; LANES],
     open: OpenLanes,
     next: OpenLanes,
 }
@@ -87,6 +138,7 @@ impl Palette {
     pub(super) fn new() -> Self {
         Self {
             bytes: [[0; 3]; LANES],
+            pending: [Pending::NONE; LANES],
             open: OpenLanes::NONE,
             next: OpenLanes::NONE,
         }
@@ -152,9 +204,32 @@ impl Band<'_> {
         palette: &mut Palette,
     ) {
         palette.open.count = 0;
+        let mut count = 0;
         for row in 0..rows {
             for lane in row * COLUMNS..row * COLUMNS + columns {
-                palette.bytes[lane] = self.color(renderer, packet, lane, &mut palette.open);
+                match self.color(renderer, packet, lane) {
+                    Ok(bytes) => palette.bytes[lane] = bytes,
+                    Err(pending) => {
+                        palette.pending[count] = pending;
+                        count += 1;
+                    }
+                }
+            }
+        }
+        let pending = &mut palette.pending[..count];
+        if let Some((lighting, _)) = self.light {
+            renderer.add_light(self.scene, lighting, pending);
+        }
+        for one in pending {
+            let (lane, light, opacity) = (one.lane, one.incoming.light, one.opacity);
+            palette.bytes[lane] = self.encode(light);
+            if opacity < OPAQUE {
+                palette.open.push(Open {
+                    lane,
+                    light: light * opacity,
+                    rest: 1.0 - opacity,
+                    from: one.from,
+                });
             }
         }
         if palette.open.count > 0 {
@@ -162,39 +237,41 @@ impl Band<'_> {
         }
     }
 
-    /// sRGB of a pixel that sees nothing or an opaque surface; others are noted in `open`.
+    /// sRGB of a pixel that sees nothing or a plain colour; of others the surface.
     #[inline]
+    #[expect(clippy::result_large_err, reason = "one of two answers, in place")]
     fn color(
         &self,
         renderer: &CpuRenderer,
         packet: &Packet,
         lane: usize,
-        open: &mut OpenLanes,
-    ) -> [u8; 3] {
+    ) -> Result<[u8; 3], Pending> {
         let Some(sight) = packet.sight(lane) else {
             let direction = packet.direction(lane);
             if direction == Vec3::ZERO {
-                return [0; 3];
+                return Ok([0; 3]);
             }
-            return self.encode(self.sky(renderer, direction));
+            return Ok(self.encode(self.sky(renderer, direction)));
         };
         let position = renderer.surfaces.position(sight.instance, sight.triangle);
         let [r, g, b, kind] = renderer.surfaces.quick(position);
         if kind != SLOW && self.light.is_none() {
-            return [r, g, b];
+            return Ok([r, g, b]);
         }
-        let (light, opacity) = self.surface(renderer, &sight, position, MIRRORS, || {
+        let sent = self.surface(renderer, &sight, position, MIRRORS, || {
             packet.weights(self.scene, lane)
         });
-        if opacity < OPAQUE {
-            open.push(Open {
-                lane,
-                light: light * opacity,
-                rest: 1.0 - opacity,
-                from: sight.depth * (1.0 + GAP.1) + GAP.0,
-            });
+        if self.light.is_none() && sent.opacity >= OPAQUE {
+            return Ok(self.encode(sent.incoming.light));
         }
-        self.encode(light)
+        Err(Pending {
+            lane,
+            opacity: sent.opacity,
+            incoming: sent.incoming,
+            off: sent.off,
+            facing: sent.facing,
+            from: sight.depth * (1.0 + GAP.1) + GAP.0,
+        })
     }
 
     /// All that is seen through surfaces, front to back.
@@ -216,9 +293,10 @@ impl Band<'_> {
                     continue;
                 };
                 let position = renderer.surfaces.position(sight.instance, sight.triangle);
-                let (more, opacity) = self.surface(renderer, &sight, position, MIRRORS, || {
+                let sent = self.surface(renderer, &sight, position, MIRRORS, || {
                     packet.weights(self.scene, lane)
                 });
+                let (more, opacity) = self.settle(renderer, &sent);
                 if opacity >= OPAQUE || layer == LAYERS {
                     bytes[lane] = self.encode(light + more * rest);
                     continue;
@@ -255,7 +333,17 @@ impl Band<'_> {
         Srgb::tables().encode3(shown.to_array())
     }
 
-    /// Light that a surface sends to the camera, and how much of what lies behind it hides.
+    /// Light that a surface sends to the camera, and how much of what lies behind it hides, once its shadows are known.
+    fn settle(&self, renderer: &CpuRenderer, sent: &Sent) -> (Vec3, f32) {
+        let light = self.light.map_or(sent.incoming.light, |(lighting, _)| {
+            sent.incoming.arriving(|source| {
+                renderer.arrives(self.scene, lighting, source, (sent.off, sent.facing))
+            })
+        });
+        (light, sent.opacity)
+    }
+
+    /// What a surface sends to the camera.
     ///
     /// `mirrors`: how many more of them light meets. `weights`: of the second and third corner.
     #[inline]
@@ -266,7 +354,7 @@ impl Band<'_> {
         position: usize,
         mirrors: u32,
         weights: impl FnOnce() -> (f32, f32),
-    ) -> (Vec3, f32) {
+    ) -> Sent {
         let Skin {
             look,
             color,
@@ -278,7 +366,7 @@ impl Band<'_> {
             point, direction, ..
         } = sight;
         let Some((lighting, exposure)) = &self.light else {
-            return (color, opacity);
+            return Sent::plain(color, opacity);
         };
         let facing = if normal.dot(direction) > 0.0 {
             -normal
@@ -287,7 +375,7 @@ impl Band<'_> {
         };
         if look.mirror && mirrors > 0 {
             let light = self.reflected(renderer, sight, facing, mirrors - 1);
-            return (color * light, opacity);
+            return Sent::plain(color * light, opacity);
         }
         let (u, v) = weights();
         let smooth = renderer.surfaces.smooth_normal(position, u, v);
@@ -299,19 +387,22 @@ impl Band<'_> {
         } else {
             smooth
         };
-        let brightness = lighting.brightness(
+        let incoming = lighting.incoming(
             renderer.house_light(),
             *exposure,
             point,
             smooth,
             beside_surface(point, facing, direction),
             sight.id,
-            || renderer.sun_reaches(self.scene, point + facing * OFF_SURFACE_M),
         );
-        (
-            color * brightness + self.glow(renderer, look.emission, sight.id),
+        let mut incoming = incoming.on(color);
+        incoming.light += self.glow(renderer, look.emission, sight.id);
+        Sent {
+            incoming,
             opacity,
-        )
+            off: point + facing * OFF_SURFACE_M,
+            facing,
+        }
     }
 
     /// What a mirror shows: the light that comes from where the ray goes on.
@@ -347,8 +438,8 @@ impl Band<'_> {
                 triangle: hit.triangle,
             };
             let position = renderer.surfaces.position(hit.instance, hit.triangle);
-            let (more, opacity) =
-                self.surface(renderer, &sight, position, mirrors, || (hit.u, hit.v));
+            let sent = self.surface(renderer, &sight, position, mirrors, || (hit.u, hit.v));
+            let (more, opacity) = self.settle(renderer, &sent);
             if opacity >= OPAQUE || layer == LAYERS {
                 return light + more * rest;
             }

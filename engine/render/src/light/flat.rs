@@ -97,32 +97,40 @@ impl HouseLight {
     }
 }
 
+/// A place, and a number as it is.
+fn tagged(place: Vec3, tag: u32) -> Row {
+    let [x, y, z] = place.to_array().map(f32::to_bits);
+    [x, y, z, tag]
+}
+
 fn lamp_rows(lamp: &Lamp) -> [Row; 4] {
     let (axis, cutoff, exponent) = lamp.cone.unwrap_or((Vec3::ZERO, -2.0, 0.0));
-    let mut position = row(lamp.position, 0.0);
-    position[3] = lamp.entity as u32;
     [
-        position,
+        tagged(lamp.position, lamp.entity as u32),
         row(lamp.intensity, cutoff),
         row(axis, exponent),
-        row(Vec3::from_array(lamp.attenuation), 0.0),
+        tagged(Vec3::from_array(lamp.attenuation), lamp.caster),
     ]
 }
 
 impl Lighting {
-    /// Appends the light of one state: a row of heads (first rows of lamps, of where those of each room start, of rooms, and
-    /// behind all), then these.
+    /// Appends the light of one state: two rows of heads (first rows of lamps, of where those of each room start, of rooms, and
+    /// behind all; of what casts shadows), then these.
     pub(crate) fn flatten(&self, rows: &mut Vec<Row>) {
-        let lamps = rows.len() + 1;
+        let lamps = rows.len() + 2;
         let starts = lamps + self.lamps.len() * 4;
         let start_rows = words(self.lamp_starts.iter().map(|start| *start as u32));
         let rooms = starts + start_rows.len();
-        let end = rooms + self.rooms.len();
+        let casters = rooms + self.rooms.len();
+        let end = casters + self.casters.len();
         rows.push([lamps as u32, starts as u32, rooms as u32, end as u32]);
+        rows.push([casters as u32, 0, 0, 0]);
         rows.extend(self.lamps.iter().flat_map(lamp_rows));
         rows.extend(start_rows);
         let room_rows = self.rooms.iter();
         rows.extend(room_rows.map(|room| row(room.indirect, room.mean)));
+        let casters = self.casters.iter();
+        rows.extend(casters.map(|caster| tagged(caster.center, caster.entity as u32)));
     }
 }
 

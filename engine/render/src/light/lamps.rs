@@ -27,6 +27,8 @@ pub(crate) struct Lamp {
     pub(crate) entity: i32,
     /// Position of its room.
     pub(crate) room: Option<usize>,
+    /// Position among those that cast shadows, see [`super::casters`]; or [`super::casters::NONE`].
+    pub(crate) caster: u32,
     /// Luminous flux, lm, for red, green and blue.
     pub(crate) flux_lm: Vec3,
 }
@@ -91,6 +93,7 @@ pub(crate) fn add_lamps(
             attenuation,
             entity: house.entity_of_object(light.object).0,
             room: grid.room(position),
+            caster: super::casters::NONE,
             flux_lm: flux_lm * share,
         }
     };

@@ -1,13 +1,17 @@
 //! The light of [`Preset::Lit`](crate::Preset): lamps, daylight through windows, and what rooms throw back.
 
 mod air;
+mod casters;
 mod flat;
 mod grid;
+mod incoming;
 mod lamps;
 mod openings;
 mod rooms;
 mod tone;
 
+pub(crate) use casters::Caster;
+pub(crate) use incoming::{Incoming, Source};
 pub(crate) use rooms::HouseLight;
 pub(crate) use tone::display;
 
@@ -40,6 +44,8 @@ pub(crate) struct Lighting {
     lamps: Vec<Lamp>,
     /// Where the lamps of each room start, those outside first, and where the last end. Shape (room + 2,).
     lamp_starts: Vec<usize>,
+    /// What casts shadows.
+    casters: Vec<Caster>,
     /// Shape (room,).
     rooms: Vec<RoomLight>,
     flux_lm: Vec<Vec3>,
@@ -56,13 +62,14 @@ pub(crate) struct Exposure {
 
 impl Lighting {
     /// Reads the switches and places of lamps from `state`, in the memory of an earlier state. `sun_reaches`: whether
-    /// nothing stands between a point and the sun.
+    /// nothing stands between a point and the sun. `passes`: as for [`casters::assign`].
     pub(crate) fn update(
         &mut self,
         house: &House,
         fixed: &HouseLight,
         state: &State,
         sun_reaches: impl Fn(Vec3) -> bool,
+        passes: impl Fn(Vec3, Vec3, i32) -> bool,
     ) {
         self.sunlit.clear();
         if fixed.air.is_some() {
@@ -75,7 +82,8 @@ impl Lighting {
             add_lamps(house, state, &fixed.grid, light, &mut self.lamps);
         }
         let place = |lamp: &Lamp| lamp.room.map_or(0, |room| room + 1);
-        self.lamps.sort_by_key(place);
+        self.lamps.sort_by_key(|lamp| (place(lamp), lamp.entity));
+        casters::assign(house, &mut self.lamps, &mut self.casters, passes);
         self.lamp_starts.clear();
         for room in 0..=house.rooms.len() + 1 {
             self.lamp_starts
@@ -113,13 +121,16 @@ impl Lighting {
         }
     }
 
-    /// What a surface of reflectance 1 shows at `point`, in units of display white, for red, green and blue.
+    /// What casts the shadows of a source.
+    pub(crate) fn caster(&self, position: u32) -> &Caster {
+        &self.casters[position as usize]
+    }
+
+    /// What a surface of reflectance 1 shows at `point`, for red, green and blue.
     ///
     /// `normal`: unit length, towards the viewer. `looked_up`: where the point's room is looked up, see
-    /// [`beside_surface`]. `entity`: whose surface it is. `sun_reaches`: whether nothing stands between the point and the
-    /// sun, asked only where the sun shines and the house has a sky.
-    #[expect(clippy::too_many_arguments, reason = "what light depends on")]
-    pub(crate) fn brightness(
+    /// [`beside_surface`]. `entity`: whose surface it is.
+    pub(crate) fn incoming<const N: usize>(
         &self,
         fixed: &HouseLight,
         exposure: Exposure,
@@ -127,23 +138,29 @@ impl Lighting {
         normal: Vec3,
         looked_up: Vec3,
         entity: i32,
-        sun_reaches: impl Fn() -> bool,
-    ) -> Vec3 {
+    ) -> Incoming<N> {
         let room = fixed.grid.room(looked_up);
         let Some(position) = room else {
-            let lamps = self.lamplight(None, point, normal, entity);
             let Some(air) = &fixed.air else {
-                return open_air(normal) + lamps * exposure.per_lx;
+                let mut incoming = Incoming::plain(open_air(normal));
+                self.lamplight(
+                    None,
+                    (point, normal, entity),
+                    exposure.per_lx,
+                    &mut incoming,
+                );
+                return incoming;
             };
-            let mut lx = lamps + air.skylight(normal) + air.groundlight(normal);
-            let across = normal.dot(air.to_sun);
-            if across > 0.0 && air.sun_lx != Vec3::ZERO && sun_reaches() {
-                lx += air.sun_lx * across;
-            }
-            return lx * air.per_lx(exposure.per_lx);
+            let per_lx = air.per_lx(exposure.per_lx);
+            let sky = air.skylight(normal) + air.groundlight(normal);
+            let mut incoming = Incoming::plain(sky * per_lx);
+            self.lamplight(None, (point, normal, entity), per_lx, &mut incoming);
+            let across = normal.dot(air.to_sun).max(0.0);
+            incoming.offer(Source::Sun, air.sun_lx * (across * per_lx));
+            return incoming;
         };
-        let mut lx = self.rooms[position].indirect * fill(normal)
-            + self.lamplight(room, point, normal, entity);
+        let per_lx = exposure.per_lx;
+        let mut lx = self.rooms[position].indirect * fill(normal);
         let mut sun = 0.0_f32;
         for window in fixed.windows_of(position) {
             let (sky, part) = daylight(window, fixed.sun.0, point, normal);
@@ -155,19 +172,45 @@ impl Lighting {
                 lx += fixed.sun.1 * part;
             }
         }
-        if sun > 0.0 && fixed.sun.1 != Vec3::ZERO && sun_reaches() {
-            lx += fixed.sun.1 * sun;
-        }
-        lx * exposure.per_lx
+        let mut incoming = Incoming::plain(lx * per_lx);
+        self.lamplight(room, (point, normal, entity), per_lx, &mut incoming);
+        incoming.offer(Source::Sun, fixed.sun.1 * (sun * per_lx));
+        incoming
     }
 
-    /// Illuminance by the lamps of a room, lx.
-    fn lamplight(&self, room: Option<usize>, point: Vec3, normal: Vec3, entity: i32) -> Vec3 {
+    /// Adds the light of a room's lamps.
+    fn lamplight<const N: usize>(
+        &self,
+        room: Option<usize>,
+        (point, normal, entity): (Vec3, Vec3, i32),
+        per_lx: f32,
+        incoming: &mut Incoming<N>,
+    ) {
         let place = room.map_or(0, |room| room + 1);
         let mine = &self.lamps[self.lamp_starts[place]..self.lamp_starts[place + 1]];
-        mine.iter().fold(Vec3::ZERO, |sum, lamp| {
-            sum + lamp.illuminance(point, normal, entity)
-        })
+        let (mut caster, mut sum) = (casters::NONE, Vec3::ZERO);
+        let mut offer = |caster: u32, light: Vec3| {
+            if caster == casters::NONE {
+                incoming.light += light;
+            } else {
+                incoming.offer(Source::Caster(caster), light);
+            }
+        };
+        for lamp in mine {
+            let light = lamp.illuminance(point, normal, entity) * per_lx;
+            // A shade shines by the light that passes it.
+            let its = if entity == lamp.entity {
+                casters::NONE
+            } else {
+                lamp.caster
+            };
+            if its != caster {
+                offer(caster, sum);
+                (caster, sum) = (its, Vec3::ZERO);
+            }
+            sum += light;
+        }
+        offer(caster, sum);
     }
 }
 

@@ -75,17 +75,67 @@ fn lamp_light(row: u32, point: vec3<f32>, normal: vec3<f32>, id: i32) -> vec3<f3
     return intensity.xyz * (part * cosine / max(weakening, NEAREST * NEAREST));
 }
 
-// Illuminance by the lamps of a room; `place` is 0 outside, else the room and 1.
-fn lamplight(light: u32, place: u32, point: vec3<f32>, normal: vec3<f32>, id: i32) -> vec3<f32> {
+// Sources that a ray tells of; others are positions of what casts shadows.
+const NO_SOURCE: u32 = 0xffffffffu;
+const SUN: u32 = 0xfffffffeu;
+
+// Light on a point: of the two strongest sources apart, of which a ray each tells whether it arrives; the rest arrives.
+struct Incoming {
+    light: vec3<f32>,
+    first: vec3<f32>,
+    second: vec3<f32>,
+    first_source: u32,
+    second_source: u32,
+}
+
+fn offer_light(incoming: ptr<function, Incoming>, source: u32, light: vec3<f32>) {
+    let strength = dot(light, LUMINANCE);
+    if strength <= 0.0 {
+        return;
+    }
+    let first = dot((*incoming).first, LUMINANCE);
+    let second = dot((*incoming).second, LUMINANCE);
+    if strength <= min(first, second) {
+        (*incoming).light += light;
+    } else if second < first {
+        (*incoming).light += (*incoming).second;
+        (*incoming).second = light;
+        (*incoming).second_source = source;
+    } else {
+        (*incoming).light += (*incoming).first;
+        (*incoming).first = light;
+        (*incoming).first_source = source;
+    }
+}
+
+// Adds the light of the lamps of a room; `place` is 0 outside, else the room and 1.
+fn lamplight(incoming: ptr<function, Incoming>, light: u32, place: u32, at: Site, per_lx: f32) {
     let head = frame[light];
     let start = frame[head.y + (place >> 2u)][place & 3u];
     let next = place + 1u;
     let end = frame[head.y + (next >> 2u)][next & 3u];
+    var source = NO_SOURCE;
     var sum = vec3<f32>(0.0);
-    for (var k = start; k < end; k += 1u) {
-        sum += lamp_light(head.x + k * 4u, point, normal, id);
+    for (var k = start; k <= end; k += 1u) {
+        var its = NO_SOURCE;
+        var more = vec3<f32>(0.0);
+        if k < end {
+            let row = head.x + k * 4u;
+            more = lamp_light(row, at.point, at.normal, at.id) * per_lx;
+            // A shade shines by the light that passes it.
+            its = select(frame[row + 3u].w, NO_SOURCE, at.id == bitcast<i32>(frame[row].w));
+        }
+        if its != source || k == end {
+            if source == NO_SOURCE {
+                (*incoming).light += sum;
+            } else {
+                offer_light(incoming, source, sum);
+            }
+            source = its;
+            sum = vec3<f32>(0.0);
+        }
+        sum += more;
     }
-    return sum;
 }
 
 struct Daylight {
@@ -123,11 +173,11 @@ fn daylight(row: u32, to_sun: vec3<f32>, point: vec3<f32>, normal: vec3<f32>) ->
     return Daylight(sky, on_surface * inside);
 }
 
-// Whether nothing but glass stands between a point and the sun.
-fn sun_reaches(point: vec3<f32>, to_sun: vec3<f32>, world: u32) -> bool {
-    var ray = Ray(point, to_sun, 0.0, 500.0, 1.0);
+// Whether nothing but glass stands on a ray, apart from a thing.
+fn passes(start: Ray, hidden: i32, world: u32) -> bool {
+    var ray = start;
     for (var k = 0u; k < PANES; k += 1u) {
-        let n = closest(ray, 0, world);
+        let n = closest(ray, hidden, world);
         if n.slot == NOTHING {
             return true;
         }
@@ -139,6 +189,26 @@ fn sun_reaches(point: vec3<f32>, to_sun: vec3<f32>, world: u32) -> bool {
         ray.near = n.distance * (1.0 + 1e-5) + 1e-3;
     }
     return false;
+}
+
+// Whether light of a source arrives.
+fn arrives(v: View, light: u32, source: u32, at: Site) -> bool {
+    if source == NO_SOURCE {
+        return true;
+    }
+    if source == SUN {
+        let to_sun = numbers(tables[house_light() + 2u]).xyz;
+        return passes(Ray(at.off, to_sun, 0.0, 500.0, 1.0), 0, v.world);
+    }
+    let caster = frame[frame[light + 1u].x + source];
+    let center = numbers(caster).xyz;
+    let way = at.off - center;
+    let distance = length(way);
+    // A flat surface that faces away meets light only by its rounded normal.
+    if distance <= 1e-3 || dot(at.facing, way) >= 0.0 {
+        return true;
+    }
+    return passes(Ray(center, way / distance, 0.0, distance, 1.0), bitcast<i32>(caster.w), v.world);
 }
 
 // Illuminance by the sky: nine spherical harmonics weighed by the cosine.
@@ -169,35 +239,38 @@ struct Site {
     normal: vec3<f32>,
     // Where the point's room is looked up.
     beside: vec3<f32>,
-    // Where the ray to the sun starts.
+    // Where shadow rays end.
     off: vec3<f32>,
+    // Of the flat triangle, towards the viewer.
+    facing: vec3<f32>,
     id: i32,
 }
 
-// What a surface of reflectance 1 shows, in units of display white.
-fn brightness(v: View, light: u32, per_lx: f32, at: Site) -> vec3<f32> {
+// What a surface of reflectance 1 shows, in units of display white, before shadows.
+fn incoming_light(light: u32, per_lx: f32, at: Site) -> Incoming {
     let room = room_of(at.beside);
     let air = has_air();
+    let n = at.normal;
+    var incoming = Incoming(vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0), NO_SOURCE, NO_SOURCE);
     if room == OUTSIDE {
-        let lamps = lamplight(light, 0u, at.point, at.normal, at.id);
         if !air {
-            return open_air(at.normal) + lamps * per_lx;
+            incoming.light = open_air(n);
+            lamplight(&incoming, light, 0u, at, per_lx);
+            return incoming;
         }
         let row = air_row();
         let sun = numbers(tables[row]);
-        let sun_lx = numbers(tables[row + 1u]).xyz;
-        let ground = numbers(tables[row + 2u]).xyz * (0.5 - 0.5 * at.normal.y);
-        var lx = lamps + skylight(at.normal) + ground;
-        let across = dot(at.normal, sun.xyz);
-        if across > 0.0 && any(sun_lx != vec3<f32>(0.0)) && sun_reaches(at.off, sun.xyz, v.world) {
-            lx += sun_lx * across;
-        }
-        return lx * min(sun.w, per_lx);
+        let exposed = min(sun.w, per_lx);
+        let ground = numbers(tables[row + 2u]).xyz * (0.5 - 0.5 * n.y);
+        incoming.light = (skylight(n) + ground) * exposed;
+        lamplight(&incoming, light, 0u, at, exposed);
+        let across = max(dot(n, sun.xyz), 0.0);
+        offer_light(&incoming, SUN, numbers(tables[row + 1u]).xyz * (across * exposed));
+        return incoming;
     }
-    let n = at.normal;
     let rooms = frame[light].z;
     let fill = 0.95 + 0.08 * n.y + 0.07 * n.x + 0.03 * n.z;
-    var lx = numbers(frame[rooms + room]).xyz * fill + lamplight(light, room + 1u, at.point, n, at.id);
+    var lx = numbers(frame[rooms + room]).xyz * fill;
     let size = tables[house_light() + 1u];
     let to_sun = numbers(tables[house_light() + 2u]).xyz;
     let sun_lx = numbers(tables[house_light() + 3u]).xyz;
@@ -214,10 +287,23 @@ fn brightness(v: View, light: u32, per_lx: f32, at: Site) -> vec3<f32> {
             lx += sun_lx * day.sun;
         }
     }
-    if sun > 0.0 && any(sun_lx != vec3<f32>(0.0)) && sun_reaches(at.off, to_sun, v.world) {
-        lx += sun_lx * sun;
+    incoming.light = lx * per_lx;
+    lamplight(&incoming, light, room + 1u, at, per_lx);
+    offer_light(&incoming, SUN, sun_lx * (sun * per_lx));
+    return incoming;
+}
+
+// What a surface of reflectance 1 shows, in units of display white.
+fn brightness(v: View, light: u32, per_lx: f32, at: Site) -> vec3<f32> {
+    let incoming = incoming_light(light, per_lx, at);
+    var sum = incoming.light;
+    if arrives(v, light, incoming.first_source, at) {
+        sum += incoming.first;
     }
-    return lx * per_lx;
+    if arrives(v, light, incoming.second_source, at) {
+        sum += incoming.second;
+    }
+    return sum;
 }
 
 // One of the fifteen coefficients of the sky: A to E for Y, x and y.

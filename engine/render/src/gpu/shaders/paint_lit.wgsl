@@ -132,6 +132,7 @@ fn paint_lit(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) g
                     rounded,
                     sight.point + towards * 0.1 - ray.direction * 0.2,
                     sight.point + towards * OFF_SURFACE,
+                    towards,
                     id,
                 );
                 var shown = skin.color * brightness(v, light, per_lx, at);

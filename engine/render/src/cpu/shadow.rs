@@ -1,0 +1,143 @@
+//! Whether light arrives.
+
+use super::CpuRenderer;
+use super::rays::{LANES, SEEN};
+use super::shade::Pending;
+use crate::light::{Caster, Lighting, Source};
+use dwell_scene::EntityId;
+use dwell_scene::bvh::{PacketHits, Ray, RayPacket, SceneBvh};
+use glam::Vec3;
+
+/// How far what gives shadow may be from what the sun shines on, m.
+const SUN_RAY_M: f32 = 500.0;
+/// Most surfaces of glass that light passes; behind more it counts as shadow.
+const PANES: usize = 8;
+/// What lets through more than this counts as glass.
+const GLASS: f32 = 0.5;
+
+impl CpuRenderer {
+    /// Whether nothing but glass stands on a ray, apart from a thing.
+    pub(super) fn passes(&self, scene: SceneBvh<'_>, ray: &Ray, hidden: i32) -> bool {
+        let mut ray = *ray;
+        for _ in 0..PANES {
+            let Some(hit) = scene.closest_without(&ray, SEEN, hidden) else {
+                return true;
+            };
+            if !self.is_glass(hit.instance, hit.triangle) {
+                return false;
+            }
+            ray.near_m = hit.distance_m * (1.0 + 1e-5) + 1e-3;
+        }
+        false
+    }
+
+    fn is_glass(&self, instance: Option<u32>, triangle: u32) -> bool {
+        let position = self.surfaces.position(instance, triangle);
+        let material = self.surfaces.triangle(position).material;
+        self.looks[material as usize].opacity <= GLASS
+    }
+
+    /// Whether the sun shines on a point.
+    pub(super) fn sun_reaches(&self, scene: SceneBvh<'_>, point: Vec3) -> bool {
+        let ray = Ray {
+            origin: point,
+            direction: self.house_light().sun.0,
+            near_m: 0.0,
+            far_m: SUN_RAY_M,
+        };
+        self.passes(scene, &ray, EntityId::VOID.0)
+    }
+
+    /// Whether light of a source arrives at a point off a surface, whose flat normal is `facing`.
+    pub(super) fn arrives(
+        &self,
+        scene: SceneBvh<'_>,
+        lighting: &Lighting,
+        source: Source,
+        (point, facing): (Vec3, Vec3),
+    ) -> bool {
+        match source {
+            Source::None => true,
+            Source::Sun => self.sun_reaches(scene, point),
+            Source::Caster(position) => {
+                let caster = lighting.caster(position);
+                ray_from(caster, point, facing)
+                    .is_none_or(|ray| self.passes(scene, &ray, caster.entity))
+            }
+        }
+    }
+
+    /// Adds to each pixel the light that arrives there. A source's rays are asked together: they start at one point.
+    pub(super) fn add_light(
+        &self,
+        scene: SceneBvh<'_>,
+        lighting: &Lighting,
+        pending: &mut [Pending],
+    ) {
+        let mut hits = PacketHits::<LANES>::new();
+        for first in 0..pending.len() {
+            for k in 0..pending[first].incoming.rays.len() {
+                let source = pending[first].incoming.rays[k].source;
+                if source == Source::None {
+                    continue;
+                }
+                let mut stopped = 0_u64;
+                let rest = &mut pending[first..];
+                if let Source::Caster(position) = source {
+                    let caster = lighting.caster(position);
+                    let mut rays = RayPacket::<LANES>::new(caster.center);
+                    let mut used = 0_u64;
+                    for (lane, one) in rest.iter().enumerate() {
+                        let asked = one.incoming.rays.iter().any(|ray| ray.source == source);
+                        if asked && let Some(ray) = ray_from(caster, one.off, one.facing) {
+                            rays.set(lane, ray.direction, ray.near_m, ray.far_m);
+                            used |= 1 << lane;
+                        }
+                    }
+                    if used != 0 {
+                        scene.closest_packet(&rays, SEEN, Some(caster.entity), &mut hits);
+                    }
+                    for lane in (0..rest.len()).filter(|lane| used >> lane & 1 == 1) {
+                        let through = || {
+                            self.is_glass(hits.instance(lane), hits.triangle[lane])
+                                && self.passes(scene, &rays.ray(lane), caster.entity)
+                        };
+                        if hits.is_hit(lane) && !through() {
+                            stopped |= 1 << lane;
+                        }
+                    }
+                }
+                for (lane, one) in rest.iter_mut().enumerate() {
+                    let mine = one
+                        .incoming
+                        .rays
+                        .iter_mut()
+                        .find(|ray| ray.source == source);
+                    let Some(ray) = mine else {
+                        continue;
+                    };
+                    ray.source = Source::None;
+                    let arrives = match source {
+                        Source::Sun => self.sun_reaches(scene, one.off),
+                        _ => stopped >> lane & 1 == 0,
+                    };
+                    if arrives {
+                        one.incoming.light += ray.light;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// From what casts shadows to a point; nothing for a flat surface that faces away, which light meets only by its rounded normal.
+fn ray_from(caster: &Caster, point: Vec3, facing: Vec3) -> Option<Ray> {
+    let way = point - caster.center;
+    let distance = way.length();
+    (distance > 1e-3 && facing.dot(way) < 0.0).then(|| Ray {
+        origin: caster.center,
+        direction: way / distance,
+        near_m: 0.0,
+        far_m: distance,
+    })
+}

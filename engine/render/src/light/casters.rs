@@ -1,0 +1,73 @@
+//! What casts shadows: the lamps of one thing as one point.
+//!
+//! A chandelier's bulbs or the quarters of a line hang so near to one another that one ray tells for all of them.
+
+use super::lamps::Lamp;
+use super::rooms::luminance;
+use dwell_scene::House;
+use glam::Vec3;
+
+/// Casts no shadows.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// How far below a lamp, or above a low one, places are looked for that its light reaches, m.
+const BELOW_M: f32 = 0.8;
+const ABOVE_M: f32 = 0.5;
+/// Lamps that hang higher than this over the floor are looked at from below, m.
+const LOW_M: f32 = 1.2;
+/// How far to the sides these places are, m.
+const ASIDE_M: f32 = 0.6;
+
+/// Lamps of one thing in one room.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Caster {
+    /// The middle of its lamps by their light.
+    pub(crate) center: Vec3,
+    /// The thing; it casts no shadow of this light.
+    pub(crate) entity: i32,
+}
+
+/// Tells each lamp its caster. `lamps`: those of one thing in one room side by side. `passes`: whether light comes from one point
+/// to another past a thing.
+///
+/// What light cannot leave, such as a lamp above the ceiling that it shall light, casts no shadows: then its light passes all.
+pub(crate) fn assign(
+    house: &House,
+    lamps: &mut [Lamp],
+    casters: &mut Vec<Caster>,
+    passes: impl Fn(Vec3, Vec3, i32) -> bool,
+) {
+    casters.clear();
+    for group in lamps.chunk_by_mut(|a, b| (a.room, a.entity) == (b.room, b.entity)) {
+        let weight = |lamp: &Lamp| luminance(lamp.flux_lm).max(1e-6);
+        let all: f32 = group.iter().map(weight).sum();
+        let middle = group
+            .iter()
+            .fold(Vec3::ZERO, |sum, lamp| sum + lamp.position * weight(lamp));
+        let caster = Caster {
+            center: middle / all,
+            entity: group[0].entity,
+        };
+        let floor_y = group[0].room.and_then(|room| house.rooms.iter().nth(room));
+        let is_low = floor_y.is_some_and(|room| caster.center.y - room.floor_y < LOW_M);
+        let beside = |[x, z]: [f32; 2]| {
+            let up = if is_low { ABOVE_M } else { -BELOW_M };
+            caster.center + Vec3::new(x * ASIDE_M, up, z * ASIDE_M)
+        };
+        let places = [
+            [0.0, 0.0],
+            [1.0, 1.0],
+            [-1.0, 1.0],
+            [-1.0, -1.0],
+            [1.0, -1.0],
+        ];
+        if places
+            .into_iter()
+            .any(|place| passes(caster.center, beside(place), caster.entity))
+        {
+            let next = casters.len() as u32;
+            casters.push(caster);
+            group.iter_mut().for_each(|lamp| lamp.caster = next);
+        }
+    }
+}

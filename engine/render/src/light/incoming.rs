@@ -1,0 +1,119 @@
+//! Light on a point, apart by what casts its shadows.
+
+use super::rooms::luminance;
+use glam::Vec3;
+
+/// Where light comes from that a thing may stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// From nowhere.
+    None,
+    /// The sun.
+    Sun,
+    /// A position in [`super::Lighting::casters`].
+    Caster(u32),
+}
+
+/// Light of one source.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ray {
+    pub(crate) source: Source,
+    /// In units of display white.
+    pub(crate) light: Vec3,
+}
+
+impl Ray {
+    const NONE: Self = Self {
+        source: Source::None,
+        light: Vec3::ZERO,
+    };
+}
+
+/// Light on a point: of its `N` strongest sources apart, of which a ray each tells whether it arrives; the rest arrives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Incoming<const N: usize> {
+    /// What arrives, in units of display white.
+    pub(crate) light: Vec3,
+    pub(crate) rays: [Ray; N],
+}
+
+impl<const N: usize> Incoming<N> {
+    pub(crate) const NONE: Self = Self {
+        light: Vec3::ZERO,
+        rays: [Ray::NONE; N],
+    };
+
+    /// Only light that arrives.
+    pub(crate) fn plain(light: Vec3) -> Self {
+        Self {
+            light,
+            ..Self::NONE
+        }
+    }
+
+    /// Adds a source; the weakest of more than `N` arrives.
+    pub(super) fn offer(&mut self, source: Source, light: Vec3) {
+        let strength = luminance(light);
+        if strength <= 0.0 {
+            return;
+        }
+        let (mut weakest, mut least) = (0, f32::INFINITY);
+        for (k, ray) in self.rays.iter().enumerate() {
+            let found = luminance(ray.light);
+            if found < least {
+                (weakest, least) = (k, found);
+            }
+        }
+        if strength > least {
+            let ray = std::mem::replace(&mut self.rays[weakest], Ray { source, light });
+            self.light += ray.light;
+        } else {
+            self.light += light;
+        }
+    }
+
+    /// As a surface of that reflectance sends it on.
+    pub(crate) fn on(mut self, color: Vec3) -> Self {
+        self.light *= color;
+        for ray in &mut self.rays {
+            ray.light *= color;
+        }
+        self
+    }
+
+    /// All light that arrives.
+    pub(crate) fn arriving(&self, mut arrives: impl FnMut(Source) -> bool) -> Vec3 {
+        self.rays.iter().fold(self.light, |sum, ray| {
+            if ray.source != Source::None && arrives(ray.source) {
+                sum + ray.light
+            } else {
+                sum
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_strongest_sources_are_asked_and_the_rest_arrives() {
+        let mut incoming = Incoming::<2>::plain(Vec3::ONE);
+        let lights = [3.0, 1.0, 5.0, 2.0, 4.0];
+        for (k, light) in lights.into_iter().enumerate() {
+            incoming.offer(Source::Caster(k as u32), Vec3::splat(light));
+        }
+        incoming.offer(Source::Sun, Vec3::ZERO);
+        let mut asked = Vec::new();
+        let none = incoming.arriving(|source| {
+            asked.push(source);
+            false
+        });
+        asked.sort_by_key(|source| format!("{source:?}"));
+        assert_eq!(asked, [Source::Caster(2), Source::Caster(4)]);
+        assert_eq!(none, Vec3::splat(1.0 + 3.0 + 1.0 + 2.0));
+        let all = incoming.on(Vec3::splat(0.5)).arriving(|_| true);
+        assert_eq!(all, Vec3::splat(8.0));
+    }
+}
