@@ -95,5 +95,7 @@ def world_settings(
         if name.endswith("_hz"):
             finite(name, further[name])
     rows, values = found(laws)
+    if (renderer := os.environ.get("DWELL_RENDERER")) and "renderer" not in further:
+        further = {**further, "renderer": renderer}
     own = {} if parameters is None else _values("parameters", parameters)
     return {"laws": rows, "parameters": {**values, **own}, **further}

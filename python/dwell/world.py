@@ -73,7 +73,9 @@ class World:
                 found (laws and parameters), as a mapping or as the path of its ``found.json``.
             parameters: Values by address, such as ``{"world/gravity_m_s2": 1.62}``; they go before
                 those that calibration found.
-            **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``.
+            **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``,
+                and ``renderer``, who makes pictures: ``"cpu"`` (default, or what the variable
+                DWELL_RENDERER says), ``"gpu"``, or ``"gpu:NAME"`` with a part of an adapter's name.
         """
         self.house = house if isinstance(house, House) else House.open(house)
         settings = {"agents": bodies(agents), **world_settings(laws, parameters, config)}

@@ -77,10 +77,25 @@ pub(crate) fn doctor_json() -> String {
         "threads": threads,
         "available_cores": cores,
         "cpu_features": cpu_features(),
-        "render_back_ends": ["cpu"],
+        "render_back_ends": ["cpu", "gpu"],
+        "graphics_adapters": graphics_adapters(),
         "houses": dwell_houses::builtin::names(),
     })
     .to_string()
+}
+
+/// The adapters that `gpu` and `gpu:NAME` may mean.
+fn graphics_adapters() -> Vec<serde_json::Value> {
+    let adapters = dwell_render::adapters().into_iter();
+    let adapter = |adapter: dwell_render::Adapter| {
+        json!({
+            "name": adapter.name,
+            "kind": adapter.kind.word(),
+            "interface": adapter.interface,
+            "driver": adapter.driver,
+        })
+    };
+    adapters.map(adapter).collect()
 }
 
 #[cfg(target_arch = "x86_64")]

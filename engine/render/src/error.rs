@@ -60,6 +60,14 @@ pub enum RenderError {
         /// How many there are.
         count: usize,
     },
+    /// A back end that there is not.
+    #[error(
+        "no back end {found:?}; there are cpu, gpu and gpu:NAME, with a part of an adapter's name"
+    )]
+    BackEnd {
+        /// What was asked for.
+        found: String,
+    },
     /// No graphics adapter that may be used.
     #[error(
         "no graphics adapter {wanted}; found: {found}. Software adapters are taken by name only; `cpu` needs none"
@@ -93,6 +101,15 @@ pub enum RenderError {
     OnlyCpu {
         /// The position in the list of jobs.
         view: usize,
+    },
+    /// An adapter that another process opened.
+    #[error(
+        "{adapter} was opened before this process was forked, and drivers do not survive that; make houses and worlds that \
+         use it in the forked process, or start workers with \"spawn\""
+    )]
+    Forked {
+        /// The adapter.
+        adapter: String,
     },
     /// A graphics driver that failed.
     #[error("{adapter} failed {doing}: {message}")]

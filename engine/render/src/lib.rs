@@ -25,6 +25,7 @@
 //! The picture is exposed for the mean light of the camera's room and tone-mapped. The open air has an exposure of its
 //! own, as if photographed apart.
 
+mod back_end;
 mod camera;
 mod color;
 mod cpu;
@@ -40,6 +41,7 @@ mod sightings;
 mod surfaces;
 mod texture;
 
+pub use back_end::{BackEnd, Renderer};
 pub use camera::{Camera, Projection};
 pub use cpu::{CpuRenderer, Job};
 pub use error::RenderError;

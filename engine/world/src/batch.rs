@@ -1,11 +1,10 @@
 //! Several environments stepped together: all views in one submission, results in the caller's buffers.
 
 use crate::action::DiscreteAction;
-use crate::engines::Engines;
 use crate::env::{Env, StepInfo};
 use crate::error::WorldError;
 use crate::sensors::{Dtype, Out, SensorSpec};
-use dwell_render::Job;
+use dwell_render::{Job, Renderer};
 use dwell_scene::parallel::Threads;
 use std::sync::Arc;
 
@@ -230,7 +229,7 @@ impl Batch {
     /// whose shutter is open or rolls.
     fn render(&mut self, which: &[bool]) -> Result<(), WorldError> {
         let threads = self.threads;
-        let mut groups: Vec<(Arc<Engines>, Vec<Job<'_>>)> = Vec::new();
+        let mut groups: Vec<(Arc<Renderer>, Vec<Job<'_>>)> = Vec::new();
         for (env, _) in self
             .envs
             .iter_mut()
@@ -238,12 +237,12 @@ impl Batch {
             .filter(|(_, active)| **active)
         {
             let (world, requests, results) = env.picture_work();
-            let engines = world.engines();
+            let renderer = world.engines().pictures(&world.config().renderer)?;
             let group = groups
                 .iter()
-                .position(|(other, _)| Arc::ptr_eq(other, engines))
+                .position(|(other, _)| Arc::ptr_eq(other, &renderer))
                 .unwrap_or_else(|| {
-                    groups.push((engines.clone(), Vec::new()));
+                    groups.push((renderer, Vec::new()));
                     groups.len() - 1
                 });
             for (request, picture) in requests.views.iter().zip(&mut results.pictures) {
@@ -262,8 +261,8 @@ impl Batch {
                 }
             }
         }
-        for (engines, jobs) in &mut groups {
-            engines.renderer().render_batch(jobs, threads)?;
+        for (renderer, jobs) in &mut groups {
+            renderer.render_batch(jobs, threads)?;
         }
         Ok(())
     }

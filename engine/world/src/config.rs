@@ -1,6 +1,7 @@
 //! How a world runs.
 
 use crate::error::WorldError;
+use dwell_render::BackEnd;
 use dwell_scene::{AgentBody, LawSpec};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -17,12 +18,20 @@ pub struct WorldConfig {
     pub sound_rate_hz: u32,
     /// How carefully sound is traced: `"rl"` (fast, default) or `"full"`.
     pub sound_preset: String,
+    /// Who renders pictures: `"cpu"` (default), `"gpu"`, or `"gpu:NAME"` with a part of an adapter's name.
+    #[serde(skip_serializing_if = "is_default")]
+    pub renderer: BackEnd,
     /// The agents' bodies, one for each agent.
     pub agents: Vec<AgentBody>,
     /// Laws to install.
     pub laws: Vec<LawSpec>,
     /// Parameters that differ from the house's, by address.
     pub parameters: BTreeMap<String, f64>,
+}
+
+/// Files of worlds that `cpu` renders do not mention it.
+fn is_default(back_end: &BackEnd) -> bool {
+    *back_end == BackEnd::Cpu
 }
 
 impl Default for WorldConfig {
@@ -32,6 +41,7 @@ impl Default for WorldConfig {
             physics_rate_hz: 120.0,
             sound_rate_hz: 16_000,
             sound_preset: "rl".to_owned(),
+            renderer: BackEnd::Cpu,
             agents: vec![AgentBody::default()],
             laws: Vec::new(),
             parameters: BTreeMap::new(),

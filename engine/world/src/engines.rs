@@ -5,7 +5,7 @@ use crate::error::WorldError;
 use crate::start::Start;
 use dwell_acoustics::{AcousticConfig, AcousticScene};
 use dwell_physics::PhysicsModel;
-use dwell_render::CpuRenderer;
+use dwell_render::{BackEnd, CpuRenderer, Renderer};
 use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
 use dwell_scene::{House, State};
 use dwell_semantics::Semantics;
@@ -16,7 +16,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 #[derive(Debug)]
 pub struct Engines {
     house: Arc<House>,
-    renderer: OnceLock<CpuRenderer>,
+    renderer: OnceLock<Arc<CpuRenderer>>,
+    /// By back end.
+    pictures: Mutex<BTreeMap<BackEnd, Arc<Renderer>>>,
     semantics: OnceLock<Semantics>,
     physics: OnceLock<Arc<PhysicsModel>>,
     /// By preset and sample rate.
@@ -33,6 +35,7 @@ impl Engines {
         Arc::new(Self {
             house,
             renderer: OnceLock::new(),
+            pictures: Mutex::default(),
             semantics: OnceLock::new(),
             physics: OnceLock::new(),
             acoustics: Mutex::default(),
@@ -48,7 +51,26 @@ impl Engines {
 
     /// The renderer with the house's textures and tables.
     pub fn renderer(&self) -> &CpuRenderer {
-        self.renderer.get_or_init(|| CpuRenderer::new(&self.house))
+        self.tables()
+    }
+
+    fn tables(&self) -> &Arc<CpuRenderer> {
+        self.renderer
+            .get_or_init(|| Arc::new(CpuRenderer::new(&self.house)))
+    }
+
+    /// A back end over the house, made when it is first asked for.
+    ///
+    /// # Errors
+    /// [`WorldError::Render`] for a graphics adapter that is not there, fails, or is too small for the house.
+    pub fn pictures(&self, back_end: &BackEnd) -> Result<Arc<Renderer>, WorldError> {
+        let mut made = self.pictures.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(renderer) = made.get(back_end) {
+            return Ok(renderer.clone());
+        }
+        let renderer = Arc::new(Renderer::new(back_end, self.tables().clone())?);
+        made.insert(back_end.clone(), renderer.clone());
+        Ok(renderer)
     }
 
     /// What can be said about the house.

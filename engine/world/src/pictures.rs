@@ -88,7 +88,8 @@ impl World {
         let mut frame = Frame::new(&shot.view.camera, channels);
         if optics.shutter().is_still() {
             let mut job = [self.job(&shot, frame.as_mut())];
-            self.engines().renderer().render_batch(&mut job, threads)?;
+            let renderer = self.engines().pictures(&self.config().renderer)?;
+            renderer.render_batch(&mut job, threads)?;
         } else {
             self.expose(&shot, &optics, &mut frame, threads)?;
         }
@@ -221,10 +222,8 @@ impl Moments {
                 ..Job::new(scene, state, view, rest.take_pixels(pixels))
             });
         }
-        world
-            .engines()
-            .renderer()
-            .render_batch(&mut jobs, threads)?;
+        let renderer = world.engines().pictures(&world.config().renderer)?;
+        renderer.render_batch(&mut jobs, threads)?;
         Ok(())
     }
 }

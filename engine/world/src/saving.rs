@@ -53,6 +53,7 @@ impl Base {
         let plain = WorldConfig {
             parameters: BTreeMap::new(),
             laws: Vec::new(),
+            renderer: dwell_render::BackEnd::Cpu,
             ..config.clone()
         };
         // Bodies that only the world's own parameters make small enough have no such beginning: theirs has no bytes.

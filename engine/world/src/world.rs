@@ -10,6 +10,7 @@ use dwell_physics::{
     Action, ActionOutcome, AgentControl, AgentPlacement, BodyState, ContactEvent, JointState,
     PhysicsWorld, StartReport,
 };
+use dwell_render::BackEnd;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
@@ -46,6 +47,9 @@ impl World {
     /// [`WorldError`] names the setting, parameter or law that is wrong.
     pub fn new(engines: Arc<Engines>, config: &WorldConfig) -> Result<Self, WorldError> {
         config.check()?;
+        if config.renderer != BackEnd::Cpu {
+            engines.pictures(&config.renderer)?;
+        }
         let start = engines.start(config)?;
         let (state, physics) = (start.state.clone(), start.physics.clone());
         let mut rays = RayScene::new(engines.house().clone());

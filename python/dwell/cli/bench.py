@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--worlds", type=count, default=64, help="physics: worlds stepped together")
     parser.add_argument("--resolution", type=count, default=128, help="pixels across and down")
     parser.add_argument("--preset", choices=("flat", "lit"), default="flat")
+    parser.add_argument(
+        "--backend", metavar="cpu|gpu|gpu:NAME", help="render: default DWELL_RENDERER or cpu"
+    )
+    parser.add_argument(
+        "--batches", type=count, default=1, help="render: how often all views are in one batch"
+    )
     parser.add_argument("--threads", type=count, help="default: what the machine allows")
     parser.add_argument("--repeats", type=count, default=5, help="the median counts")
     parser.add_argument("--envs", type=count, default=4)
@@ -42,8 +49,18 @@ def run(args: argparse.Namespace) -> int:
 
     options: dict[str, Any] = {
         key: getattr(args, key)
-        for key in ("resolution", "preset", "threads", "repeats", "envs", "steps", "worlds")
+        for key in (
+            "resolution",
+            "preset",
+            "threads",
+            "repeats",
+            "envs",
+            "steps",
+            "worlds",
+            "batches",
+        )
     }
+    options["backend"] = args.backend or os.environ.get("DWELL_RENDERER", "cpu")
     if args.views:
         options["views"] = _views(args.views)
     if args.boxes:

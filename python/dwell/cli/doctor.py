@@ -40,7 +40,13 @@ def run(args: argparse.Namespace) -> int:
     cores, threads = facts["available_cores"], facts["threads"]
     print(f"processor: {cores} cores available, {threads} threads used (DWELL_THREADS changes it)")
     print(f"instructions: {', '.join(facts['cpu_features']) or 'none that are looked for'}")
-    print(f"rendering: {', '.join(facts['render_back_ends'])} (no GPU or driver is needed)")
+    print("rendering: cpu, the default (no GPU or driver is needed); --backend and renderer= choose")
+    for adapter in facts["graphics_adapters"]:
+        kind, interface = adapter["kind"], adapter["interface"]
+        how = f"gpu:{adapter['name']}" if kind == "software" else "gpu"
+        print(f"graphics adapter: {adapter['name']} ({kind}, {interface}), taken by {how!r}")
+    if not facts["graphics_adapters"]:
+        print("graphics adapters: none (no Vulkan, Metal, DX12 or GL driver)")
     print(f"built-in houses: {', '.join(facts['houses'])}")
     for name, there in facts["extras"].items():
         purpose, how = _EXTRAS[name]

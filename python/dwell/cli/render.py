@@ -75,6 +75,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--cut-m", type=number, default=1.6, help="height of --dollhouse's cut")
     parser.add_argument("--columns", type=count, default=4, help="pictures in a row of --sheet")
+    parser.add_argument(
+        "--backend", metavar="cpu|gpu|gpu:NAME", help="who renders; default: DWELL_RENDERER or cpu"
+    )
     parser.add_argument("--out", type=Path, required=True, help="folder for the files")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
@@ -92,7 +95,8 @@ def run(args: argparse.Namespace) -> int:
     elif len(houses) > 1:
         raise ValueError(f"{len(houses)} houses; several are taken by --sheet alone")
     else:
-        world = World(House.open(houses[0]), agents=0)
+        renderer = {"renderer": args.backend} if args.backend else {}
+        world = World(House.open(houses[0]), agents=0, **renderer)
         pictured = args.map or args.dollhouse or args.sheet
         files = _whole(args, world) if pictured else _views(args, world, channels)
     if args.json:

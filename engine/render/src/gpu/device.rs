@@ -16,6 +16,8 @@ pub struct Gpu {
     pub(super) layouts: Layouts,
     /// By the links that their stacks hold.
     kernels: Mutex<BTreeMap<usize, Arc<Kernels>>>,
+    /// The process that opened it.
+    process: u32,
     buffers_made: AtomicUsize,
     /// The first message of the driver that nobody has seen.
     fault: Arc<Mutex<Option<String>>>,
@@ -76,12 +78,43 @@ impl Gpu {
             device,
             queue,
             kernels: Mutex::new(BTreeMap::new()),
+            process: std::process::id(),
             buffers_made: AtomicUsize::new(0),
             fault,
         };
         gpu.check("to prepare")?;
         tracing::debug!(adapter = %gpu.adapter, "graphics adapter opened");
         Ok(Arc::new(gpu))
+    }
+
+    /// As [`Self::open`]; who asks for the same adapter in one process gets the same.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn shared(name: Option<&str>) -> Result<Arc<Self>, RenderError> {
+        static OPEN: Mutex<BTreeMap<Option<String>, Arc<Gpu>>> = Mutex::new(BTreeMap::new());
+        let mut open = lock(&OPEN);
+        let key = name.map(str::to_lowercase);
+        if let Some(gpu) = open.get(&key) {
+            if gpu.check_process().is_ok() {
+                return Ok(gpu.clone());
+            }
+            // Closing what another process opened would call its driver, which is not there.
+            std::mem::forget(open.remove(&key));
+        }
+        let gpu = Self::open(name)?;
+        open.insert(key, gpu.clone());
+        Ok(gpu)
+    }
+
+    /// Whether this process opened the adapter.
+    pub(super) fn check_process(&self) -> Result<(), RenderError> {
+        if self.process == std::process::id() {
+            return Ok(());
+        }
+        Err(RenderError::Forked {
+            adapter: self.adapter.to_string(),
+        })
     }
 
     /// The adapter.

@@ -101,6 +101,7 @@ impl GpuRenderer {
     /// # Errors
     /// As [`Self::render_batch`]; and [`RenderError::OnlyCpu`] for a preset that only `cpu` has.
     pub fn submit(&self, jobs: &[Job<'_>]) -> Result<Submitted, RenderError> {
+        self.gpu.check_process()?;
         for (k, job) in jobs.iter().enumerate() {
             self.cpu.check(k, job)?;
             if !is_ours(job) {

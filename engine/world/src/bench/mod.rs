@@ -10,7 +10,7 @@ pub use physics::{BenchBox, BenchBoxes};
 
 use crate::engines::Engines;
 use crate::error::WorldError;
-use dwell_render::Preset;
+use dwell_render::{BackEnd, Preset};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::sync::Arc;
@@ -41,6 +41,10 @@ pub struct BenchOptions {
     pub resolution: u32,
     /// `"flat"` (default) or `"lit"`.
     pub preset: Preset,
+    /// Who renders: `"cpu"` (default), `"gpu"` or `"gpu:NAME"`.
+    pub backend: BackEnd,
+    /// How often all views are rendered in one batch, as if for so many worlds; 1 to 4,096, default 1.
+    pub batches: usize,
     /// Threads; `None`: what the machine allows.
     pub threads: Option<usize>,
     /// Repetitions of which the median counts; 1 to 1,000, default 5.
@@ -72,6 +76,8 @@ impl Default for BenchOptions {
             views: None,
             resolution: 128,
             preset: Preset::Flat,
+            backend: BackEnd::Cpu,
+            batches: 1,
             threads: None,
             repeats: 5,
             envs: 4,
@@ -90,6 +96,7 @@ impl BenchOptions {
             ("envs", self.envs, 4096),
             ("steps", self.steps, 1_000_000),
             ("worlds", self.worlds, 4096),
+            ("batches", self.batches, 4096),
         ] {
             if !(1..=high).contains(&value) {
                 return Err(WorldError::Config {

@@ -53,12 +53,15 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
     let threads = Threads::requested(options.threads)?;
     let camera =
         Camera::from_fov(options.resolution, options.resolution, 90.0)?.with_range(0.05, 50.0)?;
-    let poses = views(&engines, options)?;
+    let views = views(&engines, options)?;
+    let poses: Vec<Pose> = (0..options.batches)
+        .flat_map(|_| views.iter().copied())
+        .collect();
     let mut frames: Vec<Frame> = poses
         .iter()
         .map(|_| Frame::new(&camera, dwell_render::Channels::default()))
         .collect();
-    let renderer = engines.renderer();
+    let renderer = engines.pictures(&options.backend)?;
     let seconds = timed(options.repeats + 1, || {
         let mut jobs: Vec<Job<'_>> = poses
             .iter()
@@ -79,6 +82,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         "views": poses.len(),
         "resolution": options.resolution,
         "preset": options.preset,
+        "backend": renderer.describe(),
         "threads": threads.count(),
         "triangles": engines.house().triangle_count(),
     }))
