@@ -40,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
     cores, threads = facts["available_cores"], facts["threads"]
     print(f"processor: {cores} cores available, {threads} threads used (DWELL_THREADS changes it)")
     print(f"instructions: {', '.join(facts['cpu_features']) or 'none that are looked for'}")
-    print("rendering: cpu, the default (no GPU or driver is needed); --backend and renderer= choose")
+    print("rendering: cpu, unless --backend, renderer= or DWELL_RENDERER says otherwise")
     for adapter in facts["graphics_adapters"]:
         kind, interface = adapter["kind"], adapter["interface"]
         how = f"gpu:{adapter['name']}" if kind == "software" else "gpu"
