@@ -5,6 +5,7 @@ use crate::errors::Fault;
 use dwell::DiscreteAction;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// The discrete actions, in the order of their numbers.
 #[pyfunction]
@@ -84,18 +85,36 @@ pub(crate) fn doctor_json() -> String {
     .to_string()
 }
 
-/// The adapters that `gpu` and `gpu:NAME` may mean.
+/// The adapters that `gpu` and `gpu:NAME` may mean, with the path that each takes and the speeds that say so.
 fn graphics_adapters() -> Vec<serde_json::Value> {
     let adapters = dwell_render::adapters().into_iter();
-    let adapter = |adapter: dwell_render::Adapter| {
-        json!({
+    let facts = adapters.map(|adapter| {
+        let mut facts = json!({
             "name": adapter.name,
             "kind": adapter.kind.word(),
             "interface": adapter.interface,
             "driver": adapter.driver,
-        })
-    };
-    adapters.map(adapter).collect()
+        });
+        match speeds(&adapter.name) {
+            Ok(speeds) => {
+                facts["path"] = speeds.best().word().into();
+                facts["compute_views_per_s"] = speeds.compute_views_per_s.into();
+                facts["raster_views_per_s"] = speeds.raster_views_per_s.into();
+            }
+            Err(fault) => facts["fault"] = fault.into(),
+        }
+        facts
+    });
+    facts.collect()
+}
+
+/// How quick the paths of an adapter are in a built-in house.
+fn speeds(adapter: &str) -> Result<dwell_render::PathSpeeds, String> {
+    let house = dwell_houses::open("builtin:studio").map_err(|error| error.to_string())?;
+    let tables = Arc::new(dwell_render::CpuRenderer::new(&Arc::new(house.0)));
+    dwell_render::Gpu::shared(Some(adapter))
+        .and_then(|gpu| gpu.speeds(&tables))
+        .map_err(|error| error.to_string())
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -2,18 +2,19 @@
 
 use crate::cpu::{CpuRenderer, Job};
 use crate::error::RenderError;
-use crate::gpu::{Gpu, GpuRenderer};
+use crate::gpu::{Gpu, GpuRenderer, Path};
 use dwell_scene::parallel::Threads;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Who renders, as files and people say it: `cpu`; `gpu` for the likely quickest adapter that is not software; or
-/// `gpu:NAME` for the first whose name holds `NAME`.
+/// `gpu:NAME` for the first whose name holds `NAME`. `gpu+compute` and `gpu+raster` (or `gpu+raster:NAME`) choose the
+/// [`Path`]; otherwise the one that a short measurement finds quicker is taken.
 ///
 /// ```
 /// use dwell_render::BackEnd;
 /// let back_end: BackEnd = "gpu:llvmpipe".parse()?;
-/// assert_eq!(back_end, BackEnd::Gpu { name: Some("llvmpipe".into()) });
+/// assert_eq!(back_end, BackEnd::Gpu { name: Some("llvmpipe".into()), path: None });
 /// assert_eq!(back_end.to_string(), "gpu:llvmpipe");
 /// assert!("opengl".parse::<BackEnd>().is_err());
 /// # Ok::<(), dwell_render::RenderError>(())
@@ -28,17 +29,30 @@ pub enum BackEnd {
     Gpu {
         /// What its name holds; nothing for the likely quickest that is not software.
         name: Option<String>,
+        /// How it finds what pixels see first; nothing for the quicker way.
+        path: Option<Path>,
     },
 }
 
 impl std::str::FromStr for BackEnd {
     type Err = RenderError;
     fn from_str(text: &str) -> Result<Self, RenderError> {
-        match text.split_once(':') {
-            None if text == "cpu" => Ok(Self::Cpu),
-            None if text == "gpu" => Ok(Self::Gpu { name: None }),
-            Some(("gpu", name)) if !name.trim().is_empty() => Ok(Self::Gpu {
-                name: Some(name.trim().to_owned()),
+        if text == "cpu" {
+            return Ok(Self::Cpu);
+        }
+        let (head, name) = match text.split_once(':') {
+            None => (text, None),
+            Some((head, name)) => (head, Some(name.trim().to_owned())),
+        };
+        let (kind, path) = match head.split_once('+') {
+            None => (head, None),
+            Some((kind, word)) => (kind, Some(word)),
+        };
+        let found = path.map(|word| Path::ALL.into_iter().find(|path| path.word() == word));
+        match (kind, found) {
+            ("gpu", None | Some(Some(_))) if name.as_deref() != Some("") => Ok(Self::Gpu {
+                name,
+                path: found.flatten(),
             }),
             _ => Err(RenderError::BackEnd {
                 found: text.to_owned(),
@@ -58,8 +72,13 @@ impl std::fmt::Display for BackEnd {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Cpu => f.write_str("cpu"),
-            Self::Gpu { name: None } => f.write_str("gpu"),
-            Self::Gpu { name: Some(name) } => write!(f, "gpu:{name}"),
+            Self::Gpu { name, path } => {
+                f.write_str("gpu")?;
+                if let Some(path) = path {
+                    write!(f, "+{}", path.word())?;
+                }
+                name.as_ref().map_or(Ok(()), |name| write!(f, ":{name}"))
+            }
         }
     }
 }
@@ -87,9 +106,13 @@ impl Renderer {
     pub fn new(back_end: &BackEnd, tables: Arc<CpuRenderer>) -> Result<Self, RenderError> {
         Ok(match back_end {
             BackEnd::Cpu => Self::Cpu(tables),
-            BackEnd::Gpu { name } => {
+            BackEnd::Gpu { name, path } => {
                 let gpu = Gpu::shared(name.as_deref())?;
-                Self::Gpu(Box::new(GpuRenderer::new(gpu, tables)?))
+                let path = match path {
+                    Some(path) => *path,
+                    None => gpu.speeds(&tables)?.best(),
+                };
+                Self::Gpu(Box::new(GpuRenderer::new(gpu, tables, path)?))
             }
         })
     }
@@ -105,11 +128,38 @@ impl Renderer {
         }
     }
 
-    /// Who renders, in words: `cpu`, or the adapter.
+    /// Who renders, in words: `cpu`, or the adapter and its path.
     pub fn describe(&self) -> String {
         match self {
             Self::Cpu(_) => "cpu".to_owned(),
-            Self::Gpu(gpu) => gpu.gpu().adapter().to_string(),
+            Self::Gpu(gpu) => format!("{}, {}", gpu.gpu().adapter(), gpu.path().word()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn back_ends_survive_text_and_others_are_refused() {
+        for text in [
+            "cpu",
+            "gpu",
+            "gpu:H200",
+            "gpu+raster",
+            "gpu+compute:llvmpipe (x: y)",
+        ] {
+            let back_end: BackEnd = text.parse().unwrap();
+            assert_eq!(back_end.to_string(), text);
+            let json = serde_json::to_string(&back_end).unwrap();
+            assert_eq!(serde_json::from_str::<BackEnd>(&json).unwrap(), back_end);
+        }
+        for text in [
+            "", "CPU", "cpu:0", "gpu:", "gpu+", "gpu+rays", "cuda", "+raster",
+        ] {
+            let error = text.parse::<BackEnd>().unwrap_err().to_string();
+            assert!(error.contains(&format!("{text:?}")), "{error}");
         }
     }
 }

@@ -62,7 +62,7 @@ pub enum RenderError {
     },
     /// A back end that there is not.
     #[error(
-        "no back end {found:?}; there are cpu, gpu and gpu:NAME, with a part of an adapter's name"
+        "no back end {found:?}; there are cpu, gpu and gpu:NAME (with a part of an adapter's name), and gpu+compute and gpu+raster"
     )]
     BackEnd {
         /// What was asked for.

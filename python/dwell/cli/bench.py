@@ -5,11 +5,10 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import os
 from pathlib import Path
 from typing import Any
 
-from dwell.cli.common import count, print_json, read_json
+from dwell.cli.common import add_back_end, back_end, count, print_json, read_json
 
 _STAGES = ("load", "render", "physics", "acoustics", "env")
 
@@ -30,9 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--worlds", type=count, default=64, help="physics: worlds stepped together")
     parser.add_argument("--resolution", type=count, default=128, help="pixels across and down")
     parser.add_argument("--preset", choices=("flat", "lit"), default="flat")
-    parser.add_argument(
-        "--backend", metavar="cpu|gpu|gpu:NAME", help="render: default DWELL_RENDERER or cpu"
-    )
+    add_back_end(parser)
     parser.add_argument(
         "--batches", type=count, default=1, help="render: how often all views are in one batch"
     )
@@ -60,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
             "batches",
         )
     }
-    options["backend"] = args.backend or os.environ.get("DWELL_RENDERER", "cpu")
+    options["backend"] = back_end(args)
     if args.views:
         options["views"] = _views(args.views)
     if args.boxes:

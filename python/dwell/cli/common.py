@@ -49,6 +49,31 @@ def count(text: str) -> int:
     return int(text)
 
 
+def add_back_end(parser: argparse.ArgumentParser) -> None:
+    """Adds ``--backend`` and ``--path``; see :func:`back_end`."""
+    parser.add_argument(
+        "--backend",
+        metavar="cpu|gpu|gpu:NAME",
+        help="who renders, NAME a part of an adapter's; default: DWELL_RENDERER or cpu",
+    )
+    parser.add_argument(
+        "--path",
+        choices=("compute", "raster"),
+        help="how gpu finds what pixels see; default: what is quicker there",
+    )
+
+
+def back_end(args: argparse.Namespace) -> str:
+    """What ``--backend`` and ``--path`` say together, as ``renderer=`` takes it."""
+    said = args.backend or os.environ.get("DWELL_RENDERER")
+    if args.path is None:
+        return said or "cpu"
+    head, colon, name = (said or "gpu").partition(":")
+    if head.partition("+")[0] != "gpu":
+        raise ValueError(f"--path {args.path}: the back end is {said!r}; gpu alone has paths")
+    return f"gpu+{args.path}{colon}{name}"
+
+
 def join_negative_points(arguments: Sequence[str]) -> list[str]:
     """``--mic -2,1,3`` as ``--mic=-2,1,3``: to argparse what begins with a dash is an option."""
     joined: list[str] = []

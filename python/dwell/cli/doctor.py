@@ -45,6 +45,7 @@ def run(args: argparse.Namespace) -> int:
         kind, interface = adapter["kind"], adapter["interface"]
         how = f"gpu:{adapter['name']}" if kind == "software" else "gpu"
         print(f"graphics adapter: {adapter['name']} ({kind}, {interface}), taken by {how!r}")
+        print(f"  {_path(adapter)}")
     if not facts["graphics_adapters"]:
         print("graphics adapters: none (no Vulkan, Metal, DX12 or GL driver)")
     print(f"built-in houses: {', '.join(facts['houses'])}")
@@ -53,3 +54,11 @@ def run(args: argparse.Namespace) -> int:
         print(f"{name}: {'there' if there else f'missing ({purpose}): {how}'}")
     print(f"Python at {sys.executable}")
     return 0
+
+
+def _path(adapter: dict[str, Any]) -> str:
+    """Which path an adapter takes, and why."""
+    if "fault" in adapter:
+        return f"cannot be used: {adapter['fault']}"
+    speeds = (f"{name} {adapter[f'{name}_views_per_s']:.0f}" for name in ("compute", "raster"))
+    return f"path {adapter['path']}, the quicker one: views of 64x64 a second, {', '.join(speeds)}"

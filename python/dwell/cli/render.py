@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 
 from dwell.camera import Camera, Channel
-from dwell.cli.common import Bar, atomic, count, number, point, print_json
+from dwell.cli.common import (
+    Bar,
+    add_back_end,
+    atomic,
+    back_end,
+    count,
+    number,
+    point,
+    print_json,
+)
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -75,9 +84,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--cut-m", type=number, default=1.6, help="height of --dollhouse's cut")
     parser.add_argument("--columns", type=count, default=4, help="pictures in a row of --sheet")
-    parser.add_argument(
-        "--backend", metavar="cpu|gpu|gpu:NAME", help="who renders; default: DWELL_RENDERER or cpu"
-    )
+    add_back_end(parser)
     parser.add_argument("--out", type=Path, required=True, help="folder for the files")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
@@ -95,8 +102,7 @@ def run(args: argparse.Namespace) -> int:
     elif len(houses) > 1:
         raise ValueError(f"{len(houses)} houses; several are taken by --sheet alone")
     else:
-        renderer = {"renderer": args.backend} if args.backend else {}
-        world = World(House.open(houses[0]), agents=0, **renderer)
+        world = World(House.open(houses[0]), agents=0, renderer=back_end(args))
         pictured = args.map or args.dollhouse or args.sheet
         files = _whole(args, world) if pictured else _views(args, world, channels)
     if args.json:

@@ -2,10 +2,13 @@
 
 use super::adapter::{Adapter, find, ready};
 use super::kernels::{Kernels, Layouts};
+use super::path::PathSpeeds;
+use super::raster;
+use crate::cpu::CpuRenderer;
 use crate::error::RenderError;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// An adapter in use, shared by the renderers of all houses.
 #[derive(Debug)]
@@ -16,6 +19,9 @@ pub struct Gpu {
     pub(super) layouts: Layouts,
     /// By the links that their stacks hold.
     kernels: Mutex<BTreeMap<usize, Arc<Kernels>>>,
+    raster: OnceLock<wgpu::RenderPipeline>,
+    /// Which path is quicker here; see [`PathSpeeds::measure`].
+    speeds: OnceLock<PathSpeeds>,
     /// The process that opened it.
     process: u32,
     buffers_made: AtomicUsize,
@@ -78,6 +84,8 @@ impl Gpu {
             device,
             queue,
             kernels: Mutex::new(BTreeMap::new()),
+            raster: OnceLock::new(),
+            speeds: OnceLock::new(),
             process: std::process::id(),
             buffers_made: AtomicUsize::new(0),
             fault,
@@ -122,7 +130,35 @@ impl Gpu {
         &self.adapter
     }
 
-    /// Buffers made so far: no more after the first batch of a kind.
+    /// How quick both paths are on this adapter; measured over the first house that asks, then known.
+    ///
+    /// # Errors
+    /// As [`PathSpeeds::measure`].
+    pub fn speeds(self: &Arc<Self>, tables: &Arc<CpuRenderer>) -> Result<PathSpeeds, RenderError> {
+        if let Some(speeds) = self.speeds.get() {
+            return Ok(*speeds);
+        }
+        let speeds = PathSpeeds::measure(self, tables)?;
+        tracing::debug!(adapter = %self.adapter, ?speeds, path = speeds.best().word(), "path chosen");
+        Ok(*self.speeds.get_or_init(|| speeds))
+    }
+
+    /// The program that draws; made when first asked for.
+    pub(super) fn raster(&self) -> &wgpu::RenderPipeline {
+        self.raster
+            .get_or_init(|| raster::pipeline(&self.device, &self.layouts))
+    }
+
+    /// The longest edge of a texture, pixels.
+    pub(super) fn most_edge(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
+    }
+
+    pub(super) fn count_buffer(&self) {
+        self.buffers_made.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Buffers and textures made so far: no more after the first batch of a kind.
     pub fn buffers_made(&self) -> usize {
         self.buffers_made.load(Ordering::Relaxed)
     }
@@ -174,7 +210,7 @@ impl Gpu {
             usage,
             mapped_at_creation: false,
         });
-        self.buffers_made.fetch_add(1, Ordering::Relaxed);
+        self.count_buffer();
         self.check("to make a buffer")?;
         Ok(buffer)
     }

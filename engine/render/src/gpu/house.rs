@@ -1,14 +1,19 @@
 //! A house in the adapter's memory: trees, triangles, textures and tables.
 
+use super::cull::Culler;
 use super::device::Gpu;
+use super::occluders::occluders;
+use super::raster::Drawable;
 use crate::color::Srgb;
 use crate::cpu::{CpuRenderer, SEEN};
 use crate::error::RenderError;
 use crate::semantic::Classes;
-use dwell_scene::bvh::flat::{FlatTree, NO_LINK, Row};
+use dwell_scene::bvh::TriangleBvh;
+use dwell_scene::bvh::flat::{BLOCK_ROWS, FlatTree, NO_LINK, Row};
 use dwell_scene::rays::{BODY_PIECES, body_trees};
 use dwell_scene::{IdVec, MeshId};
 use glam::Vec3;
+use std::ops::Range;
 
 /// Rows before the tables; `shaders/common.wgsl` and `skin.wgsl` read them by number.
 const HEADER_ROWS: usize = 8;
@@ -21,6 +26,8 @@ pub(super) struct HouseBuffers {
     pub(super) stack: usize,
     /// As `stack`, for the deepest mesh of an instance.
     pub(super) mesh_stack: usize,
+    /// For the raster path.
+    pub(super) drawable: Drawable,
     /// Memory held, bytes.
     pub(super) bytes: u64,
 }
@@ -66,23 +73,37 @@ impl HouseBuffers {
         let (house, geometry) = (cpu.house(), cpu.house().geometry());
         let (mut nodes, mut blocks) = (Vec::new(), Vec::new());
         let fixed = geometry.static_bvh.flatten(SEEN, &mut nodes, &mut blocks);
+        let culler = Culler::new(&nodes, fixed.top, fixed.bounds, occluders(&blocks));
         // Each mesh once, however many parts show it.
-        let mut flat: IdVec<MeshId, Option<FlatTree>> = IdVec::filled(None, house.meshes.len());
+        let mut flat: IdVec<MeshId, Option<(FlatTree, Range<u32>)>> =
+            IdVec::filled(None, house.meshes.len());
         let mut trees: Vec<FlatTree> = Vec::new();
+        let mut ranges: Vec<Range<u32>> = Vec::new();
+        let mut add = |tree: &TriangleBvh| {
+            let first = (blocks.len() / BLOCK_ROWS) as u32;
+            let tree = tree.flatten(SEEN, &mut nodes, &mut blocks);
+            (tree, first..(blocks.len() / BLOCK_ROWS) as u32)
+        };
         for part in &geometry.movable {
             let mesh = geometry.placed_part(*part).mesh;
-            let tree = flat[mesh].get_or_insert_with(|| match &geometry.mesh_bvh[mesh] {
-                Some(tree) => tree.flatten(SEEN, &mut nodes, &mut blocks),
-                None => FlatTree {
-                    top: NO_LINK,
-                    bounds: dwell_scene::Aabb::EMPTY,
-                    stack: 0,
-                },
+            let made = flat[mesh].get_or_insert_with(|| match &geometry.mesh_bvh[mesh] {
+                Some(tree) => add(tree),
+                None => (
+                    FlatTree {
+                        top: NO_LINK,
+                        bounds: dwell_scene::Aabb::EMPTY,
+                        stack: 0,
+                    },
+                    0..0,
+                ),
             });
-            trees.push(*tree);
+            trees.push(made.0);
+            ranges.push(made.1.clone());
         }
         for tree in body_trees() {
-            trees.push(tree.flatten(SEEN, &mut nodes, &mut blocks));
+            let (tree, range) = add(tree);
+            trees.push(tree);
+            ranges.push(range);
         }
         debug_assert_eq!(trees.len(), geometry.movable.len() + BODY_PIECES);
         let mut tables = Tables(vec![[0; 4]; HEADER_ROWS]);
@@ -148,6 +169,11 @@ impl HouseBuffers {
             group,
             stack: fixed.stack,
             mesh_stack: trees.iter().map(|tree| tree.stack).max().unwrap_or(0),
+            drawable: Drawable {
+                culler,
+                meshes: ranges,
+                culls: true,
+            },
             bytes,
         })
     }

@@ -7,7 +7,13 @@ use std::sync::OnceLock;
 pub(super) struct Layouts {
     pub(super) house: wgpu::BindGroupLayout,
     pub(super) batch: wgpu::BindGroupLayout,
+    /// The rows of a batch alone, for drawing.
+    pub(super) rows: wgpu::BindGroupLayout,
+    /// What was drawn.
+    pub(super) atlas: wgpu::BindGroupLayout,
     pipeline: wgpu::PipelineLayout,
+    settle: wgpu::PipelineLayout,
+    pub(super) raster: wgpu::PipelineLayout,
 }
 
 impl Layouts {
@@ -15,10 +21,11 @@ impl Layouts {
     pub(super) const BUFFERS: u32 = 8;
 
     pub(super) fn new(device: &wgpu::Device) -> Self {
-        let group = |label: &str, writable: [bool; 4]| {
+        let drawn = wgpu::ShaderStages::VERTEX;
+        let group = |label: &str, writable: &[bool], stages: wgpu::ShaderStages| {
             let entry = |binding: usize| wgpu::BindGroupLayoutEntry {
                 binding: binding as u32,
-                visibility: wgpu::ShaderStages::COMPUTE,
+                visibility: stages,
                 ty: wgpu::BindingType::Buffer {
                     ty: wgpu::BufferBindingType::Storage {
                         read_only: !writable[binding],
@@ -28,22 +35,44 @@ impl Layouts {
                 },
                 count: None,
             };
+            let entries: Vec<_> = (0..writable.len()).map(entry).collect();
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some(label),
-                entries: &[0, 1, 2, 3].map(entry),
+                entries: &entries,
             })
         };
-        let house = group("house", [false; 4]);
-        let batch = group("batch", [false, false, true, true]);
-        let pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&house), Some(&batch)],
-            immediate_size: 0,
+        let computed = wgpu::ShaderStages::COMPUTE;
+        let house = group("house", &[false; 4], computed | drawn);
+        let batch = group("batch", &[false, false, true, true], computed);
+        let rows = group("rows", &[false], drawn);
+        let atlas = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("atlas"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: computed,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Uint,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            }],
         });
+        let pipeline = |groups: &[Option<&wgpu::BindGroupLayout>]| {
+            device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: None,
+                bind_group_layouts: groups,
+                immediate_size: 0,
+            })
+        };
         Self {
+            pipeline: pipeline(&[Some(&house), Some(&batch)]),
+            settle: pipeline(&[Some(&house), Some(&batch), Some(&atlas)]),
+            raster: pipeline(&[Some(&house), Some(&rows)]),
             house,
             batch,
-            pipeline,
+            rows,
+            atlas,
         }
     }
 }
@@ -60,6 +89,8 @@ pub(super) struct Kernels {
     pub(super) paint: wgpu::ComputePipeline,
     /// Made for the first lit view.
     lit: OnceLock<wgpu::ComputePipeline>,
+    /// Made for the first view that is drawn.
+    settle: OnceLock<wgpu::ComputePipeline>,
 }
 
 const SKIN: &str = include_str!("shaders/skin.wgsl");
@@ -68,13 +99,15 @@ const COLORS: &str = include_str!("shaders/colors.wgsl");
 impl Kernels {
     /// Compiles all but that of lit pictures.
     pub(super) fn new(device: &wgpu::Device, layouts: &Layouts, stack: usize) -> Self {
-        let kernel = |entry: &str, parts: &[&str]| compile(device, layouts, stack, entry, parts);
+        let layout = &layouts.pipeline;
+        let kernel = |entry: &str, parts: &[&str]| compile(device, layout, stack, entry, parts);
         Self {
             stack,
             trace: kernel("trace", &[include_str!("shaders/trace.wgsl")]),
             describe: kernel("describe", &[SKIN, include_str!("shaders/describe.wgsl")]),
             paint: kernel("paint", &[SKIN, COLORS, include_str!("shaders/paint.wgsl")]),
             lit: OnceLock::new(),
+            settle: OnceLock::new(),
         }
     }
 
@@ -84,7 +117,19 @@ impl Kernels {
             let light = include_str!("shaders/light.wgsl");
             let paint = include_str!("shaders/paint_lit.wgsl");
             let parts = [SKIN, COLORS, light, paint];
-            compile(device, layouts, self.stack, "paint_lit", &parts)
+            compile(device, &layouts.pipeline, self.stack, "paint_lit", &parts)
+        })
+    }
+
+    /// What each pixel of drawn pictures sees first.
+    pub(super) fn settle(
+        &self,
+        device: &wgpu::Device,
+        layouts: &Layouts,
+    ) -> &wgpu::ComputePipeline {
+        self.settle.get_or_init(|| {
+            let parts = [include_str!("shaders/settle.wgsl")];
+            compile(device, &layouts.settle, self.stack, "settle", &parts)
         })
     }
 }
@@ -92,7 +137,7 @@ impl Kernels {
 /// One kernel: what all share, then its own parts.
 fn compile(
     device: &wgpu::Device,
-    layouts: &Layouts,
+    layout: &wgpu::PipelineLayout,
     stack: usize,
     entry: &str,
     parts: &[&str],
@@ -111,7 +156,7 @@ fn compile(
     });
     device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(entry),
-        layout: Some(&layouts.pipeline),
+        layout: Some(layout),
         module: &module,
         entry_point: Some(entry),
         compilation_options: wgpu::PipelineCompilationOptions::default(),

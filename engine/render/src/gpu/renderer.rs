@@ -2,6 +2,7 @@
 
 use super::device::{Gpu, lock};
 use super::house::HouseBuffers;
+use super::path::Path;
 use super::rows::{Places, words_per_pixel};
 use super::slot::{SEEN_BYTES, Slot};
 use crate::cpu::{CpuRenderer, Job};
@@ -22,6 +23,7 @@ pub struct GpuRenderer {
     gpu: Arc<Gpu>,
     cpu: Arc<CpuRenderer>,
     house: HouseBuffers,
+    path: Path,
     /// Memory of earlier batches.
     slots: Mutex<Vec<Slot>>,
 }
@@ -47,16 +49,17 @@ struct Delivery<'a, 'b> {
 }
 
 impl GpuRenderer {
-    /// Sends the tables that `cpu` has prepared for its house to an adapter.
+    /// Sends the tables that `cpu` has prepared for its house to an adapter, which takes the given path.
     ///
     /// # Errors
     /// [`RenderError::TooLarge`] when the house does not fit, [`RenderError::Driver`].
-    pub fn new(gpu: Arc<Gpu>, cpu: Arc<CpuRenderer>) -> Result<Self, RenderError> {
+    pub fn new(gpu: Arc<Gpu>, cpu: Arc<CpuRenderer>, path: Path) -> Result<Self, RenderError> {
         let house = HouseBuffers::new(&gpu, &cpu)?;
         Ok(Self {
             gpu,
             cpu,
             house,
+            path,
             slots: Mutex::new(Vec::new()),
         })
     }
@@ -64,6 +67,18 @@ impl GpuRenderer {
     /// The adapter.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// How it finds what pixels see first.
+    pub fn path(&self) -> Path {
+        self.path
+    }
+
+    /// Draws everything, seen or not; pictures are the same. For comparisons.
+    #[must_use]
+    pub fn without_culling(mut self) -> Self {
+        self.house.drawable.culls = false;
+        self
     }
 
     /// Memory that the house takes on the adapter, bytes.
@@ -78,7 +93,7 @@ impl GpuRenderer {
     /// written.
     pub fn render_batch(&self, jobs: &mut [Job<'_>], threads: Threads) -> Result<(), RenderError> {
         if jobs.iter().all(|job| is_ours(job)) {
-            let submitted = self.submit(jobs)?;
+            let submitted = self.submit(jobs, threads)?;
             let frames = jobs.iter_mut().map(|job| &mut job.frame);
             return self.deliver(submitted, frames, threads);
         }
@@ -100,7 +115,7 @@ impl GpuRenderer {
     ///
     /// # Errors
     /// As [`Self::render_batch`]; and [`RenderError::OnlyCpu`] for a preset that only `cpu` has.
-    pub fn submit(&self, jobs: &[Job<'_>]) -> Result<Submitted, RenderError> {
+    pub fn submit(&self, jobs: &[Job<'_>], threads: Threads) -> Result<Submitted, RenderError> {
         self.gpu.check_process()?;
         for (k, job) in jobs.iter().enumerate() {
             self.cpu.check(k, job)?;
@@ -112,7 +127,7 @@ impl GpuRenderer {
         let mut rest = jobs;
         while !rest.is_empty() {
             let (some, more) = rest.split_at(self.fitting(rest));
-            parts.push(self.submit_part(some)?);
+            parts.push(self.submit_part(some, threads)?);
             rest = more;
         }
         Ok(Submitted { parts })
@@ -145,10 +160,11 @@ impl GpuRenderer {
         jobs.iter().take_while(fits).count().max(1)
     }
 
-    fn submit_part(&self, jobs: &[Job<'_>]) -> Result<Part, RenderError> {
+    fn submit_part(&self, jobs: &[Job<'_>], threads: Threads) -> Result<Part, RenderError> {
         let gpu = &*self.gpu;
         let mut slot = lock(&self.slots).pop().unwrap_or_else(Slot::new);
-        slot.batch.fill(&self.cpu, jobs);
+        let draws = (self.path == Path::Raster).then(|| (&self.house.drawable, gpu.most_edge()));
+        slot.batch.fill(&self.cpu, jobs, draws, threads);
         slot.upload(gpu)?;
         // Of the tree over n instances, halved again and again, three links wait at each of at most log2 n nodes.
         let levels = usize::BITS - slot.batch.instances.saturating_sub(1).leading_zeros();
@@ -157,14 +173,29 @@ impl GpuRenderer {
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let is_drawn = !slot.batch.drawing.sheets.is_empty();
+        let atlas = slot.atlas.as_ref().filter(|_| is_drawn);
+        if let (Some(atlas), Some(rows)) = (atlas, &slot.rows_group) {
+            let mut pass = atlas.pass(&mut encoder);
+            pass.set_pipeline(gpu.raster());
+            pass.set_bind_group(0, &self.house.group, &[]);
+            pass.set_bind_group(1, rows, &[]);
+            slot.batch.drawing.draw(&mut pass);
+        }
         let groups_x = slot.batch.tiles.clamp(1, MOST_GROUPS);
         let groups_y = slot.batch.tiles.div_ceil(groups_x).max(1);
         if let Some(group) = slot.group() {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_bind_group(0, &self.house.group, &[]);
             pass.set_bind_group(1, group, &[]);
+            if let Some(atlas) = atlas {
+                pass.set_pipeline(kernels.settle(&gpu.device, &gpu.layouts));
+                pass.set_bind_group(2, &atlas.group, &[]);
+                pass.dispatch_workgroups(groups_x as u32, groups_y as u32, 1);
+            }
+            let all_drawn = slot.batch.drawing.sheets.len() == slot.batch.places.len();
             let steps = [
-                (true, &kernels.trace),
+                (!all_drawn, &kernels.trace),
                 (slot.batch.describes, &kernels.describe),
                 (slot.batch.paints, &kernels.paint),
             ];

@@ -1,11 +1,13 @@
 //! A batch as the kernels read it: views, worlds, and where images go.
 
 use super::house::point;
+use super::raster::{Drawable, Drawing};
 use crate::camera::{Camera, Projection};
 use crate::cpu::{CpuRenderer, Job, SEEN};
 use crate::frame::{Before, FrameMut, Preset};
 use crate::light::Lighting;
 use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, Row, flat_pose};
+use dwell_scene::parallel::Threads;
 use dwell_scene::rays::BODY_PIECES;
 use dwell_scene::{Id, Pose, State};
 use glam::{Quat, Vec2, Vec3, Vec4};
@@ -89,6 +91,8 @@ pub(super) struct Batch {
     pub(super) rows: Vec<Row>,
     pub(super) places: Vec<Places>,
     pub(super) lenses: LensRays,
+    /// What the raster path draws.
+    pub(super) drawing: Drawing,
     pub(super) pixels: usize,
     pub(super) words: usize,
     pub(super) tiles: usize,
@@ -104,13 +108,25 @@ fn quaternion(rotation: Quat) -> Row {
 }
 
 impl Batch {
-    /// Writes the rows of some jobs.
-    pub(super) fn fill(&mut self, cpu: &CpuRenderer, jobs: &[Job<'_>]) {
+    /// Writes the rows of some jobs. `draws`: the house and the longest edge of a texture, for the raster path.
+    pub(super) fn fill(
+        &mut self,
+        cpu: &CpuRenderer,
+        jobs: &[Job<'_>],
+        draws: Option<(&Drawable, u32)>,
+        threads: Threads,
+    ) {
         self.rows.clear();
         self.places.clear();
         (self.pixels, self.words, self.tiles, self.instances) = (0, 0, 0, 0);
         (self.paints, self.paints_lit, self.describes) = (false, false, false);
         self.lenses.tidy();
+        let sheets = if let Some((house, edge)) = draws {
+            self.drawing.fill(house, jobs, edge, threads)
+        } else {
+            self.drawing.sheets.clear();
+            vec![None; jobs.len()]
+        };
         self.rows.resize(1 + jobs.len() * VIEW_ROWS, [0; 4]);
         let mut last: Option<(&Job<'_>, u32)> = None;
         // Views of one world follow one another as a rule: its light is made once.
@@ -150,11 +166,22 @@ impl Batch {
                 Preset::Flat => [0; 4],
             };
             self.add_view(k, job, world, shown);
+            if let Some(sheet) = sheets[k].map(|sheet| self.drawing.sheets[sheet]) {
+                self.rows[1 + k * VIEW_ROWS + 15] = [1, sheet.x, sheet.y, 0];
+            }
         }
         if let Some((_, lighting, _)) = light {
             cpu.keep_lighting(lighting);
         }
-        self.rows[0] = [jobs.len() as u32, self.tiles as u32, 0, 0];
+        self.rows[0] = [
+            jobs.len() as u32,
+            self.tiles as u32,
+            self.rows.len() as u32,
+            0,
+        ];
+        if !self.drawing.sheets.is_empty() {
+            self.rows.extend_from_slice(&self.drawing.records);
+        }
     }
 
     /// The tree over a world's instances, then the instances; returns the first row.

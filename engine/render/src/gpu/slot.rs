@@ -1,6 +1,7 @@
 //! Memory for one batch under way; kept for later ones, and only grown.
 
 use super::device::Gpu;
+use super::raster::Atlas;
 use super::rows::Batch;
 use crate::error::RenderError;
 
@@ -56,6 +57,9 @@ pub(super) struct Slot {
     images: Grown,
     back: Grown,
     group: Option<wgpu::BindGroup>,
+    /// The rows alone, for drawing.
+    pub(super) rows_group: Option<wgpu::BindGroup>,
+    pub(super) atlas: Option<Atlas>,
 }
 
 /// Bytes of a pixel's first hit.
@@ -73,6 +77,8 @@ impl Slot {
             images: Grown::new("images", Use::STORAGE | Use::COPY_SRC),
             back: Grown::new("images", Use::MAP_READ | Use::COPY_DST),
             group: None,
+            rows_group: None,
+            atlas: None,
         }
     }
 
@@ -111,6 +117,18 @@ impl Slot {
                 entries: &entries,
             });
             self.group = Some(group);
+            self.rows_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("rows"),
+                layout: &gpu.layouts.rows,
+                entries: &[wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: self.rows.held(gpu)?.as_entire_binding(),
+                }],
+            }));
+        }
+        if !self.batch.drawing.sheets.is_empty() {
+            let atlas = Atlas::reserve(self.atlas.take(), gpu, self.batch.drawing.size)?;
+            self.atlas = Some(atlas);
         }
         Ok(())
     }

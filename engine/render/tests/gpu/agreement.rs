@@ -1,7 +1,7 @@
 //! What agreement is, and how it is measured.
 
 use dwell_render::{
-    Before, Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, View, adapters,
+    Before, Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, View, adapters,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -32,13 +32,13 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    pub(crate) fn new(house: Arc<House>) -> Option<Self> {
+    pub(crate) fn new(house: Arc<House>, path: Path) -> Option<Self> {
         let gpu = gpu()?;
         let cpu = Arc::new(CpuRenderer::new(&house));
         Some(Self {
             state: State::new(&house),
             scene: RayScene::new(house.clone()),
-            gpu: GpuRenderer::new(gpu, cpu.clone()).unwrap(),
+            gpu: GpuRenderer::new(gpu, cpu.clone(), path).unwrap(),
             cpu,
             house,
         })
@@ -55,26 +55,37 @@ impl Pair {
         views: &[View],
         before: Option<Before<'_>>,
     ) -> Vec<(Frame, Frame)> {
-        let take = |render: &dyn Fn(&mut [Job<'_>])| {
-            let mut frames: Vec<Frame> = views
-                .iter()
-                .map(|view| Frame::new(&view.camera, Channels::ALL))
-                .collect();
-            let mut jobs: Vec<Job<'_>> = views
-                .iter()
-                .zip(&mut frames)
-                .map(|(view, frame)| Job {
-                    before,
-                    ..Job::new(&self.scene, &self.state, *view, frame.as_mut())
-                })
-                .collect();
-            render(&mut jobs);
-            drop(jobs);
-            frames
-        };
-        let by_cpu = take(&|jobs| self.cpu.render_batch(jobs, Threads::default()).unwrap());
-        let by_gpu = take(&|jobs| self.gpu.render_batch(jobs, Threads::default()).unwrap());
+        let by_cpu = self.by(views, before, &|jobs| {
+            self.cpu.render_batch(jobs, Threads::default()).unwrap();
+        });
+        let by_gpu = self.by(views, before, &|jobs| {
+            self.gpu.render_batch(jobs, Threads::default()).unwrap();
+        });
         by_cpu.into_iter().zip(by_gpu).collect()
+    }
+
+    /// All images of some views, by whatever renders.
+    pub(crate) fn by(
+        &self,
+        views: &[View],
+        before: Option<Before<'_>>,
+        render: &dyn Fn(&mut [Job<'_>]),
+    ) -> Vec<Frame> {
+        let mut frames: Vec<Frame> = views
+            .iter()
+            .map(|view| Frame::new(&view.camera, Channels::ALL))
+            .collect();
+        let mut jobs: Vec<Job<'_>> = views
+            .iter()
+            .zip(&mut frames)
+            .map(|(view, frame)| Job {
+                before,
+                ..Job::new(&self.scene, &self.state, *view, frame.as_mut())
+            })
+            .collect();
+        render(&mut jobs);
+        drop(jobs);
+        frames
     }
 }
 
@@ -84,9 +95,9 @@ pub(crate) struct Count {
     pub(crate) pixels: usize,
     /// Pixels whose neighbourhood holds one id and no jump of depth.
     pub(crate) inner: usize,
-    /// Other pixels with another id.
+    /// Other pixels with another id, coincident things apart.
     pub(crate) edge_ids: usize,
-    /// Inner pixels that show another of two coincident things.
+    /// Pixels that show another of two coincident things.
     pub(crate) coincident: usize,
     /// Inner pixels whose colour differs by more than [`LEVELS`].
     pub(crate) colors: usize,
@@ -117,7 +128,11 @@ impl Count {
             self.pixels += 1;
             let place = || format!("{name}: pixel ({x}, {y})");
             if !one_id || far - near > 0.02 * near {
-                self.edge_ids += usize::from(cpu.instance[pixel] != gpu.instance[pixel]);
+                if cpu.instance[pixel] != gpu.instance[pixel] {
+                    let off = (cpu.depth[pixel] - gpu.depth[pixel]).abs();
+                    self.edge_ids += usize::from(off >= 1e-4);
+                    self.coincident += usize::from(off < 1e-4);
+                }
                 continue;
             }
             self.inner += 1;

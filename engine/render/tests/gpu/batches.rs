@@ -2,14 +2,21 @@
 
 use super::agreement::{Pair, gpu};
 use super::houses::views;
-use dwell_render::{Camera, Channels, Frame, Gpu, Job, RenderError, View};
+use dwell_render::{
+    Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, PathSpeeds, Preset,
+    RenderError, View,
+};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 use std::sync::Arc;
 
+fn pair_by(path: Path) -> Option<Pair> {
+    Pair::new(Arc::new(dwell_houses::open("seed:4").unwrap().0), path)
+}
+
 fn pair() -> Option<Pair> {
-    Pair::new(Arc::new(dwell_houses::open("seed:4").unwrap().0))
+    pair_by(Path::Compute)
 }
 
 /// Cameras of all sizes, in turn.
@@ -32,7 +39,13 @@ fn mixed(pair: &Pair) -> Vec<View> {
 
 #[test]
 fn a_batch_of_worlds_gives_each_what_it_gives_alone() {
-    let Some(pair) = pair() else { return };
+    for path in Path::ALL {
+        worlds_are_apart(path);
+    }
+}
+
+fn worlds_are_apart(path: Path) {
+    let Some(pair) = pair_by(path) else { return };
     let mut other = pair.state.clone();
     for part in &pair.house.geometry().movable {
         other.part_pose[*part].position += Vec3::new(0.0, 0.3, 0.1);
@@ -90,16 +103,68 @@ fn rows_are_those_of_the_whole_picture() {
 
 #[test]
 fn later_batches_make_no_buffers() {
-    let Some(pair) = pair() else { return };
-    let views = mixed(&pair);
-    // Tests run side by side on one adapter: count over several batches, and expect a batch without any.
-    let mut fewest = usize::MAX;
-    for _ in 0..20 {
-        let before = pair.gpu.gpu().buffers_made();
+    let Some(shared) = gpu() else { return };
+    for path in Path::ALL {
+        let house = Arc::new(dwell_houses::open("seed:4").unwrap().0);
+        let Some(mut pair) = Pair::new(house, path) else {
+            return;
+        };
+        // Other tests run side by side on the shared adapter.
+        let own = Gpu::open(Some(&shared.adapter().name)).unwrap();
+        pair.gpu = GpuRenderer::new(own, pair.cpu.clone(), path).unwrap();
+        let mut views = mixed(&pair);
+        for (k, view) in views.iter_mut().enumerate() {
+            view.preset = [Preset::Flat, Preset::Lit][k % 2];
+        }
         pair.shoot(&views);
-        fewest = fewest.min(pair.gpu.gpu().buffers_made() - before);
+        let before = pair.gpu.gpu().buffers_made();
+        assert!(before > 8, "{before}");
+        for _ in 0..3 {
+            views.reverse();
+            pair.shoot(&views);
+        }
+        assert_eq!(pair.gpu.gpu().buffers_made(), before);
     }
-    assert_eq!(fewest, 0);
+}
+
+#[test]
+fn culling_changes_no_pixel() {
+    let Some(pair) = pair_by(Path::Raster) else {
+        return;
+    };
+    let all = GpuRenderer::new(gpu().unwrap(), pair.cpu.clone(), Path::Raster)
+        .unwrap()
+        .without_culling();
+    let camera = Camera::from_fov(16, 12, 80.0).unwrap();
+    let views = views(&pair.house, camera, 2000);
+    for (k, views) in views.chunks(250).enumerate() {
+        let by = |renderer: &GpuRenderer| {
+            pair.by(views, None, &|jobs| {
+                renderer.render_batch(jobs, Threads::default()).unwrap();
+            })
+        };
+        let (culled, drawn) = (by(&pair.gpu), by(&all));
+        for (j, (culled, drawn)) in culled.iter().zip(&drawn).enumerate() {
+            assert!(culled == drawn, "view {}", 250 * k + j);
+        }
+    }
+}
+
+#[test]
+fn a_measurement_chooses_the_quicker_path() {
+    let Some(shared) = gpu() else { return };
+    let house = Arc::new(dwell_houses::open("seed:4").unwrap().0);
+    let speeds = shared.speeds(&Arc::new(CpuRenderer::new(&house))).unwrap();
+    println!("{speeds:?}: {}", speeds.best().word());
+    assert!(speeds.compute_views_per_s > 1.0 && speeds.raster_views_per_s > 1.0);
+    let quicker = |compute_views_per_s: f64, raster_views_per_s: f64| {
+        let speeds = PathSpeeds {
+            compute_views_per_s,
+            raster_views_per_s,
+        };
+        speeds.best()
+    };
+    assert_eq!([quicker(2.0, 1.0), quicker(1.0, 2.0)], Path::ALL);
 }
 
 #[test]
@@ -116,8 +181,8 @@ fn a_batch_under_way_shows_the_world_as_it_was() {
         .zip(&mut frames)
         .map(|(view, frame)| Job::new(&pair.scene, &pair.state, *view, frame.as_mut()))
         .collect();
-    let first = pair.gpu.submit(&jobs).unwrap();
-    let second = pair.gpu.submit(&jobs).unwrap();
+    let first = pair.gpu.submit(&jobs, Threads::ONE).unwrap();
+    let second = pair.gpu.submit(&jobs, Threads::ONE).unwrap();
     drop(jobs);
     for pose in &mut pair.state.part_pose {
         pose.position.y += 0.5;
@@ -139,7 +204,7 @@ fn other_frames_than_announced_are_refused() {
     let views = mixed(&pair);
     let mut frame = Frame::new(&views[0].camera, Channels::default());
     let job = Job::new(&pair.scene, &pair.state, views[0], frame.as_mut());
-    let submitted = pair.gpu.submit(&[job]).unwrap();
+    let submitted = pair.gpu.submit(&[job], Threads::ONE).unwrap();
     let error = pair.gpu.collect(submitted, &mut [], Threads::ONE);
     assert_eq!(
         error,

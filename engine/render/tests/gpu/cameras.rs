@@ -2,7 +2,7 @@
 
 use super::agreement::{Count, Pair};
 use super::houses::views;
-use dwell_render::{Before, Camera, Projection};
+use dwell_render::{Before, Camera, Path, Projection};
 use dwell_scene::{AgentBody, AgentState, Id, PartId, Pose};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
@@ -56,9 +56,9 @@ fn cameras() -> Vec<(&'static str, Camera)> {
 type Moved = (Pair, Vec<(PartId, Pose)>, Vec<Vec3>);
 
 /// A furnished house in which parts and two agents have moved.
-fn moved() -> Option<Moved> {
+fn moved(path: Path) -> Option<Moved> {
     let house = Arc::new(dwell_houses::open("seed:5").unwrap().0);
-    let mut pair = Pair::new(house)?;
+    let mut pair = Pair::new(house, path)?;
     let start: Vec<_> = views(&pair.house, Camera::cubemap(4).unwrap(), 2)
         .iter()
         .map(|view| view.world_from_camera.position)
@@ -88,11 +88,25 @@ fn moved() -> Option<Moved> {
 
 #[test]
 fn every_camera_sees_the_same_by_cpu_and_gpu_after_things_moved() {
-    let Some((pair, parts, agents)) = moved() else {
+    cameras_agree(Path::Compute, &cameras());
+}
+
+#[test]
+fn pinholes_see_the_same_by_raster_after_things_moved() {
+    let pinholes: Vec<_> = cameras()
+        .into_iter()
+        .filter(|(_, camera)| matches!(camera.projection(), Projection::Pinhole { .. }))
+        .collect();
+    assert_eq!(pinholes.len(), 2);
+    cameras_agree(Path::Raster, &pinholes);
+}
+
+fn cameras_agree(path: Path, cameras: &[(&'static str, Camera)]) {
+    let Some((pair, parts, agents)) = moved(path) else {
         return;
     };
-    for (name, camera) in cameras() {
-        let views = views(&pair.house, camera, 24);
+    for (name, camera) in cameras.iter().copied() {
+        let views = views(&pair.house, camera, 10);
         let mut compared = Count::default();
         for (k, view) in views.iter().enumerate() {
             let mut was = view.world_from_camera;
@@ -113,6 +127,6 @@ fn every_camera_sees_the_same_by_cpu_and_gpu_after_things_moved() {
                 compared.compare(&format!("{name}, view {k}"), &camera, &frames);
             }
         }
-        compared.finish(name, 0.03);
+        compared.finish(&format!("{name}, {}", path.word()), 0.03);
     }
 }

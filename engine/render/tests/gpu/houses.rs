@@ -1,11 +1,11 @@
 //! Agreement in whole houses.
 
 use super::agreement::{Count, Pair};
-use dwell_render::{Camera, Preset, View};
+use dwell_render::{Camera, Path, Preset, View};
 use dwell_scene::random::Key;
 use dwell_scene::{House, Pose, space};
 use glam::Vec3;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Views from places in rooms, in all directions.
@@ -33,7 +33,7 @@ pub(crate) fn views(house: &House, camera: Camera, count: usize) -> Vec<View> {
 /// The sample house of SUNCG.
 pub(crate) fn suncg() -> Option<Arc<House>> {
     let data = std::env::var_os("DWELL_SHARED_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
         PathBuf::from,
     );
     let root = data.join("suncg");
@@ -44,8 +44,10 @@ pub(crate) fn suncg() -> Option<Arc<House>> {
     Some(Arc::new(dwell_houses::open(root.to_str()?).unwrap().0))
 }
 
-fn agree(name: &str, house: Arc<House>, count: usize) {
-    let Some(pair) = Pair::new(house) else { return };
+fn agree(name: &str, house: &Arc<House>, count: usize, path: Path) {
+    let Some(pair) = Pair::new(house.clone(), path) else {
+        return;
+    };
     let camera = Camera::from_fov(64, 48, 90.0).unwrap();
     let views = views(&pair.house, camera, count);
     let mut compared = Count::default();
@@ -53,19 +55,20 @@ fn agree(name: &str, house: Arc<House>, count: usize) {
         compared.compare(&format!("{name}, view {k}"), &camera, frames);
     }
     // Slanted floors jump by more than 2 % from pixel to pixel of small pictures.
-    compared.finish(name, 0.05);
+    compared.finish(&format!("{name}, {}", path.word()), 0.05);
 }
 
 #[test]
 fn the_sample_house_looks_the_same_by_cpu_and_gpu() {
     if let Some(house) = suncg() {
-        agree("SUNCG", house, 200);
+        agree("SUNCG", &house, 200, Path::Compute);
+        agree("SUNCG", &house, 200, Path::Raster);
     }
 }
 
 /// Lit views look as bright and as coloured, from inside and from the open air, by day and with lamps.
 fn lit_agrees(name: &str, house: Arc<House>, count: usize) {
-    let Some(mut pair) = Pair::new(house) else {
+    let Some(mut pair) = Pair::new(house, Path::Compute) else {
         return;
     };
     let camera = Camera::from_fov(64, 48, 90.0).unwrap();
@@ -109,6 +112,8 @@ fn lit_houses_look_the_same_by_cpu_and_gpu() {
 #[test]
 fn generated_houses_look_the_same_by_cpu_and_gpu() {
     for seed in ["seed:3", "seed:8"] {
-        agree(seed, Arc::new(dwell_houses::open(seed).unwrap().0), 40);
+        let house = Arc::new(dwell_houses::open(seed).unwrap().0);
+        agree(seed, &house, 40, Path::Compute);
+        agree(seed, &house, 40, Path::Raster);
     }
 }

@@ -88,6 +88,11 @@ impl RayScene {
         }
     }
 
+    /// Where an instance's mesh stands, if there are that many.
+    pub fn world_from_mesh(&self, instance: usize) -> Option<&Affine3A> {
+        self.world_from_mesh.get(instance)
+    }
+
     /// The house.
     pub fn house(&self) -> &Arc<House> {
         &self.house
