@@ -1,14 +1,17 @@
-//! Every sensor, every kind of camera and every preset against the pictures of `tests/golden`.
+//! Every sensor, every kind of camera and every preset, plans and doll's houses, against the pictures of `tests/golden`.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell::sensors::{Data, Observation, SensorSpec};
 use dwell::{Engines, PictureRequest, Place, World};
 use dwell_physics::AgentControl;
-use dwell_render::Preset;
+use dwell_render::{Dollhouse, DollhouseConfig, Map, Preset, Projection};
+use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, House, HouseData, Pose, StructureKind};
 use dwell_tests::golden::views::{self, PRESETS, ROOMS};
 use dwell_tests::golden::{Golden, Kept, LOOKS};
+use serde_json::json;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -54,8 +57,34 @@ fn pictures_are_the_golden_ones() {
     for image in views::at(&world, eyes(), &sensors()).unwrap() {
         golden.check(&format!("sensor_{}", image.spec.name), &image);
     }
+    plans(&mut golden);
     let faults = golden.finish();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Both storeys of a house as plans and as a doll's house.
+fn plans(golden: &mut Golden) {
+    let world = views::world("builtin:house");
+    let house = world.house();
+    let (renderer, rays, state) = (world.engines().renderer(), world.rays(), world.state());
+    let config = DollhouseConfig {
+        width: 128,
+        ..DollhouseConfig::default()
+    };
+    for level in house.levels.ids() {
+        let map = Map::new(house, level, 128).unwrap();
+        let plan = map.picture(renderer, rays, state, Threads::ONE).unwrap();
+        golden.check_color(
+            &format!("plan_map_{}", level.0),
+            map.view.camera.width(),
+            plan,
+        );
+        let doll = Dollhouse::new(house, level, &config).unwrap();
+        let picture = doll
+            .picture(renderer, rays, state, Threads::exactly(3))
+            .unwrap();
+        golden.check_color(&format!("plan_dollhouse_{}", level.0), 128, picture);
+    }
 }
 
 /// What the first agent sees.
@@ -161,6 +190,36 @@ fn hidden_defects_are_found() {
     println!("a hundredth brighter: mean {mean:.4}, rough {share:.4}");
     assert!(!allowed, "a hundredth brighter: {mean} {share}");
     assert!(mean > 1.5 * LOOKS.mean, "not by chance: {mean}");
+}
+
+/// The names that a type reads, as serde lists them when it meets another.
+fn known(error: &serde_json::Error) -> Vec<String> {
+    let sentence = error.to_string();
+    let words = sentence.split('`').skip(1).step_by(2);
+    words
+        .filter(|word| *word != "?")
+        .map(str::to_owned)
+        .collect()
+}
+
+/// A preset or kind of camera that comes later is not forgotten.
+#[test]
+fn every_preset_and_kind_of_camera_has_golden_pictures() {
+    let shown = PRESETS.map(|(name, preset)| {
+        assert_eq!(serde_json::to_value(preset).unwrap(), json!(name));
+        name.to_owned()
+    });
+    let strange = serde_json::from_value::<Preset>(json!("?")).unwrap_err();
+    assert_eq!(known(&strange), shown);
+    let cameras = views::cameras().unwrap().into_iter();
+    let shown: BTreeSet<String> = cameras
+        .map(|(_, camera)| serde_json::to_value(camera.projection()).unwrap())
+        .map(|projection| projection["kind"].as_str().unwrap().to_owned())
+        .collect();
+    let strange = serde_json::from_value::<Projection>(json!({"kind": "?"})).unwrap_err();
+    let kinds = known(&strange);
+    assert!(kinds.len() >= 6, "{kinds:?}");
+    assert_eq!(kinds.into_iter().collect::<BTreeSet<_>>(), shown);
 }
 
 /// A depth that is a millimetre off somewhere, an id that is another away from edges, and a list without its last row.

@@ -223,6 +223,15 @@ impl Golden {
         }
     }
 
+    /// The same for a picture. `rgb`: shape (height, `width`, 3).
+    pub fn check_color(&mut self, name: &str, width: u32, rgb: Vec<u8>) {
+        let width = width as usize;
+        let checked = self.check_kept(name, &Kept::Color { width, rgb });
+        if let Err(fault) = checked {
+            self.faults.push(format!("{name}: {fault}"));
+        }
+    }
+
     /// How far something is from the golden picture of that name.
     ///
     /// # Errors
