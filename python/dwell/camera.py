@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from dwell._native import ConfigError
 from dwell.arguments import choice, finite, mapping, text, triple, whole
@@ -25,6 +25,10 @@ Channel = Literal[
     "boxes_3d",
 ]
 
+Preset = Literal["flat", "lit", "full"]
+#: How much light there may be in a picture, cheapest first.
+PRESETS: tuple[Preset, ...] = get_args(Preset)
+
 
 @dataclasses.dataclass(frozen=True)
 class Camera:
@@ -37,7 +41,8 @@ class Camera:
             ``agent/N/camera/fov_deg`` says, elsewhere 90.
         near_m: Nearest distance that is seen, m.
         far_m: Furthest distance, to which depth is clamped, m.
-        preset: ``lit`` (lamps and daylight) or ``flat`` (texture times colour).
+        preset: ``flat`` (texture times colour), ``lit`` (lamps and daylight, two shadow rays a pixel) or
+            ``full`` (all light, soft shadows; for pictures: a hundred times as slow).
         projection: The kind of camera with its numbers, in pixels from the top left corner:
             ``{"kind": "pinhole", "fx", "fy", "cx", "cy"}``; ``brown_conrady`` (a pinhole with
             ``k1, k2, k3, p1, p2``); ``fisheye`` (``fx, fy, cx, cy``, Kannala and Brandt's
@@ -57,7 +62,7 @@ class Camera:
     fov_deg: float | None = None
     near_m: float = 0.05
     far_m: float = 50.0
-    preset: Literal["flat", "lit"] = "lit"
+    preset: Preset = "lit"
     projection: Mapping[str, Any] | None = None
     position_m: Sequence[float] = (0.0, 0.0, 0.0)
     yaw_deg: float = 0.0
@@ -74,7 +79,7 @@ def camera_settings(name: str, camera: object) -> dict[str, Any]:
         "width": whole(f"{name}.width", camera.width),
         "height": whole(f"{name}.height", camera.height),
         "max_objects": whole(f"{name}.max_objects", camera.max_objects),
-        "preset": choice(f"{name}.preset", camera.preset, ("flat", "lit")),
+        "preset": choice(f"{name}.preset", camera.preset, PRESETS),
         "position_m": list(triple(f"{name}.position_m", camera.position_m)),
     }
     for field in ("near_m", "far_m", "yaw_deg", "pitch_deg", "roll_deg"):

@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from dwell import _native
 from dwell.arguments import finite, whole
-from dwell.camera import Camera
+from dwell.camera import Camera, Preset
 from dwell.house import House
 from dwell.world import World
 
@@ -141,7 +141,7 @@ def sheet(
     return canvas
 
 
-def house_sheet(world: World, *, columns: int = 4, preset: str = "lit") -> Image.Image:
+def house_sheet(world: World, *, columns: int = 4, preset: Preset = "lit") -> Image.Image:
     """One house: the doll's house, the plan of each storey, a view of each room."""
     house, levels = world.house, range(levels_of(world.house))
     pictures = [(house.name, dollhouse(world, width=720))]
@@ -149,7 +149,7 @@ def house_sheet(world: World, *, columns: int = 4, preset: str = "lit") -> Image
         title = f"storey {level + 1}" if len(levels) > 1 else "plan"
         pictures.append((title, floor_plan(world, level, longest_edge=720)))
     for room in house.rooms():
-        image = room_view(world, room, Camera(720, 540, preset=preset))  # type: ignore[arg-type] # checked there
+        image = room_view(world, room, Camera(720, 540, preset=preset))
         pictures.append((f"{_called(room)}, {room['area_m2']:.1f} m²", image))
     return sheet(pictures, columns=columns)
 

@@ -1,4 +1,4 @@
-//! Renders a house into a folder: two views of every room (colour flat and lit, depth, ids), maps of its storeys, and
+//! Renders a house into a folder: two views of every room (colour by each preset, depth, ids), maps of its storeys, and
 //! how fast that goes.
 //!
 //! `cargo run -p dwell-render --example look -- HOUSE OUT [VIEWS.json] [SIZE]`
@@ -194,14 +194,11 @@ fn pictures(house: &House, world: &World, views: &[View], size: u32, out: &Path)
     println!("{} classes", semantic_classes(house).len());
     for (k, view) in views.iter().take(12).enumerate() {
         let view = View { camera, ..*view };
-        let flat = world.shot(&view);
-        let lit = world.shot(&View {
-            preset: Preset::Lit,
-            ..view
-        });
+        let [flat, lit, full] = Preset::ALL.map(|preset| world.shot(&View { preset, ..view }));
         let strip = [
             &flat.rgb,
             &lit.rgb,
+            &full.rgb,
             &depth_picture(&flat.depth),
             &id_picture(&flat.instance),
         ];

@@ -15,6 +15,28 @@ pub enum Preset {
     Flat,
     /// Lamps, sun and sky with at most two shadow rays a pixel, light that rooms throw back, tone-mapped. See the crate's page.
     Lit,
+    /// All light: sixteen rays a pixel, soft shadows of every lamp, window and the sun, light that surfaces throw on one another,
+    /// glossy reflections. For pictures, not for training: some hundred times the cost of `lit`. Always by the `cpu` back end.
+    Full,
+}
+
+impl Preset {
+    /// Every preset, cheapest first.
+    pub const ALL: [Self; 3] = [Self::Flat, Self::Lit, Self::Full];
+
+    /// The name that it has in files and commands.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::Lit => "lit",
+            Self::Full => "full",
+        }
+    }
+
+    /// The preset of that name.
+    pub fn of(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|preset| preset.name() == name)
+    }
 }
 
 /// One picture: a camera, where it stands, and how much light there is.

@@ -30,6 +30,8 @@ pub(crate) struct Look {
     plain: Option<[u8; 3]>,
     /// Whether light may pass.
     pub(crate) clear: bool,
+    /// Perceptual roughness, 0 to 1.
+    pub(crate) roughness: f32,
     /// Whether lit pictures show what it reflects.
     pub(crate) mirror: bool,
 }
@@ -45,6 +47,7 @@ impl Look {
             texels: 0.0,
             plain: None,
             clear: material.opacity < 1.0,
+            roughness: material.roughness,
             mirror: material.metallic >= MIRROR_METALLIC && material.roughness <= MIRROR_ROUGHNESS,
         };
         if let Some(texture) = material.texture {
@@ -77,6 +80,7 @@ impl Look {
             texels: 0.0,
             plain: Some(Srgb::tables().encode3(base)),
             clear: false,
+            roughness: 1.0,
             mirror: false,
         }
     }

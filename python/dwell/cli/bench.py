@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from dwell.camera import PRESETS
 from dwell.cli.common import add_back_end, back_end, count, print_json, read_json
 
 _STAGES = ("load", "render", "physics", "acoustics", "env")
@@ -28,7 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--worlds", type=count, default=64, help="physics: worlds stepped together")
     parser.add_argument("--resolution", type=count, default=128, help="pixels across and down")
-    parser.add_argument("--preset", choices=("flat", "lit"), default="flat")
+    parser.add_argument("--preset", choices=PRESETS, default="flat")
     add_back_end(parser)
     parser.add_argument(
         "--batches", type=count, default=1, help="render: how often all views are in one batch"

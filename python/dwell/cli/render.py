@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from dwell.camera import Camera, Channel
+from dwell.camera import PRESETS, Camera, Channel
 from dwell.cli.common import (
     Bar,
     add_back_end,
@@ -70,7 +70,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--width-m", type=number, default=6.0, help="what an orthographic image spans"
     )
-    parser.add_argument("--preset", choices=("flat", "lit"), default="lit")
+    parser.add_argument("--preset", choices=PRESETS, default="lit")
     parser.add_argument(
         "--map", action="store_true", help="the plan of every storey, with names and a scale"
     )

@@ -13,9 +13,6 @@ use std::sync::Arc;
 /// Nothing in the views is further away, m; steps of depth in files are a fifth of a millimetre.
 pub const FAR_M: f64 = 13.0;
 
-/// Every preset; a new one is one line.
-pub const PRESETS: [(&str, Preset); 2] = [("flat", Preset::Flat), ("lit", Preset::Lit)];
-
 /// A place to look from: its name, the house, the eye in m, yaw and pitch in degrees.
 pub type Viewpoint = (&'static str, &'static str, [f32; 3], [f32; 2]);
 

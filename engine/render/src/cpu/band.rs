@@ -115,7 +115,18 @@ impl<'a> Band<'a> {
             }
         }
         if self.frame.rgb.is_some() {
-            self.colors(renderer, packet, (columns, rows), palette);
+            match self.light {
+                Some(light) if self.rays.is_full() => {
+                    for row in 0..rows {
+                        for column in 0..columns {
+                            let place = (left + column, self.first_row + top + row);
+                            palette.bytes[row * COLUMNS + column] =
+                                self.full_color(renderer, light, place);
+                        }
+                    }
+                }
+                _ => self.colors(renderer, packet, (columns, rows), palette),
+            }
             if let Some(buffer) = &mut self.frame.rgb {
                 for (pixels, lanes) in (0..rows).map(spans) {
                     let bytes = palette.bytes[lanes].as_flattened();

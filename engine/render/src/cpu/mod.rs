@@ -2,6 +2,8 @@
 
 mod alone;
 mod band;
+mod dice;
+mod full;
 mod motion;
 mod rays;
 mod shade;

@@ -1,7 +1,8 @@
 //! The rays of a view, a packet of pixels at a time.
 
+use super::full::SAMPLES;
 use crate::camera::{Camera, Projection};
-use crate::frame::View;
+use crate::frame::{Preset, View};
 use dwell_scene::EntityId;
 use dwell_scene::bvh::{Hit, PacketHits, Ray, RayMask, RayPacket, SceneBvh};
 use glam::{Vec2, Vec3};
@@ -23,7 +24,7 @@ pub(super) struct Rays {
     up: Vec3,
     back: Vec3,
     hidden: EntityId,
-    /// See [`crate::camera::Camera::pixel_area`].
+    /// See [`crate::camera::Camera::pixel_area`]; of one ray where a pixel has several.
     pub(super) pixel_area: (f32, f32),
 }
 
@@ -190,6 +191,11 @@ impl Packet {
 impl Rays {
     pub(super) fn new(view: &View) -> Self {
         let rotation = view.world_from_camera.rotation.normalize();
+        let (fixed, growing) = view.camera.pixel_area();
+        let share = match view.preset {
+            Preset::Full => 1.0 / SAMPLES as f32,
+            Preset::Flat | Preset::Lit => 1.0,
+        };
         Self {
             view: *view,
             right: rotation * Vec3::X,
@@ -197,7 +203,7 @@ impl Rays {
             back: rotation * Vec3::Z,
             // What nothing has as its id hides nothing.
             hidden: view.hide.unwrap_or(EntityId::VOID),
-            pixel_area: view.camera.pixel_area(),
+            pixel_area: (fixed * share, growing * share),
         }
     }
 
@@ -286,6 +292,37 @@ impl Rays {
             rays.set(k, unit, rays.near_m[k] * length, rays.far_m[k] * length);
             packet.per_length[k] = 1.0 / length;
         }
+    }
+
+    /// The ray through a point of the image, and depth per length along it; none where the camera sees nothing.
+    pub(super) fn ray(&self, image: Vec2) -> Option<(Ray, f32)> {
+        let camera = &self.view.camera;
+        let (start, seen) = camera.ray_in_camera(image);
+        let turned = |v: Vec3| self.right * v.x + self.up * v.y + self.back * v.z;
+        let direction = turned(seen).try_normalize()?;
+        let length = if camera.projection().depth_is_range() {
+            1.0
+        } else {
+            seen.length()
+        };
+        let (near, far) = self.range();
+        let ray = Ray {
+            origin: self.view.world_from_camera.position + turned(start),
+            direction,
+            near_m: near * length,
+            far_m: far * length,
+        };
+        Some((ray, 1.0 / length))
+    }
+
+    /// Whether the picture has all light.
+    pub(super) fn is_full(&self) -> bool {
+        self.view.preset == Preset::Full
+    }
+
+    /// What the camera does not see.
+    pub(super) fn hidden(&self) -> i32 {
+        self.hidden.0
     }
 
     /// A direction of the world in the camera's frame.

@@ -5,7 +5,7 @@ use super::band::Band;
 use super::rays::Rays;
 use super::rays::{COLUMNS, LANES, Packet, SEEN, Sight};
 use crate::color::Srgb;
-use crate::light::{Incoming, beside_surface, display, sky};
+use crate::light::{Incoming, Site, beside_surface, display, sky};
 use crate::look::Look;
 use crate::surfaces::SLOW;
 use dwell_scene::bvh::Ray;
@@ -13,15 +13,15 @@ use dwell_scene::{Entity, EntityId, Pose, State};
 use glam::Vec3;
 
 /// Most surfaces that a ray passes; the last one counts as opaque.
-const LAYERS: usize = 8;
+pub(super) const LAYERS: usize = 8;
 /// What passes so little light shows only itself.
-const OPAQUE: f32 = 1.0 - 1.0 / 512.0;
+pub(super) const OPAQUE: f32 = 1.0 - 1.0 / 512.0;
 /// A ray that goes on starts so far behind the surface that it passed: a length and a part of the depth.
-const GAP: (f32, f32) = (2e-4, 2e-6);
+pub(super) const GAP: (f32, f32) = (2e-4, 2e-6);
 /// Most mirrors that light meets; one more shows its colour.
-const MIRRORS: u32 = 2;
+pub(super) const MIRRORS: u32 = 2;
 /// How far off a surface its shadow ray or reflection starts, m.
-const OFF_SURFACE_M: f32 = 1e-3;
+pub(super) const OFF_SURFACE_M: f32 = 1e-3;
 /// The least cosine at which a pixel's footprint still grows.
 const GRAZING: f32 = 0.05;
 
@@ -39,10 +39,10 @@ struct Open {
 
 /// What a surface is like at a point, before light.
 pub(super) struct Skin<'a> {
-    look: &'a Look,
+    pub(super) look: &'a Look,
     /// Reflectance, linear.
     pub(super) color: Vec3,
-    opacity: f32,
+    pub(super) opacity: f32,
     /// By the winding, world space.
     pub(super) normal: Vec3,
     /// Of the part that it moves with.
@@ -153,7 +153,7 @@ impl CpuRenderer {
     }
 
     #[inline]
-    fn skin_at<'a>(
+    pub(super) fn skin_at<'a>(
         &'a self,
         rays: &Rays,
         state: &'a State,
@@ -191,6 +191,33 @@ impl CpuRenderer {
             normal,
             pose,
         }
+    }
+
+    /// Of the flat triangle and, interpolated between its corners, of the surface that it stands for, both towards the viewer.
+    #[inline]
+    pub(super) fn normals(
+        &self,
+        skin: &Skin<'_>,
+        sight: &Sight,
+        position: usize,
+        (u, v): (f32, f32),
+    ) -> (Vec3, Vec3) {
+        let facing = if skin.normal.dot(sight.direction) > 0.0 {
+            -skin.normal
+        } else {
+            skin.normal
+        };
+        let smooth = self.surfaces.smooth_normal(position, u, v);
+        let smooth = skin
+            .pose
+            .map_or(smooth, |pose| pose.rotation * smooth)
+            .normalize_or(facing);
+        let smooth = if smooth.dot(facing) < 0.0 {
+            -smooth
+        } else {
+            smooth
+        };
+        (facing, smooth)
     }
 }
 
@@ -239,7 +266,6 @@ impl Band<'_> {
 
     /// sRGB of a pixel that sees nothing or a plain colour; of others the surface.
     #[inline]
-    #[expect(clippy::result_large_err, reason = "one of two answers, in place")]
     fn color(
         &self,
         renderer: &CpuRenderer,
@@ -355,51 +381,35 @@ impl Band<'_> {
         mirrors: u32,
         weights: impl FnOnce() -> (f32, f32),
     ) -> Sent {
-        let Skin {
-            look,
-            color,
-            opacity,
-            normal,
-            pose,
-        } = renderer.skin_at(&self.rays, self.state, sight, position);
+        let skin = renderer.skin_at(&self.rays, self.state, sight, position);
         let &Sight {
             point, direction, ..
         } = sight;
         let Some((lighting, exposure)) = &self.light else {
-            return Sent::plain(color, opacity);
+            return Sent::plain(skin.color, skin.opacity);
         };
-        let facing = if normal.dot(direction) > 0.0 {
-            -normal
-        } else {
-            normal
-        };
-        if look.mirror && mirrors > 0 {
+        if skin.look.mirror && mirrors > 0 {
+            let facing = if skin.normal.dot(direction) > 0.0 {
+                -skin.normal
+            } else {
+                skin.normal
+            };
             let light = self.reflected(renderer, sight, facing, mirrors - 1);
-            return Sent::plain(color * light, opacity);
+            return Sent::plain(skin.color * light, skin.opacity);
         }
-        let (u, v) = weights();
-        let smooth = renderer.surfaces.smooth_normal(position, u, v);
-        let smooth = pose
-            .map_or(smooth, |pose| pose.rotation * smooth)
-            .normalize_or(facing);
-        let smooth = if smooth.dot(facing) < 0.0 {
-            -smooth
-        } else {
-            smooth
-        };
-        let incoming = lighting.incoming(
-            renderer.house_light(),
-            *exposure,
+        let (facing, smooth) = renderer.normals(&skin, sight, position, weights());
+        let site = Site {
             point,
-            smooth,
-            beside_surface(point, facing, direction),
-            sight.id,
-        );
-        let mut incoming = incoming.on(color);
-        incoming.light += self.glow(renderer, look.emission, sight.id);
+            normal: smooth,
+            looked_up: beside_surface(point, facing, direction),
+            entity: sight.id,
+        };
+        let incoming = lighting.incoming(renderer.house_light(), *exposure, &site);
+        let mut incoming = incoming.on(skin.color);
+        incoming.light += self.glow(renderer, skin.look.emission, sight.id);
         Sent {
             incoming,
-            opacity,
+            opacity: skin.opacity,
             off: point + facing * OFF_SURFACE_M,
             facing,
         }
@@ -451,7 +461,7 @@ impl Band<'_> {
     }
 
     /// Light of its own, unless it is switched off.
-    fn glow(&self, renderer: &CpuRenderer, emission: [f32; 3], entity: i32) -> Vec3 {
+    pub(super) fn glow(&self, renderer: &CpuRenderer, emission: [f32; 3], entity: i32) -> Vec3 {
         let off = || match renderer.house.entity(EntityId(entity)) {
             Some(Entity::Object(object)) => !self.state.is_on(&renderer.house, object),
             _ => false,

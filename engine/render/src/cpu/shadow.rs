@@ -57,7 +57,7 @@ impl CpuRenderer {
         (point, facing): (Vec3, Vec3),
     ) -> bool {
         match source {
-            Source::None => true,
+            Source::None | Source::Room | Source::Open | Source::Window(_) => true,
             Source::Sun => self.sun_reaches(scene, point),
             Source::Caster(position) => {
                 let caster = lighting.caster(position);

@@ -163,7 +163,7 @@ impl Batch {
                     light = Some(made);
                     row
                 }
-                Preset::Flat => [0; 4],
+                Preset::Flat | Preset::Full => [0; 4],
             };
             self.add_view(k, job, world, shown);
             if let Some(sheet) = sheets[k].map(|sheet| self.drawing.sheets[sheet]) {

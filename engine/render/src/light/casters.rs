@@ -7,6 +7,9 @@ use super::rooms::luminance;
 use dwell_scene::House;
 use glam::Vec3;
 
+/// Radius of a bulb in its shade, m.
+const BULB_M: f32 = 0.05;
+
 /// Casts no shadows.
 pub(crate) const NONE: u32 = u32::MAX;
 
@@ -23,6 +26,8 @@ const ASIDE_M: f32 = 0.6;
 pub(crate) struct Caster {
     /// The middle of its lamps by their light.
     pub(crate) center: Vec3,
+    /// How far its light is spread around that, m.
+    pub(crate) radius_m: f32,
     /// The thing; it casts no shadow of this light.
     pub(crate) entity: i32,
 }
@@ -44,8 +49,11 @@ pub(crate) fn assign(
         let middle = group
             .iter()
             .fold(Vec3::ZERO, |sum, lamp| sum + lamp.position * weight(lamp));
+        let center = middle / all;
+        let away = group.iter().map(|lamp| lamp.position.distance(center));
         let caster = Caster {
-            center: middle / all,
+            center,
+            radius_m: away.fold(BULB_M, f32::max),
             entity: group[0].entity,
         };
         let floor_y = group[0].room.and_then(|room| house.rooms.iter().nth(room));
@@ -67,7 +75,9 @@ pub(crate) fn assign(
         {
             let next = casters.len() as u32;
             casters.push(caster);
-            group.iter_mut().for_each(|lamp| lamp.caster = next);
+            for lamp in group {
+                lamp.caster = next;
+            }
         }
     }
 }

@@ -8,6 +8,12 @@ use glam::Vec3;
 pub(crate) enum Source {
     /// From nowhere.
     None,
+    /// What the walls of a room throw back.
+    Room,
+    /// From all around under the open sky.
+    Open,
+    /// The sky in a window: a position in [`super::HouseLight::windows`].
+    Window(u32),
     /// The sun.
     Sun,
     /// A position in [`super::Lighting::casters`].
@@ -53,6 +59,10 @@ impl<const N: usize> Incoming<N> {
 
     /// Adds a source; the weakest of more than `N` arrives.
     pub(super) fn offer(&mut self, source: Source, light: Vec3) {
+        if !matches!(source, Source::Sun | Source::Caster(_)) {
+            self.light += light;
+            return;
+        }
         let strength = luminance(light);
         if strength <= 0.0 {
             return;

@@ -126,92 +126,109 @@ impl Lighting {
         &self.casters[position as usize]
     }
 
-    /// What a surface of reflectance 1 shows at `point`, for red, green and blue.
-    ///
-    /// `normal`: unit length, towards the viewer. `looked_up`: where the point's room is looked up, see
-    /// [`beside_surface`]. `entity`: whose surface it is.
+    /// What a surface of reflectance 1 shows, for red, green and blue: of its strongest sources apart, before shadows.
+    #[inline]
     pub(crate) fn incoming<const N: usize>(
         &self,
         fixed: &HouseLight,
         exposure: Exposure,
-        point: Vec3,
-        normal: Vec3,
-        looked_up: Vec3,
-        entity: i32,
+        site: &Site,
     ) -> Incoming<N> {
-        let room = fixed.grid.room(looked_up);
+        let mut incoming = Incoming::NONE;
+        self.each(fixed, exposure, site, |source, light| {
+            incoming.offer(source, light);
+        });
+        incoming
+    }
+
+    /// Tells what each source sends to a surface of reflectance 1, in units of display white, before shadows.
+    #[inline]
+    pub(crate) fn each(
+        &self,
+        fixed: &HouseLight,
+        exposure: Exposure,
+        site: &Site,
+        mut tell: impl FnMut(Source, Vec3),
+    ) {
+        let &Site { point, normal, .. } = site;
+        let room = fixed.grid.room(site.looked_up);
         let Some(position) = room else {
             let Some(air) = &fixed.air else {
-                let mut incoming = Incoming::plain(open_air(normal));
-                self.lamplight(
-                    None,
-                    (point, normal, entity),
-                    exposure.per_lx,
-                    &mut incoming,
-                );
-                return incoming;
+                tell(Source::Open, open_air(normal));
+                return self.lamplight(None, site, exposure.per_lx, tell);
             };
             let per_lx = air.per_lx(exposure.per_lx);
             let sky = air.skylight(normal) + air.groundlight(normal);
-            let mut incoming = Incoming::plain(sky * per_lx);
-            self.lamplight(None, (point, normal, entity), per_lx, &mut incoming);
+            tell(Source::Open, sky * per_lx);
             let across = normal.dot(air.to_sun).max(0.0);
-            incoming.offer(Source::Sun, air.sun_lx * (across * per_lx));
-            return incoming;
+            tell(Source::Sun, air.sun_lx * (across * per_lx));
+            return self.lamplight(None, site, per_lx, tell);
         };
         let per_lx = exposure.per_lx;
-        let mut lx = self.rooms[position].indirect * fill(normal);
+        let indirect = self.rooms[position].indirect * fill(normal);
+        tell(Source::Room, indirect * per_lx);
         let mut sun = 0.0_f32;
-        for window in fixed.windows_of(position) {
-            let (sky, part) = daylight(window, fixed.sun.0, point, normal);
-            lx += sky;
+        let first = fixed.window_starts[position];
+        for (k, window) in fixed.windows_of(position).iter().enumerate() {
+            let (mut lx, part) = daylight(window, fixed.sun.0, point, normal);
             if fixed.air.is_some() {
                 // Windows side by side let in one and the same sun.
                 sun = sun.max(part);
             } else {
                 lx += fixed.sun.1 * part;
             }
+            tell(Source::Window((first + k) as u32), lx * per_lx);
         }
-        let mut incoming = Incoming::plain(lx * per_lx);
-        self.lamplight(room, (point, normal, entity), per_lx, &mut incoming);
-        incoming.offer(Source::Sun, fixed.sun.1 * (sun * per_lx));
-        incoming
+        tell(Source::Sun, fixed.sun.1 * (sun * per_lx));
+        self.lamplight(room, site, per_lx, tell);
     }
 
-    /// Adds the light of a room's lamps.
-    fn lamplight<const N: usize>(
+    /// The light of a room's lamps.
+    fn lamplight(
         &self,
         room: Option<usize>,
-        (point, normal, entity): (Vec3, Vec3, i32),
+        site: &Site,
         per_lx: f32,
-        incoming: &mut Incoming<N>,
+        mut tell: impl FnMut(Source, Vec3),
     ) {
         let place = room.map_or(0, |room| room + 1);
         let mine = &self.lamps[self.lamp_starts[place]..self.lamp_starts[place + 1]];
         let (mut caster, mut sum) = (casters::NONE, Vec3::ZERO);
-        let mut offer = |caster: u32, light: Vec3| {
-            if caster == casters::NONE {
-                incoming.light += light;
+        let mut all = |caster: u32, light: Vec3| {
+            let source = if caster == casters::NONE {
+                Source::None
             } else {
-                incoming.offer(Source::Caster(caster), light);
-            }
+                Source::Caster(caster)
+            };
+            tell(source, light);
         };
         for lamp in mine {
-            let light = lamp.illuminance(point, normal, entity) * per_lx;
             // A shade shines by the light that passes it.
-            let its = if entity == lamp.entity {
+            let its = if site.entity == lamp.entity {
                 casters::NONE
             } else {
                 lamp.caster
             };
             if its != caster {
-                offer(caster, sum);
+                all(caster, sum);
                 (caster, sum) = (its, Vec3::ZERO);
             }
-            sum += light;
+            sum += lamp.illuminance(site.point, site.normal, site.entity) * per_lx;
         }
-        offer(caster, sum);
+        all(caster, sum);
     }
+}
+
+/// Where light meets a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Site {
+    pub(crate) point: Vec3,
+    /// Unit length, towards the viewer; interpolated between corners.
+    pub(crate) normal: Vec3,
+    /// Where the point's room is looked up, see [`beside_surface`].
+    pub(crate) looked_up: Vec3,
+    /// Whose surface it is.
+    pub(crate) entity: i32,
 }
 
 /// A point in the room from which a surface at `point` is seen. `facing`: normal of the flat triangle towards the viewer;

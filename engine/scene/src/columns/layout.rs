@@ -15,7 +15,7 @@ const STEPS: i32 = 15;
 /// Floats in the layout that packs best, as a rule.
 pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> Layout {
     for width in Layout::WIDTHS {
-        if floats.len() >= FEW && floats.len() % width == 0 {
+        if floats.len() >= FEW && floats.len().is_multiple_of(width) {
             let rows = Rows::of(floats, width);
             let unit = rows.units.is_some();
             if unit || rows.count_new(width) * SELDOM < rows.back.len() {
@@ -129,7 +129,7 @@ fn read_rows(
 ) -> Result<Vec<u32>, ColumnsError> {
     // Each row takes a byte at least.
     let rows = count / width;
-    if count % width > 0 || rows > bytes.len() {
+    if !count.is_multiple_of(width) || rows > bytes.len() {
         return Err(ColumnsError::Ended);
     }
     let mut back = Vec::with_capacity(rows);

@@ -39,7 +39,7 @@ pub struct BenchOptions {
     pub views: Option<Vec<BenchView>>,
     /// Pixels across and down; default 128.
     pub resolution: u32,
-    /// `"flat"` (default) or `"lit"`.
+    /// `"flat"` (default), `"lit"` or `"full"`.
     pub preset: Preset,
     /// Who renders: `"cpu"` (default), `"gpu"` or `"gpu:NAME"`.
     pub backend: BackEnd,

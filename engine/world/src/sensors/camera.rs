@@ -39,7 +39,7 @@ pub struct CameraConfig {
     pub near_m: f32,
     /// Furthest distance, to which depth is clamped, m; default 50.
     pub far_m: f32,
-    /// `"flat"` (texture times colour) or `"lit"` (lamps and daylight).
+    /// `"flat"` (texture times colour), `"lit"` (lamps and daylight) or `"full"` (all light, for pictures): see [`Preset`].
     pub preset: String,
     /// Rows of sensors that list things; 1 to 4,096, default 64.
     pub max_objects: u32,
@@ -131,13 +131,9 @@ impl CameraConfig {
             let allowed = format!("below the number of agents, {}", agents.len());
             return fault("agent", self.agent.to_string(), allowed);
         };
-        let preset = match self.preset.as_str() {
-            "flat" => Preset::Flat,
-            "lit" => Preset::Lit,
-            other => {
-                let allowed = "\"flat\" or \"lit\"".to_owned();
-                return fault("preset", format!("{other:?}"), allowed);
-            }
+        let Some(preset) = Preset::of(&self.preset) else {
+            let allowed = Preset::ALL.map(|preset| format!("{:?}", preset.name()));
+            return fault("preset", format!("{:?}", self.preset), allowed.join(", "));
         };
         if !self.position_m.iter().all(|part| part.abs() <= 100.0) {
             let found = format!("{:?}", self.position_m);

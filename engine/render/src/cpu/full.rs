@@ -1,0 +1,269 @@
+//! Pictures with all light: paths of many rays a pixel.
+//!
+//! Each pixel is the mean of [`SAMPLES`] rays through different places in it. Where one meets a surface, every source of light is
+//! asked by a ray to another point of it, so that shadows are soft; light from all around is gathered by rays to what throws it,
+//! which has light of its own and the room's mean for the rest.
+//!
+//! # Source
+//! J. T. Kajiya, *The rendering equation*, SIGGRAPH 1986, cut off after the second surface by what `lit` says of it. Reflection
+//! of what is no metal: C. Schlick, *An inexpensive BRDF model*, 1994, equation 15, with micro-facets of B. Walter et al., EGSR
+//! 2007, equations 35 and 36 (GGX).
+
+use super::CpuRenderer;
+use super::band::Band;
+use super::dice::Dice;
+use super::rays::{SEEN, Sight};
+use super::shade::{GAP, LAYERS, MIRRORS, OFF_SURFACE_M, OPAQUE};
+use crate::light::{Exposure, Incoming, Lighting, Site, Source, beside_surface, display, sky};
+use dwell_scene::EntityId;
+use dwell_scene::bvh::Ray;
+use glam::{Vec2, Vec3};
+
+/// Places in a pixel, along each edge.
+pub(super) const EDGE: usize = 4;
+/// Rays a pixel.
+pub(super) const SAMPLES: usize = EDGE * EDGE;
+/// Rays of each that gather light from all around.
+const GATHERED: usize = 2;
+/// No gathered ray brings more, in units of display white: few that meet a patch of sun would show as single bright pixels.
+const MOST_GATHERED: f32 = 3.0;
+/// What smooth glass, varnish or ceramic reflects of light from straight ahead.
+const STRAIGHT: f32 = 0.04;
+/// Rougher than this a surface that is no metal shows no reflection.
+const DULL: f32 = 0.7;
+/// How far into the room places in a window lie, m: before its frame.
+const BEFORE_FRAME_M: f32 = 0.05;
+/// A room is looked up half of the way back from a surface at most: steps back a metre of way.
+const NEAR: f32 = 2.5;
+/// How far light in the open air is followed, m.
+const OPEN_M: f32 = 100.0;
+
+/// What surfaces of one kind of ray may do.
+#[derive(Clone, Copy)]
+struct Path {
+    /// Surfaces that may still throw light on.
+    bounces: u32,
+    mirrors: u32,
+    /// Of the camera's footprint, as for [`Sight`].
+    depth: f32,
+    per_length: f32,
+    hidden: i32,
+}
+
+/// One band with its light.
+struct Tracer<'a> {
+    renderer: &'a CpuRenderer,
+    band: &'a Band<'a>,
+    lighting: &'a Lighting,
+    exposure: Exposure,
+}
+
+impl Band<'_> {
+    /// sRGB of a pixel with all light.
+    pub(super) fn full_color(
+        &self,
+        renderer: &CpuRenderer,
+        (lighting, exposure): (&Lighting, Exposure),
+        (column, row): (usize, usize),
+    ) -> [u8; 3] {
+        let tracer = Tracer {
+            renderer,
+            band: self,
+            lighting,
+            exposure,
+        };
+        let mut sum = Vec3::ZERO;
+        for sample in 0..SAMPLES {
+            let mut dice = Dice::new((column, row), sample);
+            let (x, y) = dice.pair();
+            let place = |cell: usize, within: f32| (cell as f32 + within) / EDGE as f32;
+            let image = Vec2::new(
+                column as f32 + place(sample % EDGE, x),
+                row as f32 + place(sample / EDGE, y),
+            );
+            if let Some((ray, per_length)) = self.rays.ray(image) {
+                let path = Path {
+                    bounces: 1,
+                    mirrors: MIRRORS,
+                    depth: 0.0,
+                    per_length,
+                    hidden: self.rays.hidden(),
+                };
+                sum += display(tracer.light_along(ray, path, &mut dice));
+            }
+        }
+        crate::color::Srgb::tables().encode3((sum / SAMPLES as f32).to_array())
+    }
+}
+
+impl Tracer<'_> {
+    /// What comes along a ray, in units of display white.
+    fn light_along(&self, mut ray: Ray, path: Path, dice: &mut Dice) -> Vec3 {
+        let (mut light, mut rest) = (Vec3::ZERO, 1.0);
+        for layer in 1..=LAYERS {
+            let Some(hit) = self.band.scene.closest_without(&ray, SEEN, path.hidden) else {
+                break;
+            };
+            let distance = hit.distance_m;
+            let sight = Sight {
+                point: ray.origin + ray.direction * distance,
+                direction: ray.direction,
+                depth: path.depth + distance * path.per_length,
+                per_length: path.per_length,
+                id: hit.id,
+                instance: hit.instance,
+                triangle: hit.triangle,
+            };
+            let (more, opacity) = self.surface((&sight, distance), (hit.u, hit.v), path, dice);
+            if opacity >= OPAQUE || layer == LAYERS {
+                return light + more * rest;
+            }
+            light += more * (opacity * rest);
+            rest *= 1.0 - opacity;
+            ray.near_m = distance * (1.0 + GAP.1) + GAP.0;
+        }
+        // The sky's light on rooms comes by their windows, each asked for itself.
+        if path.bounces == 0 {
+            return light;
+        }
+        let fixed = self.renderer.house_light();
+        light + sky(ray.direction, Some((fixed, self.exposure))) * rest
+    }
+
+    /// What a surface sends back along the ray that met it, and how much of what lies behind it hides.
+    fn surface(
+        &self,
+        (sight, distance_m): (&Sight, f32),
+        weights: (f32, f32),
+        path: Path,
+        dice: &mut Dice,
+    ) -> (Vec3, f32) {
+        let (renderer, state) = (self.renderer, self.band.state);
+        let position = renderer.surfaces.position(sight.instance, sight.triangle);
+        let skin = renderer.skin_at(&self.band.rays, state, sight, position);
+        let (facing, smooth) = renderer.normals(&skin, sight, position, weights);
+        let off = sight.point + facing * OFF_SURFACE_M;
+        if skin.look.mirror && path.mirrors > 0 {
+            let light = self.reflected(sight, off, facing, path, dice);
+            return (skin.color * light, skin.opacity);
+        }
+        let site = Site {
+            point: sight.point,
+            normal: smooth,
+            // Not behind where a short ray comes from.
+            looked_up: beside_surface(
+                sight.point,
+                facing,
+                sight.direction * (distance_m * NEAR).min(1.0),
+            ),
+            entity: sight.id,
+        };
+        let fixed = renderer.house_light();
+        if path.bounces == 0 {
+            let incoming: Incoming<2> = self.lighting.incoming(fixed, self.exposure, &site);
+            let light = incoming.arriving(|source| {
+                renderer.arrives(self.band.scene, self.lighting, source, (off, facing))
+            });
+            return (skin.color * light, skin.opacity);
+        }
+        let mut sum = Vec3::ZERO;
+        self.lighting
+            .each(fixed, self.exposure, &site, |source, light| {
+                if light == Vec3::ZERO {
+                    return;
+                }
+                sum += match source {
+                    Source::Room => self.gathered(off, smooth, path, dice),
+                    _ if self.arrives(source, (off, facing), smooth, dice) => light,
+                    _ => Vec3::ZERO,
+                };
+            });
+        let mut shown = skin.color * sum;
+        shown += self.band.glow(renderer, skin.look.emission, sight.id);
+        let shine = shine(skin.look.roughness, -sight.direction.dot(smooth));
+        if shine > 0.0 && path.mirrors > 0 {
+            let facet = dice.facet(smooth, skin.look.roughness);
+            let light = self.reflected(sight, off, facet, path, dice);
+            shown = shown * (1.0 - shine) + light * shine;
+        }
+        (shown, skin.opacity)
+    }
+
+    /// What comes from where a ray is thrown to by a mirror.
+    fn reflected(
+        &self,
+        sight: &Sight,
+        off: Vec3,
+        normal: Vec3,
+        path: Path,
+        dice: &mut Dice,
+    ) -> Vec3 {
+        let direction = sight.direction.reflect(normal).normalize_or(normal);
+        let path = Path {
+            mirrors: path.mirrors - 1,
+            // Patterns in a mirror are as fine as if they stood behind it.
+            depth: sight.depth,
+            hidden: EntityId::VOID.0,
+            ..path
+        };
+        self.light_along(Ray::new(off, direction), path, dice)
+    }
+
+    /// What other surfaces throw on one of reflectance 1.
+    fn gathered(&self, off: Vec3, normal: Vec3, path: Path, dice: &mut Dice) -> Vec3 {
+        let path = Path {
+            bounces: path.bounces - 1,
+            mirrors: 0,
+            hidden: EntityId::VOID.0,
+            ..path
+        };
+        let one = |dice: &mut Dice| {
+            let direction = dice.cosine(normal);
+            let light = self.light_along(Ray::new(off, direction), path, dice);
+            light.min(Vec3::splat(MOST_GATHERED))
+        };
+        let sum = (0..GATHERED).fold(Vec3::ZERO, |sum, _| sum + one(dice));
+        sum / GATHERED as f32
+    }
+
+    /// Whether light arrives from a place in its source.
+    fn arrives(
+        &self,
+        source: Source,
+        (off, facing): (Vec3, Vec3),
+        normal: Vec3,
+        dice: &mut Dice,
+    ) -> bool {
+        let (renderer, scene) = (self.renderer, self.band.scene);
+        let (target, hidden) = match source {
+            Source::None | Source::Room => return true,
+            Source::Sun => return renderer.sun_reaches(scene, off),
+            Source::Open => (off + dice.cosine(normal) * OPEN_M, EntityId::VOID.0),
+            Source::Window(position) => {
+                let window = &renderer.house_light().windows[position as usize];
+                let (x, y) = dice.pair();
+                let [across, along] = window.half;
+                let on_pane = window.center + across * (2.0 * x - 1.0) + along * (2.0 * y - 1.0);
+                (on_pane + window.normal * BEFORE_FRAME_M, EntityId::VOID.0)
+            }
+            Source::Caster(position) => {
+                let caster = self.lighting.caster(position);
+                let place = caster.center + dice.ball() * caster.radius_m;
+                (place, caster.entity)
+            }
+        };
+        let way = target - off;
+        // A flat surface that faces away meets light only by its rounded normal.
+        facing.dot(way) <= 0.0 || renderer.passes(scene, &Ray::segment(off, target, 0.0), hidden)
+    }
+}
+
+/// What a surface that is no metal reflects, by the cosine of the angle under which it is seen.
+fn shine(roughness: f32, cosine: f32) -> f32 {
+    if roughness >= DULL {
+        return 0.0;
+    }
+    let grazing = (1.0 - cosine.clamp(0.0, 1.0)).powi(5);
+    let polish = 1.0 - roughness / DULL;
+    (STRAIGHT + (1.0 - STRAIGHT) * grazing) * polish
+}
