@@ -40,8 +40,8 @@ fn cameras() -> Vec<(&'static str, Camera)> {
                 half_angle_deg: 100.0,
             }),
         ),
-        ("all around", Camera::equirectangular(64).unwrap()),
-        ("cube map", Camera::cubemap(24).unwrap()),
+        ("all around", Camera::equirectangular(96).unwrap()),
+        ("cube map", Camera::cubemap(48).unwrap()),
         ("map", Camera::orthographic(64, 48, 5.0, 4.0).unwrap()),
         (
             "near and far",
