@@ -41,7 +41,7 @@ class Camera:
             ``agent/N/camera/fov_deg`` says, elsewhere 90.
         near_m: Nearest distance that is seen, m.
         far_m: Furthest distance, to which depth is clamped, m.
-        preset: ``flat`` (texture times colour), ``lit`` (lamps and daylight, two shadow rays a pixel) or
+        preset: ``flat`` (texture times colour), ``lit`` (lamps and daylight with shadows) or
             ``full`` (all light, soft shadows; for pictures: a hundred times as slow).
         projection: The kind of camera with its numbers, in pixels from the top left corner:
             ``{"kind": "pinhole", "fx", "fy", "cx", "cy"}``; ``brown_conrady`` (a pinhole with
