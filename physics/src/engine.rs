@@ -40,6 +40,8 @@ pub(crate) struct Engine {
     /// Whether contacts give.
     soft: bool,
     workspace: Workspace,
+    /// Bodies that rapier took out since they were asked for, because their place or speed is no number.
+    lost: Vec<RigidBodyHandle>,
     pub(crate) islands: IslandManager,
     pub(crate) broad_phase: BroadPhaseBvh,
     pub(crate) narrow_phase: NarrowPhase,
@@ -56,6 +58,7 @@ impl Engine {
             runs: 1,
             soft: false,
             workspace: Workspace::new(),
+            lost: Vec::new(),
             islands: IslandManager::new(),
             broad_phase: BroadPhaseBvh::new(),
             narrow_phase: NarrowPhase::new(),
@@ -287,6 +290,13 @@ impl Engine {
             hooks,
             events,
         );
+        let found = workspace.pipeline.quarantine().bodies();
+        self.lost.extend_from_slice(found);
+    }
+
+    /// Bodies that rapier took out since this was last asked.
+    pub(crate) fn take_lost(&mut self) -> Vec<RigidBodyHandle> {
+        std::mem::take(&mut self.lost)
     }
 
     /// Questions about where things are.

@@ -34,6 +34,7 @@ mod error;
 mod inertia;
 mod joints;
 pub mod laws;
+mod lost;
 mod model;
 mod motors;
 mod parameters;

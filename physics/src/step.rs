@@ -178,6 +178,7 @@ impl PhysicsWorld {
         self.tick += 1;
         self.give_back_room();
         placed |= self.watch_rolling();
+        placed |= self.find_lost();
         placed
     }
 

@@ -75,11 +75,13 @@ pub enum ActionCode {
     Blocked,
     /// It slipped from the hand.
     Slipped,
+    /// Its place or speed was no number any more, so that it was stopped.
+    Lost,
 }
 
 impl ActionCode {
     /// All codes, in order.
-    pub const ALL: [Self; 33] = [
+    pub const ALL: [Self; 34] = [
         Self::Done,
         Self::Started,
         Self::NoTarget,
@@ -113,6 +115,7 @@ impl ActionCode {
         Self::NoSwitch,
         Self::Blocked,
         Self::Slipped,
+        Self::Lost,
     ];
 }
 
@@ -196,7 +199,7 @@ mod tests {
     fn the_list_of_codes_is_whole_and_in_order() {
         // A new code at the end is missed here until the list has it.
         let last = ActionCode::ALL.len() - 1;
-        assert_eq!(ActionCode::Slipped as usize, last);
+        assert_eq!(ActionCode::Lost as usize, last);
         for (k, code) in ActionCode::ALL.into_iter().enumerate() {
             assert_eq!(code as usize, k);
         }
