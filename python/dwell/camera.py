@@ -42,7 +42,7 @@ class Camera:
         near_m: Nearest distance that is seen, m.
         far_m: Furthest distance, to which depth is clamped, m.
         preset: ``flat`` (texture times colour), ``lit`` (lamps and daylight with shadows) or
-            ``full`` (all light, soft shadows; for pictures: a hundred times as slow).
+            ``full`` (all light, soft shadows; for pictures: 600 times as slow as ``lit``).
         projection: The kind of camera with its numbers, in pixels from the top left corner:
             ``{"kind": "pinhole", "fx", "fy", "cx", "cy"}``; ``brown_conrady`` (a pinhole with
             ``k1, k2, k3, p1, p2``); ``fisheye`` (``fx, fy, cx, cy``, Kannala and Brandt's
