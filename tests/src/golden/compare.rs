@@ -6,7 +6,7 @@ use crate::flip::flip;
 /// How far colours may be away: perceptual differences (FLIP), 0 to 1.
 ///
 /// One machine and build give the same bits; other builds may round otherwise. Set by the defects of the test `goldens`, which must
-/// be found on the `cpu` back end (x86-64): one lamp of a room off has a mean of 0.0095 and 0.0185 rough pixels, a hundredth more
+/// be found on the `cpu` back end (x86-64): one lamp of a room off has a mean of 0.0096 and 0.0185 rough pixels, a hundredth more
 /// brightness a mean of 0.0575.
 pub const LOOKS: Bounds = Bounds {
     mean: 0.004,
