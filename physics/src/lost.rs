@@ -4,7 +4,6 @@
 //! nothing falls out of a world for the rest of an episode.
 
 use crate::actions::{ActionCode, ActionOutcome, Notice};
-use crate::contact::{Dress, Hooks};
 use crate::engine::Engine;
 use crate::world::PhysicsWorld;
 use glam::Vec3;
@@ -47,23 +46,12 @@ impl PhysicsWorld {
             return false;
         }
         // Without them, so that contacts and warm starts forget them.
+        self.flush();
         let model = self.model.clone();
-        let kept = self.engine.friction_kept();
-        self.engine.flush(&Hooks {
-            entries: &self.entries,
-            dress: Dress {
-                house: &model.house,
-                table: &self.table,
-                laws: &self.laws,
-            },
-            excluded: &self.excluded,
-            kept,
-            dt_s: 0.0,
-        });
         for handle in lost {
             self.engine.put_back(handle);
-            let plans = model.bodies.iter().zip(&self.bodies);
-            let Some((plan, _)) = plans.into_iter().find(|(_, body)| body.handle == handle) else {
+            let mut plans = model.bodies.iter().zip(&self.bodies);
+            let Some((plan, _)) = plans.find(|(_, body)| body.handle == handle) else {
                 continue;
             };
             let object = model.house.parts[plan.root()].object;

@@ -153,16 +153,9 @@ impl<'a> Band<'a> {
                 buffer[pixel * 3..pixel * 3 + 3].copy_from_slice(&value.to_array());
             }
         };
-        let facing = |normal: Vec3, direction: Vec3| {
-            if normal.dot(direction) > 0.0 {
-                -normal
-            } else {
-                normal
-            }
-        };
         let (normal, albedo) = match (&sight, &skin) {
             (Some(sight), Some(skin)) => (
-                self.rays.in_camera(facing(skin.normal, sight.direction)),
+                self.rays.in_camera(skin.facing(sight.direction)),
                 skin.color.clamp(Vec3::ZERO, Vec3::ONE),
             ),
             _ => (Vec3::ZERO, Vec3::ZERO),

@@ -49,6 +49,17 @@ pub(super) struct Skin<'a> {
     pose: Option<&'a Pose>,
 }
 
+impl Skin<'_> {
+    /// The normal on the side that is seen along `direction`.
+    pub(super) fn facing(&self, direction: Vec3) -> Vec3 {
+        if self.normal.dot(direction) > 0.0 {
+            -self.normal
+        } else {
+            self.normal
+        }
+    }
+}
+
 /// The pixels of a packet whose rays passed a surface.
 struct OpenLanes {
     count: usize,
@@ -202,11 +213,7 @@ impl CpuRenderer {
         position: usize,
         (u, v): (f32, f32),
     ) -> (Vec3, Vec3) {
-        let facing = if skin.normal.dot(sight.direction) > 0.0 {
-            -skin.normal
-        } else {
-            skin.normal
-        };
+        let facing = skin.facing(sight.direction);
         let smooth = self.surfaces.smooth_normal(position, u, v);
         let smooth = skin
             .pose
@@ -389,11 +396,7 @@ impl Band<'_> {
             return Sent::plain(skin.color, skin.opacity);
         };
         if skin.look.mirror && mirrors > 0 {
-            let facing = if skin.normal.dot(direction) > 0.0 {
-                -skin.normal
-            } else {
-                skin.normal
-            };
+            let facing = skin.facing(direction);
             let light = self.reflected(renderer, sight, facing, mirrors - 1);
             return Sent::plain(skin.color * light, skin.opacity);
         }

@@ -17,6 +17,22 @@ struct Ray {
     per_length: f32,
 }
 
+// A ray in the space of the mesh that moves; as it is for what stands still (source 0).
+fn in_instance(ray: Ray, source: u32, world: u32) -> Ray {
+    var local = ray;
+    if source > 0u {
+        let row = frame[world].y + (source - 1u) * INSTANCE_ROWS;
+        let i = numbers(frame[row]);
+        let j = numbers(frame[row + 1u]);
+        let k = numbers(frame[row + 2u]);
+        let way = ray.origin - vec3<f32>(i.w, j.w, k.w);
+        let d = ray.direction;
+        local.origin = vec3<f32>(dot(i.xyz, way), dot(j.xyz, way), dot(k.xyz, way));
+        local.direction = vec3<f32>(dot(i.xyz, d), dot(j.xyz, d), dot(k.xyz, d));
+    }
+    return local;
+}
+
 fn depth_is_range(v: View) -> bool {
     return v.kind == FISHEYE || v.kind == EQUIRECTANGULAR || v.kind == CUBEMAP;
 }

@@ -26,18 +26,9 @@ fn corner_of(row: u32, lane: u32) -> vec3<f32> {
 
 // The interpolated normal, not of unit length; in the space of the triangle's own.
 fn smooth_normal(v: View, ray: Ray, s: Sight) -> vec3<f32> {
-    var origin = ray.origin;
-    var direction = ray.direction;
-    if s.source > 0u {
-        let row = frame[v.world].y + (s.source - 1u) * INSTANCE_ROWS;
-        let i = numbers(frame[row]);
-        let j = numbers(frame[row + 1u]);
-        let k = numbers(frame[row + 2u]);
-        let way = origin - vec3<f32>(i.w, j.w, k.w);
-        let d = direction;
-        origin = vec3<f32>(dot(i.xyz, way), dot(j.xyz, way), dot(k.xyz, way));
-        direction = vec3<f32>(dot(i.xyz, d), dot(j.xyz, d), dot(k.xyz, d));
-    }
+    let local = in_instance(ray, s.source, v.world);
+    let origin = local.origin;
+    let direction = local.direction;
     let row = (s.slot / 4u) * BLOCK_ROWS;
     let lane = s.slot % 4u;
     let a = corner_of(row, lane) - origin;

@@ -17,18 +17,9 @@ fn edge(p: vec3<f32>, q: vec3<f32>, direction: vec3<f32>) -> vec2<f32> {
 
 // The distance along a ray to a triangle; negative where it passes beside.
 fn distance_to(v: View, ray: Ray, source: u32, slot: u32) -> f32 {
-    var origin = ray.origin;
-    var direction = ray.direction;
-    if source > 0u {
-        let row = frame[v.world].y + (source - 1u) * INSTANCE_ROWS;
-        let i = numbers(frame[row]);
-        let j = numbers(frame[row + 1u]);
-        let k = numbers(frame[row + 2u]);
-        let way = origin - vec3<f32>(i.w, j.w, k.w);
-        let d = direction;
-        origin = vec3<f32>(dot(i.xyz, way), dot(j.xyz, way), dot(k.xyz, way));
-        direction = vec3<f32>(dot(i.xyz, d), dot(j.xyz, d), dot(k.xyz, d));
-    }
+    let local = in_instance(ray, source, v.world);
+    let origin = local.origin;
+    let direction = local.direction;
     let row = (slot / 4u) * BLOCK_ROWS;
     let lane = slot % 4u;
     let a = corner_at(row, lane, origin);
