@@ -349,7 +349,8 @@ impl Freedoms<'_> {
                 && let Some(leader) = self.free.iter().position(|other| *other == leader)
             {
                 let leader = &freedoms[leader];
-                elements.push(freedom.follow(leader, mimic.multiplier.into(), mimic.offset.into()));
+                let law = [mimic.multiplier.into(), mimic.offset.into()];
+                elements.push(freedom.follow(leader, law, joint.stops()));
             }
         }
         elements

@@ -40,6 +40,8 @@ pub(crate) enum Gain {
 
 /// The share of what a linkage is off that it mends in a step: all of it at once would swing with what its joints hold.
 const LINKED: f64 = 0.1;
+/// The fastest that it mends it, rad/s or m/s: a linkage that is set elsewhere goes there, and is not shot there.
+const LINKED_SPEED: f64 = 4.0;
 
 /// One degree of freedom before a step.
 #[derive(Clone, Copy, Debug)]
@@ -113,17 +115,21 @@ impl Freedom {
         self.element(offset, stiffness * self.dt_s, bounds)
     }
 
-    /// A linkage: this position shall be `multiplier` times another's plus `offset`.
-    pub(super) fn follow(&self, leader: &Self, multiplier: f64, offset: f64) -> Element {
+    /// A linkage: this position shall be `multiplier` times another's plus `offset`, or the nearest within `stops`, against
+    /// which it would press without bound.
+    pub(super) fn follow(
+        &self,
+        leader: &Self,
+        [multiplier, offset]: [f64; 2],
+        stops: [f64; 2],
+    ) -> Element {
         let slope = RIGID * self.inertia / self.dt_s;
-        let off = self.position - multiplier * leader.position - offset;
+        let wanted = multiplier * leader.position + offset;
+        let off = self.position - wanted.max(stops[0]).min(stops[1]);
+        let mended = (LINKED * off / self.dt_s).clamp(-LINKED_SPEED, LINKED_SPEED);
         Element {
             follows: Some((leader.index, multiplier)),
-            ..self.element(
-                -slope * (LINKED * off / self.dt_s),
-                slope,
-                [f64::NEG_INFINITY, f64::INFINITY],
-            )
+            ..self.element(-slope * mended, slope, [f64::NEG_INFINITY, f64::INFINITY])
         }
     }
 

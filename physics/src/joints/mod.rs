@@ -66,6 +66,12 @@ impl Joint {
         self.values.axis.as_dvec3().normalize_or(DVec3::X)
     }
 
+    /// Where it stops, rad or m; infinite where it does not.
+    fn stops(&self) -> [f64; 2] {
+        let limits = self.values.limits.map(|limits| limits.map(f64::from));
+        limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
+    }
+
     /// How far the joint's frame is from the origins of the bodies that it holds, m.
     fn reach_m(&self) -> f32 {
         let [parent, child] = [self.parent_from_joint, self.child_from_joint];

@@ -76,7 +76,7 @@ impl Standing {
         }
         let states = arrived.into_iter().zip(velocity);
         for ((joint, k), (position, velocity)) in joints.iter().zip(&self.free).zip(states) {
-            let [low, high] = stops(joint);
+            let [low, high] = joint.stops();
             let position = position.max(low).min(high);
             near[tree.joints[*k]] = Coordinate { position, velocity };
             place::put(engine, joint, (position, velocity), false);
@@ -86,26 +86,17 @@ impl Standing {
 
 /// Where a joint at `position` stands that would come to `end` undisturbed: at the stop that it ran into, and not short of it.
 fn arrives(joint: &Joint, position: f64, end: Option<f64>) -> f64 {
-    let [low, high] = stops(joint);
+    let [low, high] = joint.stops();
     match end {
         Some(end) if end <= low || end >= high => end,
         _ => position,
     }
 }
 
-fn stops(joint: &Joint) -> [f64; 2] {
-    joint
-        .values
-        .limits
-        .map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| {
-            limits.map(f64::from)
-        })
-}
-
 /// What keeps joints that are past their stops from going on: a plastic impact, with the momentum that it gives the others.
 fn held_by_stops(joints: &[&Joint], positions: &[f64], inertia: &Inertia) -> Vec<Element> {
     let held = |(k, (joint, position)): (usize, (&&Joint, &f64))| {
-        let [low, high] = stops(joint);
+        let [low, high] = joint.stops();
         let bounds = if *position < low {
             [0.0, f64::INFINITY]
         } else if *position > high {

@@ -7,9 +7,15 @@ use dwell_scene::{JointCommand, JointId, Mimic};
 
 /// An arm whose third joint follows its second; the motors of the others are told to go to `position`, rad.
 pub(crate) fn linked(position: f32) -> Run {
+    linked_within(None, position)
+}
+
+/// The same with other stops for the follower, rad.
+fn linked_within(stops: Option<[f32; 2]>, position: f32) -> Run {
     let mut build = arm(1.0, Some(STRONG));
     let follower = &mut build.data.joints[JointId(2)];
     follower.servo = None;
+    follower.limits = stops.or(follower.limits);
     follower.mimic = Some(Mimic {
         leader: JointId(1),
         multiplier: -0.5,
@@ -64,4 +70,35 @@ fn a_linkage_that_was_set_apart_comes_together() {
         left = now;
     }
     assert!(left.abs() < 2e-4, "{left}");
+}
+
+/// What a follower's stops do not let it reach, a linkage does not press for: it stands at the stop, and its leader where its
+/// motor holds it. Where the arm meets itself on the way, it is pressed, but not shot away.
+#[test]
+fn a_linkage_that_asks_for_the_impossible_rests_at_the_stop() {
+    for (stop, offset) in [(1.0_f32, 34.0), (-1.0, -34.0), (3.0, 34.0)] {
+        let mut run = linked_within(Some([-stop.abs(), stop.abs()]), 0.6);
+        run.steps(20);
+        let house = run.house.clone();
+        let address = "joint/2/mimic_offset".parse().unwrap();
+        run.state.set_parameter(&house, &address, offset).unwrap();
+        run.world.apply_parameters(&mut run.state).unwrap();
+        let mut fastest = 0.0_f32;
+        for _ in 0..200 {
+            run.steps(1);
+            assert!(run.world.notices().is_empty(), "{:?}", run.world.notices());
+            fastest = fastest.max(run.world.fastest_m_s());
+        }
+        let q = angles(&run.state);
+        println!(
+            "{offset}: {q:?}, fastest {fastest} m/s, {} J",
+            run.world.kinetic_energy_j()
+        );
+        assert!(fastest < 20.0, "{fastest}");
+        if stop.abs() < 2.0 {
+            assert!((q[2] - f64::from(stop)).abs() < 0.01, "{q:?}");
+            assert!((q[1] - 0.6).abs() < 0.02, "{q:?}");
+            assert!(run.world.kinetic_energy_j() < 1e-3);
+        }
+    }
 }

@@ -15,7 +15,7 @@ mod memory;
 use checks::{check, largest_snapshot, places};
 use dwell::{Engines, Viewpoint, World, WorldConfig, viewpoints};
 use dwell_houses::with_robot;
-use dwell_physics::AgentControl;
+use dwell_physics::{ActionCode, AgentControl};
 use dwell_scene::random::{Key, Stream};
 use dwell_scene::{
     Address, AgentBody, AgentId, DifferentialDrive, House, Id, Locomotion, Parameter, Pose,
@@ -29,6 +29,8 @@ use std::sync::Arc;
 const AGENTS: usize = 4;
 /// Physics steps in a control step.
 const SUBSTEPS: usize = 6;
+/// How much of what it was told a play remembers.
+const LATELY: usize = 12;
 /// How long the world goes astray in the middle of a run before the snapshot brings it back, control steps.
 const ASTRAY: usize = 30;
 /// Set for the process that plays again.
@@ -72,6 +74,8 @@ struct Play {
     controls: [AgentControl; AGENTS],
     /// Every parameter as it was at the start.
     parameters: Vec<(Address, Parameter)>,
+    /// What it was told and set to last, the newest at the end.
+    lately: Vec<String>,
 }
 
 impl Play {
@@ -91,6 +95,7 @@ impl Play {
         }
         Self {
             parameters: world.parameters(),
+            lately: Vec::new(),
             world,
             stream: Key::root(12).stream(),
             controls: [AgentControl::default(); AGENTS],
@@ -113,34 +118,51 @@ impl Play {
         }
         if self.stream.below(20) == 0 {
             let (joint, command) = inputs::command(&mut self.stream, house.joints.len());
-            if let Err(refused) = self.world.command_joint(joint, command) {
-                assert!(!refused.to_string().is_empty(), "{command:?} says nothing");
-            }
+            let refused = self.world.command_joint(joint, command).err();
+            self.note(refused.map(|refused| refused.to_string()), || {
+                format!("joint {} {command:?}", joint.0)
+            });
         }
         self.set();
         self.world.step(&self.controls).unwrap();
     }
 
+    /// Remembers what was told, unless it was refused, which has a reason.
+    fn note(&mut self, refused: Option<String>, told: impl Fn() -> String) {
+        match refused {
+            Some(reason) => assert!(!reason.is_empty(), "{} says nothing", told()),
+            None => self.lately.push(told()),
+        }
+        let over = self.lately.len().saturating_sub(LATELY);
+        self.lately.drain(..over);
+    }
+
     /// Sets a number, a thing or a joint of the world, once in a while.
     fn set(&mut self) {
         let (world, stream) = (&mut self.world, &mut self.stream);
-        let refused = match stream.below(300) {
+        match stream.below(300) {
             0 | 1 => {
                 let (address, value) = inputs::setting(stream, &self.parameters);
-                world.set_parameter(&address, value).err()
+                let refused = world.set_parameter(&address, value).err();
+                self.note(refused.map(|refused| refused.to_string()), || {
+                    format!("{address} = {value}")
+                });
             }
             2 | 3 => {
                 let thrown = inputs::thrown(stream, world);
-                world.set_bodies(&[thrown]).err()
+                let refused = world.set_bodies(&[thrown]).err();
+                self.note(refused.map(|refused| refused.to_string()), || {
+                    format!("{thrown:?}")
+                });
             }
             4 => {
                 let joint = inputs::joint(stream, world);
-                world.set_joints(&[joint]).err()
+                let refused = world.set_joints(&[joint]).err();
+                self.note(refused.map(|refused| refused.to_string()), || {
+                    format!("joint {joint:?}")
+                });
             }
-            _ => None,
-        };
-        if let Some(refused) = refused {
-            assert!(!refused.to_string().is_empty());
+            _ => {}
         }
     }
 
@@ -174,6 +196,14 @@ fn play_watched(engines: &Arc<Engines>, steps: usize) -> u64 {
         let before = places(&play.world);
         play.step();
         check(&play.world, &before, k);
+        for lost in play.world.notices() {
+            if lost.outcome.code == ActionCode::Lost {
+                println!(
+                    "  control step {k}: {} Before: {:?}",
+                    lost.outcome.sentence, play.lately
+                );
+            }
+        }
         if share(k + 1) == share(k) {
             continue;
         }
