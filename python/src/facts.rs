@@ -69,7 +69,11 @@ pub(crate) fn expand(py: Python<'_>, house: &str) -> PyResult<Vec<String>> {
 
 /// Versions, threads and features: what `dwell doctor` prints.
 #[pyfunction]
-pub(crate) fn doctor_json() -> String {
+pub(crate) fn doctor_json(py: Python<'_>) -> PyResult<String> {
+    py.engine(|| Ok::<_, Fault>(doctor()))
+}
+
+fn doctor() -> String {
     let threads = dwell_scene::parallel::Threads::resolve(None).count();
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     json!({

@@ -32,6 +32,8 @@ pub(crate) struct Look {
     pub(crate) clear: bool,
     /// Perceptual roughness, 0 to 1.
     pub(crate) roughness: f32,
+    /// 0 (no metal) to 1 (metal).
+    pub(crate) metallic: f32,
     /// Whether lit pictures show what it reflects.
     pub(crate) mirror: bool,
 }
@@ -48,6 +50,7 @@ impl Look {
             plain: None,
             clear: material.opacity < 1.0,
             roughness: material.roughness,
+            metallic: material.metallic,
             mirror: material.metallic >= MIRROR_METALLIC && material.roughness <= MIRROR_ROUGHNESS,
         };
         if let Some(texture) = material.texture {
@@ -81,6 +84,7 @@ impl Look {
             plain: Some(Srgb::tables().encode3(base)),
             clear: false,
             roughness: 1.0,
+            metallic: 0.0,
             mirror: false,
         }
     }

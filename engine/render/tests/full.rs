@@ -8,10 +8,10 @@
 mod common;
 
 use common::{Builder, World, look};
-use dwell_render::{Camera, Channels, Frame, Preset, View};
+use dwell_render::{Camera, Channels, Frame, Job, Preset, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::units::linear_from_srgb;
-use dwell_scene::{House, Light, LightShape, Mesh, Pose, ShoeboxMaterials};
+use dwell_scene::{Daytime, House, Light, LightShape, Mesh, Pose, ShoeboxMaterials, Sky};
 use glam::Vec3;
 
 /// A grey room with a lamp below the middle of its ceiling, and things in it.
@@ -108,6 +108,26 @@ fn full_pictures_have_the_same_bits_for_any_number_of_threads_and_rows() {
     };
     let (one, three) = (shot(1), shot(3));
     assert_eq!(one.rgb, three.rgb);
+    // Some rows alone are those of the whole.
+    let (first, end) = (3_usize, 7_usize);
+    let mut rgb = vec![0; (end - first) * 64 * 3];
+    let frame = dwell_render::FrameMut {
+        rgb: Some(&mut rgb),
+        ..dwell_render::FrameMut::default()
+    };
+    let job = Job {
+        scene: &world.scene,
+        state: &world.state,
+        view,
+        before: None,
+        rows: Some((first as u32, end as u32)),
+        frame,
+    };
+    world
+        .renderer
+        .render_batch(&mut [job], Threads::ONE)
+        .unwrap();
+    assert_eq!(rgb, one.rgb[first * 64 * 3..end * 64 * 3]);
     // What is no colour is that of the other presets.
     let lit = world.shot(&View {
         preset: Preset::Lit,
@@ -115,4 +135,116 @@ fn full_pictures_have_the_same_bits_for_any_number_of_threads_and_rows() {
     });
     assert_eq!(one.depth, lit.depth);
     assert_eq!(one.instance, lit.instance);
+}
+
+/// A glowing line just below the ceiling of a dark room, where its own light counts most: none of it is lost above.
+#[test]
+fn a_line_below_the_ceiling_lights_the_floor_as_in_lit() {
+    let world = {
+        let grey = Builder::plaster("grey").with_srgb([60, 60, 60]);
+        let house = House::shoebox([5.0, 2.6, 5.0], &ShoeboxMaterials::uniform(&grey)).unwrap();
+        let mut builder = Builder::from(&house);
+        let tube = Mesh::cuboid(Vec3::new(-0.6, -0.01, -0.01), Vec3::new(0.6, 0.01, 0.01));
+        let at = Pose::from_position(Vec3::new(2.5, 2.57, 2.5));
+        let object = builder.add("tube", tube, Builder::plaster("tube"), false, at);
+        builder.data.lights.push(Light {
+            object,
+            part: dwell_scene::PartId(0),
+            position: Vec3::X * -0.6,
+            shape: LightShape::Line { end: Vec3::X * 0.6 },
+            color: [1.0; 3],
+            // Against which the few lx that `lit` gives every room do not count.
+            power_w: 600.0,
+            attenuation: [0.0, 0.0, 1.0],
+        });
+        builder.build()
+    };
+    let camera = Camera::from_fov(32, 32, 30.0).unwrap();
+    let floor = |preset: Preset| {
+        let view = View {
+            preset,
+            ..look(camera, Vec3::new(2.5, 1.6, 4.0), Vec3::new(2.5, 0.0, 2.5))
+        };
+        mean(&world.shot(&view))
+    };
+    let (lit, full) = (floor(Preset::Lit), floor(Preset::Full));
+    assert!((full / lit - 1.0).abs() < 0.1, "{full} of {lit}");
+}
+
+/// Over ground, a wall in the open is lit by the sky and by what the ground throws back.
+#[test]
+fn a_wall_over_ground_is_as_bright_as_lit() {
+    let mut builder = Builder::empty();
+    let grey = || Builder::plaster("grey").with_srgb([160, 160, 160]);
+    let slab = Mesh::cuboid(Vec3::new(-50.0, -0.2, -50.0), Vec3::new(50.0, 0.0, 50.0));
+    builder.add("ground", slab, grey(), false, Pose::IDENTITY);
+    let wall = Mesh::cuboid(Vec3::new(-3.0, 0.0, -0.1), Vec3::new(3.0, 3.0, 0.1));
+    let mut paint = grey();
+    paint.name = "paint".into();
+    builder.add("wall", wall, paint, false, Pose::IDENTITY);
+    let world = builder.build();
+    let camera = Camera::from_fov(32, 32, 30.0).unwrap();
+    let shown = |preset: Preset| {
+        let view = View {
+            preset,
+            ..look(camera, Vec3::new(0.0, 1.5, 4.0), Vec3::new(0.0, 1.5, 0.0))
+        };
+        mean(&world.shot(&view))
+    };
+    let (lit, full) = (shown(Preset::Lit), shown(Preset::Full));
+    assert!((full / lit - 1.0).abs() < 0.05, "{full} of {lit}");
+}
+
+/// Ten metres above the ground, an edge across the sun's way throws a border as wide as the sun's disc is seen: 10 m times its
+/// 0.0093 rad, over the sine of its height and along the ground.
+#[test]
+fn the_suns_shadows_have_a_border_as_wide_as_the_sun() {
+    let mut builder = Builder::empty();
+    let grey = || Builder::plaster("grey").with_srgb([160, 160, 160]);
+    let slab = Mesh::cuboid(Vec3::new(-50.0, -0.2, -50.0), Vec3::new(50.0, 0.0, 50.0));
+    builder.add("ground", slab, grey(), false, Pose::IDENTITY);
+    let roof = Mesh::cuboid(Vec3::new(0.0, 10.0, -30.0), Vec3::new(30.0, 10.1, 30.0));
+    let mut paint = grey();
+    paint.name = "paint".into();
+    builder.add("roof", roof, paint, false, Pose::IDENTITY);
+    let moment = Daytime {
+        hour_h: 12.0,
+        day: 172,
+        latitude_deg: 23.44,
+        ..Daytime::default()
+    };
+    // The sun stands overhead: the lower edge of the roof is above x = 0.
+    let sky = Sky::at(&moment).unwrap();
+    assert!(sky.to_sun.y > 0.999, "{}", sky.to_sun);
+    let edge_x = -10.0 * sky.to_sun.x / sky.to_sun.y;
+    builder.data.sky = Some(sky);
+    let world = builder.build();
+    // 64 pixels over 0.32 m: 5 mm each.
+    let height = 1.0;
+    let camera = Camera::from_fov(64, 64, 2.0 * 0.16_f32.atan().to_degrees()).unwrap();
+    let eye = Vec3::new(edge_x, height, 0.0);
+    let border_m = |preset: Preset| {
+        let view = View {
+            preset,
+            ..look(camera, eye, Vec3::new(edge_x, 0.0, -1e-3))
+        };
+        let frame = world.shot(&view);
+        let light: Vec<f32> = (0..64)
+            .map(|x| {
+                let column = (0..64)
+                    .map(|y| linear_from_srgb(f32::from(frame.rgb[(y * 64 + x) * 3]) / 255.0));
+                column.sum::<f32>() / 64.0
+            })
+            .collect();
+        let (low, high) = (light[0].min(light[63]), light[0].max(light[63]));
+        assert!(high > 1.5 * low, "{light:?}");
+        let between = light
+            .iter()
+            .filter(|x| (low + 0.04 * (high - low)..high - 0.04 * (high - low)).contains(*x));
+        between.count() as f32 * 0.005
+    };
+    // Of a disc's profile the outer 4 % of light take a tenth of the width each.
+    let (lit, full) = (border_m(Preset::Lit), border_m(Preset::Full));
+    assert!(lit < 0.011, "{lit}");
+    assert!((0.06..0.10).contains(&full), "{full}");
 }

@@ -142,7 +142,7 @@ def _whole(args: argparse.Namespace, world: World) -> list[str]:
     """Pictures of the whole house."""
     from dwell import plans
 
-    width, files = args.width or 1200, []
+    width, files = 1200 if args.width is None else args.width, []
     if args.map:
         for level in range(plans.levels_of(world.house)):
             plan = plans.floor_plan(world, level, longest_edge=width)
@@ -164,6 +164,8 @@ def _views(args: argparse.Namespace, world: World, channels: list[Channel]) -> l
     if args.at is None:
         rooms = enumerate(world.house.rooms())
         views = [(f"room_{k}", room["eye"], room["yaw_deg"]) for k, room in rooms]
+    if not views:
+        raise ValueError("this house has no rooms; say with --at where the camera stands")
     files: list[str] = []
     for name, eye, yaw_deg in views:
         images = world.render(
@@ -193,11 +195,15 @@ def _camera(args: argparse.Namespace) -> Camera:
     """The camera that the options describe."""
     import math
 
-    kind, width, height, preset = args.projection, args.width or 640, args.height, args.preset
+    kind, height, preset = args.projection, args.height, args.preset
+    width = 640 if args.width is None else args.width
     if kind == "pinhole" and not args.intrinsics:
         return Camera(width, height, args.fov_deg, preset=preset)
     numbers: dict[str, Any] = {}
     if kind in ("pinhole", "brown_conrady", "fisheye"):
+        widest = 360.0 if kind == "fisheye" else 179.0
+        if not 0.0 < args.fov_deg <= widest:
+            raise ValueError(f"--fov-deg: found {args.fov_deg:g}; allowed are above 0 to {widest:g}")
         half_rad = math.radians(args.fov_deg / 2)
         focal = width / 2 / (half_rad if kind == "fisheye" else math.tan(half_rad))
         numbers = {"fx": focal, "fy": focal, "cx": width / 2, "cy": height / 2}

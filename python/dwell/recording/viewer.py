@@ -26,6 +26,8 @@ _TEXTURE_EDGE = 256
 _RANGE_DB = 40.0
 #: The octave band of 1 kHz among those of ``early_paths``.
 _BAND_OF_1_KHZ = 4
+# The viewer's classes have 16 bits.
+_MOST_IDS = 0xFFFF
 
 
 def sdk() -> ModuleType:
@@ -120,7 +122,7 @@ class Recording:
                     show_labels=False,
                 ),
             )
-        names = [(row["id"], row["name"]) for row in fixtures["boxes"]]
+        names = [(row["id"], row["name"]) for row in fixtures["boxes"] if row["id"] <= _MOST_IDS]
         self._log(["world"], rr.AnnotationContext(names))
         self.text("description", "\n".join(house.describe("house")))
 
@@ -162,7 +164,8 @@ class Recording:
         self._pinhole(path, camera, eye, yaw_deg, pitch_deg, static=True)
         self._log([*path, "rgb"], rr.Image(images["rgb"]))
         self._log([*path, "depth"], rr.DepthImage(images["depth"][..., 0], meter=1.0))
-        ids = images["instance"][..., 0].astype(np.uint16)
+        ids = images["instance"][..., 0]
+        ids = np.where(ids <= _MOST_IDS, ids, 0).astype(np.uint16)
         self._log([*path, "ids"], rr.SegmentationImage(ids))
 
     def way(self, name: str, way: Sequence[Sequence[float]]) -> None:
@@ -271,7 +274,7 @@ class Recording:
                     sizes=[row["size"] for row in rows],
                     quaternions=[row["rotation"] for row in rows],
                     labels=[row["name"] for row in rows],
-                    class_ids=[row["id"] for row in rows],
+                    class_ids=[min(row["id"], _MOST_IDS) for row in rows],
                     fill_mode=self._rr.components.FillMode.MajorWireframe,
                     show_labels=False,
                 ),

@@ -48,6 +48,15 @@ impl Dice {
         across * (radius * math::cos(turn)) + along * (radius * math::sin(turn)) + normal * up
     }
 
+    /// A direction in the cone around another, evenly over the disc that it shows. `radius`: the tangent of half its angle.
+    pub(super) fn cone(&mut self, direction: Vec3, radius: f32) -> Vec3 {
+        let (u, v) = self.pair();
+        let (across, along) = direction.any_orthonormal_pair();
+        let (aside, turn) = (radius * u.sqrt(), v * TAU);
+        let off = across * math::cos(turn) + along * math::sin(turn);
+        (direction + off * aside).normalize_or(direction)
+    }
+
     /// A point in a ball of radius 1.
     pub(super) fn ball(&mut self) -> Vec3 {
         let ((u, v), (w, _)) = (self.pair(), self.pair());
@@ -104,6 +113,12 @@ mod tests {
         // The mean cosine of directions as likely as their cosine is 2/3.
         let cosine = all(|dice| dice.cosine(normal));
         assert!((cosine - normal * (2.0 / 3.0)).length() < 0.005, "{cosine}");
+        // The mean square of the tangent over a disc is half of that at its rim.
+        let tangent = all(|dice| {
+            let cosine = dice.cone(normal, 0.2).dot(normal);
+            Vec3::splat(1.0 / (cosine * cosine) - 1.0)
+        });
+        assert!((tangent.x - 0.02).abs() < 2e-4, "{tangent}");
         let ball = all(Dice::ball);
         assert!(ball.length() < 0.006, "{ball}");
         // The mean square distance from the middle of a ball is 3/5.

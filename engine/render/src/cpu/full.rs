@@ -2,11 +2,12 @@
 //!
 //! Each pixel is the mean of [`SAMPLES`] rays through different places in it. Where one meets a surface, every source of light is
 //! asked by a ray to another point of it, so that shadows are soft; light from all around is gathered by rays to what throws it,
-//! which has light of its own and the room's mean for the rest.
+//! which has light of its own and the room's mean for the rest. Metals and what is polished reflect; how facets of rough surfaces
+//! hide one another is left out.
 //!
 //! # Source
-//! J. T. Kajiya, *The rendering equation*, SIGGRAPH 1986, cut off after the second surface by what `lit` says of it. Reflection
-//! of what is no metal: C. Schlick, *An inexpensive BRDF model*, 1994, equation 15, with micro-facets of B. Walter et al., EGSR
+//! J. T. Kajiya, *The rendering equation*, SIGGRAPH 1986, cut off after the second surface by what `lit` says of it.
+//! Reflection: C. Schlick, *An inexpensive BRDF model*, 1994, equation 15, with micro-facets of B. Walter et al., EGSR
 //! 2007, equations 35 and 36 (GGX).
 
 use super::CpuRenderer;
@@ -15,6 +16,7 @@ use super::dice::Dice;
 use super::rays::{SEEN, Sight};
 use super::shade::{GAP, LAYERS, MIRRORS, OFF_SURFACE_M, OPAQUE};
 use crate::light::{Exposure, Incoming, Lighting, Site, Source, beside_surface, display, sky};
+use crate::look::Look;
 use dwell_scene::EntityId;
 use dwell_scene::bvh::Ray;
 use glam::{Vec2, Vec3};
@@ -29,14 +31,14 @@ const GATHERED: usize = 2;
 const MOST_GATHERED: f32 = 3.0;
 /// What smooth glass, varnish or ceramic reflects of light from straight ahead.
 const STRAIGHT: f32 = 0.04;
-/// Rougher than this a surface that is no metal shows no reflection.
+/// Rougher than this a surface that is no metal shows no reflection. This, and that polish falls evenly up to there, is ours.
 const DULL: f32 = 0.7;
 /// How far into the room places in a window lie, m: before its frame.
 const BEFORE_FRAME_M: f32 = 0.05;
 /// A room is looked up half of the way back from a surface at most: steps back a metre of way.
 const NEAR: f32 = 2.5;
-/// How far light in the open air is followed, m.
-const OPEN_M: f32 = 100.0;
+/// Tangent of half the angle under which the sun is seen: 0.533 degrees in the mean.
+const SUN_RADIUS: f32 = 0.004_65;
 
 /// What surfaces of one kind of ray may do.
 #[derive(Clone, Copy)]
@@ -144,7 +146,11 @@ impl Tracer<'_> {
         let (facing, smooth) = renderer.normals(&skin, sight, position, weights);
         let off = sight.point + facing * OFF_SURFACE_M;
         if skin.look.mirror && path.mirrors > 0 {
-            let light = self.reflected(sight, off, facing, path, dice);
+            let seen = Facet {
+                facet: facing,
+                facing,
+            };
+            let light = self.reflected(sight, off, seen, path, dice);
             return (skin.color * light, skin.opacity);
         }
         let site = Site {
@@ -179,13 +185,14 @@ impl Tracer<'_> {
                 };
             });
         let mut shown = skin.color * sum;
-        shown += self.band.glow(renderer, skin.look.emission, sight.id);
-        let shine = shine(skin.look.roughness, -sight.direction.dot(smooth));
-        if shine > 0.0 && path.mirrors > 0 {
+        if path.mirrors > 0 && reflects(skin.look) {
             let facet = dice.facet(smooth, skin.look.roughness);
-            let light = self.reflected(sight, off, facet, path, dice);
-            shown = shown * (1.0 - shine) + light * shine;
+            let share = reflectance(skin.look, skin.color, -sight.direction.dot(facet));
+            let seen = Facet { facet, facing };
+            let light = self.reflected(sight, off, seen, path, dice);
+            shown = shown * (Vec3::ONE - share) * (1.0 - skin.look.metallic) + light * share;
         }
+        shown += self.band.glow(renderer, skin.look.emission, sight.id);
         (shown, skin.opacity)
     }
 
@@ -194,11 +201,17 @@ impl Tracer<'_> {
         &self,
         sight: &Sight,
         off: Vec3,
-        normal: Vec3,
+        Facet { facet, facing }: Facet,
         path: Path,
         dice: &mut Dice,
     ) -> Vec3 {
-        let direction = sight.direction.reflect(normal).normalize_or(normal);
+        let direction = sight.direction.reflect(facet).normalize_or(facing);
+        // A facet that throws light into its own surface would show that; the surface's mirror image stands for it.
+        let direction = if direction.dot(facing) > 0.0 {
+            direction
+        } else {
+            sight.direction.reflect(facing).normalize_or(facing)
+        };
         let path = Path {
             mirrors: path.mirrors - 1,
             // Patterns in a mirror are as fine as if they stood behind it.
@@ -237,8 +250,15 @@ impl Tracer<'_> {
         let (renderer, scene) = (self.renderer, self.band.scene);
         let (target, hidden) = match source {
             Source::None | Source::Room => return true,
-            Source::Sun => return renderer.sun_reaches(scene, off),
-            Source::Open => (off + dice.cosine(normal) * OPEN_M, EntityId::VOID.0),
+            Source::Sun => {
+                let to_sun = dice.cone(renderer.house_light().sun.0, SUN_RADIUS);
+                return renderer.sky_reaches(scene, off, to_sun);
+            }
+            Source::Open => {
+                let direction = dice.cosine(normal);
+                // What lies below throws back what the ground is taken to.
+                return direction.y < 0.0 || renderer.sky_reaches(scene, off, direction);
+            }
             Source::Window(position) => {
                 let window = &renderer.house_light().windows[position as usize];
                 let (x, y) = dice.pair();
@@ -248,7 +268,8 @@ impl Tracer<'_> {
             }
             Source::Caster(position) => {
                 let caster = self.lighting.caster(position);
-                let place = caster.center + dice.ball() * caster.radius_m;
+                let (pick, within) = (dice.pair(), dice.ball());
+                let place = self.lighting.place_in_caster(caster, off, pick, within);
                 (place, caster.entity)
             }
         };
@@ -258,12 +279,25 @@ impl Tracer<'_> {
     }
 }
 
-/// What a surface that is no metal reflects, by the cosine of the angle under which it is seen.
-fn shine(roughness: f32, cosine: f32) -> f32 {
-    if roughness >= DULL {
-        return 0.0;
-    }
-    let grazing = (1.0 - cosine.clamp(0.0, 1.0)).powi(5);
-    let polish = 1.0 - roughness / DULL;
-    (STRAIGHT + (1.0 - STRAIGHT) * grazing) * polish
+/// The normal of a facet, and that of the flat triangle that it is on, towards the viewer.
+#[derive(Clone, Copy)]
+struct Facet {
+    facet: Vec3,
+    facing: Vec3,
+}
+
+/// Whether a surface reflects more than rays can show.
+fn reflects(look: &Look) -> bool {
+    look.metallic > 0.0 || look.roughness < DULL
+}
+
+/// What a surface of a colour reflects, by the cosine between the viewer and the facet: metals by their colour, others the less the
+/// rougher they are.
+fn reflectance(look: &Look, color: Vec3, cosine: f32) -> Vec3 {
+    let left = 1.0 - cosine.clamp(0.0, 1.0);
+    let grazing = left * left * left * left * left;
+    let schlick = |straight: Vec3| straight + (Vec3::ONE - straight) * grazing;
+    let polish = (1.0 - look.roughness / DULL).max(0.0);
+    let other = schlick(Vec3::splat(STRAIGHT)) * polish;
+    other.lerp(schlick(color), look.metallic)
 }

@@ -176,7 +176,7 @@ impl CpuRenderer {
         let mut lit: Vec<Option<usize>> = Vec::new();
         let mut last: Option<&State> = None;
         for job in jobs.iter() {
-            if job.view.preset == Preset::Flat {
+            if job.view.preset == Preset::Flat || job.frame.rgb.is_none() {
                 lit.push(None);
                 continue;
             }

@@ -8,8 +8,8 @@ use dwell_scene::EntityId;
 use dwell_scene::bvh::{PacketHits, Ray, RayPacket, SceneBvh};
 use glam::Vec3;
 
-/// How far what gives shadow may be from what the sun shines on, m.
-const SUN_RAY_M: f32 = 500.0;
+/// How far what gives shadow may be from what the sky and the sun shine on, m.
+const SKY_RAY_M: f32 = 500.0;
 /// Most surfaces of glass that light passes; behind more it counts as shadow.
 const PANES: usize = 8;
 /// What lets through more than this counts as glass.
@@ -37,13 +37,18 @@ impl CpuRenderer {
         self.looks[material as usize].opacity <= GLASS
     }
 
-    /// Whether the sun shines on a point.
+    /// Whether the middle of the sun shines on a point.
     pub(super) fn sun_reaches(&self, scene: SceneBvh<'_>, point: Vec3) -> bool {
+        self.sky_reaches(scene, point, self.house_light().sun.0)
+    }
+
+    /// Whether light comes to a point from far away. `direction`: unit length, towards it.
+    pub(super) fn sky_reaches(&self, scene: SceneBvh<'_>, point: Vec3, direction: Vec3) -> bool {
         let ray = Ray {
             origin: point,
-            direction: self.house_light().sun.0,
+            direction,
             near_m: 0.0,
-            far_m: SUN_RAY_M,
+            far_m: SKY_RAY_M,
         };
         self.passes(scene, &ray, EntityId::VOID.0)
     }

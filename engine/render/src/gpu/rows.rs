@@ -143,7 +143,7 @@ impl Batch {
             };
             last = Some((job, world));
             let shown = match job.view.preset {
-                Preset::Lit => {
+                Preset::Lit if job.frame.rgb.is_some() => {
                     let made = light.take();
                     let same = made
                         .as_ref()
@@ -163,7 +163,7 @@ impl Batch {
                     light = Some(made);
                     row
                 }
-                Preset::Flat | Preset::Full => [0; 4],
+                _ => [0; 4],
             };
             self.add_view(k, job, world, shown);
             if let Some(sheet) = sheets[k].map(|sheet| self.drawing.sheets[sheet]) {

@@ -7,9 +7,6 @@ use super::rooms::luminance;
 use dwell_scene::House;
 use glam::Vec3;
 
-/// Radius of a bulb in its shade, m.
-const BULB_M: f32 = 0.05;
-
 /// Casts no shadows.
 pub(crate) const NONE: u32 = u32::MAX;
 
@@ -26,8 +23,8 @@ const ASIDE_M: f32 = 0.6;
 pub(crate) struct Caster {
     /// The middle of its lamps by their light.
     pub(crate) center: Vec3,
-    /// How far its light is spread around that, m.
-    pub(crate) radius_m: f32,
+    /// Where its lamps start among all, and how many there are.
+    pub(super) lamps: (usize, usize),
     /// The thing; it casts no shadow of this light.
     pub(crate) entity: i32,
 }
@@ -43,6 +40,7 @@ pub(crate) fn assign(
     passes: impl Fn(Vec3, Vec3, i32) -> bool,
 ) {
     casters.clear();
+    let mut first = 0;
     for group in lamps.chunk_by_mut(|a, b| (a.room, a.entity) == (b.room, b.entity)) {
         let weight = |lamp: &Lamp| luminance(lamp.flux_lm).max(1e-6);
         let all: f32 = group.iter().map(weight).sum();
@@ -50,12 +48,12 @@ pub(crate) fn assign(
             .iter()
             .fold(Vec3::ZERO, |sum, lamp| sum + lamp.position * weight(lamp));
         let center = middle / all;
-        let away = group.iter().map(|lamp| lamp.position.distance(center));
         let caster = Caster {
             center,
-            radius_m: away.fold(BULB_M, f32::max),
+            lamps: (first, group.len()),
             entity: group[0].entity,
         };
+        first += group.len();
         let floor_y = group[0].room.and_then(|room| house.rooms.iter().nth(room));
         let is_low = floor_y.is_some_and(|room| caster.center.y - room.floor_y < LOW_M);
         let beside = |[x, z]: [f32; 2]| {

@@ -7,6 +7,8 @@ use glam::{Vec2, Vec3};
 const CELL_M: f32 = 0.1;
 /// Most cells a storey.
 const MOST_CELLS: f32 = 1e6;
+/// Most cells along an edge.
+const MOST_CELLS_ALONG: f32 = 16_384.0;
 /// How far rooms reach beyond their floor, in cells: into the walls around them.
 const REACH: usize = 2;
 /// A cell outside.
@@ -54,6 +56,8 @@ impl RoomGrid {
             };
         }
         let cell = (span.x * span.y / MOST_CELLS).sqrt().max(CELL_M);
+        // A street of houses is long and narrow.
+        let cell = cell.max(span.max_element() / MOST_CELLS_ALONG);
         let (width, depth) = ((span.x / cell) as usize + 1, (span.y / cell) as usize + 1);
         let mut grid = Self {
             storeys: Vec::new(),

@@ -18,6 +18,8 @@ const LINE_PARTS: [f32; 4] = [0.125, 0.375, 0.625, 0.875];
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lamp {
     pub(crate) position: Vec3,
+    /// From there to its ends, m: a piece of a glowing line has a length.
+    pub(super) half: Vec3,
     /// Intensity along the axis, cd, for red, green and blue.
     pub(super) intensity: Vec3,
     /// The cone, if it is a spot: axis, cosine of the half angle, exponent.
@@ -88,6 +90,7 @@ pub(crate) fn add_lamps(
         let position = world_from_part.transform_point(point_in_part);
         Lamp {
             position,
+            half: Vec3::ZERO,
             intensity: intensity * share,
             cone,
             attenuation,
@@ -125,13 +128,13 @@ pub(crate) fn add_lamps(
         }
         LightShape::Line { end } => {
             let share = 1.0 / LINE_PARTS.len() as f32;
+            let half = world_from_part.transform_vector(end - light.position) * (0.5 * share);
             for part in LINE_PARTS {
-                lamps.push(lamp(
-                    light.position.lerp(end, part),
-                    share,
-                    flux_lm / (4.0 * PI),
-                    None,
-                ));
+                let at = light.position.lerp(end, part);
+                lamps.push(Lamp {
+                    half,
+                    ..lamp(at, share, flux_lm / (4.0 * PI), None)
+                });
             }
         }
     }

@@ -31,6 +31,8 @@ const BEFORE_PANE_M: f32 = 0.25;
 /// How far from a surface its room is looked for, m: off the skin of the wall that it belongs to, and towards the viewer,
 /// who sees it from its room.
 const OFF_SURFACE_M: [f32; 2] = [0.1, 0.2];
+/// Radius of a bulb in its shade, m.
+const BULB_M: f32 = 0.05;
 /// What white shows in the open, in units of display white: the open has an exposure of its own.
 const OPEN_AIR: f32 = 1.3;
 
@@ -124,6 +126,33 @@ impl Lighting {
     /// What casts the shadows of a source.
     pub(crate) fn caster(&self, position: u32) -> &Caster {
         &self.casters[position as usize]
+    }
+
+    /// A place in what casts shadows from which light comes to `point`: in one of its lamps, as likely as that one's flux, on the
+    /// side that the point sees. `pick`: which lamp and where along it, from 0 up to 1 each; `within`: in a ball of radius 1.
+    pub(crate) fn place_in_caster(
+        &self,
+        caster: &Caster,
+        point: Vec3,
+        pick: (f32, f32),
+        within: Vec3,
+    ) -> Vec3 {
+        let (first, count) = caster.lamps;
+        let lamps = &self.lamps[first..first + count];
+        let flux = |lamp: &Lamp| rooms::luminance(lamp.flux_lm).max(1e-6);
+        let mut left = pick.0 * lamps.iter().map(flux).sum::<f32>();
+        let chosen = lamps.iter().find(|lamp| {
+            left -= flux(lamp);
+            left < 0.0
+        });
+        let lamp = chosen.unwrap_or(&lamps[count - 1]);
+        // A bulb below the ceiling is not seen through it.
+        let seen = if within.dot(point - lamp.position) < 0.0 {
+            -within
+        } else {
+            within
+        };
+        lamp.position + lamp.half * (2.0 * pick.1 - 1.0) + seen * BULB_M
     }
 
     /// What a surface of reflectance 1 shows, for red, green and blue: of its strongest sources apart, before shadows.

@@ -11,6 +11,8 @@ use std::f32::consts::PI;
 
 /// Luminance of the sky of a house that does not say, cd/m²: an overcast sky that gives about 8,000 lx in the open.
 const SKY_LUMINANCE_CD_M2: f32 = 2500.0;
+/// What the ground before such a house throws back of it.
+const GROUND: f32 = 0.2;
 /// What window panes let through.
 pub(crate) const PANE_TRANSMITTANCE: f32 = 0.7;
 /// Illuminance by the sun of a house that does not say, on a surface across its rays behind a pane, lx: a low sun behind
@@ -27,7 +29,7 @@ const CLOSED_DOOR: f32 = 0.1;
 /// How far walls tint the light of their room: light of one colour meets things of other colours, too.
 const TINT: f32 = 0.5;
 /// Rounds in which rooms exchange light.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 24;
 
 /// What never changes about a house's light.
 #[derive(Debug)]
@@ -70,7 +72,7 @@ impl HouseLight {
         let air = house.sky.as_ref().map(Air::new);
         let luminance = |outwards: Vec3| {
             let Some(air) = &air else {
-                return [Vec3::splat(SKY_LUMINANCE_CD_M2); 2];
+                return [1.0, GROUND].map(|part| Vec3::splat(part * SKY_LUMINANCE_CD_M2));
             };
             // Each half of what a window sees, as if evenly bright.
             let mean = |lx: Vec3, share: f32| lx / (PI * share.max(0.05));
@@ -112,8 +114,9 @@ impl HouseLight {
     /// The light in every room when lamps send `flux_lm` into each. `sunlit`: how much of each window the sun reaches.
     ///
     /// # Source
-    /// The equation of the integrating sphere, E = `flux` / (A (1 - r)), whose indirect part is r times that; e.g.
-    /// J. W. T. Walsh, *Photometry* (1926). Rooms exchange what passes their doors, as E r S.
+    /// The equation of the integrating sphere, E A (1 - r) = `flux`, whose indirect part is what walls throw back; e.g.
+    /// J. W. T. Walsh, *Photometry* (1926). Of the light on an opening of area S all goes into the other room: E (A (1 - r) + S) =
+    /// `flux` + S E of the other, so that walls take what lamps send out and no more.
     pub(crate) fn rooms(
         &self,
         house: &House,
@@ -124,40 +127,43 @@ impl HouseLight {
     ) {
         for (k, window) in self.windows.iter().enumerate() {
             let area_m2 = window.area_m2();
-            let Some(air) = &self.air else {
+            let outwards = -window.normal;
+            let lx = if let Some(air) = &self.air {
+                air.skylight(outwards) + air.groundlight(outwards)
+            } else {
                 // A vertical window sees half the sky, a roof window all of it.
-                let sky = 0.5 + 0.5 * window.normal.y.abs();
-                flux_lm[window.room] +=
-                    Vec3::splat(PI * SKY_LUMINANCE_CD_M2 * sky * PANE_TRANSMITTANCE * area_m2);
-                continue;
+                let up = 0.5 + 0.5 * outwards.y;
+                Vec3::splat(PI * SKY_LUMINANCE_CD_M2 * (up + (1.0 - up) * GROUND))
             };
-            let lx = air.skylight(-window.normal) + air.groundlight(-window.normal);
             let (to_sun, behind_pane_lx) = self.sun;
-            let across = (-window.normal).dot(to_sun).max(0.0);
-            let share = sunlit.get(k).copied().unwrap_or(0.0);
+            let across = outwards.dot(to_sun).max(0.0);
+            // A house that says nothing of its sky stands free.
+            let share = sunlit.get(k).copied().unwrap_or(1.0);
             flux_lm[window.room] +=
                 (lx * PANE_TRANSMITTANCE + behind_pane_lx * (across * share)) * area_m2;
         }
-        let mean = |room: usize, total: Vec3| {
-            let walls = &self.rooms[room];
-            total / (walls.area_m2 * (Vec3::ONE - walls.reflectance))
-        };
-        let mut total = flux_lm.to_vec();
-        for _ in 0..ROUNDS {
-            let before = total.clone();
-            total.copy_from_slice(flux_lm);
-            for passage in &self.passages {
+        let taken = |walls: &Walls| walls.area_m2 * (Vec3::ONE - walls.reflectance);
+        let areas: Vec<f32> = self
+            .passages
+            .iter()
+            .map(|passage| {
                 let open = state.openness(house, passage.door).unwrap_or(1.0);
-                let area = passage.area_m2 * (CLOSED_DOOR + (1.0 - CLOSED_DOOR) * open);
-                let [a, b] = passage.rooms;
-                for (from, to) in [(a, b), (b, a)] {
-                    total[to] += mean(from, before[from]) * self.rooms[from].reflectance * area;
-                }
-            }
-        }
+                passage.area_m2 * (CLOSED_DOOR + (1.0 - CLOSED_DOOR) * open)
+            })
+            .collect();
+        let all = exchanged(
+            flux_lm,
+            &self.rooms.iter().map(taken).collect::<Vec<_>>(),
+            &self
+                .passages
+                .iter()
+                .map(|passage| passage.rooms)
+                .zip(areas)
+                .collect::<Vec<_>>(),
+        );
         light.clear();
         light.extend((0..self.rooms.len()).map(|room| {
-            let all = mean(room, total[room]) + RESIDUAL_LX;
+            let all = all[room] + RESIDUAL_LX;
             let indirect = all - flux_lm[room] / self.rooms[room].area_m2;
             RoomLight {
                 indirect: indirect.max(Vec3::splat(RESIDUAL_LX)),
@@ -165,6 +171,28 @@ impl HouseLight {
             }
         }));
     }
+}
+
+/// The mean illuminance of rooms that exchange light, lx. `flux_lm`: what is sent into each; `taken_m2`: how much of it a unit of
+/// illuminance leaves on its walls; `openings`: between which two, and how large, m².
+fn exchanged(flux_lm: &[Vec3], taken_m2: &[Vec3], openings: &[([usize; 2], f32)]) -> Vec<Vec3> {
+    let mut given = taken_m2.to_vec();
+    for ([a, b], area) in openings {
+        given[*a] += *area;
+        given[*b] += *area;
+    }
+    let mut mean: Vec<Vec3> = flux_lm.iter().zip(taken_m2).map(|(f, t)| *f / *t).collect();
+    for _ in 0..ROUNDS {
+        let mut sum = flux_lm.to_vec();
+        for ([a, b], area) in openings {
+            sum[*a] += mean[*b] * *area;
+            sum[*b] += mean[*a] * *area;
+        }
+        for ((mean, sum), given) in mean.iter_mut().zip(sum).zip(&given) {
+            *mean = sum / *given;
+        }
+    }
+    mean
 }
 
 /// Photometric weight of linear sRGB (IEC 61966-2-1: the Y row of its matrix).
@@ -220,4 +248,36 @@ fn mean_color(look: &Look, textures: &Textures) -> Vec3 {
         );
         base * whole.truncate()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Walls take what lamps send out and no more, however wide the openings; two rooms without a wall between them are one.
+    #[test]
+    fn rooms_exchange_light_without_gain_or_loss() {
+        let flux = [Vec3::splat(3000.0), Vec3::ZERO, Vec3::new(0.0, 500.0, 0.0)];
+        let taken = [
+            Vec3::splat(12.0),
+            Vec3::splat(12.0),
+            Vec3::new(5.0, 8.0, 9.0),
+        ];
+        for area in [0.2, 1.8, 10.0] {
+            let mean = exchanged(&flux, &taken, &[([0, 1], area), ([1, 2], area)]);
+            let all = mean.iter().zip(&taken).map(|(e, a)| *e * *a).sum::<Vec3>();
+            let sent: Vec3 = flux.iter().sum();
+            assert!(
+                ((all - sent) / sent).abs().max_element() < 0.02,
+                "{area}: {all}"
+            );
+            assert!(mean[0].x > mean[1].x && mean[1].x > mean[2].x, "{mean:?}");
+        }
+        // The exact solution for two rooms: E2 / E1 = S / (A (1 - r) + S).
+        let mean = exchanged(&flux[..2], &taken[..2], &[([0, 1], 1.8)]);
+        assert!(
+            (mean[1].x / mean[0].x - 1.8 / 13.8).abs() < 1e-4,
+            "{mean:?}"
+        );
+    }
 }

@@ -49,9 +49,6 @@ impl Map {
         // Lines around a solid lead back to where they started.
         let rest: Vec2 = lines.iter().map(|[a, b]| *b - *a).sum();
         let closed = rest.length() < 1e-3;
-        let ends = || lines.iter().flatten();
-        let low = ends().fold(Vec2::MAX, |low, p| low.min(*p)) - half_m;
-        let high = ends().fold(Vec2::MIN, |high, p| high.max(*p)) + half_m;
         let (width, height) = (
             self.view.camera.width() as usize,
             self.view.camera.height() as usize,
@@ -60,14 +57,44 @@ impl Map {
         let last = |m: f32, size: usize| {
             ((m * self.pixels_per_m).max(-1.0) + 1.0).min(size as f32) as usize
         };
-        for y in first(low.y)..last(high.y, height) {
-            for x in first(low.x)..last(high.x, width) {
-                let place = (Vec2::new(x as f32, y as f32) + 0.5) / self.pixels_per_m;
-                let near = || lines.iter().any(|[a, b]| distance(place, *a, *b) <= half_m);
-                if (closed && encloses(lines, place)) || near() {
-                    let byte = (y * width + x) * 3;
-                    if let Some(pixel) = rgb.get_mut(byte..byte + 3) {
-                        pixel.copy_from_slice(&SRGB);
+        let middle = |k: usize| (k as f32 + 0.5) / self.pixels_per_m;
+        let mut paint = |x: usize, y: usize| {
+            let byte = (y * width + x) * 3;
+            if let Some(pixel) = rgb.get_mut(byte..byte + 3) {
+                pixel.copy_from_slice(&SRGB);
+            }
+        };
+        // Each line in its own box: walls of scanned houses have thousands.
+        for [a, b] in lines {
+            let (low, high) = (a.min(*b) - half_m, a.max(*b) + half_m);
+            for y in first(low.y)..last(high.y, height) {
+                for x in first(low.x)..last(high.x, width) {
+                    if distance(Vec2::new(middle(x), middle(y)), *a, *b) <= half_m {
+                        paint(x, y);
+                    }
+                }
+            }
+        }
+        if !closed {
+            return;
+        }
+        // Between every second pair of lines that a row of pixels meets.
+        let mut meets: Vec<Vec<f32>> = vec![Vec::new(); height];
+        for [a, b] in lines {
+            let (low, high) = (a.y.min(b.y), a.y.max(b.y));
+            for y in first(low)..last(high, height) {
+                let z = middle(y);
+                if (a.y > z) != (b.y > z) {
+                    meets[y].push(a.x + (b.x - a.x) * (z - a.y) / (b.y - a.y));
+                }
+            }
+        }
+        for (y, meets) in meets.iter_mut().enumerate() {
+            meets.sort_by(f32::total_cmp);
+            for pair in meets.chunks_exact(2) {
+                for x in first(pair[0])..last(pair[1], width) {
+                    if (pair[0]..pair[1]).contains(&middle(x)) {
+                        paint(x, y);
                     }
                 }
             }
@@ -80,14 +107,6 @@ fn distance(p: Vec2, a: Vec2, b: Vec2) -> f32 {
     let along = b - a;
     let part = (p - a).dot(along) / along.length_squared().max(1e-12);
     (p - a - along * part.clamp(0.0, 1.0)).length()
-}
-
-/// Whether an odd number of lines lies to the right of a point.
-fn encloses(lines: &[[Vec2; 2]], p: Vec2) -> bool {
-    let crosses = |a: Vec2, b: Vec2| {
-        (a.y > p.y) != (b.y > p.y) && a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) > p.x
-    };
-    lines.iter().filter(|[a, b]| crosses(*a, *b)).count() % 2 == 1
 }
 
 #[cfg(test)]

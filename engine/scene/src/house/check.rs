@@ -4,6 +4,7 @@ use super::data::{HouseData, Mobility};
 use crate::articulation::Articulation;
 use crate::collider::Collider;
 use crate::error::{SceneError, range};
+use crate::fixtures::LightShape;
 use crate::ids::{Id, IdVec, JointId, MaterialId, MeshId};
 use std::collections::BTreeSet;
 
@@ -68,6 +69,10 @@ fn slots(
     )
 }
 
+fn is_near(coordinate_m: f32) -> bool {
+    coordinate_m.abs() <= LARGEST_COORDINATE_M
+}
+
 /// Checks every index, name and range of `data`.
 pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
     unique("rooms", data.rooms.iter().map(|room| room.name.as_str()))?;
@@ -107,12 +112,17 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
     for (id, room) in data.rooms.iter_ids() {
         let at = format!("rooms[{}] {:?}", id.0, room.name);
         exists(&at, "levels", &data.levels, room.level)?;
+        let footprint = room.footprint.iter().flatten();
+        let far = footprint
+            .flat_map(|point| point.to_array())
+            .chain([room.floor_y, room.ceiling_y])
+            .find(|x| !is_near(*x));
         range(
             &at,
-            "footprint",
-            room.footprint.iter().flatten().all(|p| p.is_finite()),
-            "not finite",
-            "finite points",
+            "footprint, floor_y, ceiling_y",
+            far.is_none(),
+            far.unwrap_or_default(),
+            "coordinates within 32768 m of the origin",
         )?;
     }
     for (id, piece) in data.structure.iter_ids() {
@@ -413,6 +423,29 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
         )?;
     }
     for light in &data.lights {
+        let shape = match light.shape {
+            LightShape::Point => [0.0; 3],
+            LightShape::Line { end } => end.to_array(),
+            LightShape::Spot {
+                direction,
+                cutoff_rad,
+                dropoff_rate,
+            } => {
+                let numbers = direction.to_array().into_iter();
+                let mut numbers = numbers.chain([cutoff_rad, dropoff_rate]);
+                let all = numbers.all(f32::is_finite);
+                [if all { 0.0 } else { f32::NAN }; 3]
+            }
+        };
+        let numbers = shape.into_iter().chain(light.position.to_array());
+        let far = numbers.into_iter().find(|x| !is_near(*x));
+        range(
+            "lights",
+            "position, shape",
+            far.is_none(),
+            far.unwrap_or_default(),
+            "finite numbers, and places within 32768 m of the origin",
+        )?;
         range(
             "lights",
             "power_w",
