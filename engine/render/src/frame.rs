@@ -13,7 +13,7 @@ pub enum Preset {
     /// Texture times colour, no lamps: fast, and the same for every time of day.
     #[default]
     Flat,
-    /// Lamps, sun and sky with at most two shadow rays a pixel, light that rooms throw back, tone-mapped. See the crate's page.
+    /// Lamps, sun and sky with at most two shadow rays a surface, light that rooms throw back, tone-mapped. See the crate's page.
     Lit,
     /// All light: sixteen rays a pixel, soft shadows of every lamp, window and the sun, light that surfaces throw on one another,
     /// glossy reflections. For pictures, not for training: some 600 times the cost of `lit`. Always by the `cpu` back end.
