@@ -2,7 +2,8 @@
 
 use crate::cpu::{CpuRenderer, Job};
 use crate::error::RenderError;
-use crate::gpu::{Gpu, GpuRenderer, Path};
+use crate::frame::{FrameMut, Preset};
+use crate::gpu::{Gpu, GpuRenderer, Path, Submitted};
 use dwell_scene::parallel::Threads;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -125,6 +126,48 @@ impl Renderer {
         match self {
             Self::Cpu(cpu) => cpu.render_batch(jobs, threads),
             Self::Gpu(gpu) => gpu.render_batch(jobs, threads),
+        }
+    }
+
+    /// Whether [`Self::submit`] takes views of a preset: an adapter does, of those that it has.
+    pub fn can_submit(&self, preset: Preset) -> bool {
+        matches!(self, Self::Gpu(_)) && preset != Preset::Full
+    }
+
+    /// Starts a batch that is rendered while the caller goes on; see [`GpuRenderer::submit`]. `None` where
+    /// [`Self::can_submit`] says no to a view.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::submit`].
+    pub fn submit(
+        &self,
+        jobs: &[Job<'_>],
+        threads: Threads,
+    ) -> Result<Option<Submitted>, RenderError> {
+        match self {
+            Self::Gpu(gpu) if jobs.iter().all(|job| self.can_submit(job.view.preset)) => {
+                gpu.submit(jobs, threads).map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Waits for a batch that [`Self::submit`] has started, and writes its images; see [`GpuRenderer::collect`].
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::collect`]; [`RenderError::Count`] for a batch of another renderer.
+    pub fn collect(
+        &self,
+        submitted: Submitted,
+        frames: &mut [FrameMut<'_>],
+        threads: Threads,
+    ) -> Result<(), RenderError> {
+        match self {
+            Self::Gpu(gpu) => gpu.collect(submitted, frames, threads),
+            Self::Cpu(_) => Err(RenderError::Count {
+                views: 0,
+                frames: frames.len(),
+            }),
         }
     }
 

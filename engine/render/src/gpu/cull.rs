@@ -21,17 +21,20 @@ const LEAST_SR: f32 = 0.02;
 pub(super) const SLACK_M: f32 = 1e-3;
 const SLACK_PER_M: f32 = 1e-5;
 
-/// A subtree of static geometry.
+/// A subtree of static geometry: a chunk, or a node above chunks.
 #[derive(Clone, Debug)]
-struct Chunk {
+struct Subtree {
     bounds: Aabb,
     blocks: Range<u32>,
+    /// The next one that is not below it.
+    next: usize,
 }
 
 /// The chunks and walls of a house.
 #[derive(Debug, Default)]
 pub(super) struct Culler {
-    chunks: Vec<Chunk>,
+    /// Each before those below it.
+    subtrees: Vec<Subtree>,
     occluders: Vec<Occluder>,
 }
 
@@ -49,6 +52,14 @@ pub(super) struct Eye {
 /// What can be seen from an eye.
 pub(super) struct Sightline<'a> {
     eye: &'a Eye,
+    shadows: &'a [Shadow],
+}
+
+/// Memory for a [`Sightline`], used again.
+#[derive(Debug, Default)]
+pub(super) struct Shadows {
+    /// Walls by the solid angle that they cover, sr.
+    best: Vec<(f32, usize)>,
     shadows: Vec<Shadow>,
 }
 
@@ -84,7 +95,7 @@ impl Culler {
     /// Of the tree of static geometry, as rows, and its walls.
     pub(super) fn new(nodes: &[Row], top: u32, bounds: Aabb, occluders: Vec<Occluder>) -> Self {
         let mut culler = Self {
-            chunks: Vec::new(),
+            subtrees: Vec::new(),
             occluders,
         };
         if top != NO_LINK {
@@ -93,55 +104,70 @@ impl Culler {
         culler
     }
 
-    /// Makes chunks of all below a link; returns its blocks, which stand together.
+    /// Lists a link and all below it down to chunks; the blocks of each stand together.
     fn cut(&mut self, nodes: &[Row], link: u32, bounds: Aabb) {
         let blocks = blocks_below(nodes, link);
-        if blocks.len() as u32 <= CHUNK_BLOCKS || link >> 31 == 1 {
-            self.chunks.push(Chunk { bounds, blocks });
-            return;
-        }
-        for (link, bounds) in children(nodes, link) {
-            self.cut(nodes, link, bounds);
+        let is_chunk = blocks.len() as u32 <= CHUNK_BLOCKS || link >> 31 == 1;
+        let own = self.subtrees.len();
+        self.subtrees.push(Subtree {
+            bounds,
+            blocks,
+            next: own + 1,
+        });
+        if !is_chunk {
+            for (link, bounds) in children(nodes, link) {
+                self.cut(nodes, link, bounds);
+            }
+            self.subtrees[own].next = self.subtrees.len();
         }
     }
 
     /// What can be seen from an eye.
-    pub(super) fn sightline<'a>(&self, eye: &'a Eye) -> Sightline<'a> {
-        let mut best: Vec<(f32, &Occluder)> = self
-            .occluders
-            .iter()
-            .filter(|occluder| occluder.id != eye.hidden && eye.shows(&occluder.bounds))
-            .map(|occluder| (occluder.solid_angle_sr(eye.position), occluder))
-            .filter(|(size, _)| *size > LEAST_SR)
-            .collect();
-        best.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let shadows = best
-            .into_iter()
-            .take(SHADOWS)
-            .filter_map(|(_, occluder)| occluder.shadow(eye.position, eye.near_m))
-            .collect();
+    pub(super) fn sightline<'a>(&self, eye: &'a Eye, memory: &'a mut Shadows) -> Sightline<'a> {
+        let Shadows { best, shadows } = memory;
+        let walls = self.occluders.iter().enumerate();
+        best.clear();
+        best.extend(
+            walls
+                .map(|(k, wall)| (wall.solid_angle_sr(eye.position), k))
+                .filter(|(size, _)| *size > LEAST_SR)
+                .filter(|(_, k)| {
+                    let wall = &self.occluders[*k];
+                    wall.id != eye.hidden && eye.shows(&wall.bounds)
+                }),
+        );
+        best.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let largest = best.iter().take(SHADOWS);
+        shadows.clear();
+        shadows.extend(
+            largest.filter_map(|(_, k)| self.occluders[*k].shadow(eye.position, eye.near_m)),
+        );
         Sightline { eye, shadows }
     }
 
     /// The blocks that may be seen, as ranges in order; those that touch are one.
     pub(super) fn visible(&self, sightline: &Sightline<'_>, ranges: &mut Vec<Range<u32>>) {
         ranges.clear();
-        for chunk in &self.chunks {
-            if !sightline.sees(&chunk.bounds) {
+        let mut place = 0;
+        while let Some(subtree) = self.subtrees.get(place) {
+            let is_chunk = subtree.next == place + 1;
+            if !sightline.sees(&subtree.bounds) {
+                place = subtree.next;
                 continue;
             }
+            place += 1;
             match ranges.last_mut() {
-                Some(last) if last.end == chunk.blocks.start => last.end = chunk.blocks.end,
-                _ => ranges.push(chunk.blocks.clone()),
+                _ if !is_chunk => {}
+                Some(last) if last.end == subtree.blocks.start => last.end = subtree.blocks.end,
+                _ => ranges.push(subtree.blocks.clone()),
             }
         }
     }
 
     /// All blocks.
     pub(super) fn everything(&self) -> Range<u32> {
-        let first = self.chunks.iter().map(|chunk| chunk.blocks.start).min();
-        let end = self.chunks.iter().map(|chunk| chunk.blocks.end).max();
-        first.unwrap_or(0)..end.unwrap_or(0)
+        let all = self.subtrees.first();
+        all.map_or(0..0, |subtree| subtree.blocks.clone())
     }
 }
 
@@ -228,7 +254,7 @@ mod tests {
                     block_of[*index as usize] = block as u32;
                 }
             }
-            let mut ranges = Vec::new();
+            let (mut ranges, mut memory) = (Vec::new(), Shadows::default());
             for _ in 0..1000 {
                 let low = flat.bounds.min;
                 let size = flat.bounds.size();
@@ -239,7 +265,7 @@ mod tests {
                 );
                 let (eye, [right, up, back]) =
                     eye(place, stream.range(-3.1, 3.1), stream.range(-1.0, 1.0));
-                let sightline = culler.sightline(&eye);
+                let sightline = culler.sightline(&eye, &mut memory);
                 culler.visible(&sightline, &mut ranges);
                 left += ranges.iter().map(|range| range.len() as u64).sum::<u64>();
                 all += culler.everything().len() as u64;

@@ -194,6 +194,26 @@ impl Gpu {
         bytes: u64,
         usage: wgpu::BufferUsages,
     ) -> Result<wgpu::Buffer, RenderError> {
+        self.make_buffer(what, bytes, usage, false)
+    }
+
+    /// A buffer that the processor can write at once, to be copied from.
+    pub(super) fn upload_buffer(
+        &self,
+        what: &str,
+        bytes: u64,
+    ) -> Result<wgpu::Buffer, RenderError> {
+        let usage = wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC;
+        self.make_buffer(what, bytes, usage, true)
+    }
+
+    fn make_buffer(
+        &self,
+        what: &str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+        mapped_at_creation: bool,
+    ) -> Result<wgpu::Buffer, RenderError> {
         let allowed = self.most_bytes();
         if bytes > allowed {
             return Err(RenderError::TooLarge {
@@ -208,7 +228,7 @@ impl Gpu {
             label: None,
             size: bytes.max(64).next_multiple_of(16),
             usage,
-            mapped_at_creation: false,
+            mapped_at_creation,
         });
         self.count_buffer();
         self.check("to make a buffer")?;

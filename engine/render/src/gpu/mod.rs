@@ -12,9 +12,11 @@ mod kernels;
 mod occluders;
 mod path;
 mod raster;
+mod read_back;
 mod renderer;
 mod rows;
 mod slot;
+mod worlds;
 
 pub use adapter::{Adapter, AdapterKind, adapters};
 pub use device::Gpu;

@@ -1,6 +1,6 @@
 //! The raster path: the pictures of a batch side by side in one texture, drawn in one pass.
 
-use super::cull::{Culler, Eye};
+use super::cull::{Culler, Eye, Shadows, Sightline};
 use super::device::Gpu;
 use super::kernels::Layouts;
 use crate::camera::Projection;
@@ -17,6 +17,10 @@ const NOTED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Vertices of a block of four triangles.
 const BLOCK_VERTICES: u32 = 12;
+/// Most blocks of a piece: what a picture shows is cut into pieces of one length, so that one call draws them all.
+const PIECE_BLOCKS: u32 = 8;
+/// Rows of a record.
+const RECORD_ROWS: usize = 5;
 
 /// What the raster path needs of a house beside the buffers.
 #[derive(Debug)]
@@ -28,54 +32,62 @@ pub(super) struct Drawable {
     pub(super) culls: bool,
 }
 
-/// A picture's place in the texture, and its size.
-#[derive(Clone, Copy, Debug)]
+/// A picture's place in the texture, its size, and what it draws.
+#[derive(Clone, Debug)]
 pub(super) struct Sheet {
     pub(super) x: u32,
     pub(super) y: u32,
-    pub(super) width: u32,
-    pub(super) height: u32,
+    width: u32,
+    height: u32,
+    /// Of the pieces of the drawing.
+    pieces: Range<u32>,
 }
 
-/// Some triangles of one picture.
-#[derive(Clone, Debug)]
-struct Draw {
-    /// Position in the list of sheets.
-    sheet: usize,
-    record: u32,
-    blocks: Range<u32>,
-}
-
-/// What is drawn for a batch.
+/// What is drawn for a batch. Its memory is used again.
 #[derive(Debug, Default)]
 pub(super) struct Drawing {
     pub(super) sheets: Vec<Sheet>,
-    draws: Vec<Draw>,
     /// Five rows each: from a mesh to the picture's clip space, then source, id and the id that is not seen.
     pub(super) records: Vec<Row>,
+    /// First block, how many blocks, and the record.
+    pub(super) pieces: Vec<Row>,
     /// Of the texture.
     pub(super) size: (u32, u32),
+    /// Of each sheet.
+    lists: Vec<List>,
 }
 
-/// A picture with its place among the jobs.
+/// What one picture draws: as in [`Drawing`], records counted from its own first.
+#[derive(Debug, Default)]
+struct List {
+    records: Vec<Row>,
+    pieces: Vec<Row>,
+    /// Blocks of static geometry that may be seen.
+    ranges: Vec<Range<u32>>,
+    shadows: Shadows,
+}
+
+/// A picture that is drawn.
 struct Shot<'a, 'b> {
     job: &'a Job<'b>,
-    sheet: usize,
     eye: Eye,
     clip: [DVec4; 4],
 }
 
-/// What is seen of a shot: blocks of static geometry, and instances.
-type Seen = (Vec<Range<u32>>, Vec<usize>);
+/// The work of one thread: a picture, and its list.
+struct Listing<'a, 'b, 'c> {
+    shot: Option<Shot<'a, 'b>>,
+    list: &'c mut List,
+}
 
 impl Drawing {
-    /// Whether the raster path takes a view: straight lines must stay straight.
+    /// Whether the raster path takes a view: straight lines must stay straight, and pixels need neighbours above and below.
     fn takes(job: &Job<'_>) -> bool {
         let camera = &job.view.camera;
-        let (first, end) = job.row_range();
+        let is_whole = job.row_range() == (0, camera.height() as usize);
         matches!(camera.projection(), Projection::Pinhole { .. })
             && camera.near_m() > 0.0
-            && end > first
+            && is_whole
     }
 
     /// Lists what is to be drawn for some jobs; returns the sheet of each that is drawn.
@@ -87,17 +99,39 @@ impl Drawing {
         threads: Threads,
     ) -> Vec<Option<usize>> {
         self.sheets.clear();
-        self.draws.clear();
         self.records.clear();
+        self.pieces.clear();
         let places = self.lay_out(jobs, most_edge);
-        let shots: Vec<Shot<'_, '_>> = jobs
+        if self.lists.len() < self.sheets.len() {
+            self.lists.resize_with(self.sheets.len(), List::default);
+        }
+        let drawn = jobs
             .iter()
             .zip(&places)
-            .filter_map(|(job, sheet)| Shot::new(job, (*sheet)?))
+            .filter(|(_, sheet)| sheet.is_some());
+        let mut listings: Vec<Listing<'_, '_, '_>> = drawn
+            .zip(&mut self.lists)
+            .map(|((job, _), list)| Listing {
+                shot: Shot::new(job),
+                list,
+            })
             .collect();
-        let seen = threads.map(shots.len(), |k| shots[k].seen(house));
-        for (shot, seen) in shots.iter().zip(seen) {
-            self.add(house, shot, seen);
+        threads.for_each(&mut listings, |_, Listing { shot, list }| {
+            list.clear();
+            if let Some(shot) = shot {
+                list.fill(house, shot);
+            }
+        });
+        for (sheet, list) in self.sheets.iter_mut().zip(&self.lists) {
+            let first_record = (self.records.len() / RECORD_ROWS) as u32;
+            let first_piece = self.pieces.len() as u32;
+            self.records.extend_from_slice(&list.records);
+            let pieces = list.pieces.iter();
+            self.pieces.extend(
+                pieces
+                    .map(|[block, blocks, record, _]| [*block, *blocks, record + first_record, 0]),
+            );
+            sheet.pieces = first_piece..self.pieces.len() as u32;
         }
         places
     }
@@ -113,8 +147,7 @@ impl Drawing {
             .min(most_edge);
         let (mut x, mut y, mut tallest) = (0, 0, 0);
         let mut place = |job: &Job<'_>| {
-            let (first, end) = job.row_range();
-            let (across, down) = (job.view.camera.width(), (end - first) as u32);
+            let (across, down) = (job.view.camera.width(), job.view.camera.height());
             if !Self::takes(job) || across > width {
                 return None;
             }
@@ -129,6 +162,7 @@ impl Drawing {
                 y,
                 width: across,
                 height: down,
+                pieces: 0..0,
             });
             x += across;
             tallest = tallest.max(down);
@@ -139,72 +173,89 @@ impl Drawing {
         places
     }
 
-    fn add(&mut self, house: &Drawable, shot: &Shot<'_, '_>, (fixed, moving): Seen) {
+    /// How often [`Self::draw`] calls the adapter.
+    pub(super) fn calls(&self) -> usize {
+        let sheets = self.sheets.iter();
+        sheets.filter(|sheet| !sheet.pieces.is_empty()).count()
+    }
+
+    /// Draws everything: one call for each picture.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        for sheet in self.sheets.iter().filter(|sheet| !sheet.pieces.is_empty()) {
+            let [x, y, width, height] = [sheet.x, sheet.y, sheet.width, sheet.height];
+            let [left, top, across, down] = [x, y, width, height].map(|edge| edge as f32);
+            pass.set_viewport(left, top, across, down, 0.0, 1.0);
+            pass.set_scissor_rect(x, y, width, height);
+            pass.draw(0..PIECE_BLOCKS * BLOCK_VERTICES, sheet.pieces.clone());
+        }
+    }
+}
+
+impl List {
+    fn clear(&mut self) {
+        self.records.clear();
+        self.pieces.clear();
+    }
+
+    /// Lists what is seen of a shot: static geometry, then instances.
+    fn fill(&mut self, house: &Drawable, shot: &Shot<'_, '_>) {
         let hidden = shot.eye.hidden as u32;
-        let sheet = shot.sheet;
-        let record = self.record(shot.clip, [0, 0, hidden, 0]);
-        let draw = |blocks| Draw {
-            sheet,
-            record,
-            blocks,
-        };
-        self.draws.extend(fixed.into_iter().map(draw));
-        for instance in moving {
-            let set = shot.job.scene.bvh().moving;
-            let Some(rows) = set.flat_instance(instance, SEEN) else {
+        let mut shadows = std::mem::take(&mut self.shadows);
+        let sightline = house
+            .culls
+            .then(|| house.culler.sightline(&shot.eye, &mut shadows));
+        self.record(shot.clip, [0, 0, hidden, 0]);
+        let mut ranges = std::mem::take(&mut self.ranges);
+        match &sightline {
+            Some(sightline) => house.culler.visible(sightline, &mut ranges),
+            None => ranges = vec![house.culler.everything()],
+        }
+        for range in &ranges {
+            self.piece(range.clone());
+        }
+        self.ranges = ranges;
+        let moving = shot.job.scene.bvh().moving;
+        let parts = house.meshes.len() - BODY_PIECES;
+        for instance in 0..moving.len() {
+            let sees =
+                |sightline: &Sightline<'_>| sightline.sees(&moving.bounds_of(instance as u32));
+            if !sightline.as_ref().is_none_or(sees) {
+                continue;
+            }
+            let Some(rows) = moving.flat_instance(instance, SEEN) else {
                 continue;
             };
             let Some(world_from_mesh) = shot.job.scene.world_from_mesh(instance) else {
                 continue;
             };
+            // Hidden ones have no size.
+            if f32::from_bits(rows[3][3]) <= 0.0 {
+                continue;
+            }
             let clip = shot.clip.map(|row| composed(row, world_from_mesh));
-            let record = self.record(clip, [instance as u32 + 1, rows[4][3], hidden, 0]);
-            let parts = house.meshes.len() - BODY_PIECES;
+            self.record(clip, [instance as u32 + 1, rows[4][3], hidden, 0]);
             let mesh = if instance < parts {
                 instance
             } else {
                 parts + (instance - parts) % BODY_PIECES
             };
-            self.draws.push(Draw {
-                sheet,
-                record,
-                blocks: house.meshes[mesh].clone(),
-            });
+            self.piece(house.meshes[mesh].clone());
         }
+        self.shadows = shadows;
     }
 
-    fn record(&mut self, clip: [DVec4; 4], facts: Row) -> u32 {
-        let record = self.records.len() / 5;
+    fn record(&mut self, clip: [DVec4; 4], facts: Row) {
         let rows = clip.map(|row| row.as_vec4().to_array().map(f32::to_bits));
         self.records.extend(rows);
         self.records.push(facts);
-        record as u32
     }
 
-    /// Draws everything.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        let mut last = usize::MAX;
-        for Draw {
-            sheet,
-            record,
-            blocks,
-        } in &self.draws
-        {
-            if *sheet != last {
-                last = *sheet;
-                let Sheet {
-                    x,
-                    y,
-                    width,
-                    height,
-                } = self.sheets[*sheet];
-                let [left, top, across, down] = [x, y, width, height].map(|edge| edge as f32);
-                pass.set_viewport(left, top, across, down, 0.0, 1.0);
-                pass.set_scissor_rect(x, y, width, height);
-            }
-            let vertices = blocks.start * BLOCK_VERTICES..blocks.end * BLOCK_VERTICES;
-            pass.draw(vertices, *record..*record + 1);
-        }
+    /// Blocks under the latest record.
+    fn piece(&mut self, blocks: Range<u32>) {
+        let record = (self.records.len() / RECORD_ROWS - 1) as u32;
+        let pieces = blocks.clone().step_by(PIECE_BLOCKS as usize);
+        let piece = |first: u32| [first, PIECE_BLOCKS.min(blocks.end - first), record, 0];
+        self.pieces.extend(pieces.map(piece));
     }
 }
 
@@ -217,7 +268,7 @@ fn composed(row: DVec4, world_from_mesh: &Affine3A) -> DVec4 {
 }
 
 impl<'a, 'b> Shot<'a, 'b> {
-    fn new(job: &'a Job<'b>, sheet: usize) -> Option<Self> {
+    fn new(job: &'a Job<'b>) -> Option<Self> {
         let (view, camera) = (&job.view, &job.view.camera);
         let Projection::Pinhole { fx, fy, cx, cy } = camera.projection() else {
             return None;
@@ -225,12 +276,11 @@ impl<'a, 'b> Shot<'a, 'b> {
         let rotation = view.world_from_camera.rotation.normalize();
         let [right, up, back] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| rotation * axis);
         let position = view.world_from_camera.position;
-        let (first, end) = job.row_range();
         let (near, far) = (camera.near_m(), camera.far_m());
         // Slopes of the edges of the picture.
-        let width = camera.width() as f32;
+        let (width, height) = (camera.width() as f32, camera.height() as f32);
         let (left, across) = (-cx / fx, (width - cx) / fx);
-        let (top, bottom) = ((cy - first as f32) / fy, (cy - end as f32) / fy);
+        let (top, bottom) = (cy / fy, (cy - height) / fy);
         let longest =
             (left.abs().max(across.abs()).powi(2) + top.abs().max(bottom.abs()).powi(2) + 1.0)
                 .sqrt();
@@ -253,8 +303,7 @@ impl<'a, 'b> Shot<'a, 'b> {
         };
         let (x, y, depth) = (from_eye(right), from_eye(up), from_eye(-back));
         let [fx, fy, cx, cy] = [fx, fy, cx, cy].map(f64::from);
-        let (width, height) = (f64::from(width), (end - first) as f64);
-        let cy = cy - first as f64;
+        let (width, height) = (f64::from(width), f64::from(height));
         let (near, far) = (f64::from(near), f64::from(far));
         let steep = near / (far - near);
         let clip = [
@@ -263,29 +312,7 @@ impl<'a, 'b> Shot<'a, 'b> {
             DVec4::W * (steep * far) - depth * steep,
             depth,
         ];
-        Some(Self {
-            job,
-            sheet,
-            eye,
-            clip,
-        })
-    }
-
-    fn seen(&self, house: &Drawable) -> Seen {
-        let moving = self.job.scene.bvh().moving;
-        let there = |instance: &usize| {
-            let rows = moving.flat_instance(*instance, SEEN);
-            rows.is_some_and(|rows| f32::from_bits(rows[3][3]) > 0.0)
-        };
-        let instances = (0..moving.len()).filter(there);
-        if !house.culls {
-            return (vec![house.culler.everything()], instances.collect());
-        }
-        let sightline = house.culler.sightline(&self.eye);
-        let mut ranges = Vec::new();
-        house.culler.visible(&sightline, &mut ranges);
-        let sees = |k: &usize| sightline.sees(&moving.bounds_of(*k as u32));
-        (ranges, instances.filter(sees).collect())
+        Some(Self { job, eye, clip })
     }
 }
 
@@ -444,14 +471,9 @@ mod tests {
             Vec3::new(1.0, 1.5, 2.0),
             space::rotation_from_yaw_pitch(0.7, -0.3),
         );
-        let mut job = Job::new(
-            &scene,
-            &state,
-            View::new(camera, place),
-            FrameMut::default(),
-        );
-        job.rows = Some((5, 40));
-        let shot = Shot::new(&job, 0).unwrap();
+        let view = View::new(camera, place);
+        let job = Job::new(&scene, &state, view, FrameMut::default());
+        let shot = Shot::new(&job).unwrap();
         let mut stream = Key::root(3).stream();
         let mut inside = 0;
         for _ in 0..20_000 {
@@ -473,7 +495,7 @@ mod tests {
             // And with where the camera puts points.
             let in_camera = place.inverse().transform_point(point);
             if let (true, Some((image, _))) = (clipped, camera.project(in_camera)) {
-                let at = [(x / w + 1.0) * 32.0, (1.0 - y / w) * 17.5 + 5.0];
+                let at = [(x / w + 1.0) * 32.0, (1.0 - y / w) * 24.0];
                 assert!((at[0] as f32 - image.x).abs() < 1e-3);
                 assert!((at[1] as f32 - image.y).abs() < 1e-3);
                 inside += 1;

@@ -34,6 +34,14 @@ pub struct Submitted {
     parts: Vec<Part>,
 }
 
+impl Submitted {
+    /// Calls that draw, of the raster path: one for each view that shows something.
+    pub fn draws(&self) -> usize {
+        let parts = self.parts.iter();
+        parts.map(|part| part.slot.batch.drawing.calls()).sum()
+    }
+}
+
 /// Views that were submitted together.
 #[derive(Debug)]
 struct Part {
@@ -165,14 +173,14 @@ impl GpuRenderer {
         let mut slot = lock(&self.slots).pop().unwrap_or_else(Slot::new);
         let draws = (self.path == Path::Raster).then(|| (&self.house.drawable, gpu.most_edge()));
         slot.batch.fill(&self.cpu, jobs, draws, threads);
-        slot.upload(gpu)?;
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        slot.upload(gpu, &mut encoder)?;
         // Of the tree over n instances, halved again and again, three links wait at each of at most log2 n nodes.
         let levels = usize::BITS - slot.batch.instances.saturating_sub(1).leading_zeros();
         let moving = 3 * levels as usize + self.house.mesh_stack;
         let kernels = gpu.kernels(self.house.stack.max(moving) + 1)?;
-        let mut encoder = gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let is_drawn = !slot.batch.drawing.sheets.is_empty();
         let atlas = slot.atlas.as_ref().filter(|_| is_drawn);
         if let (Some(atlas), Some(rows)) = (atlas, &slot.rows_group) {
@@ -214,6 +222,7 @@ impl GpuRenderer {
             encoder.copy_buffer_to_buffer(images, 0, back, 0, bytes);
         }
         let index = gpu.queue.submit([encoder.finish()]);
+        slot.recall();
         let (sender, mapped) = mpsc::channel();
         back.map_async(wgpu::MapMode::Read, 0..bytes.max(16), move |result| {
             // Nobody waits any more when the batch was dropped.
@@ -256,7 +265,7 @@ impl GpuRenderer {
                     });
                 }
             }
-            self.wait(&part)?;
+            self.gpu.wait(&part.index, &part.mapped)?;
             let (_, back) = part.slot.ways(&self.gpu)?;
             let range = 0..part.slot.image_bytes().max(16);
             let held = back.get_mapped_range(range);
@@ -268,22 +277,6 @@ impl GpuRenderer {
             lock(&self.slots).push(part.slot);
         }
         Ok(())
-    }
-
-    fn wait(&self, part: &Part) -> Result<(), RenderError> {
-        let gpu = &*self.gpu;
-        let until = wgpu::PollType::Wait {
-            submission_index: Some(part.index.clone()),
-            timeout: None,
-        };
-        let polled = gpu.device.poll(until);
-        polled.map_err(|error| gpu.driver("to render", error.to_string()))?;
-        gpu.check("to render")?;
-        match part.mapped.recv() {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(error)) => Err(gpu.driver("to read", error.to_string())),
-            Err(error) => Err(gpu.driver("to read", error.to_string())),
-        }
     }
 }
 

@@ -2,11 +2,12 @@
 
 use super::house::point;
 use super::raster::{Drawable, Drawing};
+use super::worlds::{Worlds, runs};
 use crate::camera::{Camera, Projection};
-use crate::cpu::{CpuRenderer, Job, SEEN};
+use crate::cpu::{CpuRenderer, Job};
 use crate::frame::{Before, FrameMut, Preset};
 use crate::light::Lighting;
-use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, Row, flat_pose};
+use dwell_scene::bvh::flat::{Row, flat_pose};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::BODY_PIECES;
 use dwell_scene::{Id, Pose, State};
@@ -93,6 +94,7 @@ pub(super) struct Batch {
     pub(super) lenses: LensRays,
     /// What the raster path draws.
     pub(super) drawing: Drawing,
+    worlds: Worlds,
     pub(super) pixels: usize,
     pub(super) words: usize,
     pub(super) tiles: usize,
@@ -101,6 +103,11 @@ pub(super) struct Batch {
     pub(super) paints: bool,
     pub(super) paints_lit: bool,
     pub(super) describes: bool,
+}
+
+/// Whether a view needs light: colours alone show it.
+fn is_lit(job: &Job<'_>) -> bool {
+    job.view.preset == Preset::Lit && job.frame.rgb.is_some()
 }
 
 fn quaternion(rotation: Quat) -> Row {
@@ -127,92 +134,52 @@ impl Batch {
             self.drawing.sheets.clear();
             vec![None; jobs.len()]
         };
+        let runs = runs(jobs);
+        self.worlds.fill(&runs, threads);
+        let mut lights = threads.map(runs.len(), |run| {
+            let lit = runs[run].iter().find(|job| is_lit(job))?;
+            Some(cpu.lighting(lit.scene, lit.state))
+        });
         self.rows.resize(1 + jobs.len() * VIEW_ROWS, [0; 4]);
-        let mut last: Option<(&Job<'_>, u32)> = None;
-        // Views of one world follow one another as a rule: its light is made once.
-        let mut light: Option<(&State, Lighting, u32)> = None;
-        for (k, job) in jobs.iter().enumerate() {
-            let world = match last {
-                Some((other, world))
-                    if std::ptr::eq(other.scene, job.scene)
-                        && std::ptr::eq(other.state, job.state) =>
-                {
-                    world
+        let mut k = 0;
+        for (run, (views, light)) in runs.iter().zip(&mut lights).enumerate() {
+            let world = self.worlds.append(run, &mut self.rows);
+            self.instances = self.instances.max(views[0].scene.bvh().moving.len());
+            let light = light.take().map(|light| {
+                let first = self.add_light(cpu, &light, views[0].state);
+                (light, first)
+            });
+            for job in *views {
+                let shown = match &light {
+                    Some((light, first)) if is_lit(job) => {
+                        let eye = job.view.world_from_camera.position;
+                        let exposure = light.exposure(cpu.house_light(), eye);
+                        [1, *first, exposure.per_lx().to_bits(), 0]
+                    }
+                    _ => [0; 4],
+                };
+                self.add_view(k, job, world, shown);
+                if let Some(sheet) = sheets[k].map(|sheet| &self.drawing.sheets[sheet]) {
+                    self.rows[1 + k * VIEW_ROWS + 15] = [1, sheet.x, sheet.y, 0];
                 }
-                _ => self.add_world(job),
-            };
-            last = Some((job, world));
-            let shown = match job.view.preset {
-                Preset::Lit if job.frame.rgb.is_some() => {
-                    let made = light.take();
-                    let same = made
-                        .as_ref()
-                        .is_some_and(|made| std::ptr::eq(made.0, job.state));
-                    let made = match made {
-                        Some(made) if same => made,
-                        other => {
-                            if let Some((_, lighting, _)) = other {
-                                cpu.keep_lighting(lighting);
-                            }
-                            self.add_light(cpu, job)
-                        }
-                    };
-                    let eye = job.view.world_from_camera.position;
-                    let exposure = made.1.exposure(cpu.house_light(), eye);
-                    let row = [1, made.2, exposure.per_lx().to_bits(), 0];
-                    light = Some(made);
-                    row
-                }
-                _ => [0; 4],
-            };
-            self.add_view(k, job, world, shown);
-            if let Some(sheet) = sheets[k].map(|sheet| self.drawing.sheets[sheet]) {
-                self.rows[1 + k * VIEW_ROWS + 15] = [1, sheet.x, sheet.y, 0];
+                k += 1;
+            }
+            if let Some((light, _)) = light {
+                cpu.keep_lighting(light);
             }
         }
-        if let Some((_, lighting, _)) = light {
-            cpu.keep_lighting(lighting);
-        }
-        self.rows[0] = [
-            jobs.len() as u32,
-            self.tiles as u32,
-            self.rows.len() as u32,
-            0,
-        ];
+        let records = self.rows.len();
+        let mut pieces = records;
         if !self.drawing.sheets.is_empty() {
             self.rows.extend_from_slice(&self.drawing.records);
+            pieces = self.rows.len();
+            self.rows.extend_from_slice(&self.drawing.pieces);
         }
-    }
-
-    /// The tree over a world's instances, then the instances; returns the first row.
-    fn add_world(&mut self, job: &Job<'_>) -> u32 {
-        let moving = job.scene.bvh().moving;
-        let world = self.rows.len();
-        self.rows.resize(world + 3, [0; 4]);
-        let top = moving.flatten_tree(&mut self.rows);
-        debug_assert_eq!((self.rows.len() - world - 3) % NODE_ROWS, 0);
-        let first = self.rows.len() as u32;
-        let parts = &job.scene.house().geometry().movable;
-        for instance in 0..moving.len() {
-            let hidden = [[0; 4]; INSTANCE_ROWS];
-            let rows = moving.flat_instance(instance, SEEN).unwrap_or(hidden);
-            self.rows.extend(rows);
-            let pose = parts
-                .get(instance)
-                .and_then(|part| job.state.part_pose.get(*part));
-            self.rows.extend(flat_pose(pose.unwrap_or(&Pose::IDENTITY)));
-        }
-        let bounds = moving.bounds();
-        self.rows[world] = [top, first, moving.len() as u32, 0];
-        self.rows[world + 1] = point(bounds.min, 0);
-        self.rows[world + 2] = point(bounds.max, 0);
-        self.instances = self.instances.max(moving.len());
-        world as u32
+        self.rows[0] = [jobs.len(), self.tiles, records, pieces].map(|number| number as u32);
     }
 
     /// The light of a world, and which things are switched off; returns the first row.
-    fn add_light<'a>(&mut self, cpu: &CpuRenderer, job: &Job<'a>) -> (&'a State, Lighting, u32) {
-        let lighting = cpu.lighting(job.scene, job.state);
+    fn add_light(&mut self, cpu: &CpuRenderer, lighting: &Lighting, state: &State) -> u32 {
         let first = self.rows.len() as u32;
         lighting.flatten(&mut self.rows);
         let house = cpu.house();
@@ -220,12 +187,12 @@ impl Batch {
         let entities = 1 + house.structure.len() + house.objects.len();
         self.rows.resize(bits + entities.div_ceil(128), [0; 4]);
         for object in house.objects.ids() {
-            if !job.state.is_on(house, object) {
+            if !state.is_on(house, object) {
                 let id = house.entity_of_object(object).0 as usize;
                 self.rows[bits + id / 128][id / 32 % 4] |= 1 << (id % 32);
             }
         }
-        (job.state, lighting, first)
+        first
     }
 
     /// `shown`: the preset, the first row of its light, and the exposure.

@@ -4,6 +4,8 @@ use super::device::Gpu;
 use super::raster::Atlas;
 use super::rows::Batch;
 use crate::error::RenderError;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A buffer that grows.
 #[derive(Debug)]
@@ -47,10 +49,66 @@ impl Grown {
     }
 }
 
+/// Memory that the processor writes and the adapter copies from. It is written by one batch at a time.
+#[derive(Debug)]
+struct Upload {
+    buffer: Option<wgpu::Buffer>,
+    /// Whether it can be written: not while an adapter may read it.
+    is_mapped: Arc<AtomicBool>,
+}
+
+impl Upload {
+    fn new() -> Self {
+        Self {
+            buffer: None,
+            is_mapped: Arc::default(),
+        }
+    }
+
+    /// Writes bytes, and has them copied before what the encoder gets later.
+    fn send(
+        &mut self,
+        gpu: &Gpu,
+        bytes: &[u8],
+        to: &wgpu::Buffer,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), RenderError> {
+        let length = bytes.len() as u64;
+        let held = self.buffer.as_ref();
+        let fits = held.is_some_and(|held| held.size() >= length);
+        if !fits || !self.is_mapped.load(Ordering::Acquire) {
+            let what = "a batch of views: its worlds";
+            let roomy = gpu.upload_buffer(what, length + length / 8);
+            self.buffer = Some(roomy.or_else(|_| gpu.upload_buffer(what, length))?);
+        }
+        let missing = || gpu.driver("to find a buffer", "no memory to write to".into());
+        let buffer = self.buffer.as_ref().ok_or_else(missing)?;
+        let view = buffer.get_mapped_range_mut(0..length);
+        let mut view = view.map_err(|error| gpu.driver("to write", error.to_string()))?;
+        view.copy_from_slice(bytes);
+        drop(view);
+        buffer.unmap();
+        self.is_mapped = Arc::default();
+        encoder.copy_buffer_to_buffer(buffer, 0, to, 0, length);
+        Ok(())
+    }
+
+    /// Asks to write again when the batch that was submitted is done.
+    fn recall(&self) {
+        if let Some(buffer) = &self.buffer {
+            let is_mapped = self.is_mapped.clone();
+            buffer.map_async(wgpu::MapMode::Write, .., move |result| {
+                is_mapped.store(result.is_ok(), Ordering::Release);
+            });
+        }
+    }
+}
+
 /// The buffers of one batch.
 #[derive(Debug)]
 pub(super) struct Slot {
     pub(super) batch: Batch,
+    upload: Upload,
     rows: Grown,
     lenses: Grown,
     seen: Grown,
@@ -71,6 +129,7 @@ impl Slot {
         let written = Use::STORAGE | Use::COPY_DST;
         Self {
             batch: Batch::default(),
+            upload: Upload::new(),
             rows: Grown::new("worlds", written),
             lenses: Grown::new("lenses", written),
             seen: Grown::new("first hits", Use::STORAGE),
@@ -83,7 +142,11 @@ impl Slot {
     }
 
     /// Sends the rows of the batch, and makes room for its images.
-    pub(super) fn upload(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
+    pub(super) fn upload(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), RenderError> {
         let rows: &[u8] = bytemuck::cast_slice(&self.batch.rows);
         let rays: &[u8] = bytemuck::cast_slice(&self.batch.lenses.rays);
         let words = self.batch.words as u64 * 4;
@@ -95,7 +158,7 @@ impl Slot {
             .reserve(gpu, (self.batch.pixels as u64 * SEEN_BYTES).max(16))?;
         changed |= self.images.reserve(gpu, words.max(16))?;
         self.back.reserve(gpu, words.max(16))?;
-        gpu.queue.write_buffer(self.rows.held(gpu)?, 0, rows);
+        self.upload.send(gpu, rows, self.rows.held(gpu)?, encoder)?;
         if (self.batch.lenses.changed || new_lenses) && !rays.is_empty() {
             gpu.queue.write_buffer(self.lenses.held(gpu)?, 0, rays);
             self.batch.lenses.changed = false;
@@ -131,6 +194,11 @@ impl Slot {
             self.atlas = Some(atlas);
         }
         Ok(())
+    }
+
+    /// To be called when the batch has been submitted.
+    pub(super) fn recall(&self) {
+        self.upload.recall();
     }
 
     pub(super) fn group(&self) -> Option<&wgpu::BindGroup> {

@@ -127,6 +127,38 @@ fn later_batches_make_no_buffers() {
     }
 }
 
+/// However many pieces a house has, and with all of them drawn: one call for a view.
+#[test]
+fn a_view_is_drawn_by_one_call() {
+    let Some(pair) = pair_by(Path::Raster) else {
+        return;
+    };
+    let camera = Camera::from_fov(8, 8, 80.0).unwrap();
+    let views = views(&pair.house, camera, 64);
+    let pieces = pair.scene.bvh().moving.len();
+    assert!(pieces > 100, "{pieces}");
+    let all = GpuRenderer::new(gpu().unwrap(), pair.cpu.clone(), Path::Raster)
+        .unwrap()
+        .without_culling();
+    for renderer in [&pair.gpu, &all] {
+        let mut frames: Vec<Frame> = views
+            .iter()
+            .map(|view| Frame::new(&view.camera, Channels::default()))
+            .collect();
+        let pairs = views.iter().zip(&mut frames);
+        let jobs: Vec<Job<'_>> = pairs
+            .map(|(view, frame)| Job::new(&pair.scene, &pair.state, *view, frame.as_mut()))
+            .collect();
+        let submitted = renderer.submit(&jobs, Threads::ONE).unwrap();
+        assert_eq!(submitted.draws(), views.len());
+        drop(jobs);
+        let mut into: Vec<_> = frames.iter_mut().map(Frame::as_mut).collect();
+        renderer
+            .collect(submitted, &mut into, Threads::ONE)
+            .unwrap();
+    }
+}
+
 #[test]
 fn culling_changes_no_pixel() {
     let Some(pair) = pair_by(Path::Raster) else {

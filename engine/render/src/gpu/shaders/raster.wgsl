@@ -1,4 +1,5 @@
-// The raster path: triangles, with what pixels need to know of them. Corners are read where rays read them.
+// The raster path: triangles, with what pixels need to know of them. Corners are read where rays read them. An instance of a
+// call is a piece: some blocks of triangles, and the record of where they stand.
 
 struct Corner {
     @builtin(position) place: vec4<f32>,
@@ -7,12 +8,22 @@ struct Corner {
 }
 
 const DRAW_ROWS: u32 = 5u;
+const BLOCK_VERTICES: u32 = 12u;
 
 @vertex
-fn corner(@builtin(vertex_index) vertex: u32, @builtin(instance_index) draw: u32) -> Corner {
-    let row = frame[0].z + draw * DRAW_ROWS;
+fn corner(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Corner {
+    // The first rows of records and of pieces.
+    let starts = frame[0].zw;
+    let piece = frame[starts.y + instance];
+    var out: Corner;
+    // Beyond the picture: a piece has fewer blocks than a call.
+    out.place = vec4<f32>(2.0, 2.0, 2.0, 1.0);
+    if vertex / BLOCK_VERTICES >= piece.y {
+        return out;
+    }
+    let row = starts.x + piece.z * DRAW_ROWS;
     let head = frame[row + 4u];
-    let slot = vertex / 3u;
+    let slot = piece.x * 4u + vertex / 3u;
     let lane = slot % 4u;
     let block = (slot / 4u) * 14u;
     let first = block + (vertex % 3u) * 3u;
@@ -26,11 +37,8 @@ fn corner(@builtin(vertex_index) vertex: u32, @builtin(instance_index) draw: u32
     if head.x == 0u {
         id = blocks[block + 12u][lane];
     }
-    var out: Corner;
     out.facts = vec4<u32>(head.x, slot, id, head.z);
     if blocks[block + 13u][lane] == NOTHING {
-        // Beyond the picture.
-        out.place = vec4<f32>(2.0, 2.0, 2.0, 1.0);
         return out;
     }
     out.place = vec4<f32>(

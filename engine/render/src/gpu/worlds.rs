@@ -1,0 +1,69 @@
+//! Worlds as kernels read them: the tree over what moves, and its instances.
+
+use super::house::point;
+use crate::cpu::{Job, SEEN};
+use dwell_scene::Pose;
+use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, Row, flat_pose};
+use dwell_scene::parallel::Threads;
+
+/// The worlds of a batch. Their memory is used again.
+#[derive(Debug, Default)]
+pub(super) struct Worlds {
+    /// Of each world, positions counted from its own first row.
+    lists: Vec<Vec<Row>>,
+}
+
+/// Whether two views are of one world.
+fn is_same(a: &Job<'_>, b: &Job<'_>) -> bool {
+    std::ptr::eq(a.scene, b.scene) && std::ptr::eq(a.state, b.state)
+}
+
+/// Views of one world follow one another as a rule: the runs of those that do.
+pub(super) fn runs<'j, 'a>(jobs: &'j [Job<'a>]) -> Vec<&'j [Job<'a>]> {
+    jobs.chunk_by(is_same).collect()
+}
+
+impl Worlds {
+    /// Lists the world of each run.
+    pub(super) fn fill(&mut self, runs: &[&[Job<'_>]], threads: Threads) {
+        if self.lists.len() < runs.len() {
+            self.lists.resize_with(runs.len(), Vec::new);
+        }
+        let mut work: Vec<_> = runs.iter().zip(&mut self.lists).collect();
+        threads.for_each(&mut work, |_, (run, rows)| {
+            rows.clear();
+            if let Some(job) = run.first() {
+                list(job, rows);
+            }
+        });
+    }
+
+    /// Appends the world of a run; returns its first row.
+    pub(super) fn append(&self, run: usize, rows: &mut Vec<Row>) -> u32 {
+        let world = rows.len();
+        rows.extend_from_slice(&self.lists[run]);
+        rows[world][1] += world as u32;
+        world as u32
+    }
+}
+
+/// The tree over a world's instances, then the instances.
+fn list(job: &Job<'_>, rows: &mut Vec<Row>) {
+    let moving = job.scene.bvh().moving;
+    rows.resize(3, [0; 4]);
+    let top = moving.flatten_tree(rows);
+    debug_assert_eq!((rows.len() - 3) % NODE_ROWS, 0);
+    let bounds = moving.bounds();
+    rows[0] = [top, rows.len() as u32, moving.len() as u32, 0];
+    rows[1] = point(bounds.min, 0);
+    rows[2] = point(bounds.max, 0);
+    let parts = &job.scene.house().geometry().movable;
+    for instance in 0..moving.len() {
+        let hidden = [[0; 4]; INSTANCE_ROWS];
+        rows.extend(moving.flat_instance(instance, SEEN).unwrap_or(hidden));
+        let pose = parts
+            .get(instance)
+            .and_then(|part| job.state.part_pose.get(*part));
+        rows.extend(flat_pose(pose.unwrap_or(&Pose::IDENTITY)));
+    }
+}
