@@ -181,7 +181,11 @@ class Batch:
     """Environments stepped together; observations are written into arrays of the caller."""
 
     def __new__(
-        cls, houses: Sequence[House], config_json: str, threads: int | None = ...
+        cls,
+        houses: Sequence[House],
+        config_json: str,
+        threads: int | None = ...,
+        overlap: bool = ...,
     ) -> Self: ...
     def specs_json(self) -> str:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor."""

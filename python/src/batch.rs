@@ -85,12 +85,13 @@ impl PyBatch {
 #[pymethods]
 impl PyBatch {
     #[new]
-    #[pyo3(signature = (houses, config_json, threads=None))]
+    #[pyo3(signature = (houses, config_json, threads=None, overlap=false))]
     fn new(
         py: Python<'_>,
         houses: Vec<Py<PyHouse>>,
         config_json: &str,
         threads: Option<usize>,
+        overlap: bool,
     ) -> PyResult<Self> {
         let shared: Vec<std::sync::Arc<Engines>> = houses
             .iter()
@@ -102,7 +103,8 @@ impl PyBatch {
                 .into_iter()
                 .map(|engines| Env::new(engines, &config))
                 .collect::<Result<Vec<_>, _>>()?;
-            Ok(Batch::new(envs, Threads::requested(threads)?)?)
+            let batch = Batch::new(envs, Threads::requested(threads)?)?;
+            Ok(batch.overlapping(overlap))
         })?;
         Ok(Self {
             batch: batch.into(),

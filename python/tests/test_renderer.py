@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
+import os
+from multiprocessing.connection import Connection
 from typing import Any
 
 import numpy as np
@@ -11,6 +14,7 @@ from numpy.typing import NDArray
 
 import dwell
 from dwell import _native
+from dwell.envs import DwellVectorEnv
 
 
 def _adapter() -> str:
@@ -49,3 +53,82 @@ def test_an_adapter_shows_what_the_processor_shows(
     assert same.mean() > 0.99
     assert (np.abs(by_cpu["depth"] - by_gpu["depth"])[same] < 1e-3).mean() > 0.99
     assert np.abs(by_cpu["rgb"].astype(int) - by_gpu["rgb"]).mean() < 0.5
+
+
+@pytest.mark.parametrize("autoreset_mode", ["NextStep", "SameStep"])
+def test_pictures_that_overlap_with_steps_are_the_same(
+    apartment: dwell.House, autoreset_mode: str
+) -> None:
+    settings = {"width": 16, "height": 12, "preset": "flat"}
+
+    def play(*, overlap: bool) -> list[NDArray[Any]]:
+        envs = DwellVectorEnv(
+            4,
+            "PointNav",
+            houses=apartment,
+            sensors={"rgb": settings, "depth": settings},
+            world={"renderer": f"gpu+compute:{_adapter()}"},
+            threads=2,
+            max_episode_steps=3,
+            autoreset_mode=autoreset_mode,
+            overlap=overlap,
+        )
+        seen = [value.copy() for value in envs.reset(seed=5)[0].values()]
+        for step in range(7):
+            actions = np.array([1 + (step + k) % 3 for k in range(4)])
+            seen += [value.copy() for value in envs.step(actions)[0].values()]
+        envs.close()
+        return seen
+
+    plain = play(overlap=False)
+    overlapped = play(overlap=True)
+    assert all(np.array_equal(a, b) for a, b in zip(plain, overlapped, strict=True))
+    assert not np.array_equal(plain[0], plain[2])
+
+
+def test_whether_pictures_overlap_is_a_bool(apartment: dwell.House) -> None:
+    with pytest.raises(dwell.ConfigError, match="overlap: found 1"):
+        DwellVectorEnv(1, houses=apartment, overlap=1)  # type: ignore[arg-type] # the point
+
+
+def _in_a_child(pipe: Connection, world: dwell.World, chosen: str) -> None:
+    """What a forked process hears that uses its parent's world, and one of its own."""
+    try:
+        world.render(position=(1.0, 1.0, 1.0), channels=("depth",))
+        pipe.send("it rendered")
+    except dwell.DwellError as error:
+        pipe.send(str(error))
+    try:
+        own = dwell.World("builtin:apartment", agents=0, renderer=chosen)
+        own.render(position=(1.0, 1.0, 1.0), channels=("depth",))
+        pipe.send("it rendered")
+    except dwell.DwellError as error:
+        pipe.send(str(error))
+    pipe.close()
+    # Without the drivers' goodbyes, which are the parent's.
+    os._exit(0)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_what_another_process_opened_is_refused_after_a_fork(apartment: dwell.House) -> None:
+    chosen = f"gpu+compute:{_adapter()}"
+    world = dwell.World(apartment, agents=0, renderer=chosen)
+    before = world.render(position=(1.0, 1.0, 1.0), channels=("depth",))
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe()
+    child = context.Process(target=_in_a_child, args=(theirs, world, chosen))
+    child.start()
+    theirs.close()
+    try:
+        assert ours.poll(120), "the child hangs"
+        sentence = ours.recv()
+    finally:
+        child.join(10)
+        child.kill()
+        child.join()
+    assert "process" in sentence
+    assert "fork" in sentence
+    # The parent goes on.
+    after = world.render(position=(1.0, 1.0, 1.0), channels=("depth",))
+    assert np.array_equal(before["depth"], after["depth"])

@@ -2,6 +2,7 @@
 
 pub mod flip;
 pub mod golden;
+pub mod seen;
 pub mod validity;
 
 use dwell::{Engines, Env, EnvConfig, SensorConfig};

@@ -1,19 +1,27 @@
 //! Several environments stepped together: all views in one submission, results in the caller's buffers.
 
 use crate::action::DiscreteAction;
+use crate::batch_pictures::{self, UnderWay};
 use crate::env::{Env, StepInfo};
 use crate::error::WorldError;
 use crate::sensors::{Dtype, Out, SensorSpec};
-use dwell_render::{Job, Renderer};
 use dwell_scene::parallel::Threads;
-use std::sync::Arc;
 
 /// Environments of one make. Shapes and types of their observations are the same.
 #[derive(Debug)]
 pub struct Batch {
     envs: Vec<Env>,
     threads: Threads,
+    /// Whether pictures are taken while other worlds step.
+    overlaps: bool,
+    /// What is being taken, or what went wrong when it was to be started.
+    under_way: Vec<Result<UnderWay, WorldError>>,
+    /// Whose pictures are under way and still show the world as it is. Shape (environment,).
+    is_started: Vec<bool>,
 }
+
+/// Waves in which worlds step where pictures overlap with it: the adapter takes those of one while the next steps.
+const WAVES: usize = 4;
 
 /// One environment of a batch, and what its part of a step came to.
 struct Slot<'a, R> {
@@ -39,7 +47,22 @@ impl Batch {
                 "environment {k} has other sensors than environment 0"
             )));
         }
-        Ok(Self { envs, threads })
+        Ok(Self {
+            is_started: vec![false; envs.len()],
+            envs,
+            threads,
+            overlaps: false,
+            under_way: Vec::new(),
+        })
+    }
+
+    /// Whether an adapter takes the pictures of worlds that have stepped or begun while others still step. Observations are
+    /// the same, of the same step; what goes wrong with a picture is told by [`Self::observe`], which waits for it. Who
+    /// steps without observing pays for pictures all the same. By the processor nothing changes.
+    #[must_use]
+    pub fn overlapping(mut self, overlaps: bool) -> Self {
+        self.overlaps = overlaps;
+        self
     }
 
     /// The environments.
@@ -64,6 +87,10 @@ impl Batch {
     /// [`WorldError::Usage`] for an environment that does not exist.
     pub fn env_mut(&mut self, index: usize) -> Result<&mut Env, WorldError> {
         let count = self.envs.len();
+        // Whoever may change a world makes its pictures old.
+        if let Some(is_started) = self.is_started.get_mut(index) {
+            *is_started = false;
+        }
         self.envs
             .get_mut(index)
             .ok_or_else(|| WorldError::Usage(format!("no environment {index}; there are {count}")))
@@ -90,6 +117,77 @@ impl Batch {
     /// What every environment's sensors give.
     pub fn specs(&self) -> Vec<SensorSpec> {
         self.envs[0].specs()
+    }
+
+    /// Does `work` in the environments of `active`; then, where that is asked for, their pictures are under way.
+    fn change<R: Send>(
+        &mut self,
+        active: &[bool],
+        work: impl Fn(usize, &mut Env) -> Result<R, WorldError> + Sync,
+    ) -> Result<Vec<Option<R>>, WorldError> {
+        for (is_started, _) in self
+            .is_started
+            .iter_mut()
+            .zip(active)
+            .filter(|(_, on)| **on)
+        {
+            *is_started = false;
+        }
+        if !self.overlaps {
+            return self.for_active(active, work);
+        }
+        // Pictures that nobody has observed.
+        let mut waiting = self.under_way.iter().flatten();
+        if waiting.any(|own| own.owners().any(|number| active[number])) {
+            self.finish_pictures()?;
+        }
+        let count = self.envs.len();
+        let waves = count.div_ceil(self.threads.count()).clamp(1, WAVES);
+        let mut results: Vec<Option<R>> = Vec::with_capacity(count);
+        let mut fault = None;
+        for wave in 0..waves {
+            let range = count * wave / waves..count * (wave + 1) / waves;
+            let mut own = vec![false; count];
+            own[range.clone()].copy_from_slice(&active[range.clone()]);
+            match self.for_active(&own, &work) {
+                Ok(some) => results.extend(some.into_iter().skip(range.start).take(range.len())),
+                Err(error) => {
+                    fault.get_or_insert(error);
+                    continue;
+                }
+            }
+            self.start_pictures(&own);
+        }
+        fault.map_or(Ok(results), Err)
+    }
+
+    /// Starts the pictures of some environments.
+    fn start_pictures(&mut self, which: &[bool]) {
+        let chosen = self.envs.iter_mut().enumerate();
+        let chosen = chosen.filter(|(number, _)| which[*number]);
+        match batch_pictures::start(chosen, self.threads) {
+            Ok(some) => {
+                let owners = some.iter().flat_map(UnderWay::owners);
+                for number in owners {
+                    self.is_started[number] = true;
+                }
+                self.under_way.extend(some.into_iter().map(Ok));
+            }
+            Err(error) => self.under_way.push(Err(error)),
+        }
+    }
+
+    /// Waits for all pictures that are under way.
+    fn finish_pictures(&mut self) -> Result<(), WorldError> {
+        let mut finished = Ok(());
+        for under_way in std::mem::take(&mut self.under_way) {
+            let own = under_way.and_then(|own| own.finish(&mut self.envs, self.threads));
+            finished = finished.and(own);
+        }
+        if finished.is_err() {
+            self.is_started.fill(false);
+        }
+        finished
     }
 
     fn for_active<R: Send>(
@@ -136,7 +234,7 @@ impl Batch {
     pub fn reset(&mut self, seeds: &[Option<u64>]) -> Result<(), WorldError> {
         self.check_count("seeds", seeds.len())?;
         let active: Vec<bool> = seeds.iter().map(Option::is_some).collect();
-        self.for_active(&active, |k, env| {
+        self.change(&active, |k, env| {
             env.reset(seeds[k].unwrap_or_default())?;
             env.listen()
         })?;
@@ -156,7 +254,7 @@ impl Batch {
         for (env, _) in self.envs.iter().zip(&active).filter(|(_, active)| **active) {
             env.ready()?;
         }
-        self.for_active(&active, |k, env| {
+        self.change(&active, |k, env| {
             let info = env.step(actions[k].unwrap_or(DiscreteAction::Stop))?;
             env.listen()?;
             Ok(info)
@@ -169,7 +267,8 @@ impl Batch {
     /// use [`Self::texts`], and give an empty buffer).
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for wrong counts or lengths.
+    /// [`WorldError::Usage`] for wrong counts or lengths, [`WorldError::Render`] for what went wrong with a picture, also
+    /// with one that an earlier call has started.
     pub fn observe(&mut self, which: &[bool], outs: &mut [Out<'_>]) -> Result<(), WorldError> {
         self.check_count("which", which.len())?;
         let specs = self.specs();
@@ -180,7 +279,13 @@ impl Batch {
                 specs.len()
             )));
         }
-        self.render(which)?;
+        self.finish_pictures()?;
+        let chosen = self.envs.iter_mut().enumerate();
+        let chosen = chosen.filter(|(number, _)| which[*number] && !self.is_started[*number]);
+        batch_pictures::take(chosen, self.threads)?;
+        for (is_started, _) in self.is_started.iter_mut().zip(which).filter(|(_, on)| **on) {
+            *is_started = false;
+        }
         for (k, env) in self.envs.iter().enumerate().filter(|(k, _)| which[*k]) {
             for (s, (spec, out)) in specs.iter().zip(outs.iter_mut()).enumerate() {
                 let range = k * spec.len()..(k + 1) * spec.len();
@@ -223,47 +328,5 @@ impl Batch {
             }
         }
         texts
-    }
-
-    /// Renders all pictures that are asked for: the views of all worlds over one house in one submission, apart from those
-    /// whose shutter is open or rolls.
-    fn render(&mut self, which: &[bool]) -> Result<(), WorldError> {
-        let threads = self.threads;
-        let mut groups: Vec<(Arc<Renderer>, Vec<Job<'_>>)> = Vec::new();
-        for (env, _) in self
-            .envs
-            .iter_mut()
-            .zip(which)
-            .filter(|(_, active)| **active)
-        {
-            let (world, requests, results) = env.picture_work();
-            let renderer = world.engines().pictures(&world.config().renderer)?;
-            let group = groups
-                .iter()
-                .position(|(other, _)| Arc::ptr_eq(other, &renderer))
-                .unwrap_or_else(|| {
-                    groups.push((renderer, Vec::new()));
-                    groups.len() - 1
-                });
-            for (request, picture) in requests.views.iter().zip(&mut results.pictures) {
-                let eye = &request.eye;
-                if world.state().agents.get(eye.agent).is_none() {
-                    continue;
-                }
-                let request = eye.request(world.state());
-                let (shot, optics) = (world.shot(&request), world.optics(&request.place));
-                picture.camera = shot.view.camera;
-                if optics.shutter().is_still() {
-                    let job = world.job(&shot, picture.frame.as_mut());
-                    groups[group].1.push(job);
-                } else {
-                    world.expose(&shot, &optics, &mut picture.frame, threads)?;
-                }
-            }
-        }
-        for (renderer, jobs) in &mut groups {
-            renderer.render_batch(jobs, threads)?;
-        }
-        Ok(())
     }
 }

@@ -5,12 +5,14 @@
 
 mod action;
 mod batch;
+mod batch_pictures;
 pub mod bench;
 mod config;
 mod engines;
 mod env;
 mod error;
 mod expert;
+mod exposure;
 mod fixtures;
 mod floor_plan;
 mod info;

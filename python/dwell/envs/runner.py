@@ -28,9 +28,16 @@ INFO_KEYS = (
 class Runner:
     """Native environments and the arrays they write into."""
 
-    def __init__(self, houses: Sequence[House], config: str, threads: int | None) -> None:
+    def __init__(
+        self,
+        houses: Sequence[House],
+        config: str,
+        threads: int | None,
+        *,
+        overlap: bool = False,
+    ) -> None:
         """Builds the environments, one for each house of ``houses``."""
-        self.batch = _native.Batch([house.native for house in houses], config, threads)
+        self.batch = _native.Batch([house.native for house in houses], config, threads, overlap)
         self.count = len(houses)
         self.specs = specs(self.batch)
         self.buffers: list[NDArray[Any] | None] = [spec.buffer(self.count) for spec in self.specs]

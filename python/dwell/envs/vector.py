@@ -42,6 +42,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         max_episode_steps: int | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         copy: bool = False,
+        overlap: bool = False,
         render_mode: str | None = None,
     ) -> None:
         """Makes the environments; arguments as :class:`dwell.envs.DwellEnv`.
@@ -60,6 +61,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             max_episode_steps: Steps after which an episode is truncated; ``None`` or -1: never.
             autoreset_mode: ``NextStep``, ``SameStep`` or ``Disabled``.
             copy: Whether observations are copies.
+            overlap: Whether a graphics adapter takes the pictures of environments that have stepped
+                while others still step. Observations are the same, of the same step; without an
+                adapter nothing changes.
             render_mode: ``None``; single environments render.
         """
         EzPickle.__init__(
@@ -77,6 +81,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             max_episode_steps=max_episode_steps,
             autoreset_mode=autoreset_mode,
             copy=copy,
+            overlap=overlap,
             render_mode=render_mode,
         )
         num_envs = whole("num_envs", num_envs, low=1, high=65_536)
@@ -97,7 +102,10 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         )
         shelf = HouseShelf(houses)
         threads = None if threads is None else whole("threads", threads, low=1)
-        self._runner = Runner([shelf[k] for k in range(num_envs)], config, threads)
+        if not isinstance(overlap, bool):
+            raise ConfigError(f"overlap: found {overlap!r}, allowed are True and False")
+        rows = [shelf[k] for k in range(num_envs)]
+        self._runner = Runner(rows, config, threads, overlap=overlap)
         self._limit = max_episode_steps if max_episode_steps and max_episode_steps > 0 else None
         self._copy = copy
         self._streams: list[np.random.Generator | None] = [None] * num_envs

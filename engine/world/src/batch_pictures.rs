@@ -1,0 +1,228 @@
+//! The pictures of a batch: the views of all worlds over one house in one submission.
+
+use crate::env::Env;
+use crate::error::WorldError;
+use crate::exposure::Take;
+use crate::pictures::PictureRequest;
+use crate::requests::Picture;
+use crate::world::World;
+use dwell_render::{Job, Renderer, Submitted};
+use dwell_scene::parallel::Threads;
+use std::sync::Arc;
+
+/// Pictures whose shutter is open or rolls that are taken together: each holds up to 15 copies of its world and 16 of its
+/// colours meanwhile.
+const MOST_OPEN: usize = 64;
+
+/// A picture that is to be taken.
+struct Order<'a> {
+    /// Of the environment.
+    number: usize,
+    /// Among the environment's pictures.
+    place: usize,
+    world: &'a World,
+    request: PictureRequest,
+    picture: &'a mut Picture,
+}
+
+/// A picture that is being taken.
+struct Taking<'a> {
+    number: usize,
+    place: usize,
+    world: &'a World,
+    picture: &'a mut Picture,
+    take: Take,
+}
+
+/// Pictures by one renderer.
+struct Group<'a> {
+    renderer: Arc<Renderer>,
+    orders: Vec<Order<'a>>,
+}
+
+/// What environments, with their numbers, ask for, by renderer.
+fn gather<'a>(
+    envs: impl Iterator<Item = (usize, &'a mut Env)>,
+) -> Result<Vec<Group<'a>>, WorldError> {
+    let mut groups: Vec<Group<'a>> = Vec::new();
+    for (number, env) in envs {
+        let (world, requests, results) = env.picture_work();
+        let renderer = world.engines().pictures(&world.config().renderer)?;
+        let same = |group: &Group<'_>| Arc::ptr_eq(&group.renderer, &renderer);
+        let group = groups.iter().position(same).unwrap_or(groups.len());
+        if group == groups.len() {
+            groups.push(Group {
+                renderer,
+                orders: Vec::new(),
+            });
+        }
+        let wishes = requests.views.iter().zip(&mut results.pictures);
+        for (place, (wish, picture)) in wishes.enumerate() {
+            if world.state().agents.get(wish.eye.agent).is_some() {
+                groups[group].orders.push(Order {
+                    number,
+                    place,
+                    world,
+                    request: wish.eye.request(world.state()),
+                    picture,
+                });
+            }
+        }
+    }
+    Ok(groups)
+}
+
+/// The first orders of which not too many have an open shutter.
+fn some<'a>(orders: &mut impl Iterator<Item = Order<'a>>) -> Vec<Order<'a>> {
+    let mut open = 0;
+    let mut taken = Vec::new();
+    while open < MOST_OPEN
+        && let Some(order) = orders.next()
+    {
+        let optics = order.world.optics(&order.request.place);
+        open += usize::from(!optics.shutter().is_still());
+        taken.push(order);
+    }
+    taken
+}
+
+/// Stands the cameras of some orders up.
+fn stand_up(orders: Vec<Order<'_>>, threads: Threads) -> Vec<Taking<'_>> {
+    let takes = threads.map(orders.len(), |k| {
+        let Order {
+            world,
+            request,
+            picture,
+            ..
+        } = &orders[k];
+        Take::new(world, request, !picture.frame.rgb.is_empty())
+    });
+    let pairs = orders.into_iter().zip(takes);
+    pairs
+        .map(|(order, take)| {
+            order.picture.camera = take.camera();
+            Taking {
+                number: order.number,
+                place: order.place,
+                world: order.world,
+                picture: order.picture,
+                take,
+            }
+        })
+        .collect()
+}
+
+fn jobs<'a>(taking: &'a mut [Taking<'_>]) -> Vec<Job<'a>> {
+    let mut jobs = Vec::with_capacity(taking.len());
+    for Taking {
+        world,
+        picture,
+        take,
+        ..
+    } in taking
+    {
+        take.jobs(world, picture.frame.as_mut(), &mut jobs);
+    }
+    jobs
+}
+
+/// Takes all pictures that environments ask for.
+pub(crate) fn take<'a>(
+    envs: impl Iterator<Item = (usize, &'a mut Env)>,
+    threads: Threads,
+) -> Result<(), WorldError> {
+    for Group { renderer, orders } in gather(envs)? {
+        let mut orders = orders.into_iter();
+        loop {
+            let mut taking = stand_up(some(&mut orders), threads);
+            if taking.is_empty() {
+                break;
+            }
+            renderer.render_batch(&mut jobs(&mut taking), threads)?;
+            threads.for_each(&mut taking, |_, taking| {
+                taking.take.develop(&mut taking.picture.frame);
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Pictures that an adapter takes while worlds go on.
+#[derive(Debug)]
+pub(crate) struct UnderWay {
+    renderer: Arc<Renderer>,
+    submitted: Submitted,
+    /// Whose they are: the environment, and the picture's place there. In the order of their work.
+    takes: Vec<(usize, usize, Take)>,
+}
+
+/// Starts the pictures that environments ask for. None of those by the processor, which would keep nobody free.
+pub(crate) fn start<'a>(
+    envs: impl Iterator<Item = (usize, &'a mut Env)>,
+    threads: Threads,
+) -> Result<Vec<UnderWay>, WorldError> {
+    let mut under_way = Vec::new();
+    for Group { renderer, orders } in gather(envs)? {
+        // All pictures of an environment, or none.
+        let mut presets = orders.iter().map(|order| order.request.preset);
+        if !presets.all(|preset| renderer.can_submit(preset)) {
+            continue;
+        }
+        let mut orders = orders.into_iter();
+        loop {
+            let mut taking = stand_up(some(&mut orders), threads);
+            if taking.is_empty() {
+                break;
+            }
+            let Some(submitted) = renderer.submit(&jobs(&mut taking), threads)? else {
+                break;
+            };
+            let taken = taking.into_iter().map(|mut taking| {
+                taking.take.forget_moments();
+                (taking.number, taking.place, taking.take)
+            });
+            under_way.push(UnderWay {
+                renderer: renderer.clone(),
+                submitted,
+                takes: taken.collect(),
+            });
+        }
+    }
+    Ok(under_way)
+}
+
+impl UnderWay {
+    /// Whose pictures these are.
+    pub(crate) fn owners(&self) -> impl Iterator<Item = usize> + '_ {
+        self.takes.iter().map(|(number, ..)| *number)
+    }
+
+    /// Waits for the pictures and gives them to their environments.
+    pub(crate) fn finish(self, envs: &mut [Env], threads: Threads) -> Result<(), WorldError> {
+        let Self {
+            renderer,
+            submitted,
+            mut takes,
+        } = self;
+        let mut taken = takes.iter_mut().peekable();
+        let mut frames = Vec::with_capacity(taken.len());
+        for (number, env) in envs.iter_mut().enumerate() {
+            for (place, picture) in env.results.pictures.iter_mut().enumerate() {
+                let own = taken.next_if(|(of, at, _)| (*of, *at) == (number, place));
+                if let Some((_, _, take)) = own {
+                    take.frames(picture.frame.as_mut(), &mut frames);
+                }
+            }
+        }
+        renderer.collect(submitted, &mut frames, threads)?;
+        drop(frames);
+        for (number, place, take) in &takes {
+            let env = envs.get_mut(*number);
+            let pictures = env.map(|env| &mut env.results.pictures);
+            if let Some(picture) = pictures.and_then(|pictures| pictures.get_mut(*place)) {
+                take.develop(&mut picture.frame);
+            }
+        }
+        Ok(())
+    }
+}

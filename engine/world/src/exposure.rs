@@ -1,0 +1,211 @@
+//! Pictures whose shutter is open or rolls: the moments that they are made of, and how those become one picture.
+
+use crate::past::between;
+use crate::pictures::{PictureRequest, Shot};
+use crate::world::World;
+use dwell_render::laws::mean_color;
+use dwell_render::{Camera, Frame, FrameMut, Job};
+use dwell_scene::State;
+use dwell_scene::rays::RayScene;
+
+/// Moments from which the light of an exposure is averaged.
+const EXPOSED: u16 = 16;
+/// Moments between which things stand still while a shutter rolls; the camera moves from row to row.
+const MOMENTS: usize = 16;
+
+/// When a picture's rows are taken, in steps of the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Timing {
+    /// How much later each row is taken than the one above.
+    delay: f32,
+    /// How long colours are gathered for each row.
+    exposure: f32,
+}
+
+/// Rows that are taken at one moment.
+struct Part<'a> {
+    /// How long before the picture's time, in steps of the world.
+    share: f32,
+    /// The first row and the one behind the last; `None`: all.
+    rows: Option<(u32, u32)>,
+    frame: FrameMut<'a>,
+}
+
+/// A picture that is being taken.
+#[derive(Debug)]
+pub(crate) struct Take {
+    shot: Shot,
+    timing: Timing,
+    moments: Moments,
+    /// Colours at each moment of the exposure; empty without one.
+    exposed: Vec<Vec<u8>>,
+}
+
+impl Take {
+    /// A picture of a world as it stands, as the laws of its camera have it. `has_color`: whether colours are wanted.
+    pub(crate) fn new(world: &World, request: &PictureRequest, has_color: bool) -> Self {
+        let shot = world.shot(request);
+        let shutter = world.optics(&request.place).shutter();
+        let step_s = world.config().step_s() as f32;
+        let timing = Timing {
+            delay: shutter.line_s / step_s,
+            exposure: shutter.exposure_s / step_s,
+        };
+        let camera = &shot.view.camera;
+        // Shares of a step ago, at the most.
+        let longest = timing.delay * (camera.height() - 1) as f32 + timing.exposure;
+        let is_exposed = has_color && timing.exposure > 0.0;
+        let exposures = if is_exposed { usize::from(EXPOSED) } else { 0 };
+        Self {
+            moments: Moments::new(world, longest),
+            exposed: vec![vec![0; camera.pixels() * 3]; exposures],
+            shot,
+            timing,
+        }
+    }
+
+    /// The camera that takes it, as laws make it.
+    pub(crate) fn camera(&self) -> Camera {
+        self.shot.view.camera
+    }
+
+    /// Appends the work for a renderer. `world`: that of [`Self::new`], unchanged.
+    pub(crate) fn jobs<'a>(
+        &'a mut self,
+        world: &'a World,
+        frame: FrameMut<'a>,
+        jobs: &mut Vec<Job<'a>>,
+    ) {
+        let Self {
+            shot,
+            timing,
+            moments,
+            exposed,
+        } = self;
+        for part in parts(&shot.view.camera, *timing, exposed, frame) {
+            let (state, scene) = moments.at(world, part.share);
+            let mut view = shot.view;
+            if part.rows.is_some() || part.share > 0.0 {
+                view.world_from_camera = between(&view.world_from_camera, &shot.was, part.share);
+            }
+            jobs.push(Job {
+                before: world.before(shot.was),
+                rows: part.rows,
+                ..Job::new(scene, state, view, part.frame)
+            });
+        }
+    }
+
+    /// Appends where the images of [`Self::jobs`] go, in their order.
+    pub(crate) fn frames<'a>(&'a mut self, frame: FrameMut<'a>, frames: &mut Vec<FrameMut<'a>>) {
+        let Self {
+            shot,
+            timing,
+            exposed,
+            ..
+        } = self;
+        let parts = parts(&shot.view.camera, *timing, exposed, frame);
+        frames.extend(parts.into_iter().map(|part| part.frame));
+    }
+
+    /// Lets go of what only [`Self::jobs`] needs.
+    pub(crate) fn forget_moments(&mut self) {
+        self.moments.copies = Vec::new();
+    }
+
+    /// Makes the picture's colours from those of its moments.
+    pub(crate) fn develop(&self, frame: &mut Frame) {
+        if !self.exposed.is_empty() {
+            mean_color(self.exposed.iter().map(Vec::as_slice), &mut frame.rgb);
+        }
+    }
+}
+
+/// The parts of a picture: all images at the end of the exposure, then colours at each of its moments.
+fn parts<'a>(
+    camera: &Camera,
+    timing: Timing,
+    exposed: &'a mut [Vec<u8>],
+    mut frame: FrameMut<'a>,
+) -> Vec<Part<'a>> {
+    let mut parts = Vec::new();
+    if !exposed.is_empty() {
+        frame.rgb = None;
+    }
+    roll(camera, timing.delay, 0.0, frame, &mut parts);
+    for (k, rgb) in exposed.iter_mut().enumerate() {
+        let share = (k as f32 + 0.5) / f32::from(EXPOSED);
+        let frame = FrameMut {
+            rgb: Some(rgb),
+            ..FrameMut::default()
+        };
+        roll(
+            camera,
+            timing.delay,
+            share * timing.exposure,
+            frame,
+            &mut parts,
+        );
+    }
+    parts
+}
+
+/// All rows, `earlier` steps of the world before their time; those of one moment together.
+fn roll<'a>(
+    camera: &Camera,
+    delay: f32,
+    earlier: f32,
+    mut frame: FrameMut<'a>,
+    parts: &mut Vec<Part<'a>>,
+) {
+    if delay == 0.0 {
+        parts.push(Part {
+            share: earlier,
+            rows: None,
+            frame,
+        });
+        return;
+    }
+    let height = camera.height();
+    parts.extend((0..height).map(|row| Part {
+        share: earlier + delay * (height - 1 - row) as f32,
+        rows: Some((row, row + 1)),
+        frame: frame.take_pixels(camera.width() as usize),
+    }));
+}
+
+/// The world at moments of the step that has been made.
+#[derive(Debug)]
+struct Moments {
+    /// Even steps back from now; only now where nothing moves.
+    copies: Vec<(State, RayScene)>,
+    /// How far back the last one lies, in steps of the world.
+    longest: f32,
+}
+
+impl Moments {
+    fn new(world: &World, longest: f32) -> Self {
+        let still = longest <= 0.0 || world.past().is_still(world.state());
+        let copies = (1..MOMENTS).map(|k| {
+            let share = longest * k as f32 / (MOMENTS - 1) as f32;
+            let (mut state, mut scene) = (world.state().clone(), world.rays().clone());
+            world.past().rewind(&mut state, share);
+            scene.update(&state);
+            (state, scene)
+        });
+        Self {
+            copies: if still { Vec::new() } else { copies.collect() },
+            longest,
+        }
+    }
+
+    /// The moment nearest to a share of a step ago.
+    fn at<'a>(&'a self, world: &'a World, share: f32) -> (&'a State, &'a RayScene) {
+        let place = (share / self.longest * (MOMENTS - 1) as f32).round();
+        let copy = (place as usize).checked_sub(1);
+        copy.and_then(|copy| self.copies.get(copy))
+            .map_or((world.state(), world.rays()), |(state, scene)| {
+                (state, scene)
+            })
+    }
+}
