@@ -28,7 +28,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="physics: JSON of fixed and dynamic boxes, density_kg_m3 and physics_rate_hz",
     )
     parser.add_argument("--worlds", type=count, default=64, help="physics: worlds stepped together")
-    parser.add_argument("--resolution", type=count, default=128, help="pixels across and down")
+    parser.add_argument(
+        "--resolution",
+        type=_counts,
+        default=[128],
+        metavar="N[,N...]",
+        help="pixels across and down; several with --batch",
+    )
+    parser.add_argument(
+        "--batch",
+        type=_counts,
+        default=[],
+        metavar="N[,N...]",
+        help="render: views in a batch, each of a world of its own; a row for each and each "
+        "resolution, by both paths of an adapter unless --path names one",
+    )
     parser.add_argument("--preset", choices=PRESETS, default="flat")
     add_back_end(parser)
     parser.add_argument(
@@ -48,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     options: dict[str, Any] = {
         key: getattr(args, key)
         for key in (
-            "resolution",
+            "batch",
             "preset",
             "threads",
             "repeats",
@@ -58,6 +72,12 @@ def run(args: argparse.Namespace) -> int:
             "batches",
         )
     }
+    options["resolution"] = args.resolution[0]
+    options["resolutions"] = args.resolution
+    if len(args.resolution) > 1 and not args.batch:
+        raise ValueError("--resolution takes several numbers only beside --batch")
+    if args.batch and args.stage != "render":
+        raise ValueError("--batch is an option of render")
     options["backend"] = back_end(args)
     if args.views:
         options["views"] = _views(args.views)
@@ -69,9 +89,20 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print_json(figures)
         return 0
+    for row in figures.pop("rows", []):
+        print("  ".join(f"{key} {_word(value)}" for key, value in row.items()))
     for key, value in figures.items():
         print(f"{key}: {value:.4g}" if isinstance(value, float) else f"{key}: {value}")
     return 0
+
+
+def _counts(text: str) -> list[int]:
+    """Whole numbers, at least 1, with commas between them."""
+    return [count(part) for part in text.split(",")]
+
+
+def _word(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _views(path: Path) -> list[dict[str, Any]]:

@@ -5,6 +5,7 @@ mod env;
 mod load;
 mod physics;
 mod render;
+mod table;
 
 pub use physics::{BenchBox, BenchBoxes};
 
@@ -39,6 +40,11 @@ pub struct BenchOptions {
     pub views: Option<Vec<BenchView>>,
     /// Pixels across and down; default 128.
     pub resolution: u32,
+    /// Views in a batch, each of a world of its own, 1 to 4,096: `render` answers a row for each of them and each of
+    /// `resolutions`, by both paths of an adapter unless one is named. Default none: one figure over all views.
+    pub batch: Vec<usize>,
+    /// Sizes of pictures for `batch`; default `resolution`.
+    pub resolutions: Vec<u32>,
     /// `"flat"` (default), `"lit"` or `"full"`.
     pub preset: Preset,
     /// Who renders: `"cpu"` (default), `"gpu"` or `"gpu:NAME"`.
@@ -75,6 +81,8 @@ impl Default for BenchOptions {
         Self {
             views: None,
             resolution: 128,
+            batch: Vec::new(),
+            resolutions: Vec::new(),
             preset: Preset::Flat,
             backend: BackEnd::Cpu,
             batches: 1,
@@ -91,13 +99,14 @@ impl Default for BenchOptions {
 
 impl BenchOptions {
     fn check(&self) -> Result<(), WorldError> {
-        for (field, value, high) in [
+        let batch = self.batch.iter().map(|batch| ("batch", *batch, 4096));
+        for (field, value, high) in batch.chain([
             ("repeats", self.repeats, 1000),
             ("envs", self.envs, 4096),
             ("steps", self.steps, 1_000_000),
             ("worlds", self.worlds, 4096),
             ("batches", self.batches, 4096),
-        ] {
+        ]) {
             if !(1..=high).contains(&value) {
                 return Err(WorldError::Config {
                     field,
@@ -107,6 +116,15 @@ impl BenchOptions {
             }
         }
         Ok(())
+    }
+
+    /// The sizes of pictures for `batch`.
+    fn resolutions(&self) -> Vec<u32> {
+        if self.resolutions.is_empty() {
+            vec![self.resolution]
+        } else {
+            self.resolutions.clone()
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Pictures a second.
 
-use super::{BenchOptions, median, open, timed};
+use super::{BenchOptions, median, open, table, timed};
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::info::viewpoints;
@@ -12,7 +12,7 @@ use dwell_scene::{Pose, State};
 use glam::Vec3;
 use serde_json::{Value, json};
 
-fn views(engines: &Engines, options: &BenchOptions) -> Result<Vec<Pose>, WorldError> {
+pub(super) fn views(engines: &Engines, options: &BenchOptions) -> Result<Vec<Pose>, WorldError> {
     if let Some(views) = &options.views {
         return views
             .iter()
@@ -45,6 +45,9 @@ fn views(engines: &Engines, options: &BenchOptions) -> Result<Vec<Pose>, WorldEr
 }
 
 pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+    if !options.batch.is_empty() {
+        return table::run(house, options);
+    }
     let engines = open(house)?;
     let (state, scene) = (
         State::new(engines.house()),
