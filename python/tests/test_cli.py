@@ -96,6 +96,30 @@ def test_bench_gives_its_figure(stage: str) -> None:
     assert float(str(one_object(dwell("bench", stage, HOUSE, *small, "--json"))[key])) > 0.0
 
 
+def test_bench_measures_batches_by_size_and_path() -> None:
+    small = ("--repeats", "1", "--batch", "1,3", "--resolution", "16,24", "--json")
+    by_cpu = one_object(dwell("bench", "render", HOUSE, "--backend", "cpu", *small))["rows"]
+    assert isinstance(by_cpu, list)
+    sizes = [(row["resolution"], row["batch"]) for row in by_cpu]
+    assert sizes == [(16, 1), (16, 3), (24, 1), (24, 3)]
+    assert all(row["views_per_s"] > 0.0 for row in by_cpu)
+    assert "several" in dwell("bench", "render", HOUSE, "--resolution", "16,24").stderr
+    adapters = one_object(dwell("doctor", "--json"))["graphics_adapters"]
+    assert isinstance(adapters, list)
+    if not adapters:
+        pytest.skip("no graphics adapter, not even of software")
+    back_end = ("--backend", f"gpu:{adapters[0]['name']}")
+    table = one_object(dwell("bench", "render", HOUSE, *back_end, *small))
+    rows = table["rows"]
+    assert isinstance(rows, list)
+    assert len(rows) == 8
+    assert {row["backend"].rsplit(" ", 1)[-1] for row in rows} == {"compute", "raster"}
+    for row in rows:
+        assert row["overlapped_views_per_s"] > 0.0
+        assert row["submit_s"] > 0.0
+        assert row["views_per_s"] < row["bound_views_per_s"]
+
+
 def test_calibrate_finds_what_the_example_hides(tmp_path: Path) -> None:
     from dwell import _native
 

@@ -64,7 +64,7 @@ def test_pictures_that_overlap_with_steps_are_the_same(
     def play(*, overlap: bool) -> list[NDArray[Any]]:
         envs = DwellVectorEnv(
             4,
-            "PointNav",
+            "InstructionFollowing",
             houses=apartment,
             sensors={"rgb": settings, "depth": settings},
             world={"renderer": f"gpu+compute:{_adapter()}"},
@@ -123,12 +123,16 @@ def test_what_another_process_opened_is_refused_after_a_fork(apartment: dwell.Ho
     try:
         assert ours.poll(120), "the child hangs"
         sentence = ours.recv()
+        assert ours.poll(120), "the child hangs with a world of its own"
+        own = ours.recv()
     finally:
         child.join(10)
         child.kill()
         child.join()
     assert "process" in sentence
     assert "fork" in sentence
+    # As the sentence says, worlds that the child makes itself are its own.
+    assert own == "it rendered"
     # The parent goes on.
     after = world.render(position=(1.0, 1.0, 1.0), channels=("depth",))
     assert np.array_equal(before["depth"], after["depth"])

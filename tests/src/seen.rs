@@ -8,6 +8,7 @@ use dwell_render::BackEnd;
 ///
 /// # Panics
 /// Never: what is written is read.
+#[expect(clippy::print_stdout, reason = "a skip is printed")]
 pub fn adapter_paths() -> Vec<BackEnd> {
     let Some(first) = dwell_render::adapters().into_iter().next() else {
         println!("skipped: no graphics adapter, not even of software");

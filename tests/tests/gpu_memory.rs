@@ -1,5 +1,4 @@
 //! What a batch takes from the heap: after the first ones of a kind no more than its lists, and nothing that grows.
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell_render::{
     Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, Preset, View, adapters,

@@ -173,6 +173,8 @@ impl Batch {
                 }
                 self.under_way.extend(some.into_iter().map(Ok));
             }
+            // One is told, however many steps nobody observes.
+            Err(_) if self.under_way.iter().any(Result::is_err) => {}
             Err(error) => self.under_way.push(Err(error)),
         }
     }

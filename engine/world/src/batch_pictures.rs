@@ -72,8 +72,8 @@ fn gather<'a>(
     Ok(groups)
 }
 
-/// The first orders of which not too many have an open shutter.
-fn some<'a>(orders: &mut impl Iterator<Item = Order<'a>>) -> Vec<Order<'a>> {
+/// The first orders of which not too many have an open shutter, and how many have.
+fn some<'a>(orders: &mut impl Iterator<Item = Order<'a>>) -> (Vec<Order<'a>>, usize) {
     let mut open = 0;
     let mut taken = Vec::new();
     while open < MOST_OPEN
@@ -83,11 +83,13 @@ fn some<'a>(orders: &mut impl Iterator<Item = Order<'a>>) -> Vec<Order<'a>> {
         open += usize::from(!optics.shutter().is_still());
         taken.push(order);
     }
-    taken
+    (taken, open)
 }
 
-/// Stands the cameras of some orders up.
-fn stand_up(orders: Vec<Order<'_>>, threads: Threads) -> Vec<Taking<'_>> {
+/// Stands the cameras of some orders up, `open` of them with an open shutter.
+fn stand_up((orders, open): (Vec<Order<'_>>, usize), threads: Threads) -> Vec<Taking<'_>> {
+    // Worlds are copied for those alone.
+    let threads = if open == 0 { Threads::ONE } else { threads };
     let takes = threads.map(orders.len(), |k| {
         let Order {
             world,
@@ -126,6 +128,14 @@ fn jobs<'a>(taking: &'a mut [Taking<'_>]) -> Vec<Job<'a>> {
     jobs
 }
 
+/// Makes one picture of each that was exposed.
+fn develop<'a>(pairs: impl Iterator<Item = (&'a mut Take, &'a mut Picture)>, threads: Threads) {
+    let mut exposed: Vec<_> = pairs.filter(|(take, _)| take.is_exposed()).collect();
+    threads.for_each(&mut exposed, |_, (take, picture)| {
+        take.develop(&mut picture.frame);
+    });
+}
+
 /// Takes all pictures that environments ask for.
 pub(crate) fn take<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
@@ -139,9 +149,11 @@ pub(crate) fn take<'a>(
                 break;
             }
             renderer.render_batch(&mut jobs(&mut taking), threads)?;
-            threads.for_each(&mut taking, |_, taking| {
-                taking.take.develop(&mut taking.picture.frame);
-            });
+            let pairs = taking.iter_mut();
+            develop(
+                pairs.map(|taking| (&mut taking.take, &mut *taking.picture)),
+                threads,
+            );
         }
     }
     Ok(())
@@ -204,25 +216,21 @@ impl UnderWay {
             submitted,
             mut takes,
         } = self;
+        let mut pairs = Vec::with_capacity(takes.len());
         let mut taken = takes.iter_mut().peekable();
-        let mut frames = Vec::with_capacity(taken.len());
         for (number, env) in envs.iter_mut().enumerate() {
             for (place, picture) in env.results.pictures.iter_mut().enumerate() {
                 let own = taken.next_if(|(of, at, _)| (*of, *at) == (number, place));
-                if let Some((_, _, take)) = own {
-                    take.frames(picture.frame.as_mut(), &mut frames);
-                }
+                pairs.extend(own.map(|(_, _, take)| (take, picture)));
             }
+        }
+        let mut frames = Vec::with_capacity(pairs.len());
+        for (take, picture) in &mut pairs {
+            take.frames(picture.frame.as_mut(), &mut frames);
         }
         renderer.collect(submitted, &mut frames, threads)?;
         drop(frames);
-        for (number, place, take) in &takes {
-            let env = envs.get_mut(*number);
-            let pictures = env.map(|env| &mut env.results.pictures);
-            if let Some(picture) = pictures.and_then(|pictures| pictures.get_mut(*place)) {
-                take.develop(&mut picture.frame);
-            }
-        }
+        develop(pairs.into_iter(), threads);
         Ok(())
     }
 }

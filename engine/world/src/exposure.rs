@@ -113,9 +113,14 @@ impl Take {
         self.moments.copies = Vec::new();
     }
 
+    /// Whether [`Self::develop`] has something to do.
+    pub(crate) fn is_exposed(&self) -> bool {
+        !self.exposed.is_empty()
+    }
+
     /// Makes the picture's colours from those of its moments.
     pub(crate) fn develop(&self, frame: &mut Frame) {
-        if !self.exposed.is_empty() {
+        if self.is_exposed() {
             mean_color(self.exposed.iter().map(Vec::as_slice), &mut frame.rgb);
         }
     }
