@@ -57,6 +57,12 @@ pub fn formats() -> &'static [Format] {
             open: |house, _| crate::procthor::open(Path::new(house)),
         },
         Format {
+            name: "measured",
+            spelling: "a path to a measured room's .json",
+            recognizes: |house| crate::measured::recognizes(Path::new(house)),
+            open: |house, _| crate::measured::open(Path::new(house)),
+        },
+        Format {
             name: "suncg",
             spelling: "a path to a house.json, its folder, or a data root with one house",
             recognizes: |house| crate::suncg::recognizes(Path::new(house)),

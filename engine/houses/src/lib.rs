@@ -12,6 +12,7 @@ pub mod gltf;
 pub mod habitat;
 mod limits;
 mod loss;
+pub mod measured;
 pub mod mjcf;
 pub mod native;
 pub mod obj;

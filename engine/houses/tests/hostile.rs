@@ -12,10 +12,11 @@ use dwell_scene::{House, ShoeboxMaterials};
 use proptest::prelude::*;
 
 /// The formats that read files, and where each one's sample stands.
-const FILES: [(&str, &str); 9] = [
+const FILES: [(&str, &str); 10] = [
     ("native", "a.dwell"),
     ("habitat", "habitat/room.scene_instance.json"),
     ("procthor", "procthor/home.json"),
+    ("measured", "measured/scene.json"),
     ("suncg", "suncg"),
     ("gltf", "a.glb"),
     ("obj", "obj/a.obj"),
@@ -26,6 +27,9 @@ const FILES: [(&str, &str); 9] = [
 const OBJ: &str = "mtllib a.mtl\no box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
                    usemtl red\nf 1/1/1 2/2/1 3/3/1 4/1/1\ng lid\nusemtl blue\nf -1 -2 -3\nf 1//1 5//1 2//1\n";
 const MTL: &str = "newmtl red\nKd 0.8 0.1 0.1\nNs 20\nd 0.9\nnewmtl blue\nKd 0.1 0.1 0.8\n";
+
+const MEASURED: &str = r#"{"bands_hz": [125, 1000], "mesh": "a.obj",
+ "materials": {"red": {"absorption": 0.2}, "blue": {"absorption": [0.1, 0.3], "scattering": 0.5}}}"#;
 
 /// A tetrahedron as an STL file, mm.
 fn tetrahedron() -> String {
@@ -66,6 +70,8 @@ fn samples() -> &'static [Sample] {
             ("urdf/arm.urdf", include_str!("robots/arm.urdf")),
             ("mjcf/arm.xml", include_str!("robots/arm.xml")),
             ("mjcf_house/rooms.xml", include_str!("robots/rooms.xml")),
+            ("measured/scene.json", MEASURED),
+            ("measured/a.obj", OBJ),
             ("procthor/home.json", home.as_str()),
             ("procthor/asset-database.json", assets.as_str()),
         ] {
@@ -199,7 +205,7 @@ fn every_format_that_reads_files_has_a_sample() {
 fn house_strings_that_mean_nothing_list_what_is_allowed() {
     let message = |house: &str| open(house).map(|_| ()).unwrap_err().to_string();
     let allowed = "builtin:NAME; seed:N or seed:N?field=value&field=value; a path to a .dwell; \
-                   a path to a .scene_instance.json of Habitat; a path to a house's .json of ProcTHOR; \
+                   a path to a .scene_instance.json of Habitat; a path to a house's .json of ProcTHOR; a path to a measured room's .json; \
                    a path to a house.json, its folder, or a data root with one house; a path to a .glb or .gltf; a path to an .obj; a path to a .urdf; a path to a .xml of MuJoCo";
     for house in ["castle", "seeds:5", "", "house.blend"] {
         assert_eq!(

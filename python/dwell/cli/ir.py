@@ -1,4 +1,4 @@
-"""``dwell ir``: an impulse response between two points."""
+"""``dwell ir``: an impulse response between two points, or all those of a measured room."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from dwell.cli import measured_room
 from dwell.cli.common import atomic, count, number, point, print_json
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    parser.add_argument("house", metavar="HOUSE")
+    parser.add_argument("house", metavar="HOUSE", help="or a measured room's SCENE.json")
     parser.add_argument(
         "--source", type=point, metavar="X,Y,Z", help="where the impulse is made, m"
     )
@@ -24,7 +25,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--yaw-deg", type=number, default=0.0, help="where the head faces")
     parser.add_argument("--seed", type=count, default=0)
     parser.add_argument("--rays", type=count, default=5000)
-    parser.add_argument("--out", type=Path, metavar="FILE.wav", help="16 bit, peak at full scale")
+    parser.add_argument("--image-order", type=count, default=3, help="0 to 4")
+    parser.add_argument("--threads", type=count, help="default: one for each core")
+    parser.add_argument("--sources", metavar="ID,ID", help="of a measured room; default: all")
+    parser.add_argument("--receivers", metavar="ID,ID", help="of a measured room; default: all")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="FILE.wav: 16 bit, peak at full scale; of a measured room FILE.npz: ir, fs",
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
@@ -33,15 +43,20 @@ def run(args: argparse.Namespace) -> int:
     from dwell.acoustics import AcousticScene
     from dwell.sounds import write_wav
 
-    if str(args.house).endswith(".json") and not str(args.house).endswith("house.json"):
-        raise ValueError(
-            f"{args.house}: measured-room scenes are not read by this version; give a HOUSE"
-        )
+    if measured_room.is_measured_room(args.house):
+        return measured_room.run(args)
     if args.source is None or args.mic is None:
         raise ValueError("--source and --mic are needed: two points X,Y,Z in metres")
-    scene = AcousticScene(args.house, rate_hz=args.rate_hz, rays=args.rays)
+    scene = AcousticScene(
+        args.house, rate_hz=args.rate_hz, rays=args.rays, image_order=args.image_order
+    )
     response = scene.impulse_response(
-        args.source, args.mic, ears=args.ears, yaw_deg=args.yaw_deg, seed=args.seed
+        args.source,
+        args.mic,
+        ears=args.ears,
+        yaw_deg=args.yaw_deg,
+        seed=args.seed,
+        threads=args.threads,
     )
     metrics = scene.metrics(args.source, args.mic, seed=args.seed)
     peak = float(np.abs(response).max()) if response.size else 0.0

@@ -203,7 +203,9 @@ def _camera(args: argparse.Namespace) -> Camera:
     if kind in ("pinhole", "brown_conrady", "fisheye"):
         widest = 360.0 if kind == "fisheye" else 179.0
         if not 0.0 < args.fov_deg <= widest:
-            raise ValueError(f"--fov-deg: found {args.fov_deg:g}; allowed are above 0 to {widest:g}")
+            raise ValueError(
+                f"--fov-deg: found {args.fov_deg:g}; allowed are above 0 to {widest:g}"
+            )
         half_rad = math.radians(args.fov_deg / 2)
         focal = width / 2 / (half_rad if kind == "fisheye" else math.tan(half_rad))
         numbers = {"fx": focal, "fy": focal, "cx": width / 2, "cy": height / 2}

@@ -1,0 +1,249 @@
+//! From the file to a house.
+
+use super::file::{MaterialFile, RoomFile, Table};
+use crate::error::HousesError;
+use crate::obj::{PartShape, read_mesh, shape_of};
+use crate::report::{At, Report};
+use crate::root::DataRoot;
+use dwell_scene::material::{Bands, library};
+use dwell_scene::{
+    Aabb, HouseData, Level, LevelId, Material, MaterialId, Mesh, Structure, StructureKind,
+};
+use glam::{Vec2, Vec3};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A wall of a box: its name in the file, what it is, and its corners as corners of a unit cube, seen from inside counter-clockwise.
+type Side = (&'static str, StructureKind, [[f32; 3]; 4]);
+
+const SIDES: [Side; 6] = [
+    (
+        "x0",
+        StructureKind::Wall,
+        [[0., 0., 0.], [0., 1., 0.], [0., 1., 1.], [0., 0., 1.]],
+    ),
+    (
+        "x1",
+        StructureKind::Wall,
+        [[1., 1., 0.], [1., 0., 0.], [1., 0., 1.], [1., 1., 1.]],
+    ),
+    (
+        "y0",
+        StructureKind::Wall,
+        [[1., 0., 0.], [0., 0., 0.], [0., 0., 1.], [1., 0., 1.]],
+    ),
+    (
+        "y1",
+        StructureKind::Wall,
+        [[0., 1., 0.], [1., 1., 0.], [1., 1., 1.], [0., 1., 1.]],
+    ),
+    (
+        "z0",
+        StructureKind::Floor,
+        [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]],
+    ),
+    (
+        "z1",
+        StructureKind::Ceiling,
+        [[0., 1., 1.], [1., 1., 1.], [1., 0., 1.], [0., 0., 1.]],
+    ),
+];
+
+/// From the file's axes to the house's.
+fn upright(p: Vec3) -> Vec3 {
+    Vec3::new(p.x, p.z, -p.y)
+}
+
+/// A house in the making.
+struct Room<'a> {
+    file: &'a RoomFile,
+    at: &'a At,
+    data: HouseData,
+    materials: BTreeMap<&'a str, MaterialId>,
+}
+
+pub(super) fn convert(
+    file: &RoomFile,
+    name: &str,
+    (root, at): (&DataRoot, &At),
+    report: &mut Report,
+) -> Result<HouseData, HousesError> {
+    let mut room = Room {
+        file,
+        at,
+        data: HouseData {
+            name: name.to_owned(),
+            source: "measured".to_owned(),
+            ..HouseData::default()
+        },
+        materials: BTreeMap::new(),
+    };
+    for (name, material) in &file.materials {
+        let id = room.data.materials.push(room.material(name, material)?);
+        room.materials.insert(name, id);
+    }
+    match (&file.shoebox, &file.mesh) {
+        (Some(size), None) => room.add_box(*size)?,
+        (None, Some(mesh)) => room.add_mesh(mesh, root, report)?,
+        (both, _) => {
+            return Err(HousesError::Field {
+                at: at.field("shoebox"),
+                expected: "either \"shoebox\" or \"mesh\"",
+                found: if both.is_some() { "both" } else { "neither" }.to_owned(),
+            });
+        }
+    }
+    if room.data.structure.is_empty() {
+        return Err(HousesError::Empty {
+            at: at.clone(),
+            damage: report.len(),
+        });
+    }
+    Ok(room.data)
+}
+
+impl Room<'_> {
+    /// A material of plaster, apart from what it does to sound; nothing passes it.
+    fn material(&self, name: &str, file: &MaterialFile) -> Result<Material, HousesError> {
+        let at = self.at.field("materials").field(name);
+        let substance = library().get_or_default("plaster");
+        Ok(Material {
+            absorption: self.bands(&at, "absorption", &file.absorption)?,
+            scattering: self.bands(&at, "scattering", &file.scattering)?,
+            transmission_loss_db: Bands::constant(Material::OPAQUE_TO_SOUND_DB),
+            ..Material::of(name, substance)
+        })
+    }
+
+    fn bands(&self, at: &At, field: &str, table: &Table) -> Result<Bands, HousesError> {
+        let count = self.file.bands_hz.len();
+        let values = match table {
+            Table::One(value) => vec![*value; count],
+            Table::Each(values) => values.clone(),
+        };
+        if values.len() != count {
+            return Err(HousesError::Field {
+                at: at.field(field),
+                expected: "one number, or one for each of bands_hz",
+                found: format!("{} numbers for {count} bands", values.len()),
+            });
+        }
+        Ok(Bands {
+            centres_hz: self.file.bands_hz.clone(),
+            values,
+        })
+    }
+
+    fn material_of(&self, at: &At, name: Option<&str>) -> Result<MaterialId, HousesError> {
+        let found = name.and_then(|name| self.materials.get(name));
+        found.copied().ok_or_else(|| HousesError::Field {
+            at: at.clone(),
+            expected: "the name of one of \"materials\"",
+            found: name.map_or_else(|| "none".to_owned(), |name| format!("{name:?}")),
+        })
+    }
+
+    fn add_box(&mut self, size: [f32; 3]) -> Result<(), HousesError> {
+        if !size.iter().all(|edge| (0.1..=1000.0).contains(edge)) {
+            return Err(HousesError::Field {
+                at: self.at.field("shoebox"),
+                expected: "three edges of 0.1 to 1000 m",
+                found: format!("{size:?}"),
+            });
+        }
+        let size = Vec3::from_array(size);
+        self.storey(Aabb::new(
+            Vec3::new(0.0, 0.0, -size.y),
+            Vec3::new(size.x, size.z, 0.0),
+        ));
+        for (name, kind, corners) in SIDES {
+            let at = self.at.field("walls").field(name);
+            let wall = self.file.walls.get(name).map(String::as_str);
+            let material = self.material_of(&at, wall)?;
+            let positions = corners.map(|corner| upright(Vec3::from_array(corner) * size));
+            let [a, b, _, d] = positions;
+            let normal = (b - a).cross(d - a).normalize();
+            let (width, height) = ((b - a).length(), (d - a).length());
+            let mesh = Mesh {
+                positions: positions.to_vec(),
+                normals: vec![normal; 4],
+                uvs: vec![
+                    Vec2::ZERO,
+                    Vec2::new(width, 0.0),
+                    Vec2::new(width, height),
+                    Vec2::new(0.0, height),
+                ],
+                triangles: vec![[0, 1, 2], [0, 2, 3]],
+                slots: Vec::new(),
+            };
+            self.add(name, kind, mesh, material);
+        }
+        Ok(())
+    }
+
+    fn add_mesh(
+        &mut self,
+        path: &str,
+        root: &DataRoot,
+        report: &mut Report,
+    ) -> Result<(), HousesError> {
+        let at = self.at.field("mesh");
+        let inside = DataRoot::resolve("", path).map_err(|_| HousesError::Field {
+            at: at.clone(),
+            expected: "a path inside of the file's folder",
+            found: format!("{path:?}"),
+        })?;
+        let Some(files) = read_mesh(root, &inside, report) else {
+            return Err(HousesError::Field {
+                at,
+                expected: "an OBJ file that can be read",
+                found: format!("{path:?}"),
+            });
+        };
+        let mut by_material: BTreeMap<Option<&str>, Vec<_>> = BTreeMap::new();
+        for run in files.obj.runs.iter().filter(|run| !run.faces.is_empty()) {
+            let runs = by_material.entry(run.material.as_deref()).or_default();
+            runs.push((0, run));
+        }
+        let mut meshes = Vec::new();
+        let mut bounds = Aabb::EMPTY;
+        for (name, runs) in by_material {
+            let material = self.material_of(&At::file(&inside).field("usemtl"), name)?;
+            let shape = PartShape {
+                obj: &files.obj,
+                runs,
+                box_mapping: false,
+            };
+            let mut mesh = shape_of(&shape, &At::file(&inside), report);
+            for point in mesh.positions.iter_mut().chain(&mut mesh.normals) {
+                *point = upright(*point);
+            }
+            bounds = bounds.union(&mesh.bounds());
+            meshes.push((name.unwrap_or_default(), mesh, material));
+        }
+        self.storey(bounds);
+        for (name, mesh, material) in meshes {
+            self.add(name, StructureKind::Other, mesh, material);
+        }
+        Ok(())
+    }
+
+    fn storey(&mut self, bounds: Aabb) {
+        self.data.levels.push(Level {
+            name: "0".to_owned(),
+            bounds,
+        });
+    }
+
+    fn add(&mut self, name: &str, kind: StructureKind, mesh: Mesh, material: MaterialId) {
+        let mesh = self.data.meshes.push(Arc::new(mesh));
+        self.data.structure.push(Structure {
+            name: name.to_owned(),
+            kind,
+            room: None,
+            level: LevelId(0),
+            mesh,
+            materials: vec![material],
+        });
+    }
+}

@@ -1,0 +1,56 @@
+//! Measured rooms: a box or a mesh, with what each surface absorbs and scatters.
+//!
+//! `docs/formats/measured-room.md` lists the fields. Sources, microphones and air of the same file belong to the measurement, not to
+//! the room, and are read by who measures.
+
+mod convert;
+mod file;
+
+use crate::error::HousesError;
+use crate::limits::MAX_TEXT_BYTES;
+use crate::report::{At, Report};
+use crate::root::DataRoot;
+use dwell_scene::House;
+use file::RoomFile;
+use std::path::Path;
+
+/// Whether `path` is a measured room: a JSON file that speaks of materials and of absorption.
+pub(crate) fn recognizes(path: &Path) -> bool {
+    let is_json = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    if !is_json {
+        return false;
+    }
+    let Ok(bytes) = crate::root::read_capped(path, "", MAX_TEXT_BYTES) else {
+        return false;
+    };
+    let speaks = |word: &[u8]| bytes.windows(word.len()).any(|window| window == word);
+    speaks(b"\"absorption\"")
+        && speaks(b"\"materials\"")
+        && (speaks(b"\"shoebox\"") || speaks(b"\"mesh\""))
+}
+
+/// Opens a measured room. Z is up in the file, Y in the house: (x, y, z) becomes (x, z, -y).
+///
+/// # Errors
+/// [`HousesError::Io`] when a file cannot be read, [`HousesError::Syntax`] when it is no JSON of that form, [`HousesError::Field`]
+/// for a wall or face without a material and for tables of another length than the bands, [`HousesError::Leaves`] for a mesh outside of
+/// the file's folder, [`HousesError::Empty`] without a triangle, [`HousesError::Scene`] when a number is out of range.
+pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    std::fs::metadata(path).map_err(HousesError::io(path))?;
+    let root = DataRoot::new(folder)?;
+    let bytes = root.read_named(&name, MAX_TEXT_BYTES)?;
+    let at = At::file(&*name);
+    let file: RoomFile = serde_json::from_slice(&bytes).map_err(|error| HousesError::Syntax {
+        at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
+        message: error.to_string(),
+    })?;
+    let stem = name.rsplit_once('.').map_or(&*name, |(stem, _)| stem);
+    let mut report = Report::new();
+    let data = convert::convert(&file, stem, (&root, &at), &mut report)?;
+    let house = House::new(data).map_err(HousesError::scene(&at))?;
+    Ok((house, report))
+}

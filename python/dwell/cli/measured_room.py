@@ -1,0 +1,171 @@
+"""``dwell ir SCENE.json``: every impulse response of a measured room, as the scorers read them."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dwell.arguments import finite, whole
+from dwell.cli.common import Bar, atomic, print_json
+
+_AIR = {"temperature_c": 20.0, "humidity_pct": 50.0, "pressure_pa": 101325.0}
+
+
+@dataclass(frozen=True)
+class MeasuredRoom:
+    """What a scene file says beside its walls. ``docs/formats/measured-room.md``."""
+
+    path: Path
+    rate_hz: int
+    duration_s: float
+    air: dict[str, float]
+    sources: dict[str, tuple[float, float, float]]
+    receivers: dict[str, tuple[float, float, float]]
+
+    @classmethod
+    def read(cls, path: Path) -> MeasuredRoom:
+        """Reads a scene file.
+
+        Raises:
+            ValueError: A field is not what it must be; it names the field.
+        """
+        try:
+            file = json.loads(path.read_text(encoding="utf-8"))
+        except json.JSONDecodeError as error:
+            raise ValueError(f"{path}: {error}") from None
+        if not isinstance(file, dict):
+            raise ValueError(f"{path}: expected an object, found {type(file).__name__}")
+        air = _object(path, "air", file.get("air", {}))
+        return cls(
+            path=path,
+            rate_hz=whole(f"{path}: fs", file.get("fs", 48000), low=8000, high=192_000),
+            duration_s=finite(f"{path}: duration_s", file.get("duration_s", 2.0)),
+            air={
+                name: finite(f"{path}: air.{name}", air.get(name, usual))
+                for name, usual in _AIR.items()
+            },
+            sources=_places(path, "sources", file),
+            receivers=_places(path, "receivers", file),
+        )
+
+    def config(self) -> dict[str, Any]:
+        """Its rate, duration and air, as ``AcousticScene`` takes them."""
+        return {
+            "rate_hz": self.rate_hz,
+            "max_duration_s": self.duration_s,
+            "air": {
+                "temperature_c": self.air["temperature_c"],
+                "humidity_pct": self.air["humidity_pct"],
+                "pressure_kpa": self.air["pressure_pa"] / 1000.0,
+            },
+        }
+
+
+def is_measured_room(house: str) -> bool:
+    """Whether a HOUSE string names a scene file with sources and receivers."""
+    path = Path(house)
+    if path.suffix.lower() != ".json" or not path.is_file():
+        return False
+    text = path.read_bytes()
+    return b'"receivers"' in text and b'"absorption"' in text
+
+
+def run(args: argparse.Namespace) -> int:
+    """Computes all responses, writes them, and prints what they took."""
+    from dwell.acoustics import AcousticScene
+
+    room = MeasuredRoom.read(Path(args.house))
+    sources = _picked("--sources", room.sources, args.sources)
+    receivers = _picked("--receivers", room.receivers, args.receivers)
+    started = time.perf_counter()
+    scene = AcousticScene(args.house, rays=args.rays, image_order=args.image_order, **room.config())
+    built = time.perf_counter()
+    length = round(room.duration_s * room.rate_hz)
+    responses = np.zeros((len(sources), len(receivers), length), np.float32)
+    bar, done, pairs = Bar(), 0, len(sources) * len(receivers)
+    for i, source in enumerate(sources.values()):
+        for j, receiver in enumerate(receivers.values()):
+            one: NDArray[np.float32] = scene.impulse_response(
+                source, receiver, seed=args.seed, threads=args.threads
+            )
+            used = min(one.shape[1], length)
+            responses[i, j, :used] = one[0, :used]
+            done += 1
+            bar(done / pairs, f"{done} of {pairs} responses")
+    took = time.perf_counter() - built
+    if args.out:
+        with atomic(args.out) as path, path.open("wb") as out:
+            np.savez_compressed(out, ir=responses, fs=np.int64(room.rate_hz))
+    print_json(
+        {
+            "peer": "dwell",
+            "scene": Path(args.house).stem,
+            "sources": list(sources),
+            "receivers": list(receivers),
+            "fs": room.rate_hz,
+            "samples": length,
+            "rays": args.rays,
+            "order": args.image_order,
+            "threads": args.threads,
+            "build_s": round(built - started, 4),
+            "ir_s": round(took, 4),
+            "ir_s_per_pair": round(took / max(pairs, 1), 4),
+            "max_rss_mb": _resident_mb(),
+            "out": str(args.out) if args.out else None,
+        }
+    )
+    return 0
+
+
+def _resident_mb() -> float | None:
+    try:
+        import resource
+    except ImportError:  # Windows has none.
+        return None
+    return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1)
+
+
+def _object(path: Path, field: str, value: object) -> dict[str, Any]:
+    if isinstance(value, dict):
+        return value
+    raise ValueError(f"{path}: {field}: expected an object, found {type(value).__name__}")
+
+
+def _places(path: Path, field: str, file: dict[str, Any]) -> dict[str, tuple[float, float, float]]:
+    """Places by id in the house's axes: (x, y, z) with z up becomes (x, z, -y)."""
+    rows = file.get(field)
+    if not isinstance(rows, list) or not rows:
+        raise ValueError(f"{path}: {field}: expected a list of id and pos, found {rows!r:.60}")
+    places: dict[str, tuple[float, float, float]] = {}
+    for k, row in enumerate(rows):
+        at = f"{path}: {field}[{k}]"
+        known = _object(path, f"{field}[{k}]", row)
+        name, pos = known.get("id"), known.get("pos")
+        if not isinstance(name, str) or name in places:
+            raise ValueError(f"{at}.id: expected a name of its own, found {name!r}")
+        if not isinstance(pos, list) or len(pos) != 3:
+            raise ValueError(f"{at}.pos: expected [x, y, z] in metres, found {pos!r}")
+        x, y, z = (finite(f"{at}.pos", number) for number in pos)
+        places[name] = (x, z, -y)
+    return places
+
+
+def _picked(
+    option: str, places: dict[str, tuple[float, float, float]], names: str | None
+) -> dict[str, tuple[float, float, float]]:
+    if names is None:
+        return places
+    wanted = [name for name in names.split(",") if name]
+    unknown = [name for name in wanted if name not in places]
+    if unknown or not wanted:
+        raise ValueError(
+            f"{option}: no {', '.join(unknown) or names!r}; there are {', '.join(places)}"
+        )
+    return {name: place for name, place in places.items() if name in wanted}
