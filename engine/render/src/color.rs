@@ -49,6 +49,16 @@ impl Srgb {
         self.encode[step % STEPS]
     }
 
+    /// As [`Self::encode`], of red, green and blue at once.
+    #[inline]
+    pub(crate) fn encode_vec(&self, linear: glam::Vec4) -> [u8; 3] {
+        use glam::Vec4;
+        // `max` of what is not a number is its argument, as above.
+        let within = linear.max(Vec4::ZERO).min(Vec4::ONE);
+        let [r, g, b, _] = (within * (STEPS - 1) as f32 + Vec4::splat(INTEGERS)).to_array();
+        [r, g, b].map(|sum| self.encode[sum.to_bits() as usize % STEPS])
+    }
+
     /// The bytes of a colour in linear light.
     #[inline]
     pub(crate) fn encode3(&self, linear: [f32; 3]) -> [u8; 3] {

@@ -19,13 +19,51 @@ pub(crate) struct Triangle {
     pub(crate) material: u32,
 }
 
+/// A triangle where it stands, in world space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Standing {
+    /// See [`Triangle::uv`].
+    pub(crate) uv: [Vec4; 2],
+    pub(crate) normal: Vec3,
+}
+
 impl Triangle {
-    /// Texture coordinates at a point on the triangle, in the space of its normal.
+    /// As it stands with what it moves with.
+    #[inline]
+    pub(crate) fn stand(&self, pose: Option<&Pose>) -> Standing {
+        let Some(pose) = pose else {
+            return Standing {
+                uv: self.uv,
+                normal: self.normal,
+            };
+        };
+        let uv = self.uv.map(|row| {
+            let gradient = pose.rotation * row.truncate();
+            gradient.extend(row.w - gradient.dot(pose.position))
+        });
+        Standing {
+            uv,
+            normal: pose.rotation * self.normal,
+        }
+    }
+}
+
+impl Standing {
+    /// Texture coordinates at a point on the triangle.
     #[inline]
     pub(crate) fn uv(&self, point: Vec3) -> Vec2 {
-        let point = point.extend(1.0);
-        Vec2::new(self.uv[0].dot(point), self.uv[1].dot(point))
+        let [u, v] = &self.uv;
+        Vec2::new(
+            coordinate(u, point.x, point.y, point.z),
+            coordinate(v, point.x, point.y, point.z),
+        )
     }
+}
+
+/// One texture coordinate at a point.
+#[inline(always)]
+pub(crate) fn coordinate(row: &Vec4, x: f32, y: f32, z: f32) -> f32 {
+    ((row.x * x + row.y * y) + row.z * z) + row.w
 }
 
 /// Marks a triangle whose colour needs more than [`Surfaces::quick`].
@@ -356,7 +394,7 @@ mod tests {
             material: 0,
         };
         for (corner, expected) in corners.into_iter().zip(uv) {
-            let found = triangle.uv(corner);
+            let found = triangle.stand(None).uv(corner);
             assert!(
                 (found - (expected - Vec2::new(7.0, -4.0))).length() < 1e-4,
                 "{found} {expected}"

@@ -9,27 +9,23 @@ use glam::{Vec2, Vec4};
 /// All images of a house, side by side.
 #[derive(Debug)]
 pub(crate) struct Textures {
-    /// R, G, B sRGB-encoded, alpha linear. Shape (texel,).
-    texels: Vec<[u8; 4]>,
-    /// Shape (image and level,).
-    levels: Vec<Level>,
+    /// R, G, B and alpha, all linear, in steps of 1 / [`FULL`]: four numbers that one instruction turns into `f32`, where
+    /// sRGB bytes would ask a table for each. Shape (texel,).
+    texels: Vec<[u16; 4]>,
+    /// Where each level starts. Shape (image and level,).
+    offsets: Vec<u32>,
     /// Shape (image,).
     images: Vec<Image>,
 }
 
-/// One image at one size.
-#[derive(Clone, Copy, Debug)]
-struct Level {
-    offset: u32,
-    width: u32,
-    height: u32,
-}
-
 /// One image with its levels.
 #[derive(Clone, Copy, Debug)]
-struct Image {
+pub(crate) struct Image {
     first_level: u32,
-    last_level: u32,
+    pub(crate) last_level: u32,
+    /// Of the largest level.
+    width: u32,
+    height: u32,
     /// The one colour of all its texels.
     uniform: Option<[u8; 4]>,
     /// Whether some texel lets light through.
@@ -41,7 +37,7 @@ impl Textures {
     pub(crate) fn new(house: &House) -> Self {
         let mut all = Self {
             texels: Vec::new(),
-            levels: Vec::new(),
+            offsets: Vec::new(),
             images: Vec::new(),
         };
         // What is not painted yet is painted now, on all threads.
@@ -54,7 +50,8 @@ impl Textures {
     }
 
     fn add(&mut self, texture: &Texture) {
-        let first_level = self.levels.len() as u32;
+        let srgb = Srgb::tables();
+        let first_level = self.offsets.len() as u32;
         let texels: Vec<[u8; 4]> = texture.rgba().as_chunks::<4>().0.to_vec();
         let first = texels.first().copied().unwrap_or([255; 4]);
         let uniform = texels.iter().all(|texel| *texel == first).then_some(first);
@@ -66,23 +63,22 @@ impl Textures {
         } else {
             texels
         };
+        let (width, height) = (size.0 as u32, size.1 as u32);
         loop {
-            let offset = self.texels.len() as u32;
-            self.levels.push(Level {
-                offset,
-                width: size.0 as u32,
-                height: size.1 as u32,
-            });
-            self.texels.extend_from_slice(&current);
+            self.offsets.push(self.texels.len() as u32);
+            self.texels
+                .extend(current.iter().map(|texel| linear(srgb, *texel)));
             if size == (1, 1) {
                 break;
             }
             (current, size) = halve(&current, size);
         }
-        let last_level = self.levels.len() as u32 - 1 - first_level;
+        let last_level = self.offsets.len() as u32 - 1 - first_level;
         self.images.push(Image {
             first_level,
             last_level,
+            width,
+            height,
             uniform,
             clear,
         });
@@ -100,8 +96,8 @@ impl Textures {
 
     /// Pixels across and down.
     pub(crate) fn size(&self, texture: TextureId) -> (f32, f32) {
-        let level = self.levels[self.images[texture.index()].first_level as usize];
-        (level.width as f32, level.height as f32)
+        let image = &self.images[texture.index()];
+        (image.width as f32, image.height as f32)
     }
 
     /// Memory held, bytes.
@@ -111,8 +107,15 @@ impl Textures {
 
     /// As rows: of each level its first texel, width and height; of each image its first level, last level and whether some
     /// texel lets light through. Then all texels, as bytes R, G, B, A.
-    pub(crate) fn flat(&self) -> (Vec<Row>, Vec<Row>, &[[u8; 4]]) {
-        let level = |level: &Level| [level.offset, level.width, level.height, 0];
+    pub(crate) fn flat(&self) -> (Vec<Row>, Vec<Row>, Vec<[u8; 4]>) {
+        let srgb = Srgb::tables();
+        let levels = self.images.iter().flat_map(|image| {
+            (0..=image.last_level).map(|level| {
+                let offset = self.offsets[(image.first_level + level) as usize];
+                let size = |edge: u32| (edge >> level).max(1);
+                [offset, size(image.width), size(image.height), 0]
+            })
+        });
         let image = |image: &Image| {
             [
                 image.first_level,
@@ -122,78 +125,105 @@ impl Textures {
             ]
         };
         (
-            self.levels.iter().map(level).collect(),
+            levels.collect(),
             self.images.iter().map(image).collect(),
-            &self.texels,
+            self.texels
+                .iter()
+                .map(|texel| encoded(srgb, *texel))
+                .collect(),
         )
     }
 
     /// Linear colour and alpha at `uv` (v up, repeating), of the level whose texels are about as large as the pixel:
     /// `texels_per_pixel` is the area of a pixel in texels of the largest level.
     #[inline]
-    pub(crate) fn sample(
-        &self,
-        srgb: &Srgb,
-        texture: u32,
-        uv: Vec2,
-        texels_per_pixel: f32,
-    ) -> Vec4 {
-        let image = &self.images[texture as usize];
+    pub(crate) fn sample(&self, texture: u32, uv: Vec2, texels_per_pixel: f32) -> Vec4 {
+        let image = self.image(texture);
         let level = level_of(texels_per_pixel).min(image.last_level);
-        let Level {
-            offset,
-            width,
-            height,
-        } = self.levels[image.first_level.wrapping_add(level) as usize];
-        let (x0, x1, fx) = neighbours(uv.x, width);
-        let (y0, y1, fy) = neighbours(-uv.y, height);
-        let row = |y: u32| offset.wrapping_add(y.wrapping_mul(width));
-        let (row0, row1) = (row(y0), row(y1));
-        let texel = |row: u32, x: u32| self.texels[row.wrapping_add(x) as usize];
-        let corners = [
-            texel(row0, x0),
-            texel(row0, x1),
-            texel(row1, x0),
-            texel(row1, x1),
-        ];
-        let weights = [
-            (1.0 - fx) * (1.0 - fy),
-            fx * (1.0 - fy),
-            (1.0 - fx) * fy,
-            fx * fy,
-        ];
-        let mut sum = Vec4::ZERO;
-        for ([r, g, b, _], weight) in corners.into_iter().zip(weights) {
-            sum += Vec4::new(srgb.decode(r), srgb.decode(g), srgb.decode(b), 1.0) * weight;
-        }
-        if image.clear {
-            sum.w = corners
-                .iter()
-                .zip(weights)
-                .map(|(corner, weight)| f32::from(corner[3]) * weight)
-                .sum::<f32>()
-                / 255.0;
-        }
-        sum
+        self.mixed(image, level, image.place(level, uv.x, uv.y))
+    }
+
+    #[inline]
+    pub(crate) fn image(&self, texture: u32) -> &Image {
+        &self.images[texture as usize]
+    }
+
+    /// Linear colour and alpha between four texels of a level.
+    #[inline]
+    pub(crate) fn mixed(&self, image: &Image, level: u32, at: Corners) -> Vec4 {
+        let offset = self.offsets[image.first_level.wrapping_add(level) as usize];
+        let [a, b, c, d] = at.texels.map(|texel| {
+            let [r, g, b, a] = self.texels[offset.wrapping_add(texel) as usize];
+            Vec4::new(f32::from(r), f32::from(g), f32::from(b), f32::from(a))
+        });
+        let [across, down] = at.weights;
+        mix(mix(a, b, across), mix(c, d, across), down) * (1.0 / FULL)
     }
 }
 
-/// The level on which one pixel covers about one texel: half the binary logarithm of the area, rounded.
-#[inline]
-fn level_of(texels_per_pixel: f32) -> u32 {
-    // The exponent of twice the area, halved: 0 below 2 texels, 1 below 8, 2 below 32.
-    if texels_per_pixel < 2.0 {
-        return 0;
+/// Four texels of a level, the upper two first, and the weights of the right and the lower ones.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corners {
+    pub(crate) texels: [u32; 4],
+    pub(crate) weights: [f32; 2],
+}
+
+impl Image {
+    /// The texels around texture coordinates, of a level.
+    #[inline(always)]
+    pub(crate) fn place(&self, level: u32, u: f32, v: f32) -> Corners {
+        // As [`halve`] makes them.
+        let size = |edge: u32| edge.wrapping_shr(level).max(1);
+        let (width, height) = (size(self.width), size(self.height));
+        let (left, right, across) = neighbours(u, width);
+        let (upper, lower, down) = neighbours(-v, height);
+        let (upper, lower) = (upper.wrapping_mul(width), lower.wrapping_mul(width));
+        Corners {
+            texels: [
+                upper.wrapping_add(left),
+                upper.wrapping_add(right),
+                lower.wrapping_add(left),
+                lower.wrapping_add(right),
+            ],
+            weights: [across, down],
+        }
     }
+}
+
+/// From `a` to `b`, and exactly `a` where they are equal.
+#[inline]
+fn mix(a: Vec4, b: Vec4, weight: f32) -> Vec4 {
+    a + (b - a) * weight
+}
+
+/// All light, of a texel.
+const FULL: f32 = 65_535.0;
+
+/// A texel of bytes: R, G, B sRGB-encoded, alpha linear.
+fn linear(srgb: &Srgb, [r, g, b, a]: [u8; 4]) -> [u16; 4] {
+    let light = |byte: u8| (srgb.decode(byte) * FULL + 0.5) as u16;
+    [light(r), light(g), light(b), u16::from(a) * 257]
+}
+
+/// The bytes of which [`linear`] makes a texel.
+fn encoded(srgb: &Srgb, [r, g, b, a]: [u16; 4]) -> [u8; 4] {
+    let [r, g, b] = srgb.encode3([r, g, b].map(|light| f32::from(light) / FULL));
+    [r, g, b, (a / 257) as u8]
+}
+
+/// The level on which one pixel covers about one texel: half the binary logarithm of the area, rounded.
+#[inline(always)]
+pub(crate) fn level_of(texels_per_pixel: f32) -> u32 {
+    // The exponent of twice the area, halved: 0 below 2 texels, 1 below 8, 2 below 32.
     let exponent = (texels_per_pixel.to_bits() >> 23) & 255;
-    exponent.saturating_sub(126) / 2
+    exponent.max(126).wrapping_sub(126) / 2
 }
 
 /// Adding this to a number of less than 2^21 rounds it to an integer, which the sum's last bits hold.
 const INTEGERS: f32 = 12_582_912.0;
 
 /// The nearest integer, as itself and as a number.
-#[inline]
+#[inline(always)]
 fn nearest(number: f32) -> (f32, i32) {
     let sum = number + INTEGERS;
     (
@@ -203,19 +233,19 @@ fn nearest(number: f32) -> (f32, i32) {
 }
 
 /// The two texels beside a repeating coordinate, and the weight of the second.
-#[inline]
+#[inline(always)]
 fn neighbours(coordinate: f32, size: u32) -> (u32, u32, f32) {
     // Nothing repeats a million times; what is not a number becomes one.
     let coordinate = if coordinate > -1e6 { coordinate } else { -1e6 };
     let coordinate = if coordinate < 1e6 { coordinate } else { 1e6 };
     // From the middle of the image: -1/2 to 1/2.
-    let place = (coordinate - nearest(coordinate).0) * size as f32 - 0.5;
+    let place = (coordinate - nearest(coordinate).0) * (size as i32) as f32 - 0.5;
     let (below, first) = nearest(place - 0.5);
     let (size, last) = (size as i32, size.wrapping_sub(1));
     let wrap = |k: i32| {
-        let k = if k < 0 { k.wrapping_add(size) } else { k };
-        // Images of one texel fall short once more.
-        if k < 0 { last } else { (k as u32).min(last) }
+        // Below the first texel stands the last; images of one texel fall short once more.
+        let k = k.wrapping_add(size & (k >> 31));
+        (k as u32).min(last)
     };
     (wrap(first), wrap(first.wrapping_add(1)), place - below)
 }
@@ -265,7 +295,7 @@ mod tests {
     fn single(width: u32, height: u32, rgba: Vec<u8>) -> Textures {
         let mut all = Textures {
             texels: Vec::new(),
-            levels: Vec::new(),
+            offsets: Vec::new(),
             images: Vec::new(),
         };
         all.add(&Texture::new("t".into(), width, height, rgba));
@@ -273,7 +303,7 @@ mod tests {
     }
 
     fn bytes(all: &Textures, uv: Vec2, area: f32) -> [u8; 3] {
-        let [r, g, b, _] = all.sample(Srgb::tables(), 0, uv, area).to_array();
+        let [r, g, b, _] = all.sample(0, uv, area).to_array();
         Srgb::tables().encode3([r, g, b])
     }
 
@@ -295,6 +325,19 @@ mod tests {
         assert_eq!(bytes(&all, Vec2::new(-0.75, 5.75), 0.0), [255, 0, 0]);
         // Half way between red and green, in linear light.
         assert_eq!(bytes(&all, Vec2::new(0.5, 0.75), 0.0), [188, 188, 0]);
+    }
+
+    #[test]
+    fn every_byte_survives_as_linear_light() {
+        let srgb = Srgb::tables();
+        for byte in 0..=255_u8 {
+            let texel = [byte, 255 - byte, byte, byte];
+            assert_eq!(encoded(srgb, linear(srgb, texel)), texel);
+            let light = Vec4::splat(f32::from(linear(srgb, texel)[0]) / FULL);
+            assert_eq!(srgb.encode_vec(light), [byte; 3]);
+        }
+        let nothing = Vec4::new(f32::NAN, -1.0, 2.0, 0.0);
+        assert_eq!(srgb.encode_vec(nothing), [0, 0, 255]);
     }
 
     #[test]
@@ -362,7 +405,7 @@ mod tests {
         let clear_green = [0, 255, 0, 0];
         let red = [255, 0, 0, 255];
         let all = single(2, 2, [red, clear_green, red, clear_green].concat());
-        let [r, g, b, a] = all.sample(Srgb::tables(), 0, Vec2::ZERO, 100.0).to_array();
+        let [r, g, b, a] = all.sample(0, Vec2::ZERO, 100.0).to_array();
         assert!(r > 0.99 && g == 0.0 && b == 0.0 && (a - 0.5).abs() < 0.01);
         assert!(all.is_clear(TextureId(0)));
     }

@@ -13,6 +13,7 @@ mod error;
 mod fixtures;
 mod house;
 mod ids;
+pub mod instructions;
 pub mod law;
 pub mod material;
 pub mod math;

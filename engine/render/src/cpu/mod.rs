@@ -4,6 +4,7 @@ mod alone;
 mod band;
 mod dice;
 mod full;
+mod lanes;
 mod motion;
 mod rays;
 mod shade;

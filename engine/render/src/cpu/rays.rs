@@ -38,6 +38,15 @@ pub(super) struct Packet {
     beam: Option<Box<Beam>>,
 }
 
+/// Rays from one point and what they met.
+#[derive(Clone, Copy)]
+pub(super) struct Seen<'a> {
+    pub(super) rays: &'a RayPacket<LANES>,
+    pub(super) hits: &'a PacketHits<LANES>,
+    /// Depth per length along the ray.
+    pub(super) per_length: &'a [f32; LANES],
+}
+
 /// Rays side by side.
 struct Beam {
     start: [Vec3; LANES],
@@ -115,6 +124,17 @@ impl Packet {
             instance,
             triangle,
         })
+    }
+
+    /// What pixels see, and along which rays, where those start at one point.
+    #[inline]
+    pub(super) fn from_one_point(&self) -> Option<Seen<'_>> {
+        let seen = Seen {
+            rays: &self.rays,
+            hits: &self.hits,
+            per_length: &self.per_length,
+        };
+        self.beam.is_none().then_some(seen)
     }
 
     /// Whether a pixel sees anything.

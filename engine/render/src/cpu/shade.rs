@@ -2,12 +2,12 @@
 
 use super::CpuRenderer;
 use super::band::Band;
+use super::lanes::bits;
 use super::rays::Rays;
 use super::rays::{COLUMNS, LANES, Packet, SEEN, Sight};
 use crate::color::Srgb;
 use crate::light::{Incoming, Site, beside_surface, display, sky};
 use crate::look::Look;
-use crate::surfaces::SLOW;
 use dwell_scene::bvh::Ray;
 use dwell_scene::{Entity, EntityId, Pose, State};
 use glam::Vec3;
@@ -23,7 +23,7 @@ pub(super) const MIRRORS: u32 = 2;
 /// How far off a surface its shadow ray or reflection starts, m.
 pub(super) const OFF_SURFACE_M: f32 = 1e-3;
 /// The least cosine at which a pixel's footprint still grows.
-const GRAZING: f32 = 0.05;
+pub(super) const GRAZING: f32 = 0.05;
 
 /// A pixel whose ray passed a surface.
 #[derive(Clone, Copy)]
@@ -182,16 +182,15 @@ impl CpuRenderer {
             ..
         } = sight;
         let pose = self.surfaces.pose(sight.instance, state);
-        let normal = pose.map_or(triangle.normal, |pose| pose.rotation * triangle.normal);
+        let standing = triangle.stand(pose);
+        let normal = standing.normal;
         if let Some(texture) = look.texture() {
-            let in_part =
-                |p: Vec3| pose.map_or(p, |pose| pose.rotation.inverse() * (p - pose.position));
             let (fixed, growing) = rays.pixel_area;
             let slope = normal.dot(direction).abs().max(GRAZING);
             let area = (fixed + growing * depth * depth) * sight.per_length / slope;
-            let texels = area * triangle.density * look.texels;
-            let uv = triangle.uv(in_part(point));
-            let sample = self.textures.sample(Srgb::tables(), texture, uv, texels);
+            let texels = area * (triangle.density * look.texels);
+            let uv = standing.uv(point);
+            let sample = self.textures.sample(texture, uv, texels);
             color *= sample.truncate();
             opacity *= sample.w;
         }
@@ -238,15 +237,20 @@ impl Band<'_> {
         palette: &mut Palette,
     ) {
         palette.open.count = 0;
-        let mut count = 0;
+        let mut lanes = 0_u64;
         for row in 0..rows {
-            for lane in row * COLUMNS..row * COLUMNS + columns {
-                match self.color(renderer, packet, lane) {
-                    Ok(bytes) => palette.bytes[lane] = bytes,
-                    Err(pending) => {
-                        palette.pending[count] = pending;
-                        count += 1;
-                    }
+            lanes |= ((1 << columns) - 1) << (row * COLUMNS);
+        }
+        if self.light.is_none() {
+            lanes = self.plain_colors(renderer, packet, lanes, &mut palette.bytes);
+        }
+        let mut count = 0;
+        for lane in bits(lanes) {
+            match self.color(renderer, packet, lane) {
+                Ok(bytes) => palette.bytes[lane] = bytes,
+                Err(pending) => {
+                    palette.pending[count] = pending;
+                    count += 1;
                 }
             }
         }
@@ -287,10 +291,6 @@ impl Band<'_> {
             return Ok(self.encode(self.sky(renderer, direction)));
         };
         let position = renderer.surfaces.position(sight.instance, sight.triangle);
-        let [r, g, b, kind] = renderer.surfaces.quick(position);
-        if kind != SLOW && self.light.is_none() {
-            return Ok([r, g, b]);
-        }
         let sent = self.surface(renderer, &sight, position, MIRRORS, || {
             packet.weights(self.scene, lane)
         });
@@ -357,7 +357,7 @@ impl Band<'_> {
     }
 
     #[inline]
-    fn encode(&self, light: Vec3) -> [u8; 3] {
+    pub(super) fn encode(&self, light: Vec3) -> [u8; 3] {
         let shown = if self.light.is_some() {
             display(light)
         } else {

@@ -240,12 +240,7 @@ impl Walls {
 fn mean_color(look: &Look, textures: &Textures) -> Vec3 {
     let base = Vec3::from_array(look.base);
     look.texture().map_or(base, |texture| {
-        let whole = textures.sample(
-            crate::color::Srgb::tables(),
-            texture,
-            glam::Vec2::ZERO,
-            1e12,
-        );
+        let whole = textures.sample(texture, glam::Vec2::ZERO, 1e12);
         base * whole.truncate()
     })
 }

@@ -115,6 +115,22 @@ impl<const N: usize> PacketHits<N> {
         self.slot[k] != u32::MAX
     }
 
+    /// Which rays met the same triangle of the same thing as a ray, as bits.
+    #[inline]
+    pub fn same(&self, k: usize) -> u64 {
+        let (source, slot) = (self.source[k], self.slot[k]);
+        let mut bits = 0;
+        for first in (0..N).step_by(8) {
+            let mut eight = 0_u64;
+            for lane in first..(first + 8).min(N) {
+                let is_same = (self.source[lane] == source) & (self.slot[lane] == slot);
+                eight |= u64::from(is_same) << (lane - first);
+            }
+            bits |= eight << first;
+        }
+        bits
+    }
+
     /// Which instance a ray met; nothing for static geometry.
     #[inline]
     pub fn instance(&self, k: usize) -> Option<u32> {

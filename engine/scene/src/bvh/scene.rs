@@ -1,7 +1,7 @@
 //! Rays through everything: static geometry and what moves.
 
 use super::instances::InstanceSet;
-use super::kernels::level::Level;
+use super::kernels::level::{ClosestPacket, OccludedPacket};
 use super::kernels::nearest::{Claim, Nearest, Place, reach};
 use super::kernels::single::{self, Probe};
 use super::kernels::slab::least;
@@ -11,6 +11,7 @@ use super::packet::{PacketHits, RayPacket};
 use super::ray::{Hit, Ray, RayMask};
 use super::triangles::TriangleBvh;
 use crate::bounds::Aabb;
+use crate::instructions::Level;
 
 /// A world as rays see it; a pair of references, free to make and copy.
 ///
@@ -104,7 +105,12 @@ impl SceneBvh<'_> {
         mask: RayMask,
         hidden: Option<i32>,
     ) -> u64 {
-        Level::best().occluded(self, rays, &Filter::new(mask, hidden))
+        let filter = &Filter::new(mask, hidden);
+        Level::best().run(OccludedPacket {
+            scene: self,
+            rays,
+            filter,
+        })
     }
 
     /// Everything about one ray of a packet; the same as [`Self::closest`] gives.
@@ -130,7 +136,12 @@ impl SceneBvh<'_> {
         hits: &mut PacketHits<N>,
     ) {
         let mut answers = packet::Answers::new();
-        level.closest(self, rays, filter, &mut answers);
+        level.run(ClosestPacket {
+            scene: self,
+            rays,
+            filter,
+            answers: &mut answers,
+        });
         for k in 0..N {
             if answers.is_unsure(k) {
                 let ray = rays.ray(k);

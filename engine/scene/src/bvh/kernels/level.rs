@@ -1,148 +1,50 @@
-//! Packets on several instruction levels: the same code, compiled for wider registers. No level has instructions that round
-//! differently (nothing here is fused), so all give the same bits.
-
-#![expect(
-    unsafe_code,
-    reason = "calling a function compiled for instructions that a check has found needs it"
-)]
+//! Packets on several instruction levels; see [`crate::instructions`].
 
 use super::super::packet::RayPacket;
 use super::super::scene::SceneBvh;
 use super::Filter;
 use super::everything::{closest, occluded};
 use super::packet::Answers;
+use crate::instructions::Kernel;
 
-/// An instruction level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Level {
-    /// What every machine of the kind has; SSE2 on x86-64.
-    Portable,
-    #[cfg(target_arch = "x86_64")]
-    Avx2(Checked),
-    #[cfg(target_arch = "x86_64")]
-    Avx512(Checked),
+/// Offers all hits that may matter to the answers.
+pub(in super::super) struct ClosestPacket<'a, 'b, const N: usize> {
+    pub(in super::super) scene: &'a SceneBvh<'b>,
+    pub(in super::super) rays: &'a RayPacket<N>,
+    pub(in super::super) filter: &'a Filter,
+    pub(in super::super) answers: &'a mut Answers<N>,
 }
 
-/// Proof that the machine was found to have a level's instructions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) struct Checked(());
+impl<const N: usize> Kernel for ClosestPacket<'_, '_, N> {
+    type Output = ();
 
-impl Level {
-    /// Every level that this machine has, the best last.
-    #[cfg(target_arch = "x86_64")]
-    pub(in super::super) fn available() -> impl Iterator<Item = Self> {
-        let avx2 = is_x86_feature_detected!("avx2");
-        let avx512 = is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512vl")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512bw");
-        let levels = [
-            Some(Self::Portable),
-            avx2.then_some(Self::Avx2(Checked(()))),
-            avx512.then_some(Self::Avx512(Checked(()))),
-        ];
-        levels.into_iter().flatten()
-    }
-
-    /// Every level that this machine has, the best last.
-    #[cfg(not(target_arch = "x86_64"))]
-    pub(in super::super) fn available() -> impl Iterator<Item = Self> {
-        std::iter::once(Self::Portable)
-    }
-
-    /// The best level that this machine has.
-    #[inline]
-    pub(in super::super) fn best() -> Self {
-        static BEST: std::sync::OnceLock<Level> = std::sync::OnceLock::new();
-        *BEST.get_or_init(|| Self::available().last().unwrap_or(Self::Portable))
-    }
-
-    /// Offers all hits that may matter to the answers.
-    #[inline]
-    pub(in super::super) fn closest<const N: usize>(
-        self,
-        scene: &SceneBvh<'_>,
-        rays: &RayPacket<N>,
-        filter: &Filter,
-        answers: &mut Answers<N>,
-    ) {
-        match self {
-            Self::Portable => closest(scene, rays, filter, answers),
-            // SAFETY: `Checked` is made by `available` alone, after it found AVX2.
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(_) => unsafe { closest_avx2(scene, rays, filter, answers) },
-            // SAFETY: `Checked` is made by `available` alone, after it found AVX-512 F, VL, DQ and BW.
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512(_) => unsafe { closest_avx512(scene, rays, filter, answers) },
-        }
-    }
-
-    /// Which rays meet anything, as bits.
-    #[inline]
-    pub(in super::super) fn occluded<const N: usize>(
-        self,
-        scene: &SceneBvh<'_>,
-        rays: &RayPacket<N>,
-        filter: &Filter,
-    ) -> u64 {
-        match self {
-            Self::Portable => occluded(scene, rays, filter),
-            // SAFETY: `Checked` is made by `available` alone, after it found AVX2.
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(_) => unsafe { occluded_avx2(scene, rays, filter) },
-            // SAFETY: `Checked` is made by `available` alone, after it found AVX-512 F, VL, DQ and BW.
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512(_) => unsafe { occluded_avx512(scene, rays, filter) },
-        }
+    #[inline(always)]
+    fn run(self) {
+        closest(self.scene, self.rays, self.filter, self.answers);
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn closest_avx2<const N: usize>(
-    s: &SceneBvh<'_>,
-    rays: &RayPacket<N>,
-    filter: &Filter,
-    answers: &mut Answers<N>,
-) {
-    closest(s, rays, filter, answers);
+/// Which rays meet anything, as bits.
+pub(in super::super) struct OccludedPacket<'a, 'b, const N: usize> {
+    pub(in super::super) scene: &'a SceneBvh<'b>,
+    pub(in super::super) rays: &'a RayPacket<N>,
+    pub(in super::super) filter: &'a Filter,
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
-fn closest_avx512<const N: usize>(
-    s: &SceneBvh<'_>,
-    rays: &RayPacket<N>,
-    filter: &Filter,
-    answers: &mut Answers<N>,
-) {
-    closest(s, rays, filter, answers);
-}
+impl<const N: usize> Kernel for OccludedPacket<'_, '_, N> {
+    type Output = u64;
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn occluded_avx2<const N: usize>(
-    scene: &SceneBvh<'_>,
-    rays: &RayPacket<N>,
-    filter: &Filter,
-) -> u64 {
-    occluded(scene, rays, filter)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
-fn occluded_avx512<const N: usize>(
-    scene: &SceneBvh<'_>,
-    rays: &RayPacket<N>,
-    filter: &Filter,
-) -> u64 {
-    occluded(scene, rays, filter)
+    #[inline(always)]
+    fn run(self) -> u64 {
+        occluded(self.scene, self.rays, self.filter)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::bvh::{Instance, InstanceSet, PacketHits, RayMask, TriangleBvh, TriangleTag};
+    use crate::instructions::Level;
     use crate::random::{Key, Stream};
     use glam::{Affine3A, Quat, Vec3};
     use std::sync::Arc;
@@ -178,7 +80,11 @@ mod tests {
             let answer = |level: Level| {
                 let mut hits = PacketHits::<N>::new();
                 scene.closest_packet_at(level, &rays, &filter, &mut hits);
-                let blocked = level.occluded(scene, &rays, &filter);
+                let blocked = level.run(OccludedPacket {
+                    scene,
+                    rays: &rays,
+                    filter: &filter,
+                });
                 (hits, blocked)
             };
             let (hits, blocked) = answer(Level::Portable);

@@ -1,0 +1,93 @@
+//! The same code, compiled for wider registers and chosen when it runs. No level has instructions that round differently
+//! (nothing is fused), so all give the same bits.
+
+#![expect(
+    unsafe_code,
+    reason = "calling a function compiled for instructions that a check has found needs it"
+)]
+
+/// Work on many numbers side by side, in loops that become vector instructions.
+///
+/// A trait, not a closure: what is not `#[inline(always)]` does not use the instructions of the function around it, and
+/// closures cannot be made so.
+pub trait Kernel {
+    /// What comes of it.
+    type Output;
+
+    /// Does the work; to be marked `#[inline(always)]`, like everything costly that it calls.
+    fn run(self) -> Self::Output;
+}
+
+/// An instruction level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// What every machine of the kind has; SSE2 on x86-64.
+    Portable,
+    /// 256 bits.
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Checked),
+    /// 512 bits; F, VL, DQ and BW.
+    #[cfg(target_arch = "x86_64")]
+    Avx512(Checked),
+}
+
+/// Proof that the machine was found to have a level's instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Checked(());
+
+impl Level {
+    /// Every level that this machine has, the best last.
+    #[cfg(target_arch = "x86_64")]
+    pub fn available() -> impl Iterator<Item = Self> {
+        let avx2 = is_x86_feature_detected!("avx2");
+        let avx512 = is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512bw");
+        let levels = [
+            Some(Self::Portable),
+            avx2.then_some(Self::Avx2(Checked(()))),
+            avx512.then_some(Self::Avx512(Checked(()))),
+        ];
+        levels.into_iter().flatten()
+    }
+
+    /// Every level that this machine has, the best last.
+    #[cfg(not(target_arch = "x86_64"))]
+    pub fn available() -> impl Iterator<Item = Self> {
+        std::iter::once(Self::Portable)
+    }
+
+    /// The best level that this machine has.
+    #[inline]
+    pub fn best() -> Self {
+        static BEST: std::sync::OnceLock<Level> = std::sync::OnceLock::new();
+        *BEST.get_or_init(|| Self::available().last().unwrap_or(Self::Portable))
+    }
+
+    /// Does the work with the instructions of this level.
+    #[inline]
+    pub fn run<K: Kernel>(self, work: K) -> K::Output {
+        match self {
+            Self::Portable => work.run(),
+            // SAFETY: `Checked` is made by `available` alone, after it found AVX2.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => unsafe { run_avx2(work) },
+            // SAFETY: `Checked` is made by `available` alone, after it found AVX-512 F, VL, DQ and BW.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => unsafe { run_avx512(work) },
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn run_avx2<K: Kernel>(work: K) -> K::Output {
+    work.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+fn run_avx512<K: Kernel>(work: K) -> K::Output {
+    work.run()
+}
