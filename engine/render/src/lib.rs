@@ -36,6 +36,7 @@ mod camera;
 mod color;
 mod cpu;
 mod error;
+mod footprint;
 mod frame;
 mod gpu;
 pub mod laws;

@@ -60,6 +60,15 @@ impl Standing {
     }
 }
 
+impl Standing {
+    /// How texture coordinates change along a way on the triangle.
+    #[inline]
+    pub(crate) fn uv_along(&self, way: Vec3) -> Vec2 {
+        let [u, v] = &self.uv;
+        Vec2::new(u.truncate().dot(way), v.truncate().dot(way))
+    }
+}
+
 /// One texture coordinate at a point.
 #[inline(always)]
 pub(crate) fn coordinate(row: &Vec4, x: f32, y: f32, z: f32) -> f32 {

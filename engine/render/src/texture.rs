@@ -169,6 +169,12 @@ pub(crate) struct Corners {
 }
 
 impl Image {
+    /// Pixels across and down.
+    #[inline]
+    pub(crate) fn size(&self) -> Vec2 {
+        Vec2::new(self.width as f32, self.height as f32)
+    }
+
     /// The texels around texture coordinates, of a level.
     #[inline(always)]
     pub(crate) fn place(&self, level: u32, u: f32, v: f32) -> Corners {

@@ -12,8 +12,8 @@
 use super::CpuRenderer;
 use super::band::Band;
 use super::rays::{LANES, Packet, Seen};
-use super::shade::GRAZING;
 use crate::color::Srgb;
+use crate::footprint::GRAZING;
 use crate::surfaces::{SLOW, Standing, coordinate};
 use crate::texture::{Corners, Image, level_of};
 use dwell_scene::instructions::{Kernel, Level};

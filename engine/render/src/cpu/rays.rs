@@ -335,6 +335,11 @@ impl Rays {
         Some((ray, 1.0 / length))
     }
 
+    /// Whether the picture shows no light.
+    pub(super) fn is_flat(&self) -> bool {
+        self.view.preset == Preset::Flat
+    }
+
     /// Whether the picture has all light.
     pub(super) fn is_full(&self) -> bool {
         self.view.preset == Preset::Full

@@ -6,6 +6,7 @@ use super::lanes::bits;
 use super::rays::Rays;
 use super::rays::{COLUMNS, LANES, Packet, SEEN, Sight};
 use crate::color::Srgb;
+use crate::footprint::{Footprint, GRAZING};
 use crate::light::{Incoming, Site, beside_surface, display, sky};
 use crate::look::Look;
 use dwell_scene::bvh::Ray;
@@ -22,9 +23,6 @@ pub(super) const GAP: (f32, f32) = (2e-4, 2e-6);
 pub(super) const MIRRORS: u32 = 2;
 /// How far off a surface its shadow ray or reflection starts, m.
 pub(super) const OFF_SURFACE_M: f32 = 1e-3;
-/// The least cosine at which a pixel's footprint still grows.
-pub(super) const GRAZING: f32 = 0.05;
-
 /// A pixel whose ray passed a surface.
 #[derive(Clone, Copy)]
 struct Open {
@@ -186,11 +184,17 @@ impl CpuRenderer {
         let normal = standing.normal;
         if let Some(texture) = look.texture() {
             let (fixed, growing) = rays.pixel_area;
-            let slope = normal.dot(direction).abs().max(GRAZING);
-            let area = (fixed + growing * depth * depth) * sight.per_length / slope;
-            let texels = area * (triangle.density * look.texels);
+            let area = (fixed + growing * depth * depth) * sight.per_length;
             let uv = standing.uv(point);
-            let sample = self.textures.sample(texture, uv, texels);
+            let sample = if rays.is_flat() {
+                let slope = normal.dot(direction).abs().max(GRAZING);
+                let texels = area / slope * (triangle.density * look.texels);
+                self.textures.sample(texture, uv, texels)
+            } else {
+                let size = self.textures.image(texture).size();
+                let footprint = Footprint::new(&standing, direction, area.sqrt(), size);
+                footprint.sample(&self.textures, texture, uv)
+            };
             color *= sample.truncate();
             opacity *= sample.w;
         }

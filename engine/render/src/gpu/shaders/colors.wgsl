@@ -18,10 +18,6 @@ fn plain_sky(direction: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(0.42, 0.42, 0.38);
 }
 
-// Presets of a view.
-const FLAT: u32 = 0u;
-const LIT: u32 = 1u;
-
 // Where a ray goes on behind a surface, as a distance along it.
 fn behind(distance: f32, per_length: f32) -> f32 {
     return (distance * per_length * (1.0 + GAP.y) + GAP.x) / per_length;

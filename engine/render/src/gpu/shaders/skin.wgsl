@@ -1,4 +1,8 @@
-// What is seen of a surface before light. As in `surfaces.rs` and `texture.rs`.
+// What is seen of a surface before light. As in `surfaces.rs`, `texture.rs` and `footprint.rs`.
+
+// Presets of a view.
+const FLAT: u32 = 0u;
+const LIT: u32 = 1u;
 
 // What a ray met.
 struct Sight {
@@ -103,6 +107,63 @@ fn sample(image: u32, uv: vec2<f32>, texels_per_pixel: f32) -> vec4<f32> {
     return vec4<f32>(sum.xyz, select(1.0, sum.w, header.z != 0u));
 }
 
+// The least cosine between ray and normal at which a pixel's footprint still grows.
+const GRAZING: f32 = 0.05;
+// Most samples along the longer axis of a footprint.
+const MOST_TAPS: f32 = 8.0;
+
+// Below this sine a surface is seen straight on.
+const STRAIGHT: f32 = 1e-3;
+
+// Some unit vector across another. Source: T. Duff et al., JCGT 6(1), 2017: orthonormal basis.
+fn any_across(n: vec3<f32>) -> vec3<f32> {
+    let side = select(-1.0, 1.0, n.z >= 0.0);
+    let a = -1.0 / (side + n.z);
+    return vec3<f32>(n.x * n.y * a, side + n.y * n.y * a, -n.y);
+}
+
+// A triangle's map to texture coordinates, for ways on it.
+struct Ways {
+    u: vec3<f32>,
+    v: vec3<f32>,
+    size: vec2<f32>,
+}
+
+fn uv_along(ways: Ways, way: vec3<f32>) -> vec2<f32> {
+    return vec2<f32>(dot(ways.u, way), dot(ways.v, way));
+}
+
+// The mean over what a ray of this width covers of an image. As in `footprint.rs`.
+fn sample_along(image: u32, uv: vec2<f32>, ways: Ways, normal: vec3<f32>, direction: vec3<f32>, width: f32) -> vec4<f32> {
+    let along = dot(normal, direction);
+    var ahead = direction - normal * along;
+    let sine = length(ahead);
+    if sine > STRAIGHT {
+        ahead /= sine;
+    } else {
+        ahead = any_across(normal);
+    }
+    let beside = cross(normal, ahead);
+    var long = uv_along(ways, ahead) * (width / max(abs(along), GRAZING));
+    let other = uv_along(ways, beside) * width;
+    let a = length(long * ways.size);
+    let b = length(other * ways.size);
+    if a < b {
+        long = other;
+    }
+    let most = max(a, b);
+    let wide = max(max(min(a, b), most / MOST_TAPS), 1.0);
+    let taps = clamp(u32(most / wide + 0.75), 1u, u32(MOST_TAPS));
+    let step = long / f32(taps);
+    var at = uv - step * (0.5 * f32(taps - 1u));
+    var sum = vec4<f32>(0.0);
+    for (var tap = 0u; tap < taps; tap += 1u) {
+        sum += sample(image, at, wide * wide);
+        at += step;
+    }
+    return sum / f32(taps);
+}
+
 struct Skin {
     color: vec3<f32>,
     opacity: f32,
@@ -122,11 +183,21 @@ fn skin_of(v: View, s: Sight) -> Skin {
     var skin = Skin(base.xyz, base.w, rotate(place.rotation, numbers(facts).xyz), glow.xyz, more.y != 0u);
     if more.x != NOTHING {
         let area = numbers(frame[v.row + 11u]).xy;
-        let slope = max(abs(dot(skin.normal, s.direction)), 0.05);
-        let covered = (area.x + area.y * s.depth * s.depth) * s.per_length / slope;
+        let covered = (area.x + area.y * s.depth * s.depth) * s.per_length;
         let point = vec4<f32>(into(place, s.point), 1.0);
-        let uv = vec2<f32>(dot(numbers(triangles[s.row]), point), dot(numbers(triangles[s.row + 1u]), point));
-        let found = sample(more.x, uv, covered * bitcast<f32>(facts.w) * glow.w);
+        let to_u = numbers(triangles[s.row]);
+        let to_v = numbers(triangles[s.row + 1u]);
+        let uv = vec2<f32>(dot(to_u, point), dot(to_v, point));
+        var found: vec4<f32>;
+        if frame[v.row + 14u].x == FLAT {
+            let slope = max(abs(dot(skin.normal, s.direction)), GRAZING);
+            found = sample(more.x, uv, covered / slope * bitcast<f32>(facts.w) * glow.w);
+        } else {
+            let size = tables[tables[0].x + tables[tables[0].y + more.x].x];
+            let ways = Ways(to_u.xyz, to_v.xyz, vec2<f32>(f32(size.y), f32(size.z)));
+            let turned = rotate(conjugate(place.rotation), s.direction);
+            found = sample_along(more.x, uv, ways, numbers(facts).xyz, turned, sqrt(covered));
+        }
         skin.color *= found.xyz;
         skin.opacity *= found.w;
     }
