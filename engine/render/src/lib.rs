@@ -3,6 +3,10 @@
 //! A [`CpuRenderer`] is made once for a house and renders [`View`]s of any world over it into memory of the caller:
 //! colour, depth, ids of things, ids of their classes. [`Map`] is a storey from above, [`Dollhouse`] one from outside.
 //!
+//! # Textures
+//! Bilinear on the level of an image whose texels are about as large as what a pixel covers; on lit pictures up to eight
+//! samples along the longer axis of that, so that floors far away keep their pattern.
+//!
 //! # Light
 //! [`Preset::Flat`] shows texture times colour: no lamps, the same at every time of day, the sky where nothing is.
 //!

@@ -5,6 +5,7 @@ use dwell_scene::bvh::flat::Row;
 use dwell_scene::rays::{BODY_PIECES, body_meshes};
 use dwell_scene::{House, Id, Mesh, PartId, Placed, Pose, State, SurfaceOwner};
 use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
+use std::collections::BTreeMap;
 
 /// One triangle; a cache line.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +79,7 @@ pub(crate) fn coordinate(row: &Vec4, x: f32, y: f32, z: f32) -> f32 {
 /// Marks a triangle whose colour needs more than [`Surfaces::quick`].
 pub(crate) const SLOW: u8 = 0;
 
-/// Tables over all triangles: static ones first, then those of each part that moves.
+/// Tables over all triangles: static ones first, then those of parts that move, once for all that look alike.
 #[derive(Debug)]
 pub(crate) struct Surfaces {
     /// Shape (triangle,).
@@ -87,7 +88,7 @@ pub(crate) struct Surfaces {
     corner_normals: Vec<[u32; 3]>,
     /// R, G, B of plain colours and 255, or [`SLOW`] as the last byte. Shape (triangle,).
     quick: Vec<[u8; 4]>,
-    /// First triangle of each moving instance. Shape (instance,).
+    /// First triangle of each moving instance; the same for those that look alike. Shape (instance,).
     first: Vec<u32>,
     /// The part of each moving instance. Shape (instance,).
     movable: Vec<PartId>,
@@ -117,9 +118,20 @@ impl Surfaces {
                 looks,
             );
         }
-        for part in &geometry.movable {
-            let placed = geometry.placed_part(*part);
-            all.first.push(all.triangles.len() as u32);
+        // Parts that look alike share their triangles: chairs around a table, houses side by side.
+        let mut known = BTreeMap::new();
+        for id in &geometry.movable {
+            let placed = geometry.placed_part(*id);
+            let part = &house.parts[*id];
+            let shape = placed.part_from_mesh.to_cols_array().map(f32::to_bits);
+            let next = all.triangles.len() as u32;
+            let first = *known
+                .entry((placed.mesh, shape, &part.materials))
+                .or_insert(next);
+            all.first.push(first);
+            if first < next {
+                continue;
+            }
             for triangle in 0..house.meshes[placed.mesh].triangles.len() {
                 all.add(house, placed, &placed.part_from_mesh, triangle, looks);
             }
