@@ -124,7 +124,7 @@ impl Town {
             own.texture = own.texture.map(|id| TextureId(id.0 + texture));
             data.materials.push(own);
         }
-        data.sky = data.sky.take().or_else(|| house.sky.clone());
+        data.sky = data.sky.or(house.sky);
         Shared {
             house,
             mesh,

@@ -71,6 +71,10 @@ impl Standing {
 }
 
 /// One texture coordinate at a point.
+#[expect(
+    clippy::inline_always,
+    reason = "what is not inline does not use the wider instructions of the function around it"
+)]
 #[inline(always)]
 pub(crate) fn coordinate(row: &Vec4, x: f32, y: f32, z: f32) -> f32 {
     ((row.x * x + row.y * y) + row.z * z) + row.w

@@ -1,5 +1,10 @@
 //! Textures as cameras sample them: sRGB bytes with alpha, smaller and smaller copies, bilinear.
 
+#![expect(
+    clippy::inline_always,
+    reason = "what is not inline does not use the wider instructions of the function around it"
+)]
+
 use crate::color::Srgb;
 use dwell_scene::bvh::flat::Row;
 use dwell_scene::parallel::Threads;

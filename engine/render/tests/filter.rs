@@ -26,7 +26,7 @@ fn hall() -> Arc<House> {
     let texels = (0..64 * 64).flat_map(|k| {
         let (x, y) = (k % 64, k / 64);
         let square = 64 / SQUARES as usize;
-        let byte = if (x / square + y / square) % 2 == 0 {
+        let byte = if (x / square + y / square).is_multiple_of(2) {
             255
         } else {
             0
@@ -35,7 +35,7 @@ fn hall() -> Arc<House> {
     });
     let texture = Texture::new("checker".into(), 64, 64, texels.collect());
     data.textures.push(Arc::new(texture));
-    for material in data.materials.iter_mut() {
+    for material in &mut data.materials {
         if material.name == "floor" {
             material.texture = Some(TextureId(0));
             material.base_color = [1.0; 3];
@@ -88,7 +88,7 @@ fn exact(view: &View) -> Vec<f32> {
         let floor = position - ray * (position.y / ray.y);
         // Texture coordinates run along x and against z, rows of a texture downwards.
         let square = |metres: f32| (metres.rem_euclid(1.0) * SQUARES) as u32;
-        (square(floor.x) + square(floor.z - EDGE_M)) % 2 == 0
+        (square(floor.x) + square(floor.z - EDGE_M)).is_multiple_of(2)
     };
     let middle = |k: usize, ray: usize| k as f32 + (ray as f32 + 0.5) / RAYS as f32;
     let mean = |pixel: usize| {

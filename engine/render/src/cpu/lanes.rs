@@ -110,7 +110,7 @@ impl Band<'_> {
         mut lanes: u64,
         bytes: &mut [[u8; 3]; LANES],
     ) -> u64 {
-        let Some(seen) = packet.from_one_point() else {
+        let Some(seen) = packet.seen_from_one_point() else {
             return lanes;
         };
         let mut others = 0;

@@ -128,7 +128,7 @@ impl Packet {
 
     /// What pixels see, and along which rays, where those start at one point.
     #[inline]
-    pub(super) fn from_one_point(&self) -> Option<Seen<'_>> {
+    pub(super) fn seen_from_one_point(&self) -> Option<Seen<'_>> {
         let seen = Seen {
             rays: &self.rays,
             hits: &self.hits,

@@ -82,10 +82,11 @@ impl Map {
         let mut meets: Vec<Vec<f32>> = vec![Vec::new(); height];
         for [a, b] in lines {
             let (low, high) = (a.y.min(b.y), a.y.max(b.y));
-            for y in first(low)..last(high, height) {
+            let rows = meets.iter_mut().enumerate().take(last(high, height));
+            for (y, meets) in rows.skip(first(low)) {
                 let z = middle(y);
                 if (a.y > z) != (b.y > z) {
-                    meets[y].push(a.x + (b.x - a.x) * (z - a.y) / (b.y - a.y));
+                    meets.push(a.x + (b.x - a.x) * (z - a.y) / (b.y - a.y));
                 }
             }
         }

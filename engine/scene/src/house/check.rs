@@ -114,7 +114,7 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
         exists(&at, "levels", &data.levels, room.level)?;
         let footprint = room.footprint.iter().flatten();
         let far = footprint
-            .flat_map(|point| point.to_array())
+            .flat_map(glam::Vec2::to_array)
             .chain([room.floor_y, room.ceiling_y])
             .find(|x| !is_near(*x));
         range(
