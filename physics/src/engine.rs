@@ -4,7 +4,7 @@ use crate::config::Settings;
 use crate::contact::Kept;
 use crate::laws::Compliance;
 use crate::softness;
-use crate::workspace::Workspaces;
+use crate::workspace::Workspace;
 use glam::Vec3;
 use rapier3d::dynamics::{
     FrictionModel, ImpulseJointSet, IntegrationParameters, IslandManager, RigidBody,
@@ -16,7 +16,6 @@ use rapier3d::geometry::{
 };
 use rapier3d::math::Pose;
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, QueryFilter, QueryPipeline};
-use std::sync::Arc;
 
 /// Steps of no length until the tree is back.
 const MOST_FLUSHES: usize = 4;
@@ -40,7 +39,7 @@ pub(crate) struct Engine {
     runs: u32,
     /// Whether contacts give.
     soft: bool,
-    workspaces: Arc<Workspaces>,
+    workspace: Workspace,
     /// Bodies that rapier took out since they were asked for, because their place or speed is no number.
     lost: Vec<RigidBodyHandle>,
     pub(crate) islands: IslandManager,
@@ -52,13 +51,13 @@ pub(crate) struct Engine {
 }
 
 impl Engine {
-    pub(crate) fn new(settings: &Settings, gravity_m_s2: f32, workspaces: Arc<Workspaces>) -> Self {
+    pub(crate) fn new(settings: &Settings, gravity_m_s2: f32) -> Self {
         Self {
             gravity: Vec3::new(0.0, -gravity_m_s2, 0.0),
             parameters: softness::rigid(settings),
             runs: 1,
             soft: false,
-            workspaces,
+            workspace: Workspace::new(),
             lost: Vec::new(),
             islands: IslandManager::new(),
             broad_phase: BroadPhaseBvh::new(),
@@ -218,6 +217,7 @@ impl Engine {
             flying.into_iter().partition(hit);
         self.fall(&flew, 0.5);
         self.tighten(&awake);
+        self.workspace.fit(awake.len());
         landed
     }
 
@@ -274,27 +274,24 @@ impl Engine {
         hooks: &dyn PhysicsHooks,
         events: &dyn EventHandler,
     ) {
-        let workspaces = self.workspaces.clone();
-        workspaces.lend(|workspace| {
-            workspace.pipeline.step(
-                self.gravity,
-                parameters,
-                &mut self.islands,
-                &mut self.broad_phase,
-                &mut self.narrow_phase,
-                &mut self.bodies,
-                &mut self.colliders,
-                &mut self.joints,
-                &mut workspace.multibodies,
-                &mut workspace.soft_bodies,
-                &mut workspace.ccd,
-                hooks,
-                events,
-            );
-            let found = workspace.pipeline.quarantine().bodies();
-            self.lost.extend_from_slice(found);
-            workspace.fit(self.islands.num_active_bodies());
-        });
+        let workspace = &mut self.workspace;
+        workspace.pipeline.step(
+            self.gravity,
+            parameters,
+            &mut self.islands,
+            &mut self.broad_phase,
+            &mut self.narrow_phase,
+            &mut self.bodies,
+            &mut self.colliders,
+            &mut self.joints,
+            &mut workspace.multibodies,
+            &mut workspace.soft_bodies,
+            &mut workspace.ccd,
+            hooks,
+            events,
+        );
+        let found = workspace.pipeline.quarantine().bodies();
+        self.lost.extend_from_slice(found);
     }
 
     /// Bodies that rapier took out since this was last asked.

@@ -240,7 +240,7 @@ impl PhysicsWorld {
             entries,
             ..
         } = built;
-        let mut engine = Engine::new(&self.settings, gravity, model.workspaces.clone());
+        let mut engine = Engine::new(&self.settings, gravity);
         engine.soften(&self.settings, laws::compliance(&laws));
         engine.islands = shot.islands.0.into_owned();
         engine.broad_phase = shot.broad_phase.0.into_owned();

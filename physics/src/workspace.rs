@@ -2,14 +2,13 @@
 
 use rapier3d::dynamics::{CCDSolver, MultibodyJointSet, SoftBodySet};
 use rapier3d::pipeline::PhysicsPipeline;
-use std::sync::{Mutex, PoisonError};
 
 /// Bodies whose memory is not worth giving back.
 const FEW_BODIES: usize = 64;
 /// Steps for which less than a quarter of the memory was asked for before it is given back.
 const PATIENCE_STEPS: u32 = 128;
 
-/// The parts of rapier that hold nothing between steps.
+/// The parts of rapier that hold nothing between steps. They are made anew in a copy.
 pub(crate) struct Workspace {
     pub(crate) pipeline: PhysicsPipeline,
     pub(crate) ccd: CCDSolver,
@@ -47,25 +46,15 @@ impl Workspace {
     }
 }
 
-/// The workspaces of all worlds over a house: as many as ever made a step at the same time.
-#[derive(Default)]
-pub(crate) struct Workspaces(Mutex<Vec<Workspace>>);
-
-impl Workspaces {
-    /// Lends one. It comes back unless `work` panics.
-    pub(crate) fn lend<T>(&self, work: impl FnOnce(&mut Workspace) -> T) -> T {
-        let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let lent = free().pop();
-        let mut lent = lent.unwrap_or_else(Workspace::new);
-        let done = work(&mut lent);
-        free().push(lent);
-        done
+impl Clone for Workspace {
+    fn clone(&self) -> Self {
+        Self::new()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{FEW_BODIES, PATIENCE_STEPS, Workspace, Workspaces};
+    use super::{FEW_BODIES, PATIENCE_STEPS, Workspace};
 
     #[test]
     fn memory_of_a_crowd_is_given_back_after_a_long_quiet_only() {
@@ -81,18 +70,5 @@ mod tests {
             workspace.fit(FEW_BODIES);
         }
         assert_eq!((workspace.most, workspace.quiet_steps), (0, 0));
-    }
-
-    #[test]
-    fn worlds_that_step_one_after_the_other_work_in_one() {
-        let all = Workspaces::default();
-        for awake in [10 * FEW_BODIES, FEW_BODIES] {
-            all.lend(|workspace| workspace.fit(awake));
-        }
-        all.lend(|one| {
-            assert_eq!(one.most, 10 * FEW_BODIES);
-            all.lend(|other| assert_eq!(other.most, 0));
-        });
-        assert_eq!(all.0.lock().map(|free| free.len()).ok(), Some(2));
     }
 }

@@ -103,7 +103,7 @@ pub(crate) fn assemble(
     places: impl Fn(usize) -> (RapierPose, Hold),
     weights: &Weights,
 ) -> Assembly {
-    let mut engine = Engine::new(settings, gravity_m_s2, model.workspaces.clone());
+    let mut engine = Engine::new(settings, gravity_m_s2);
     engine.soften(settings, laws::compliance(values.laws));
     let mut entries = body::insert_statics(&mut engine, model, values);
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());

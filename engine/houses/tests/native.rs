@@ -162,7 +162,7 @@ fn an_old_house_is_replaced_and_anything_else_is_not() {
 #[test]
 fn numbers_that_json_cannot_hold_are_refused_when_writing() {
     let mut data: HouseData = shoebox().data().clone();
-    data.rooms.as_mut_slice()[0].floor_y = f32::INFINITY;
+    data.levels.as_mut_slice()[0].bounds.max.x = f32::INFINITY;
     let folder = tempfile::tempdir().unwrap();
     let error =
         native::write(&House::new(data).unwrap(), &folder.path().join("a.dwell")).unwrap_err();

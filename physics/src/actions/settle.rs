@@ -32,11 +32,7 @@ impl PhysicsWorld {
     pub(super) fn settled(&self, body: usize, pose: &RapierPose) -> Option<RapierPose> {
         let plan = &self.model().bodies[body];
         let near = plan.bounds(pose).grown(NEAR_M);
-        let mut trial = Engine::new(
-            &self.settings,
-            self.engine.gravity.length(),
-            self.model().workspaces.clone(),
-        );
+        let mut trial = Engine::new(&self.settings, self.engine.gravity.length());
         let ground = trial.bodies.insert(RigidBodyBuilder::fixed());
         let queries = self.engine.queries(QueryFilter::default());
         let mut around: Vec<_> = queries

@@ -8,7 +8,6 @@ mod substance;
 pub(crate) use plan::{BodyPlan, Cover, Owner, Piece};
 
 use crate::contact::rolling::Roller;
-use crate::workspace::Workspaces;
 use dwell_scene::{Aabb, House, IdVec, ObjectId, PartId};
 use std::fmt;
 use std::sync::Arc;
@@ -28,8 +27,6 @@ pub struct PhysicsModel {
     pub(crate) rollers: Vec<Roller>,
     /// The box around all static pieces and bodies at the start, m.
     pub(crate) bounds: Aabb,
-    /// Where worlds over it make their steps.
-    pub(crate) workspaces: Arc<Workspaces>,
 }
 
 impl PhysicsModel {

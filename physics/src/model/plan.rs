@@ -327,7 +327,6 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
         body_of_part,
         stand_ins,
         bounds,
-        workspaces: Arc::default(),
     }
 }
 

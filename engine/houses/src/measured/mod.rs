@@ -26,9 +26,7 @@ pub(crate) fn recognizes(path: &Path) -> bool {
         return false;
     };
     let speaks = |word: &[u8]| bytes.windows(word.len()).any(|window| window == word);
-    speaks(b"\"absorption\"")
-        && speaks(b"\"materials\"")
-        && (speaks(b"\"shoebox\"") || speaks(b"\"mesh\""))
+    speaks(b"\"absorption\"") && speaks(b"\"materials\"")
 }
 
 /// Opens a measured room. Z is up in the file, Y in the house: (x, y, z) becomes (x, z, -y).
