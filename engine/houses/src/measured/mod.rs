@@ -32,9 +32,9 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// Opens a measured room. Z is up in the file, Y in the house: (x, y, z) becomes (x, z, -y).
 ///
 /// # Errors
-/// [`HousesError::Io`] when a file cannot be read, [`HousesError::Syntax`] when it is no JSON of that form, [`HousesError::Field`]
-/// for a wall or face without a material and for tables of another length than the bands, [`HousesError::Leaves`] for a mesh outside of
-/// the file's folder, [`HousesError::Empty`] without a triangle, [`HousesError::Scene`] when a number is out of range.
+/// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no JSON of that form, [`HousesError::Field`]
+/// for a wall or face without a material, for tables of another length than the bands, and for a mesh that cannot be read or lies outside
+/// of the file's folder, [`HousesError::Empty`] without a triangle, [`HousesError::Scene`] when a number is out of range.
 pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let name = path.file_name().unwrap_or_default().to_string_lossy();
