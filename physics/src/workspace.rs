@@ -1,4 +1,5 @@
-//! Memory that the solver works in, and nothing else: no step depends on what is in it.
+//! Memory that the solver works in for one world: made anew, it leads to the same steps. Two worlds may not share it, since rapier keeps
+//! lists of its world's fixed colliders and joints there.
 
 use rapier3d::dynamics::{CCDSolver, MultibodyJointSet, SoftBodySet};
 use rapier3d::pipeline::PhysicsPipeline;
@@ -8,7 +9,7 @@ const FEW_BODIES: usize = 64;
 /// Steps for which less than a quarter of the memory was asked for before it is given back.
 const PATIENCE_STEPS: u32 = 128;
 
-/// The parts of rapier that hold nothing between steps. They are made anew in a copy.
+/// The parts of rapier that need not be kept between steps. They are made anew in a copy.
 pub(crate) struct Workspace {
     pub(crate) pipeline: PhysicsPipeline,
     pub(crate) ccd: CCDSolver,

@@ -124,6 +124,24 @@ impl DataRoot {
     }
 }
 
+/// Whether a file is JSON by its name and holds all of these words: enough to tell formats apart, before anything is read in earnest.
+pub(crate) fn is_json_with(path: &Path, words: &[&str]) -> bool {
+    let is_json = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    if !is_json {
+        return false;
+    }
+    let Ok(bytes) = read_capped(path, "", crate::limits::MAX_TEXT_BYTES) else {
+        return false;
+    };
+    let holds = |word: &&str| {
+        let mut windows = bytes.windows(word.len());
+        windows.any(|window| window == word.as_bytes())
+    };
+    words.iter().all(holds)
+}
+
 /// Reads a file of at most `max_bytes`; `name` stands in the error.
 ///
 /// # Errors

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from dwell.arguments import finite, whole
 from dwell.cli.common import Bar, atomic, print_json
 
+# Larger files are no scenes.
+_MOST_BYTES = 64 * 1024 * 1024
 _AIR = {"temperature_c": 20.0, "humidity_pct": 50.0, "pressure_pa": 101325.0}
 
 
@@ -38,7 +40,7 @@ class MeasuredRoom:
         """
         try:
             file = json.loads(path.read_text(encoding="utf-8"))
-        except json.JSONDecodeError as error:
+        except (ValueError, RecursionError) as error:
             raise ValueError(f"{path}: {error}") from None
         if not isinstance(file, dict):
             raise ValueError(f"{path}: expected an object, found {type(file).__name__}")
@@ -72,6 +74,8 @@ def is_measured_room(house: str) -> bool:
     """Whether a HOUSE string names a scene file with sources and receivers."""
     path = Path(house)
     if path.suffix.lower() != ".json" or not path.is_file():
+        return False
+    if path.stat().st_size > _MOST_BYTES:
         return False
     text = path.read_bytes()
     return b'"receivers"' in text and b'"absorption"' in text

@@ -9,24 +9,14 @@ mod file;
 use crate::error::HousesError;
 use crate::limits::MAX_TEXT_BYTES;
 use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::root::{DataRoot, is_json_with};
 use dwell_scene::House;
 use file::RoomFile;
 use std::path::Path;
 
 /// Whether `path` is a measured room: a JSON file that speaks of materials and of absorption.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    let is_json = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-    if !is_json {
-        return false;
-    }
-    let Ok(bytes) = crate::root::read_capped(path, "", MAX_TEXT_BYTES) else {
-        return false;
-    };
-    let speaks = |word: &[u8]| bytes.windows(word.len()).any(|window| window == word);
-    speaks(b"\"absorption\"") && speaks(b"\"materials\"")
+    is_json_with(path, &["\"absorption\"", "\"materials\""])
 }
 
 /// Opens a measured room. Z is up in the file, Y in the house: (x, y, z) becomes (x, z, -y).

@@ -18,23 +18,13 @@ use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::{MAX_NODES, MAX_TEXT_BYTES};
 use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::root::{DataRoot, is_json_with};
 use file::{HouseFile, ObjectFile, Triple};
 use sizes::Sizes;
 
 /// Whether `path` is a house of ProcTHOR: a JSON file that speaks of its parameters and of walls.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    let is_json = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-    if !is_json {
-        return false;
-    }
-    let Ok(bytes) = crate::root::read_capped(path, "", MAX_TEXT_BYTES) else {
-        return false;
-    };
-    let speaks = |word: &[u8]| bytes.windows(word.len()).any(|window| window == word);
-    speaks(b"\"proceduralParameters\"") && speaks(b"\"walls\"")
+    is_json_with(path, &["\"proceduralParameters\"", "\"walls\""])
 }
 
 /// Opens a house. Sizes of assets come from an `asset-database.json` beside it, or up to two folders above, where there is
