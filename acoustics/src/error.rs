@@ -40,6 +40,18 @@ pub enum AcousticsError {
         /// What there is.
         known: Vec<&'static str>,
     },
+    /// A sound file that cannot be a source.
+    #[error("{name}: {what}: found {found}; allowed: {allowed}")]
+    SoundFile {
+        /// The file.
+        name: String,
+        /// What is wrong.
+        what: String,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        allowed: String,
+    },
     /// A buffer has the wrong length.
     #[error("{at}: expected {expected} samples, found {found}")]
     Buffer {

@@ -42,6 +42,7 @@ __all__ = [
     "map",
     "max_text_length",
     "sensors_json",
+    "signals_json",
     "surfaces",
     "synthesize",
     "tasks_json",
@@ -141,6 +142,13 @@ class World:
         """``view_json``: ``{camera, position, yaw_deg, pitch_deg | forward}`` or ``{camera, agent}``."""
     def listen(self, agent: int, samples: int) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, shape (2, samples), Pa. Call once after each step, for each agent that listens."""
+    def play(self, sound_json: str) -> int:
+        """``{sound: {signal | file: name}, at: {position | object | agent: ...}, level_db, loops}``."""
+    def stop_sound(self, handle: int) -> None: ...
+    def start_sound(self, handle: int) -> None: ...
+    def set_sound_level(self, handle: int, level_db: float) -> None: ...
+    def sounds_json(self) -> str:
+        """``[{handle, sound, position, level_db, loops, on, object}, ...]``."""
     def navigation(self, config_json: str = ...) -> Navigation: ...
     def follow(self, navigation: Navigation) -> int:
         """Brings a grid up to date with what has moved; returns how many columns were looked at."""
@@ -245,6 +253,8 @@ def max_text_length() -> int: ...
 def doctor_json() -> str: ...
 def expand(house: str) -> list[str]: ...
 def synthesize(signal: str, rate_hz: int, samples: int) -> NDArray[np.float32]: ...
+def signals_json() -> str:
+    """``[{name, description, loop_s, usual_level_db}, ...]``."""
 def calibrate(
     measured: str,
     house: str | None = ...,

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell._native import ConfigError
-from dwell.arguments import fields, finite, mapping, text, whole
+from dwell.arguments import fields, finite, mapping, path, text, whole
 
 #: Laws to install; or what calibration found (laws and parameters), as a mapping or by path.
 Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[Mapping[str, Any]] | None
@@ -94,6 +94,8 @@ def world_settings(
     for name in further:
         if name.endswith("_hz"):
             finite(name, further[name])
+    if further.get("sound_root") is not None:
+        further = {**further, "sound_root": path("sound_root", further["sound_root"])}
     rows, values = found(laws)
     if (renderer := os.environ.get("DWELL_RENDERER")) and "renderer" not in further:
         further = {**further, "renderer": renderer}

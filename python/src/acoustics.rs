@@ -139,3 +139,17 @@ pub(crate) fn synthesize<'py>(
     py.engine(|| dwell_acoustics::signals::synthesize(signal, rate_hz, 0, &mut out))?;
     Ok(out.into_pyarray(py))
 }
+
+/// The built-in signals: `[{name, description, loop_s, usual_level_db}, ...]`.
+#[pyfunction]
+pub(crate) fn signals_json() -> String {
+    let rows = dwell_acoustics::signals::list().iter().map(|signal| {
+        serde_json::json!({
+            "name": signal.name,
+            "description": signal.description,
+            "loop_s": signal.loop_s,
+            "usual_level_db": signal.usual_level_db,
+        })
+    });
+    serde_json::Value::from(rows.collect::<Vec<_>>()).to_string()
+}

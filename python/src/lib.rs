@@ -40,6 +40,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(facts::doctor_json, module)?)?;
     module.add_function(wrap_pyfunction!(facts::expand, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::synthesize, module)?)?;
+    module.add_function(wrap_pyfunction!(acoustics::signals_json, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::calibrate, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::calibration_example, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::check_measured, module)?)?;

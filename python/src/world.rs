@@ -7,6 +7,7 @@ use crate::navigation::PyNavigation;
 use crate::picture;
 use crate::running::Running;
 use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
+use dwell::{PlayRequest, SoundName, SoundPlace};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
 use dwell_scene::random::Key;
 use dwell_scene::{Address, JointCommand, JointId, Pose, Velocity};
@@ -56,6 +57,24 @@ struct AgentRow {
     yaw_rate_rad_s: f32,
     crouched_by_m: f32,
     wheel_rad_s: Option<[f32; 2]>,
+}
+
+/// A sound to play, as Python says it.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SoundRow {
+    sound: SoundName,
+    at: PlaceRow,
+    level_db: Option<f32>,
+    loops: bool,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum PlaceRow {
+    Position([f32; 3]),
+    Object(String),
+    Agent(usize),
 }
 
 fn stopped() -> Fault {
@@ -228,6 +247,48 @@ impl PyWorld {
             Ok(heard)
         })?;
         heard.into_pyarray(py).reshape([2, samples])
+    }
+
+    fn play(&self, py: Python<'_>, sound_json: &str) -> PyResult<u64> {
+        self.with(py, |running| {
+            let row: SoundRow = serde_json::from_str(sound_json)?;
+            let place = match row.at {
+                PlaceRow::Position(position) => SoundPlace::Point(position.into()),
+                PlaceRow::Object(name) => SoundPlace::Object(running.object(&json!(name))?),
+                PlaceRow::Agent(agent) => SoundPlace::Agent(running.agent(agent)?),
+            };
+            let usual_db = dwell::usual_level_db(&row.sound)?;
+            let Some(level_db) = row.level_db.or(usual_db) else {
+                let message = "level_db is missing; a file does not say how loud it was";
+                return Err(Fault::Config(message.to_owned()));
+            };
+            Ok(running.world.play(PlayRequest {
+                sound: row.sound,
+                place,
+                level_db,
+                loops: row.loops,
+            })?)
+        })
+    }
+
+    fn stop_sound(&self, py: Python<'_>, handle: u64) -> PyResult<()> {
+        self.with(py, |running| Ok(running.world.stop_sound(handle)?))
+    }
+
+    fn start_sound(&self, py: Python<'_>, handle: u64) -> PyResult<()> {
+        self.with(py, |running| Ok(running.world.start_sound(handle)?))
+    }
+
+    fn set_sound_level(&self, py: Python<'_>, handle: u64, level_db: f32) -> PyResult<()> {
+        self.with(py, |running| {
+            Ok(running.world.set_sound_level(handle, level_db)?)
+        })
+    }
+
+    fn sounds_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            Ok(serde_json::to_string(&running.world.sounds())?)
+        })
     }
 
     #[pyo3(signature = (config_json="{}"))]

@@ -165,7 +165,13 @@ pub fn info(name: &str) -> Result<&'static SignalInfo, AcousticsError> {
     })
 }
 
-/// One loop of a signal, prepared for one rate.
+/// Refuses a rate that no sound is made for.
+pub(crate) fn check_rate(rate_hz: u32) -> Result<(), AcousticsError> {
+    let rate = f64::from(rate_hz);
+    crate::error::range("signals", "rate_hz", rate, (1e3, 192e3), "1000 to 192000")
+}
+
+/// One loop of a signal, or a recording, prepared for one rate.
 #[derive(Clone, Debug)]
 pub struct Signal {
     samples: Arc<[f32]>,
@@ -180,8 +186,8 @@ impl Signal {
         type Loops = BTreeMap<(&'static str, u32), Arc<[f32]>>;
         static LOOPS: Mutex<Loops> = Mutex::new(BTreeMap::new());
         let info = info(name)?;
+        check_rate(rate_hz)?;
         let rate = f64::from(rate_hz);
-        crate::error::range("signals", "rate_hz", rate, (1e3, 192e3), "1000 to 192000")?;
         let mut loops = LOOPS.lock().unwrap_or_else(PoisonError::into_inner);
         let samples = loops.entry((info.name, rate_hz)).or_insert_with(|| {
             let mut canvas = Canvas::new(
@@ -197,12 +203,16 @@ impl Signal {
         })
     }
 
+    pub(crate) fn of(samples: Arc<[f32]>) -> Self {
+        Self { samples }
+    }
+
     /// Samples of one loop, root mean square 1 Pa. Shape (sample,).
     pub fn samples(&self) -> &[f32] {
         &self.samples
     }
 
-    /// Writes the samples from `start_sample` on, Pa at 1 m for a level of 94 dB SPL.
+    /// Writes the samples from `start_sample` on, Pa at 1 m for a level of 94 dB SPL, over and over.
     pub fn read(&self, start_sample: u64, out: &mut [f32]) {
         let length = self.samples.len();
         let mut place = (start_sample % length as u64) as usize;
@@ -213,6 +223,15 @@ impl Signal {
             done += count;
             place = 0;
         }
+    }
+
+    /// Writes the samples from `start_sample` on as [`Signal::read`], once: behind the last is silence.
+    pub fn read_once(&self, start_sample: u64, out: &mut [f32]) {
+        let length = self.samples.len();
+        let start = usize::try_from(start_sample).map_or(length, |start| start.min(length));
+        let count = (length - start).min(out.len());
+        out[..count].copy_from_slice(&self.samples[start..start + count]);
+        out[count..].fill(0.0);
     }
 }
 

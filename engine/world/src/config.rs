@@ -18,6 +18,9 @@ pub struct WorldConfig {
     pub sound_rate_hz: u32,
     /// How carefully sound is traced: `"rl"` (fast, default) or `"full"`.
     pub sound_preset: String,
+    /// The folder below which sound files are, as a path; without one no file is played.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sound_root: Option<String>,
     /// Who renders pictures: `"cpu"` (default), `"gpu"`, or `"gpu:NAME"` with a part of an adapter's name.
     #[serde(skip_serializing_if = "is_default")]
     pub renderer: BackEnd,
@@ -41,6 +44,7 @@ impl Default for WorldConfig {
             physics_rate_hz: 120.0,
             sound_rate_hz: 16_000,
             sound_preset: "rl".to_owned(),
+            sound_root: None,
             renderer: BackEnd::Cpu,
             agents: vec![AgentBody::default()],
             laws: Vec::new(),

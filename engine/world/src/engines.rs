@@ -2,7 +2,9 @@
 
 use crate::config::WorldConfig;
 use crate::error::WorldError;
+use crate::recordings::Recordings;
 use crate::start::Start;
+use dwell_acoustics::signals::Signal;
 use dwell_acoustics::{AcousticConfig, AcousticScene};
 use dwell_physics::PhysicsModel;
 use dwell_render::{BackEnd, CpuRenderer, Renderer};
@@ -23,6 +25,7 @@ pub struct Engines {
     physics: OnceLock<Arc<PhysicsModel>>,
     /// By preset and sample rate.
     acoustics: Mutex<BTreeMap<(String, u32), AcousticScene>>,
+    recordings: Recordings,
     /// For the walker whose radius, height and step these are; others get a grid of their own.
     navigation: OnceLock<(NavConfig, Arc<NavGrid>)>,
     /// Of the latest config, as long as a world of it is left.
@@ -39,6 +42,7 @@ impl Engines {
             semantics: OnceLock::new(),
             physics: OnceLock::new(),
             acoustics: Mutex::default(),
+            recordings: Recordings::default(),
             navigation: OnceLock::new(),
             start: Mutex::default(),
         })
@@ -121,6 +125,16 @@ impl Engines {
             .entry((preset.to_owned(), rate_hz))
             .or_insert(scene)
             .clone())
+    }
+
+    /// A sound file below `root` at a sample rate, and its check sum; read once.
+    pub(crate) fn recording(
+        &self,
+        root: Option<&str>,
+        name: &str,
+        rate_hz: u32,
+    ) -> Result<(Signal, u64), WorldError> {
+        self.recordings.open(root, name, rate_hz)
     }
 
     /// Where a body can walk in the house as it starts, with all doors open. The first body's grid is shared.

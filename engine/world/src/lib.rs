@@ -20,6 +20,7 @@ pub mod laws;
 pub mod metrics;
 mod past;
 mod pictures;
+mod recordings;
 mod request;
 mod requests;
 mod saving;
@@ -44,6 +45,7 @@ pub use past::Past;
 pub use pictures::{PictureRequest, Place};
 pub use request::{ActionRequest, Named, PixelCamera};
 pub use requests::{Picture, Requests, Results, ViewRequest};
+pub use sound::{PlayRequest, SoundName, SoundNow, SoundPlace, usual_level_db};
 pub use surfaces::{RoomSurface, room_surfaces};
 pub use world::World;
 

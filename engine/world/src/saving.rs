@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// What a world's snapshot begins with: its kind and version.
-const MAGIC: &[u8] = b"dwworld5";
+const MAGIC: &[u8] = b"dwworld6";
 
 /// What is told before the rest is unpacked.
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -128,7 +128,7 @@ impl World {
         let refuse = |why: String| WorldError::Snapshot(why);
         let told = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwworld5\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwworld6\"".to_owned()))?;
         let (sum, told) = told
             .split_first_chunk::<8>()
             .ok_or_else(|| refuse("it is too short".to_owned()))?;
@@ -166,7 +166,7 @@ impl World {
         }
         let sound = Sound::from_bytes(
             &self.config,
-            &self.engines,
+            (&self.engines, &state),
             parts.key.child("sound"),
             &parts.sound,
         )?;

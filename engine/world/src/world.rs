@@ -161,11 +161,6 @@ impl World {
         )
     }
 
-    /// The newest samples at an agent's ear (0 left, 1 right), Pa; zeros before it listened that long.
-    pub fn heard(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
-        self.sound.heard(agent, channel, out);
-    }
-
     /// The object in the middle of an agent's view, within 10 m.
     pub fn gaze_target(&self, agent: AgentId) -> Option<ObjectId> {
         let eye = self.state.agents.get(agent)?.world_from_eye();

@@ -1,0 +1,207 @@
+//! Sound files: WAV, FLAC and Ogg Vorbis as sources.
+//!
+//! A file is hostile until it is read: what a header claims allocates nothing, and what comes out is finite, of known length
+//! and not silent.
+
+mod flac;
+mod resample;
+mod vorbis;
+mod wav;
+
+pub use resample::resample;
+
+use crate::error::AcousticsError;
+use crate::signals::Signal;
+use std::fmt::Display;
+
+/// The most bytes that a sound file may have.
+pub const MOST_BYTES: u64 = 64 << 20;
+/// The most samples a channel that a sound may have, in its file and at the rate it is asked for: 35 minutes at 16 kHz.
+pub const MOST_SAMPLES: usize = 1 << 25;
+/// The most channels.
+const MOST_CHANNELS: u32 = 64;
+/// The allowed samples a second.
+const RATES_HZ: (u32, u32) = (1_000, 768_000);
+
+/// A sound file's samples: the mean of its channels, full scale 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    name: String,
+    rate_hz: u32,
+    channels: u32,
+    samples: Vec<f32>,
+}
+
+/// What is decoded so far: frames mixed to one channel.
+struct Mix<'a> {
+    name: &'a str,
+    rate_hz: u32,
+    channels: u32,
+    samples: Vec<f32>,
+    /// Of the frame that is not complete.
+    sum: f64,
+    taken: u32,
+}
+
+impl<'a> Mix<'a> {
+    /// Checks what the header says.
+    fn new(name: &'a str, rate_hz: u32, channels: u32) -> Result<Self, AcousticsError> {
+        let (low, high) = RATES_HZ;
+        if !(low..=high).contains(&rate_hz) {
+            let allowed = format!("{low} to {high}");
+            return Err(fault(name, "samples a second", &rate_hz, allowed));
+        }
+        if !(1..=MOST_CHANNELS).contains(&channels) {
+            let allowed = format!("1 to {MOST_CHANNELS}");
+            return Err(fault(name, "channels", &channels, allowed));
+        }
+        Ok(Self {
+            name,
+            rate_hz,
+            channels,
+            samples: Vec::new(),
+            sum: 0.0,
+            taken: 0,
+        })
+    }
+
+    /// Takes the next sample of the interleaved channels.
+    fn push(&mut self, sample: f64) -> Result<(), AcousticsError> {
+        // What is beyond 24 times full scale in 32-bit float files is damage, and would overflow what comes after.
+        if !sample.is_finite() || sample.abs() > 1e6 {
+            let at = format!("sample {}", self.samples.len());
+            return Err(fault(self.name, &at, &sample, "finite numbers to 1e6"));
+        }
+        self.sum += sample;
+        self.taken += 1;
+        if self.taken == self.channels {
+            if self.samples.len() == MOST_SAMPLES {
+                let found = format!("more than {MOST_SAMPLES}");
+                let allowed = format!("at most {MOST_SAMPLES}");
+                return Err(fault(self.name, "samples a channel", &found, allowed));
+            }
+            self.samples
+                .push((self.sum / f64::from(self.channels)) as f32);
+            (self.sum, self.taken) = (0.0, 0);
+        }
+        Ok(())
+    }
+}
+
+fn fault(
+    name: &str,
+    what: &str,
+    found: &dyn Display,
+    allowed: impl Into<String>,
+) -> AcousticsError {
+    AcousticsError::SoundFile {
+        name: name.to_owned(),
+        what: what.to_owned(),
+        found: found.to_string(),
+        allowed: allowed.into(),
+    }
+}
+
+/// The file says of itself what is not so.
+fn damaged(name: &str, error: &dyn Display) -> AcousticsError {
+    fault(name, "data", error, "a whole, undamaged file")
+}
+
+impl Recording {
+    /// Decodes a file that was read: WAV (PCM of 8, 16, 24 and 32 bits, float of 32), FLAC, Ogg Vorbis, told apart by
+    /// their first bytes. `name`: stands in errors.
+    ///
+    /// # Errors
+    /// [`AcousticsError::SoundFile`] says what was found and what is allowed: another format, damage, more than
+    /// [`MOST_BYTES`] or [`MOST_SAMPLES`], 1 to 64 channels, 1,000 to 768,000 samples a second, numbers that are not finite,
+    /// silence.
+    ///
+    /// # Determinism
+    /// WAV and FLAC give the same bits on every machine. The tables of the Vorbis decoder come from the platform's sine and
+    /// cosine: between platforms the last bits of its samples can differ.
+    pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, AcousticsError> {
+        if bytes.len() as u64 > MOST_BYTES {
+            let allowed = format!("at most {MOST_BYTES}");
+            return Err(fault(name, "bytes", &bytes.len(), allowed));
+        }
+        let mix = match bytes {
+            [b'R', b'I', b'F', b'F', ..] => wav::decode(name, bytes),
+            [b'f', b'L', b'a', b'C', ..] => flac::decode(name, bytes),
+            [b'O', b'g', b'g', b'S', ..] => vorbis::decode(name, bytes),
+            _ => {
+                let begins: Vec<u8> = bytes.iter().copied().take(4).collect();
+                let found = format!("{:?}", String::from_utf8_lossy(&begins));
+                let allowed = "WAV (\"RIFF\"), FLAC (\"fLaC\") and Ogg Vorbis (\"OggS\")";
+                return Err(fault(name, "a file that begins with", &found, allowed));
+            }
+        }?;
+        if mix.taken != 0 {
+            return Err(damaged(name, &"the last frame lacks channels"));
+        }
+        if mix.samples.iter().all(|x| *x == 0.0) {
+            let found = format!("{} samples of silence", mix.samples.len());
+            return Err(fault(name, "sound", &found, "what has a level"));
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            rate_hz: mix.rate_hz,
+            channels: mix.channels,
+            samples: mix.samples,
+        })
+    }
+
+    /// Samples a second in the file.
+    pub fn rate_hz(&self) -> u32 {
+        self.rate_hz
+    }
+
+    /// Channels in the file.
+    pub fn channels(&self) -> u32 {
+        self.channels
+    }
+
+    /// The mean of the channels. Shape (sample,), full scale 1.
+    pub fn samples(&self) -> &[f32] {
+        &self.samples
+    }
+
+    /// How long it is, s.
+    pub fn duration_s(&self) -> f64 {
+        self.samples.len() as f64 / f64::from(self.rate_hz)
+    }
+
+    /// The sound at `rate_hz` samples a second, root mean square 1 Pa over its whole length.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Range`] for a rate outside 1,000 to 192,000, [`AcousticsError::SoundFile`] for more than
+    /// [`MOST_SAMPLES`] at that rate or what is silent there.
+    pub fn signal(&self, rate_hz: u32) -> Result<Signal, AcousticsError> {
+        crate::signals::check_rate(rate_hz)?;
+        let length = resample::length(self.samples.len(), self.rate_hz, rate_hz);
+        if !(1..=MOST_SAMPLES).contains(&length) {
+            let what = format!("samples at {rate_hz} Hz");
+            let allowed = format!("1 to {MOST_SAMPLES}");
+            return Err(fault(&self.name, &what, &length, allowed));
+        }
+        let mut samples = resample(&self.samples, self.rate_hz, rate_hz);
+        let power: f64 = samples.iter().map(|x| f64::from(*x) * f64::from(*x)).sum();
+        let scale = (samples.len() as f64 / power).sqrt();
+        // Below the smallest step of 24 bits nothing but rounding is left.
+        if !scale.is_finite() || scale > 1e9 {
+            let what = format!("level at {rate_hz} Hz");
+            return Err(fault(
+                &self.name,
+                &what,
+                &"silence",
+                "what can be heard there",
+            ));
+        }
+        for sample in &mut samples {
+            *sample = (f64::from(*sample) * scale) as f32;
+        }
+        Ok(Signal::of(samples.into()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

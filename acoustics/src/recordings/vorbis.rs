@@ -1,0 +1,53 @@
+//! Ogg Vorbis, by `lewton`.
+
+use super::{Mix, damaged};
+use crate::error::AcousticsError;
+use lewton::inside_ogg::OggStreamReader;
+use lewton::samples::InterleavedSamples;
+use std::io::Cursor;
+
+pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<Mix<'a>, AcousticsError> {
+    let Some(length) = length(bytes) else {
+        return Err(damaged(name, &"it breaks off before its last page"));
+    };
+    let broken = |error: lewton::VorbisError| damaged(name, &error);
+    let mut reader = OggStreamReader::new(Cursor::new(bytes)).map_err(broken)?;
+    let (rate_hz, channels) = (
+        reader.ident_hdr.audio_sample_rate,
+        reader.ident_hdr.audio_channels,
+    );
+    let mut mix = Mix::new(name, rate_hz, u32::from(channels))?;
+    while let Some(packet) = reader
+        .read_dec_packet_generic::<InterleavedSamples<f32>>()
+        .map_err(broken)?
+    {
+        // Files that are chained may change both on their way.
+        let header = &reader.ident_hdr;
+        if (header.audio_sample_rate, header.audio_channels) != (rate_hz, channels) {
+            return Err(damaged(name, &"rate or channels change on the way"));
+        }
+        for sample in packet.samples {
+            mix.push(f64::from(sample))?;
+        }
+    }
+    // The last block is whole, the sound in it need not be.
+    let beyond = (mix.samples.len() as u64).saturating_sub(length);
+    if beyond < LONGEST_BLOCK {
+        mix.samples.truncate(mix.samples.len() - beyond as usize);
+    }
+    Ok(mix)
+}
+
+/// Samples of the longest block that the format knows.
+const LONGEST_BLOCK: u64 = 8192;
+
+/// How many samples the sound has, as its last page says; `None` when it does not end.
+fn length(bytes: &[u8]) -> Option<u64> {
+    const LAST_PAGE: u8 = 4;
+    let last = bytes
+        .windows(14)
+        .rposition(|page| page.starts_with(b"OggS"))?;
+    let header = &bytes[last..last + 14];
+    let position = header[6..].try_into().map(u64::from_le_bytes).ok()?;
+    (header[5] & LAST_PAGE != 0).then_some(position)
+}

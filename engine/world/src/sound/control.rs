@@ -1,0 +1,81 @@
+//! Sounds that are started, stopped and made louder while a world runs.
+
+use super::playing::{PlayRequest, SoundName, check_level};
+use crate::error::WorldError;
+use crate::world::World;
+use dwell_scene::AgentId;
+use serde::Serialize;
+
+/// A source of sound, and what it does now.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SoundNow {
+    /// What [`World::stop_sound`] and kin call it.
+    pub handle: u64,
+    /// What sounds.
+    pub sound: SoundName,
+    /// m.
+    pub position: [f32; 3],
+    /// Level at 1 m in the free field, dB SPL (RMS).
+    pub level_db: f32,
+    /// Whether it begins again when it is over.
+    pub loops: bool,
+    /// Whether it sounds.
+    pub on: bool,
+    /// The object whose own sound it is.
+    pub object: Option<String>,
+}
+
+impl World {
+    /// Plays a sound from the next step on, until it is over or stopped, or the world is reset. Returns its handle, which no
+    /// other sound of the world ever has.
+    ///
+    /// Sounds are part of snapshots and of the hash; of files their names and check sums.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] for a level outside -100 to 200 dB, a place that is not finite or a file without
+    /// [`sound_root`](crate::WorldConfig::sound_root), [`WorldError::Usage`] for an object or agent that does not exist,
+    /// [`WorldError::Houses`] for a file that cannot be read or lies outside the root, [`WorldError::Acoustics`] for a
+    /// signal that does not exist or a file that is no sound. Nothing has changed then.
+    pub fn play(&mut self, request: PlayRequest) -> Result<u64, WorldError> {
+        let root = self.config.sound_root.as_deref();
+        self.sound.play((&self.engines, root, &self.state), request)
+    }
+
+    /// Silences a sound within 5 ms of the next step. One that was played is forgotten; one of an object of the house begins
+    /// again with [`World::start_sound`].
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for a handle that no sound has, as of one that is over.
+    pub fn stop_sound(&mut self, handle: u64) -> Result<(), WorldError> {
+        self.sound.set_silent(self.engines.house(), handle, true)
+    }
+
+    /// Lets the sound of an object of the house sound again after [`World::stop_sound`], while the object is switched on; one
+    /// that was played and stopped in this step goes on.
+    ///
+    /// # Errors
+    /// As [`World::stop_sound`].
+    pub fn start_sound(&mut self, handle: u64) -> Result<(), WorldError> {
+        self.sound.set_silent(self.engines.house(), handle, false)
+    }
+
+    /// Sets the level at 1 m of a sound, dB SPL, from the next step on.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] for a level outside -100 to 200 dB; else as [`World::stop_sound`].
+    pub fn set_sound_level(&mut self, handle: u64, level_db: f32) -> Result<(), WorldError> {
+        check_level(level_db)?;
+        self.sound.set_level(self.engines.house(), handle, level_db)
+    }
+
+    /// All sources: those of the house's objects, whose handles are their numbers, then what was told to play. What contacts
+    /// make is not among them.
+    pub fn sounds(&self) -> Vec<SoundNow> {
+        self.sound.list(self.engines.house(), &self.state)
+    }
+
+    /// The newest samples at an agent's ear (0 left, 1 right), Pa; zeros before it listened that long.
+    pub fn heard(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
+        self.sound.heard(agent, channel, out);
+    }
+}

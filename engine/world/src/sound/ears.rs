@@ -1,0 +1,107 @@
+//! One agent's ears: a stream, and the newest samples that it gave.
+
+use super::Sounding;
+use crate::error::WorldError;
+use dwell_acoustics::{ActiveSource, Receiver, Stream};
+use dwell_scene::rays::RayScene;
+use dwell_scene::units::db_spl_from_pa;
+use dwell_scene::{AgentId, House, State};
+use glam::Vec3;
+
+/// What a wall or a closed door takes off when the loudness of a source in another room is estimated, dB.
+const OTHER_ROOM_DB: f32 = 20.0;
+/// Sources estimated below this at the ear are not followed, dB SPL: quieter than a quiet room's own noise.
+const INAUDIBLE_DB: f32 = 15.0;
+
+/// One agent's ears.
+#[derive(Debug)]
+pub(super) struct Ears {
+    pub(super) agent: AgentId,
+    pub(super) stream: Stream,
+    /// The newest samples. Shape (2, length), oldest first.
+    pub(super) window: Vec<f32>,
+    pub(super) length: usize,
+}
+
+impl Ears {
+    /// Hears the next block.
+    pub(super) fn hear(
+        &mut self,
+        house: &House,
+        rays: &RayScene,
+        state: &State,
+        sources: &[Sounding],
+    ) -> Result<(), WorldError> {
+        let Some(agent) = state.agents.get(self.agent) else {
+            return Ok(());
+        };
+        let receiver = Receiver::binaural(agent.world_from_head());
+        let active = loudest_first(house, sources, agent.eye_position());
+        let size = self.stream.config().block_samples;
+        let mut heard = vec![0.0; 2 * size];
+        self.stream
+            .block(rays, state, &active, &receiver, &mut heard)?;
+        for (window, block) in self
+            .window
+            .chunks_exact_mut(self.length)
+            .zip(heard.chunks_exact(size))
+        {
+            window.copy_within(size.., 0);
+            window[self.length - size..].copy_from_slice(block);
+        }
+        Ok(())
+    }
+
+    /// Makes the window at least `length` long; what was heard stays at its end.
+    pub(super) fn lengthen(&mut self, length: usize) {
+        if length <= self.length {
+            return;
+        }
+        let mut longer = vec![0.0; 2 * length];
+        for (new, old) in longer
+            .chunks_exact_mut(length)
+            .zip(self.window.chunks_exact(self.length))
+        {
+            new[length - self.length..].copy_from_slice(old);
+        }
+        (self.window, self.length) = (longer, length);
+    }
+
+    /// Copies the newest samples of a channel to the end of `out`.
+    pub(super) fn newest(&self, channel: usize, out: &mut [f32]) {
+        let window = &self.window[channel * self.length..(channel + 1) * self.length];
+        let count = out.len().min(window.len());
+        let first = out.len() - count;
+        out[first..].copy_from_slice(&window[window.len() - count..]);
+    }
+}
+
+/// The sources that can be heard at `ear`, the loudest first: a stream follows only so many.
+fn loudest_first<'a>(house: &House, sources: &'a [Sounding], ear: Vec3) -> Vec<ActiveSource<'a>> {
+    let room = house.room_at(ear);
+    let mut heard: Vec<(f32, ActiveSource<'a>)> = sources
+        .iter()
+        .map(|source| {
+            let signal = &source.signal;
+            let power = signal.iter().map(|x| x * x).sum::<f32>() / signal.len().max(1) as f32;
+            let spread = (source.position - ear).length().max(0.1);
+            let walls = if house.room_at(source.position) == room {
+                0.0
+            } else {
+                OTHER_ROOM_DB
+            };
+            let level_db = db_spl_from_pa(power.sqrt() / spread) - walls;
+            (
+                level_db,
+                ActiveSource {
+                    id: source.id,
+                    position: source.position,
+                    signal,
+                },
+            )
+        })
+        .filter(|(level_db, _)| *level_db > INAUDIBLE_DB)
+        .collect();
+    heard.sort_by(|(a, x), (b, y)| b.total_cmp(a).then(x.id.cmp(&y.id)));
+    heard.into_iter().map(|(_, source)| source).collect()
+}

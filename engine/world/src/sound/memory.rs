@@ -1,0 +1,107 @@
+//! Sounds as bytes: what goes on bit for bit after a restore.
+
+use super::ears::Ears;
+use super::emitters::Emitters;
+use super::events::Blow;
+use super::playing::{Playing, Told};
+use super::{FIRST_PLAYED_ID, Sound};
+use crate::config::WorldConfig;
+use crate::engines::Engines;
+use crate::error::WorldError;
+use dwell_scene::random::Key;
+use dwell_scene::{AgentId, State};
+use serde::{Deserialize, Serialize};
+
+#[derive(Serialize, Deserialize)]
+struct Memory {
+    rate_hz: u32,
+    /// Samples a control step.
+    block: usize,
+    blocks: u64,
+    blows: Vec<Blow>,
+    next_blow: u64,
+    emitters: Emitters,
+    playing: Vec<Told>,
+    next_played: u64,
+    ears: Vec<(AgentId, Vec<f32>, Vec<u8>)>,
+}
+
+impl Sound {
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        let ears = self
+            .ears
+            .iter()
+            .map(|ears| (ears.agent, ears.window.clone(), ears.stream.snapshot()));
+        let memory = Memory {
+            rate_hz: self.rate_hz,
+            block: self.block,
+            blocks: self.blocks,
+            blows: self.blows.clone(),
+            next_blow: self.next_blow,
+            emitters: self.emitters.clone(),
+            playing: self.playing.iter().map(|p| p.told.clone()).collect(),
+            next_played: self.next_played,
+            ears: ears.collect(),
+        };
+        postcard::to_stdvec(&memory).expect("plain data can always be written to memory")
+    }
+
+    /// The sounds that [`Sound::to_bytes`] wrote, for a world of these settings.
+    pub(crate) fn from_bytes(
+        config: &WorldConfig,
+        (engines, state): (&Engines, &State),
+        key: Key,
+        bytes: &[u8],
+    ) -> Result<Self, WorldError> {
+        let memory: Memory =
+            postcard::from_bytes(bytes).map_err(|error| WorldError::Snapshot(error.to_string()))?;
+        let mut sound = Self::new(config);
+        if (memory.rate_hz, memory.block) != (sound.rate_hz, sound.block) {
+            return Err(WorldError::Snapshot(format!(
+                "its sound has {} Hz in blocks of {} samples, that of the world {} Hz in blocks of {}",
+                memory.rate_hz, memory.block, sound.rate_hz, sound.block
+            )));
+        }
+        if memory.blocks == 0 {
+            return Err(WorldError::Snapshot("no block of sound is over".to_owned()));
+        }
+        (sound.blocks, sound.blows, sound.next_blow) =
+            (memory.blocks, memory.blows, memory.next_blow);
+        let house = engines.house();
+        let most = house.emitters.len() as u64;
+        let fades = memory.emitters.fades.len() as u64;
+        if memory.emitters.told.keys().any(|k| *k >= most) || (fades != 0 && fades != most) {
+            let why = "it has sounds that the house does not have";
+            return Err(WorldError::Snapshot(why.to_owned()));
+        }
+        sound.emitters = memory.emitters;
+        let root = config.sound_root.as_deref();
+        for told in memory.playing {
+            if !(FIRST_PLAYED_ID..FIRST_PLAYED_ID + memory.next_played).contains(&told.id) {
+                let why = format!("a sound with the handle {}", told.id);
+                return Err(WorldError::Snapshot(why));
+            }
+            let playing = Playing::restore((engines, root, state), sound.rate_hz, told)?;
+            sound.playing.push(playing);
+        }
+        sound.next_played = memory.next_played;
+        for (agent, window, stream) in memory.ears {
+            let length = window.len() / 2;
+            if length == 0 || length % sound.block != 0 || window.len() != 2 * length {
+                return Err(WorldError::Snapshot(format!(
+                    "a window of {} samples",
+                    window.len()
+                )));
+            }
+            let mut ears = Ears {
+                agent,
+                stream: sound.stream(engines, agent, key)?,
+                window,
+                length,
+            };
+            ears.stream.restore(&stream)?;
+            sound.ears.push(ears);
+        }
+        Ok(sound)
+    }
+}

@@ -1,0 +1,312 @@
+//! What sounds in a world, and what its agents hear.
+//!
+//! - `emitters`: the sounds of the house's own objects; `playing`: what was told to play; `control`: how both are told.
+//! - `events`: the one file that turns what touches into sounds.
+//! - `ears`: a stream for each agent that listens; `fade`: levels without clicks; `memory`: all of it as bytes.
+
+mod control;
+mod ears;
+mod emitters;
+mod events;
+mod fade;
+mod memory;
+mod playing;
+
+pub use control::SoundNow;
+pub use playing::{PlayRequest, SoundName, SoundPlace, usual_level_db};
+
+use crate::config::WorldConfig;
+use crate::engines::Engines;
+use crate::error::WorldError;
+use dwell_acoustics::{Stream, StreamConfig, signals};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{AgentId, House, State};
+use ears::Ears;
+use emitters::Emitters;
+use events::Blow;
+use glam::Vec3;
+use playing::Playing;
+
+/// Handles of sounds that are played begin here, and so do their source ids; those of emitters are their numbers.
+const FIRST_PLAYED_ID: u64 = 1 << 48;
+
+/// The sounds of a world and the ears that listen.
+#[derive(Debug)]
+pub(crate) struct Sound {
+    rate_hz: u32,
+    block: usize,
+    preset: String,
+    /// Blocks that are over. The first is the one before the world's start, so that there is something to hear at once.
+    blocks: u64,
+    blows: Vec<Blow>,
+    next_blow: u64,
+    emitters: Emitters,
+    playing: Vec<Playing>,
+    next_played: u64,
+    ears: Vec<Ears>,
+}
+
+/// What sounds in a block.
+struct Sounding {
+    id: u64,
+    /// m.
+    position: Vec3,
+    /// Pressure at 1 m, Pa. Shape (sample,).
+    signal: Vec<f32>,
+}
+
+impl Sound {
+    pub(crate) fn new(config: &WorldConfig) -> Self {
+        Self {
+            rate_hz: config.sound_rate_hz,
+            block: config.samples_per_step(),
+            preset: config.sound_preset.clone(),
+            blocks: 1,
+            blows: Vec::new(),
+            next_blow: 0,
+            emitters: Emitters::default(),
+            playing: Vec::new(),
+            next_played: 0,
+            ears: Vec::new(),
+        }
+    }
+
+    /// Silence, and no one who listens.
+    pub(crate) fn reset(&mut self) {
+        self.blocks = 1;
+        self.blows.clear();
+        self.next_blow = 0;
+        self.emitters = Emitters::default();
+        self.playing.clear();
+        self.next_played = 0;
+        self.ears.clear();
+    }
+
+    /// Ends a block: every ear hears what sounded in it.
+    pub(crate) fn advance(
+        &mut self,
+        engines: &Engines,
+        rays: &RayScene,
+        state: &State,
+    ) -> Result<(), WorldError> {
+        self.emitters.go(engines.house(), state);
+        for playing in &mut self.playing {
+            let target = playing.target();
+            playing.told.fade.go(target);
+        }
+        if !self.ears.is_empty() {
+            let sources = self.sources(engines.house(), state, self.blocks)?;
+            for ears in &mut self.ears {
+                ears.hear(engines.house(), rays, state, &sources)?;
+            }
+        }
+        self.blocks += 1;
+        // What rang in the block that has just ended is kept for ears that begin to listen after it.
+        let ended = (self.blocks - 1) * self.block as u64;
+        let rate = f64::from(self.rate_hz);
+        self.blows
+            .retain(|blow| blow.start as f64 + blow.sound.duration_s() * rate > ended as f64);
+        self.playing.retain(|playing| !playing.is_over(ended));
+        Ok(())
+    }
+
+    /// From now on these agents listen, each with a window of at least so many samples. Ears that are new hear the block that
+    /// has just ended; ears that listen already keep what they heard.
+    pub(crate) fn listen(
+        &mut self,
+        engines: &Engines,
+        rays: &RayScene,
+        state: &State,
+        agents: &[(AgentId, usize)],
+        key: Key,
+    ) -> Result<(), WorldError> {
+        for (agent, samples) in agents {
+            let length = samples.next_multiple_of(self.block).max(self.block);
+            if let Some(ears) = self.ears.iter_mut().find(|ears| ears.agent == *agent) {
+                ears.lengthen(length);
+                continue;
+            }
+            let mut ears = Ears {
+                agent: *agent,
+                stream: self.stream(engines, *agent, key)?,
+                window: vec![0.0; 2 * length],
+                length,
+            };
+            let sources = self.sources(engines.house(), state, self.blocks - 1)?;
+            ears.hear(engines.house(), rays, state, &sources)?;
+            // In the order of agents, whoever began first.
+            let place = self.ears.partition_point(|other| other.agent < *agent);
+            self.ears.insert(place, ears);
+        }
+        Ok(())
+    }
+
+    fn stream(&self, engines: &Engines, agent: AgentId, key: Key) -> Result<Stream, WorldError> {
+        let scene = engines.acoustics(&self.preset, self.rate_hz)?;
+        let Some(config) = StreamConfig::preset(&self.preset) else {
+            let allowed = "\"rl\" or \"full\"".to_owned();
+            return Err(WorldError::Config {
+                field: "sound_preset",
+                found: self.preset.clone(),
+                allowed,
+            });
+        };
+        let config = StreamConfig {
+            block_samples: self.block,
+            ..config
+        };
+        Ok(Stream::new(
+            scene,
+            config,
+            key.child("ears").child(u64::from(agent.0)),
+            Threads::ONE,
+        )?)
+    }
+
+    /// What sounds in the block that has just ended or ends now: emitters, what plays, and blows that ring.
+    fn sources(
+        &self,
+        house: &House,
+        state: &State,
+        block: u64,
+    ) -> Result<Vec<Sounding>, WorldError> {
+        let start = block * self.block as u64;
+        let mut sources = Vec::new();
+        let fades = self.emitters.fades(house, state);
+        for (k, (emitter, fade)) in house.emitters.iter().zip(fades).enumerate() {
+            if fade.is_silent() {
+                continue;
+            }
+            let mut signal = vec![0.0; self.block];
+            signals::synthesize(&emitter.signal, self.rate_hz, start, &mut signal)?;
+            fade.apply(self.rate_hz, &mut signal);
+            sources.push(Sounding {
+                id: k as u64,
+                position: state.part_pose[emitter.part].transform_point(emitter.position),
+                signal,
+            });
+        }
+        for playing in &self.playing {
+            let mut signal = vec![0.0; self.block];
+            playing.read(start, &mut signal);
+            playing.told.fade.apply(self.rate_hz, &mut signal);
+            sources.push(Sounding {
+                id: playing.told.id,
+                position: playing.position(house, state),
+                signal,
+            });
+        }
+        for blow in &self.blows {
+            let mut signal = vec![0.0; self.block];
+            let (skip, elapsed) = (
+                blow.start.saturating_sub(start) as usize,
+                start.saturating_sub(blow.start),
+            );
+            blow.sound
+                .synthesize(self.rate_hz, elapsed, &mut signal[skip.min(self.block)..]);
+            sources.push(Sounding {
+                id: blow.id,
+                position: blow.sound.position,
+                signal,
+            });
+        }
+        Ok(sources)
+    }
+
+    /// The newest samples at an ear, Pa; zeros before it listened that long, and for who never listened.
+    pub(crate) fn heard(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
+        out.fill(0.0);
+        if let Some(ears) = self
+            .ears
+            .iter()
+            .find(|ears| ears.agent == agent && channel < 2)
+        {
+            ears.newest(channel, out);
+        }
+    }
+
+    pub(crate) fn play(
+        &mut self,
+        at: (&Engines, Option<&str>, &State),
+        request: PlayRequest,
+    ) -> Result<u64, WorldError> {
+        let id = FIRST_PLAYED_ID + self.next_played;
+        let start = self.blocks * self.block as u64;
+        let playing = Playing::new(at, self.rate_hz, request, (id, start))?;
+        self.playing.push(playing);
+        self.next_played += 1;
+        Ok(id)
+    }
+
+    pub(crate) fn set_silent(
+        &mut self,
+        house: &House,
+        handle: u64,
+        silent: bool,
+    ) -> Result<(), WorldError> {
+        match self.played(handle) {
+            Some(playing) => playing.told.stopped = silent,
+            None => self.emitter(house, handle)?.silent = silent,
+        }
+        Ok(())
+    }
+
+    pub(crate) fn set_level(
+        &mut self,
+        house: &House,
+        handle: u64,
+        level_db: f32,
+    ) -> Result<(), WorldError> {
+        match self.played(handle) {
+            Some(playing) => playing.told.request.level_db = level_db,
+            None => self.emitter(house, handle)?.level_db = Some(level_db),
+        }
+        Ok(())
+    }
+
+    fn played(&mut self, handle: u64) -> Option<&mut Playing> {
+        let mut playing = self.playing.iter_mut();
+        playing.find(|playing| playing.told.id == handle)
+    }
+
+    fn emitter(&mut self, house: &House, handle: u64) -> Result<&mut emitters::Told, WorldError> {
+        let count = house.emitters.len();
+        if handle < count as u64 {
+            return Ok(self.emitters.told.entry(handle).or_default());
+        }
+        let playing: Vec<u64> = self.playing.iter().map(|p| p.told.id).collect();
+        Err(WorldError::Usage(format!(
+            "no sound {handle}: it is over, or never was; the house has {count}, counted from 0, and {playing:?} play"
+        )))
+    }
+
+    pub(crate) fn list(&self, house: &House, state: &State) -> Vec<SoundNow> {
+        let own = house
+            .emitters
+            .iter()
+            .enumerate()
+            .map(|(k, emitter)| SoundNow {
+                handle: k as u64,
+                sound: SoundName::Signal(emitter.signal.clone()),
+                position: state.part_pose[emitter.part]
+                    .transform_point(emitter.position)
+                    .to_array(),
+                level_db: self.emitters.level_db(house, k),
+                loops: true,
+                on: self.emitters.is_on(house, state, k),
+                object: Some(house.objects[emitter.object].name.clone()),
+            });
+        let played = self.playing.iter().map(|playing| SoundNow {
+            handle: playing.told.id,
+            sound: playing.told.request.sound.clone(),
+            position: playing.position(house, state).to_array(),
+            level_db: playing.told.request.level_db,
+            loops: playing.told.request.loops,
+            on: !playing.told.stopped,
+            object: None,
+        });
+        own.chain(played).collect()
+    }
+}

@@ -1,0 +1,213 @@
+//! Sounds that were told to play.
+
+use super::fade::Fade;
+use crate::engines::Engines;
+use crate::error::WorldError;
+use dwell_acoustics::signals::{self, Signal};
+use dwell_scene::units::pa_from_db_spl;
+use dwell_scene::{AgentId, House, ObjectId, State};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// What is played.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SoundName {
+    /// A signal, as [`signals::list`] names it.
+    Signal(String),
+    /// A file: its path below [`WorldConfig::sound_root`](crate::WorldConfig::sound_root).
+    File(String),
+}
+
+/// Where it is played.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SoundPlace {
+    /// At a point, m.
+    Point(Vec3),
+    /// In the middle of an object's first part, wherever that goes.
+    Object(ObjectId),
+    /// At an agent's mouth.
+    Agent(AgentId),
+}
+
+/// A sound that is to be played.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlayRequest {
+    /// What.
+    pub sound: SoundName,
+    /// Where.
+    pub place: SoundPlace,
+    /// Level at 1 m in the free field, dB SPL (RMS over the whole sound); -100 to 200.
+    pub level_db: f32,
+    /// Whether it begins again when it is over.
+    pub loops: bool,
+}
+
+/// The middle of a mouth in the space of a head whose origin lies between the eyes, m.
+const MOUTH_IN_HEAD: Vec3 = Vec3::new(0.0, -0.08, -0.1);
+
+/// What is remembered of a sound that plays.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Told {
+    pub(super) id: u64,
+    pub(super) request: PlayRequest,
+    /// The sample, since the world's start, at which it begins.
+    pub(super) start: u64,
+    pub(super) stopped: bool,
+    pub(super) fade: Fade,
+    /// Of the samples: a file may have changed when a snapshot is restored.
+    pub(super) print: u64,
+}
+
+/// A sound that plays.
+#[derive(Clone, Debug)]
+pub(super) struct Playing {
+    pub(super) told: Told,
+    signal: Signal,
+}
+
+/// Refuses levels that are none.
+pub(super) fn check_level(level_db: f32) -> Result<(), WorldError> {
+    if (-100.0..=200.0).contains(&level_db) {
+        return Ok(());
+    }
+    Err(WorldError::Config {
+        field: "level_db",
+        found: level_db.to_string(),
+        allowed: "-100 to 200".to_owned(),
+    })
+}
+
+fn open(
+    engines: &Engines,
+    root: Option<&str>,
+    rate_hz: u32,
+    sound: &SoundName,
+) -> Result<(Signal, u64), WorldError> {
+    match sound {
+        SoundName::Signal(name) => Ok((Signal::open(name, rate_hz)?, 0)),
+        SoundName::File(name) => engines.recording(root, name, rate_hz),
+    }
+}
+
+/// Refuses places that are not there.
+fn check_place(house: &House, state: &State, place: &SoundPlace) -> Result<(), WorldError> {
+    use dwell_scene::Id;
+    let (what, found, count) = match place {
+        SoundPlace::Point(point) if point.is_finite() && point.abs().max_element() < 1e6 => {
+            return Ok(());
+        }
+        SoundPlace::Point(point) => {
+            return Err(WorldError::Config {
+                field: "the place of a sound",
+                found: format!("{:?}", point.to_array()),
+                allowed: "coordinates up to 1,000,000 m".to_owned(),
+            });
+        }
+        SoundPlace::Object(object) => ("object", object.index(), house.objects.len()),
+        SoundPlace::Agent(agent) => ("agent", agent.index(), state.agents.len()),
+    };
+    if found < count {
+        return Ok(());
+    }
+    Err(WorldError::Usage(format!(
+        "no {what} {found}; there are {count}"
+    )))
+}
+
+impl Playing {
+    pub(super) fn new(
+        (engines, root, state): (&Engines, Option<&str>, &State),
+        rate_hz: u32,
+        request: PlayRequest,
+        (id, start): (u64, u64),
+    ) -> Result<Self, WorldError> {
+        check_level(request.level_db)?;
+        check_place(engines.house(), state, &request.place)?;
+        let (signal, print) = open(engines, root, rate_hz, &request.sound)?;
+        let told = Told {
+            id,
+            start,
+            stopped: false,
+            fade: Fade::steady(pa_from_db_spl(request.level_db)),
+            print,
+            request,
+        };
+        Ok(Self { told, signal })
+    }
+
+    /// The sound as it was remembered.
+    pub(super) fn restore(
+        (engines, root, state): (&Engines, Option<&str>, &State),
+        rate_hz: u32,
+        told: Told,
+    ) -> Result<Self, WorldError> {
+        check_place(engines.house(), state, &told.request.place)?;
+        let (signal, print) = open(engines, root, rate_hz, &told.request.sound)?;
+        if print != told.print {
+            let sound = &told.request.sound;
+            return Err(WorldError::Snapshot(format!(
+                "{sound:?} is another sound now than the one that played"
+            )));
+        }
+        Ok(Self { told, signal })
+    }
+
+    /// The pressure at 1 m that it goes to, Pa.
+    pub(super) fn target(&self) -> f32 {
+        if self.told.stopped {
+            0.0
+        } else {
+            pa_from_db_spl(self.told.request.level_db)
+        }
+    }
+
+    /// Writes the block that begins at `start`, root mean square 1 over the whole sound.
+    pub(super) fn read(&self, start: u64, out: &mut [f32]) {
+        let skip = self.told.start.saturating_sub(start).min(out.len() as u64) as usize;
+        let elapsed = start.saturating_sub(self.told.start);
+        out[..skip].fill(0.0);
+        if self.told.request.loops {
+            self.signal.read(elapsed, &mut out[skip..]);
+        } else {
+            self.signal.read_once(elapsed, &mut out[skip..]);
+        }
+    }
+
+    /// Whether nothing of it can be heard any more in blocks from `start` on.
+    pub(super) fn is_over(&self, start: u64) -> bool {
+        let end = self.told.start + self.signal.samples().len() as u64;
+        (!self.told.request.loops && end <= start)
+            || (self.told.stopped && self.told.fade.is_silent())
+    }
+
+    /// Where it sounds now, m.
+    pub(super) fn position(&self, house: &House, state: &State) -> Vec3 {
+        match self.told.request.place {
+            SoundPlace::Point(point) => point,
+            SoundPlace::Object(object) => {
+                let part = house.objects[object].first_part;
+                let shape = &house.parts[part];
+                let bounds = house.meshes[shape.mesh].bounds();
+                let middle = bounds.transformed(&shape.part_from_mesh).center();
+                state.part_pose[part].transform_point(middle)
+            }
+            SoundPlace::Agent(agent) => {
+                let head = state.agents[agent].world_from_head();
+                head.transform_point(MOUTH_IN_HEAD)
+            }
+        }
+    }
+}
+
+/// The level that a sound has when none is told: that of a signal; files have none.
+///
+/// # Errors
+/// [`WorldError::Acoustics`] for a signal that does not exist.
+pub fn usual_level_db(sound: &SoundName) -> Result<Option<f32>, WorldError> {
+    match sound {
+        SoundName::Signal(name) => Ok(Some(signals::info(name)?.usual_level_db)),
+        SoundName::File(_) => Ok(None),
+    }
+}
