@@ -35,6 +35,7 @@ mod images;
 mod impact;
 pub mod laws;
 pub mod metrics;
+mod microphones;
 mod planes;
 mod receiver;
 pub mod recordings;

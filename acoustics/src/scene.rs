@@ -5,6 +5,8 @@ use crate::config::AcousticConfig;
 use crate::echogram::Echogram;
 use crate::error::{AcousticsError, finite};
 use crate::explain::Explanation;
+use crate::laws::{self, Effects, stage::Listener};
+use crate::microphones::Microphones;
 use crate::planes::{Plane, PlaneTable};
 use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
@@ -13,7 +15,7 @@ use crate::{images, tail};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Address, House, Material, MaterialId, Pose, State};
+use dwell_scene::{Address, House, LawSpec, Material, MaterialId, Pose, State};
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -77,7 +79,12 @@ impl Surface {
 #[derive(Clone, Debug)]
 pub struct AcousticScene {
     house: Arc<House>,
+    /// As it was asked for.
+    stated: AcousticConfig,
+    /// As laws make it.
     config: AcousticConfig,
+    effects: Effects,
+    laws: Vec<LawSpec>,
     table: Arc<PlaneTable>,
     synthesizer: Arc<Synthesizer>,
     /// Where all planes are now.
@@ -108,14 +115,21 @@ impl AcousticScene {
                 .collect(),
             synthesizer: Arc::new(Synthesizer::new(&config)),
             overrides: BTreeMap::new(),
+            stated: config,
+            effects: Effects::default(),
+            laws: Vec::new(),
             table,
             config,
             house,
         })
     }
 
-    /// Takes over overridden materials and moved parts; cheap when nothing changed.
+    /// Takes over overridden materials, moved parts and laws; cheap when nothing changed.
     pub fn update(&mut self, state: &State) {
+        if state.laws != self.laws {
+            self.laws.clone_from(&state.laws);
+            self.obey(laws::effects(&self.laws));
+        }
         if state.overrides != self.overrides {
             self.overrides.clone_from(&state.overrides);
             let ids = self.house.materials.ids();
@@ -126,12 +140,27 @@ impl AcousticScene {
         self.table.update(&mut self.planes, &mut self.poses, state);
     }
 
+    fn obey(&mut self, effects: Effects) {
+        let before = self.config.air;
+        self.config = effects.config(&self.stated);
+        self.effects = effects;
+        if self.config.air != before {
+            // Ears are as far apart as sound is slow.
+            self.synthesizer = Arc::new(Synthesizer::new(&self.config));
+        }
+    }
+
+    /// What laws do to air and sources.
+    pub(crate) fn effects(&self) -> &Effects {
+        &self.effects
+    }
+
     /// The house.
     pub fn house(&self) -> &Arc<House> {
         &self.house
     }
 
-    /// The settings.
+    /// The settings, with the air as laws make it.
     pub fn config(&self) -> &AcousticConfig {
         &self.config
     }
@@ -161,7 +190,8 @@ impl AcousticScene {
     /// Energy decay of air in each band, 1/m; zeros where air does not absorb.
     pub(crate) fn air_decay_per_m(&self) -> [f64; BAND_COUNT] {
         if self.config.air_absorption {
-            self.config.air.energy_decay_per_m()
+            let whole = self.config.air.energy_decay_per_m();
+            self.effects.air_decay_per_m(whole)
         } else {
             [0.0; BAND_COUNT]
         }
@@ -217,16 +247,22 @@ impl AcousticScene {
             key.child("tail"),
             threads,
         );
-        Ok(Echogram {
+        let mut echogram = Echogram {
             paths: early,
             tail: late.histogram,
             trace: late.statistics,
             direct_length_m: source.position.as_dvec3().distance(receiver.as_dvec3()),
             speed_m_s: self.config.air.speed_of_sound_m_s(),
-        })
+        };
+        self.effects.at_source(&mut echogram);
+        Ok(echogram)
     }
 
-    /// What `receiver` hears when `source` makes an impulse.
+    /// What `receiver` hears when `source` makes an impulse, as the laws of the state that was last given to [`Self::update`]
+    /// have it.
+    ///
+    /// A law of microphones that has no impulse response (clipping, automatic gain, noise, clocks) does to this what it does to
+    /// a recording of the impulse.
     ///
     /// # Errors
     /// As [`Self::echogram`].
@@ -245,8 +281,43 @@ impl AcousticScene {
         Ok(self.respond(echogram, receiver, key))
     }
 
-    /// The impulse response that belongs to an echogram: another turn of the head needs no new rays.
+    /// The impulse response that belongs to an echogram: another turn of the head needs no new rays. Laws of microphones act as
+    /// in [`Self::impulse_response`].
     pub fn respond(&self, echogram: Echogram, receiver: &Receiver, key: Key) -> ImpulseResponse {
+        let mut response = self.arrive(echogram, receiver, key);
+        let listener = self.listener(
+            receiver,
+            key.child("room"),
+            key.child("microphone").child(0),
+        );
+        let rate_hz = f64::from(self.config.rate_hz);
+        response.samples = Microphones::record(&self.laws, rate_hz, &listener, response.samples);
+        response
+    }
+
+    /// Who listens; `room` and `own` as in [`Listener`].
+    pub(crate) fn listener<'a>(
+        &'a self,
+        receiver: &'a Receiver,
+        room: Key,
+        own: Key,
+    ) -> Listener<'a> {
+        Listener {
+            receiver,
+            head: self.synthesizer.head(),
+            speed_m_s: self.config.air.speed_of_sound_m_s(),
+            room,
+            own,
+        }
+    }
+
+    /// The impulse response up to the microphones, without their laws.
+    pub(crate) fn arrive(
+        &self,
+        echogram: Echogram,
+        receiver: &Receiver,
+        key: Key,
+    ) -> ImpulseResponse {
         let samples = self
             .synthesizer
             .render(&echogram, receiver, key.child("noise"));

@@ -309,7 +309,7 @@ fn microphones_are_silent_unless_a_law_says_otherwise() {
         params: BTreeMap::from([("sigma_pa".to_owned(), 0.01)]),
     });
     let mut blocks = Vec::new();
-    for _ in 0..2 {
+    for k in 0..3 {
         stream
             .block(
                 &hall.rays,
@@ -319,6 +319,10 @@ fn microphones_are_silent_unless_a_law_says_otherwise() {
                 &mut out,
             )
             .unwrap();
+        if k == 0 {
+            // A law that comes while the stream runs fades in over one block.
+            continue;
+        }
         let power = out.iter().map(|x| x * x).sum::<f32>() / BLOCK as f32;
         assert!((power / 1e-4 - 1.0).abs() < 0.3);
         blocks.push(out.clone());

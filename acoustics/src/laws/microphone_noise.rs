@@ -1,9 +1,9 @@
 //! The noise that a microphone adds of itself.
 
-use super::{Acts, Law};
+use super::stage::{Block, Each, Stage};
+use super::{Acts, Law, Values};
+use dwell_scene::LawInfo;
 use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::Key;
-use dwell_scene::{LawInfo, LawSpec};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -28,49 +28,33 @@ pub(super) const LAW: Law = Law {
                                 unlike in two microphones, background noise is neither; play the same sound louder: a \
                                 second slope of the decay rises with it, noise does not",
     },
-    acts: Acts::Microphones(add),
+    acts: Acts::Microphones(install),
 };
 
-fn add(spec: &LawSpec, info: &LawInfo, key: Key, block: &mut [f32]) {
-    let sigma = spec.value(info, "sigma_pa").unwrap_or(0.0);
-    let mut stream = key.stream();
-    for sample in block {
-        *sample += (sigma * stream.normal()) as f32;
-    }
+fn install(values: Values<'_>, _rate_hz: f64) -> Box<dyn Stage> {
+    let sigma = values.get("sigma_pa");
+    Box::new(Each(move |block: &mut Block<'_>| {
+        let mut stream = block.key.stream();
+        for sample in block.samples.iter_mut() {
+            *sample += (sigma * stream.normal()) as f32;
+        }
+    }))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::at_microphones;
-    use super::*;
-    use std::collections::BTreeMap;
+    use super::super::testing::{law, recorded};
 
-    fn law(sigma_pa: f64) -> LawSpec {
-        LawSpec {
-            id: LAW.info.id.to_owned(),
-            version: 1,
-            target: None,
-            params: BTreeMap::from([("sigma_pa".to_owned(), sigma_pa)]),
-        }
-    }
-
-    #[test]
-    fn nothing_changes_unless_it_is_installed() {
-        let before = [0.1_f32, -0.2, 0.3];
-        for laws in [vec![], vec![law(0.0)]] {
-            let mut out = before;
-            at_microphones(&laws, Key::root(1), &mut out);
-            assert_eq!(out.map(f32::to_bits), before.map(f32::to_bits));
-        }
-    }
-
-    /// Variance within 5 standard errors for five seeds; two equal noises add their powers.
+    /// Variance within 5 standard errors (two-sided p below 1e-6) for five seeds; two equal noises add their powers.
     #[test]
     fn the_noise_has_its_power() {
+        let noise = law("microphone_noise", &[("sigma_pa", 0.02)]);
         for seed in 0..5 {
-            for (laws, variance) in [(vec![law(0.02)], 4e-4), (vec![law(0.02), law(0.02)], 8e-4)] {
-                let mut out = vec![0.0; 20_000];
-                at_microphones(&laws, Key::root(seed), &mut out);
+            for (laws, variance) in [
+                (vec![noise.clone()], 4e-4),
+                (vec![noise.clone(), noise.clone()], 8e-4),
+            ] {
+                let out = recorded(&laws, seed, &[0.0; 20_000]);
                 let found = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / 20_000.0;
                 assert!((found / variance - 1.0).abs() < 5.0 * (2.0 / 20_000.0_f64).sqrt());
             }

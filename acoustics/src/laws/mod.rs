@@ -1,9 +1,33 @@
 //! Effects on sound that the basic model lacks: one file and one line each.
+//!
+//! Laws of air and sources change the energies between a source and a microphone ([`Effects`]); laws of microphones change
+//! pressure, block by block in a stream and at once in an impulse response (`Stage`). A law at its default is not installed, so
+//! that no bit changes.
 
+mod automatic_gain;
+mod background_noise;
+mod clock_drift;
+mod effects;
+mod fir;
+mod microphone_clipping;
+mod microphone_gain;
 mod microphone_noise;
+mod microphone_response;
+mod no_air_absorption;
+mod recording_delay;
+mod source_gain;
+mod source_response;
+pub(crate) mod stage;
+mod temperature_error;
+#[cfg(test)]
+mod testing;
 
-use dwell_scene::random::Key;
+pub(crate) use effects::Effects;
+
+use crate::bands::{BAND_COUNT, Banded};
+use dwell_scene::law::ParamInfo;
 use dwell_scene::{LawInfo, LawSpec};
+use stage::Stage;
 use std::sync::LazyLock;
 
 /// A law of this engine: what is known about it, and where it acts.
@@ -14,13 +38,29 @@ struct Law {
 
 /// Where a law acts.
 enum Acts {
-    /// On what microphones give out: changes a block of pressure, Pa. What is drawn depends on the key and the block's
-    /// length alone.
-    Microphones(fn(&LawSpec, &LawInfo, Key, &mut [f32])),
+    /// On air and sources.
+    Way(fn(Values<'_>, &mut Effects)),
+    /// On the pressure at microphones, before all laws of microphones, at so many samples a second.
+    Field(fn(Values<'_>, f64) -> Box<dyn Stage>),
+    /// On what microphones give out, in the order in which laws were installed.
+    Microphones(fn(Values<'_>, f64) -> Box<dyn Stage>),
 }
 
 /// The laws of this engine.
-static LAWS: [Law; 1] = [microphone_noise::LAW];
+static LAWS: &[Law] = &[
+    temperature_error::LAW,
+    no_air_absorption::LAW,
+    source_gain::LAW,
+    source_response::LAW,
+    background_noise::LAW,
+    microphone_gain::LAW,
+    microphone_response::LAW,
+    microphone_noise::LAW,
+    microphone_clipping::LAW,
+    automatic_gain::LAW,
+    recording_delay::LAW,
+    clock_drift::LAW,
+];
 
 /// What is known about each law of sound.
 ///
@@ -33,48 +73,145 @@ pub fn all() -> &'static [LawInfo] {
     &INFOS
 }
 
-/// Applies the installed laws of microphones to a block, in the order in which they were installed.
-pub(crate) fn at_microphones(installed: &[LawSpec], key: Key, block: &mut [f32]) {
-    for (k, spec) in installed.iter().enumerate() {
-        if let Some(law) = LAWS.iter().find(|law| law.info.id == spec.id)
-            && !spec.is_default(&law.info)
-        {
-            let Acts::Microphones(change) = law.acts;
-            change(spec, &law.info, key.child(k as u64), block);
+/// The numbers of an installed law.
+#[derive(Clone, Copy)]
+struct Values<'a> {
+    spec: &'a LawSpec,
+    info: &'a LawInfo,
+}
+
+impl Values<'_> {
+    fn get(&self, name: &str) -> f64 {
+        self.spec.value(self.info, name).unwrap_or(0.0)
+    }
+
+    /// The values of [`BAND_DB`].
+    fn bands(&self) -> Banded {
+        std::array::from_fn(|band| self.get(BAND_DB[band].name) as f32)
+    }
+}
+
+/// A level in decibels for an octave band.
+const fn band_db(name: &'static str) -> ParamInfo {
+    ParamInfo {
+        name,
+        unit: "dB",
+        default: 0.0,
+        low: -60.0,
+        high: 60.0,
+        plausible: [-12.0, 12.0],
+    }
+}
+
+/// The parameters of a response: a level in each octave band.
+static BAND_DB: [ParamInfo; BAND_COUNT] = [
+    band_db("db_63"),
+    band_db("db_125"),
+    band_db("db_250"),
+    band_db("db_500"),
+    band_db("db_1000"),
+    band_db("db_2000"),
+    band_db("db_4000"),
+    band_db("db_8000"),
+];
+
+/// The law of a spec, unless it does nothing.
+fn acting(spec: &LawSpec) -> Option<(&'static Law, Values<'_>)> {
+    let law = LAWS.iter().find(|law| law.info.id == spec.id)?;
+    let info = &law.info;
+    (!spec.is_default(info)).then_some((law, Values { spec, info }))
+}
+
+/// What the installed laws do to air and sources.
+pub(crate) fn effects(installed: &[LawSpec]) -> Effects {
+    let mut effects = Effects::default();
+    for (law, values) in installed.iter().filter_map(acting) {
+        if let Acts::Way(change) = law.acts {
+            change(values, &mut effects);
         }
     }
+    effects
+}
+
+/// Puts a law to work if it acts on pressure and does something.
+pub(crate) fn stage(spec: &LawSpec, rate_hz: f64) -> Option<Box<dyn Stage>> {
+    let (law, values) = acting(spec)?;
+    match law.acts {
+        Acts::Way(_) => None,
+        Acts::Field(install) | Acts::Microphones(install) => Some(install(values, rate_hz)),
+    }
+}
+
+/// The laws that act on pressure and do something, with their places in the list, in the order in which they act.
+pub(crate) fn of_pressure(installed: &[LawSpec]) -> impl Iterator<Item = (u64, &LawSpec)> {
+    let those = move |wanted: fn(&Acts) -> bool| {
+        let numbered = (0_u64..).zip(installed);
+        numbered.filter(move |(_, spec)| acting(spec).is_some_and(|(law, _)| wanted(&law.acts)))
+    };
+    let fields = those(|acts| matches!(acts, Acts::Field(_)));
+    fields.chain(those(|acts| matches!(acts, Acts::Microphones(_))))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::testing::{law, recorded, streamed};
     use super::*;
-    use std::collections::BTreeMap;
 
     #[test]
     fn every_law_is_consistent_and_does_nothing_by_default() {
-        for law in all() {
+        for info in all() {
+            let texts = [
+                info.name,
+                info.equation,
+                info.source,
+                info.separating_experiment,
+            ];
             assert!(
-                !law.equation.is_empty()
-                    && !law.source.is_empty()
-                    && !law.separating_experiment.is_empty()
+                texts
+                    .iter()
+                    .all(|text| !text.is_empty() && !text.ends_with('.'))
             );
-            for param in law.params {
+            assert!(!info.rivals.is_empty() && !info.rivals.contains(&info.id));
+            for param in info.params {
+                let bounds = param.low..=param.high;
                 assert!(
-                    (param.low..=param.high).contains(&param.default),
+                    bounds.contains(&param.default),
                     "{} {}",
-                    law.id,
+                    info.id,
                     param.name
                 );
-                assert!(param.plausible[0] >= param.low && param.plausible[1] <= param.high);
+                assert!(param.plausible.iter().all(|end| bounds.contains(end)));
             }
-            let spec = LawSpec {
-                id: law.id.to_owned(),
-                version: law.version,
-                target: None,
-                params: BTreeMap::new(),
-            };
-            spec.check(law).unwrap();
-            assert!(spec.is_default(law));
+            let spec = law(info.id, &[]);
+            spec.check(info).unwrap();
+            assert!(spec.is_default(info) && acting(&spec).is_none());
+            let before = [0.1, -0.2, 0.3];
+            assert_eq!(recorded(std::slice::from_ref(&spec), 1, &before), before);
+            assert_eq!(streamed(&[spec], &before, 2), before);
+        }
+    }
+
+    /// Whether blocks of any size give what one piece gives.
+    #[test]
+    fn the_size_of_blocks_does_not_matter() {
+        let mut stream = dwell_scene::random::Key::root(3).stream();
+        let pressure: Vec<f32> = (0..6000).map(|_| stream.normal() as f32).collect();
+        for (id, name, value) in [
+            ("microphone_gain", "gain_db", 7.0),
+            ("microphone_response", "db_1000", -10.0),
+            ("microphone_clipping", "limit_pa", 0.7),
+            ("recording_delay", "delay_s", 0.040_07),
+            ("automatic_gain", "strength", 0.8),
+            ("background_noise", "level_pa", 0.8),
+            ("background_noise", "hum_pa", 0.8),
+        ] {
+            let laws = [law(id, &[(name, value)])];
+            let whole = recorded(&laws, 0, &pressure);
+            for block in [1, 77, 800] {
+                for (a, b) in streamed(&laws, &pressure, block).iter().zip(&whole) {
+                    assert!((a - b).abs() < 1e-6, "{id} {block}: {a} {b}");
+                }
+            }
         }
     }
 }

@@ -8,7 +8,7 @@ pub use config::StreamConfig;
 
 use crate::error::{AcousticsError, finite};
 use crate::fft::RealFft;
-use crate::laws;
+use crate::microphones::{self, Microphones};
 use crate::receiver::{Receiver, Source};
 use crate::scene::AcousticScene;
 use dwell_scene::parallel::Threads;
@@ -22,7 +22,7 @@ use xxhash_rust::xxh3::xxh3_64;
 
 /// Parts whose box is smaller than this from corner to corner do not change what is heard, m.
 const LARGE_PART_M: f32 = 0.7;
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A source that sounds during a block.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +57,8 @@ pub struct Stream {
     scene: AcousticScene,
     config: StreamConfig,
     key: Key,
+    /// What is random in the place.
+    room: Key,
     threads: Threads,
     partitions: usize,
     large_parts: Vec<PartId>,
@@ -65,6 +67,7 @@ pub struct Stream {
     block: u64,
     /// By id.
     voices: Vec<Voice>,
+    microphones: Microphones,
 }
 
 /// What a voice does in one block.
@@ -83,6 +86,7 @@ struct Snapshot {
     partitions: u64,
     block: u64,
     voices: Vec<Memory>,
+    microphones: microphones::Memory,
 }
 
 impl Stream {
@@ -106,13 +110,21 @@ impl Stream {
             fft: RealFft::new(2 * config.block_samples),
             fade: fade(config.block_samples),
             large_parts,
+            microphones: Microphones::new(f64::from(settings.rate_hz)),
             scene,
             config,
+            room: key.child("room"),
             key,
             threads,
             block: 0,
             voices: Vec::new(),
         })
+    }
+
+    /// The same stream in a place whose own sounds `room` names: streams that begin together hear one background noise.
+    #[must_use]
+    pub fn in_room(self, room: Key) -> Self {
+        Self { room, ..self }
     }
 
     /// The scene that is heard.
@@ -133,6 +145,7 @@ impl Stream {
     /// Silence, and block 0 again.
     pub fn reset(&mut self) {
         self.voices.clear();
+        self.microphones.reset();
         self.block = 0;
     }
 
@@ -211,8 +224,9 @@ impl Stream {
         self.voices.retain(|voice| {
             !voice.input.is_silent() || sources.iter().any(|source| source.id == voice.id)
         });
-        let noise = self.key.child("microphone").child(self.block);
-        laws::at_microphones(&state.laws, noise, out);
+        let own = self.key.child("microphone").child(self.block);
+        let listener = self.scene.listener(receiver, self.room, own);
+        self.microphones.hear(&state.laws, &listener, out);
         self.block += 1;
         Ok(report)
     }
@@ -282,6 +296,7 @@ impl Stream {
                     .map(|part| state.part_pose[*part])
                     .collect(),
                 overrides: state.overrides.clone(),
+                effects: *self.scene.effects(),
             };
             let changed = |then: &Situation| then.change(&now, &threshold);
             let change = heard.map_or(Change::Moved, |(then, _)| changed(then));
@@ -297,7 +312,7 @@ impl Stream {
                 (Change::Turned, Some((_, response))) => {
                     report.turned += 1;
                     let echogram = response.echogram.clone();
-                    Some(self.scene.respond(echogram, receiver, key))
+                    Some(self.scene.arrive(echogram, receiver, key))
                 }
                 _ => Some(if let Some(response) = known() {
                     response
@@ -305,7 +320,9 @@ impl Stream {
                     report.traced += 1;
                     let source = Source::at(position);
                     let (scene, threads) = (&self.scene, self.threads);
-                    scene.impulse_response(rays, &source, receiver, key, threads)?
+                    let place = receiver.position();
+                    let echogram = scene.echogram(rays, &source, place, key, threads)?;
+                    scene.arrive(echogram, receiver, key)
                 }),
             };
             let news = response.map(|response| (now, response));
@@ -321,6 +338,7 @@ impl Stream {
             partitions: self.partitions as u64,
             block: self.block,
             voices: self.voices.iter().map(Voice::memory).collect(),
+            microphones: self.microphones.memory(),
         };
         postcard::to_stdvec(&snapshot)
             .expect("a snapshot is plain data that postcard can always write to memory")
@@ -363,6 +381,8 @@ impl Stream {
                 snapshot.partitions, snapshot.block_samples
             ));
         }
+        let rate_hz = f64::from(self.scene.config().rate_hz);
+        self.microphones = Microphones::restore(rate_hz, snapshot.microphones)?;
         let voices = snapshot.voices.into_iter();
         self.voices = voices
             .map(|memory| Voice::restore(&mut self.fft, memory, self.partitions))

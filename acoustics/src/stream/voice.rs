@@ -2,6 +2,7 @@
 
 use super::convolver::{Filter, Input};
 use crate::fft::RealFft;
+use crate::laws::Effects;
 use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
 use dwell_scene::{Address, Pose};
@@ -17,6 +18,7 @@ pub(super) struct Situation {
     /// Poses of the parts that are large enough to be heard. Shape (large part,).
     pub(super) parts: Vec<Pose>,
     pub(super) overrides: BTreeMap<Address, f64>,
+    pub(super) effects: Effects,
 }
 
 /// How a situation differs from another.
@@ -57,6 +59,7 @@ impl Situation {
         });
         if here.channels() != there.channels()
             || self.overrides != now.overrides
+            || self.effects != now.effects
             || self.parts.len() != now.parts.len()
             || far(self.source, now.source, threshold.distance_m)
             || far(here.position(), there.position(), threshold.distance_m)

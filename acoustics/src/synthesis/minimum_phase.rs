@@ -21,7 +21,12 @@ pub(crate) struct PathFilters {
 impl PathFilters {
     /// Filters for `rate_hz`; their transforms span 32 ms.
     pub(crate) fn new(rate_hz: f64) -> Self {
-        let mut fft = RealFft::new(((0.032 * rate_hz) as usize).next_power_of_two());
+        Self::spanning(rate_hz, 0.032)
+    }
+
+    /// Filters whose transforms span at least `span_s`.
+    pub(crate) fn spanning(rate_hz: f64, span_s: f64) -> Self {
+        let mut fft = RealFft::new(((span_s * rate_hz) as usize).next_power_of_two());
         let (length, bins) = (fft.len(), fft.bins());
         let basis = (0..BAND_COUNT)
             .map(|band| {

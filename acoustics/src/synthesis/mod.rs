@@ -1,7 +1,7 @@
 //! From energies to pressure.
 
 mod fractional;
-mod minimum_phase;
+pub(crate) mod minimum_phase;
 mod noise;
 mod smooth;
 
@@ -45,6 +45,11 @@ impl Synthesizer {
             filters,
             rate_hz,
         }
+    }
+
+    /// What a head does to sound.
+    pub(crate) fn head(&self) -> &SphericalHead {
+        &self.head
     }
 
     fn bank(&self, length: usize) -> &FilterBank {

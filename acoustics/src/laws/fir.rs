@@ -1,0 +1,81 @@
+//! Filters of finite length that remember the end of the last block.
+
+use super::stage::{Block, Memory, Stage, rise};
+
+/// A filter: so many samples of delay, then taps.
+#[derive(Clone, Debug)]
+pub(super) struct Fir {
+    delay: usize,
+    taps: Vec<f32>,
+    /// What was heard last, the newest at the end. Shape (channel, delay + taps - 1).
+    history: Vec<Vec<f32>>,
+}
+
+impl Fir {
+    pub(super) fn new(delay: usize, taps: Vec<f32>) -> Self {
+        Self {
+            delay,
+            taps,
+            history: Vec::new(),
+        }
+    }
+
+    fn reach(&self) -> usize {
+        self.delay + self.taps.len().max(1) - 1
+    }
+}
+
+impl Stage for Fir {
+    fn hear(&mut self, block: &mut Block<'_>) {
+        let (reach, length) = (self.reach(), block.len());
+        self.history.resize(block.channels, vec![0.0; reach]);
+        let mut heard = Vec::with_capacity(reach + length);
+        for (history, channel) in self.history.iter_mut().zip(block.channels_mut()) {
+            heard.clear();
+            heard.extend_from_slice(history);
+            heard.extend_from_slice(channel);
+            channel.fill(0.0);
+            for (k, tap) in self.taps.iter().enumerate() {
+                // Newest first: tap k looks k samples further back.
+                let start = self.taps.len() - 1 - k;
+                for (y, x) in channel.iter_mut().zip(&heard[start..]) {
+                    *y += tap * x;
+                }
+            }
+            history.copy_from_slice(&heard[length..]);
+        }
+    }
+
+    fn recall(&mut self, memory: &Memory) {
+        let reach = self.reach();
+        self.history = memory
+            .samples
+            .iter()
+            .map(|old| {
+                let mut history = vec![0.0; reach];
+                let used = old.len().min(reach);
+                history[reach - used..].copy_from_slice(&old[old.len() - used..]);
+                if used < reach {
+                    // What is older is not known any more.
+                    rise(&mut history[reach - used..]);
+                }
+                history
+            })
+            .collect();
+    }
+
+    fn memory(&self) -> Memory {
+        Memory {
+            numbers: Vec::new(),
+            samples: self.history.clone(),
+        }
+    }
+
+    fn longer(&self, _length: usize) -> usize {
+        self.reach()
+    }
+
+    fn starts_softly(&self) -> bool {
+        self.delay > 0
+    }
+}

@@ -1,0 +1,35 @@
+//! Air that absorbs less than it should, or not at all.
+
+use super::{Acts, Effects, Law, Values};
+use dwell_scene::LawInfo;
+use dwell_scene::law::{Engine, ParamInfo};
+
+pub(super) const LAW: Law = Law {
+    info: LawInfo {
+        id: "no_air_absorption",
+        version: 1,
+        name: "air absorption left out",
+        equation: "m = (1 - missing) m_air, with m_air the energy decay in air (1/m) by temperature, humidity and pressure: over \
+                   d metres exp(-m d) of the energy is left",
+        source: "ISO 9613-1:1993, equations (3) to (6)",
+        engine: Engine::Acoustics,
+        acts_on: "world",
+        params: &[ParamInfo {
+            name: "missing",
+            unit: "1",
+            default: 0.0,
+            low: 0.0,
+            high: 1.0,
+            plausible: [0.0, 1.0],
+        }],
+        rivals: &["absorption", "source_response", "microphone_response"],
+        separating_experiment: "compare the direct sound at 2 m and at 8 m: air takes decibels for every metre, more the higher the \
+                                frequency, where surfaces take them for every reflection and responses take as many at any \
+                                distance; or record at two humidities",
+    },
+    acts: Acts::Way(leave_out),
+};
+
+fn leave_out(values: Values<'_>, effects: &mut Effects) {
+    effects.air_absorption *= 1.0 - values.get("missing");
+}

@@ -1,0 +1,36 @@
+//! Sources that are louder than they are said to be.
+
+use super::{Acts, Effects, Law, Values};
+use dwell_scene::LawInfo;
+use dwell_scene::law::{Engine, ParamInfo};
+
+pub(super) const LAW: Law = Law {
+    info: LawInfo {
+        id: "source_gain",
+        version: 1,
+        name: "gain of the sources",
+        equation: "p_source = 10^(gain_db / 20) p_stated, at 1 m (Pa), for all sources",
+        source: "ISO 3382-1:2009, A.2.1: the strength G needs a source of known power",
+        engine: Engine::Acoustics,
+        acts_on: "world",
+        params: &[ParamInfo {
+            name: "gain_db",
+            unit: "dB",
+            default: 0.0,
+            low: -120.0,
+            high: 120.0,
+            plausible: [-20.0, 20.0],
+        }],
+        rivals: &["microphone_gain", "distance", "source_directivity_error"],
+        separating_experiment: "compare levels at several positions, and with all sources off: a gain is the same number of decibels \
+                                at all times, bands and places, a wrong distance is not; the gain of a microphone raises background \
+                                noise too, that of a source does not",
+    },
+    acts: Acts::Way(amplify),
+};
+
+fn amplify(values: Values<'_>, effects: &mut Effects) {
+    for db in &mut effects.source_db {
+        *db += values.get("gain_db") as f32;
+    }
+}

@@ -1,0 +1,31 @@
+//! Sources whose spectrum is another than it is said to be.
+
+use super::{Acts, BAND_DB, Effects, Law, Values};
+use dwell_scene::LawInfo;
+use dwell_scene::law::Engine;
+
+pub(super) const LAW: Law = Law {
+    info: LawInfo {
+        id: "source_response",
+        version: 1,
+        name: "frequency response of the sources",
+        equation: "E_source(f) = 10^(L(f) / 10) E_stated(f), the energy of all paths and of the tail, with L in each octave band its \
+                   parameter (dB), the same into all directions; minimum phase, smooth between the bands",
+        source: "IEC 60268-21:2018 (output-based measurement of loudspeakers), frequency response; A. V. Oppenheim, R. W. Schafer, \
+                 Discrete-Time Signal Processing (2010), section 13.5",
+        engine: Engine::Acoustics,
+        acts_on: "world",
+        params: &BAND_DB,
+        rivals: &["microphone_response", "absorption", "no_air_absorption"],
+        separating_experiment: "compare direct and late sound at several places: a response is the same number of decibels in both, \
+                                absorption grows with time; with all sources off, background noise bears the response of the \
+                                microphone and not that of a source",
+    },
+    acts: Acts::Way(color),
+};
+
+fn color(values: Values<'_>, effects: &mut Effects) {
+    for (sum, db) in effects.source_db.iter_mut().zip(values.bands()) {
+        *sum += db;
+    }
+}

@@ -1,0 +1,63 @@
+//! What tests of laws share.
+
+use super::stage::Listener;
+use crate::head::SphericalHead;
+use crate::microphones::Microphones;
+use crate::receiver::Receiver;
+use dwell_scene::LawSpec;
+use dwell_scene::random::Key;
+
+pub(super) const RATE_HZ: f64 = 16_000.0;
+
+pub(super) fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
+    LawSpec {
+        id: id.to_owned(),
+        version: 1,
+        target: None,
+        params: values
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), *value))
+            .collect(),
+    }
+}
+
+/// Who listens at `receiver` in the place `room`, in the block `own`.
+pub(super) fn with_listener<T>(
+    receiver: &Receiver,
+    room: u64,
+    own: Key,
+    then: impl FnOnce(&Listener<'_>) -> T,
+) -> T {
+    static HEAD: std::sync::LazyLock<SphericalHead> =
+        std::sync::LazyLock::new(|| SphericalHead::new(0.0875, 343.2, RATE_HZ, 9));
+    let (head, room) = (&*HEAD, Key::root(room));
+    then(&Listener {
+        receiver,
+        head,
+        speed_m_s: 343.2,
+        room,
+        own,
+    })
+}
+
+/// What one microphone gives out, its ringing included.
+pub(super) fn recorded(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32> {
+    let here = Receiver::omni(glam::Vec3::ZERO);
+    with_listener(&here, seed, Key::root(seed), |listener| {
+        Microphones::record(laws, RATE_HZ, listener, pressure.to_vec())
+    })
+}
+
+/// The same block by block.
+pub(super) fn streamed(laws: &[LawSpec], pressure: &[f32], block: usize) -> Vec<f32> {
+    let mut microphones = Microphones::new(RATE_HZ);
+    let here = Receiver::omni(glam::Vec3::ZERO);
+    let mut out = pressure.to_vec();
+    for (k, samples) in out.chunks_mut(block).enumerate() {
+        let own = Key::root(0).child(k as u64);
+        with_listener(&here, 0, own, |listener| {
+            microphones.hear(laws, listener, samples)
+        });
+    }
+    out
+}
