@@ -219,7 +219,13 @@ class Batch:
 class AcousticScene:
     """Impulse responses in a house as it starts."""
 
-    def __new__(cls, house: House, config_json: str = ...) -> Self: ...
+    def __new__(
+        cls,
+        house: House,
+        config_json: str = ...,
+        laws_json: str = ...,
+        parameters_json: str = ...,
+    ) -> Self: ...
     def impulse_response(
         self,
         source: tuple[float, float, float],

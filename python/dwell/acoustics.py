@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from dwell import _native
 from dwell.arguments import finite, point, to_json, whole
 from dwell.house import House
+from dwell.settings import Laws, found
 
 
 class AcousticScene:
@@ -20,22 +21,32 @@ class AcousticScene:
     def __init__(
         self,
         house: House | str,
+        *,
+        laws: Laws = None,
         **config: Any,  # noqa: ANN401 - fields of the native AcousticConfig
     ) -> None:
         """Prepares a house.
 
         Args:
             house: A house or a HOUSE string.
+            laws: Laws to install, as ``{"id", "version", "target", "params"}``; or what calibration
+                found (laws and parameters), as a mapping or as the path of its ``found.json``.
+                Those of air and sources change energies and responses; those of microphones act on
+                what ``impulse_response`` returns, as on a recording of the impulse.
             **config: ``rate_hz``, ``rays``, ``max_duration_s``, ``image_order``, ...: the fields of
                 ``dwell_acoustics::AcousticConfig``.
         """
         self.house = house if isinstance(house, House) else House.open(house)
-        self._native = _native.AcousticScene(self.house.native, to_json(config))
+        rows, values = found(laws)
+        self._native = _native.AcousticScene(
+            self.house.native, to_json(config), to_json(rows), to_json(values)
+        )
         self._config = config
+        self._laws = {"laws": rows, "parameters": values}
 
-    def __reduce__(self) -> tuple[Any, tuple[House, dict[str, Any]]]:
-        """House and settings."""
-        return _again, (self.house, self._config)
+    def __reduce__(self) -> tuple[Any, tuple[House, dict[str, Any], dict[str, Any]]]:
+        """House, laws and settings."""
+        return _again, (self.house, self._laws, self._config)
 
     @property
     def rate_hz(self) -> int:
@@ -107,5 +118,5 @@ class AcousticScene:
         return explained
 
 
-def _again(house: House, config: dict[str, Any]) -> AcousticScene:
-    return AcousticScene(house, **config)
+def _again(house: House, laws: dict[str, Any], config: dict[str, Any]) -> AcousticScene:
+    return AcousticScene(house, laws=laws, **config)

@@ -5,13 +5,14 @@ use crate::errors::{Fault, to_python};
 use crate::house::PyHouse;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source};
-use dwell_scene::Pose;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
+use dwell_scene::{LawSpec, Pose};
 use glam::Vec3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
+use std::collections::BTreeMap;
 
 /// Impulse responses in a house as it starts.
 #[pyclass(name = "AcousticScene", module = "dwell._native", frozen)]
@@ -23,13 +24,24 @@ pub(crate) struct PyAcousticScene {
 #[pymethods]
 impl PyAcousticScene {
     #[new]
-    #[pyo3(signature = (house, config_json="{}"))]
-    fn new(py: Python<'_>, house: &Bound<'_, PyHouse>, config_json: &str) -> PyResult<Self> {
+    #[pyo3(signature = (house, config_json="{}", laws_json="[]", parameters_json="{}"))]
+    fn new(
+        py: Python<'_>,
+        house: &Bound<'_, PyHouse>,
+        config_json: &str,
+        laws_json: &str,
+        parameters_json: &str,
+    ) -> PyResult<Self> {
         let house = house.get().engines.house().clone();
         py.engine(|| -> Result<_, Fault> {
             let config: AcousticConfig = serde_json::from_str(config_json)?;
+            let laws: Vec<LawSpec> = serde_json::from_str(laws_json)?;
+            let parameters: BTreeMap<String, f64> = serde_json::from_str(parameters_json)?;
+            let state = dwell::laws::start(&house, &laws, &parameters)?;
+            let mut scene = AcousticScene::new(house.clone(), config)?;
+            scene.update(&state);
             Ok(Self {
-                scene: AcousticScene::new(house.clone(), config)?,
+                scene,
                 rays: RayScene::new(house),
             })
         })

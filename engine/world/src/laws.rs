@@ -47,6 +47,25 @@ pub fn install(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldEr
     Ok(installed)
 }
 
+/// The start of a house under laws and parameters (values by address), for engines that work without a world. Nobody is in it.
+///
+/// # Errors
+/// As [`install`], and [`WorldError::Scene`] for an address that names nothing or a value out of range.
+pub fn start<'a>(
+    house: &House,
+    specs: &[LawSpec],
+    parameters: impl IntoIterator<Item = (&'a String, &'a f64)>,
+) -> Result<State, WorldError> {
+    let mut state = State::new(house);
+    state.laws = install(house, specs)?;
+    let values: Vec<(Address, f64)> = parameters
+        .into_iter()
+        .map(|(text, value)| Ok((text.parse()?, *value)))
+        .collect::<Result<_, WorldError>>()?;
+    set_parameters(&mut state, house, &values)?;
+    Ok(state)
+}
+
 /// What stands at any address: a law's, or one of the scene.
 ///
 /// # Errors

@@ -26,6 +26,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=count, default=0)
     parser.add_argument("--rays", type=count, default=5000)
     parser.add_argument("--image-order", type=count, default=3, help="0 to 4")
+    parser.add_argument(
+        "--laws",
+        type=Path,
+        metavar="FILE",
+        help="JSON: a list of laws {id, version, target, params}, or what dwell calibrate found",
+    )
     parser.add_argument("--threads", type=count, help="default: one for each core")
     parser.add_argument("--sources", metavar="ID,ID", help="of a measured room; default: all")
     parser.add_argument("--receivers", metavar="ID,ID", help="of a measured room; default: all")
@@ -48,7 +54,11 @@ def run(args: argparse.Namespace) -> int:
     if args.source is None or args.mic is None:
         raise ValueError("--source and --mic are needed: two points X,Y,Z in metres")
     scene = AcousticScene(
-        args.house, rate_hz=args.rate_hz, rays=args.rays, image_order=args.image_order
+        args.house,
+        laws=args.laws,
+        rate_hz=args.rate_hz,
+        rays=args.rays,
+        image_order=args.image_order,
     )
     response = scene.impulse_response(
         args.source,

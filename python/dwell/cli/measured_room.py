@@ -89,7 +89,13 @@ def run(args: argparse.Namespace) -> int:
     sources = _picked("--sources", room.sources, args.sources)
     receivers = _picked("--receivers", room.receivers, args.receivers)
     started = time.perf_counter()
-    scene = AcousticScene(args.house, rays=args.rays, image_order=args.image_order, **room.config())
+    scene = AcousticScene(
+        args.house,
+        laws=args.laws,
+        rays=args.rays,
+        image_order=args.image_order,
+        **room.config(),
+    )
     built = time.perf_counter()
     length = round(room.duration_s * room.rate_hz)
     responses = np.zeros((len(sources), len(receivers), length), np.float32)

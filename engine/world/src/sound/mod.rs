@@ -157,12 +157,9 @@ impl Sound {
             block_samples: self.block,
             ..config
         };
-        Ok(Stream::new(
-            scene,
-            config,
-            key.child("ears").child(u64::from(agent.0)),
-            Threads::ONE,
-        )?)
+        let own = key.child("ears").child(u64::from(agent.0));
+        // One background noise for all ears of a world.
+        Ok(Stream::new(scene, config, own, Threads::ONE)?.in_room(key.child("room")))
     }
 
     /// What sounds in the block that has just ended or ends now: emitters, what plays, and blows that ring.
