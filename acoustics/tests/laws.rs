@@ -244,7 +244,6 @@ fn laws_come_change_and_go_without_clicks() {
             *value *= 0.6;
         }
         let installed = |k: usize| match k {
-            0..8 => Vec::new(),
             8..14 => vec![law.clone()],
             14..18 => vec![less.clone()],
             _ => Vec::new(),

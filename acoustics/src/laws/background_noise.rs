@@ -287,7 +287,11 @@ mod tests {
     fn it_has_its_level_and_slope() {
         for (slope, seed) in [(0.0, 1), (-3.0, 2), (-6.0, 3)] {
             let values = [("level_pa", 0.02), ("slope_db_per_octave", slope)];
-            let out = recorded(&[law("background_noise", &values)], seed, &[0.0; 480_000]);
+            let out = recorded(
+                &[law("background_noise", &values)],
+                seed,
+                &vec![0.0; 480_000],
+            );
             assert!(
                 (level(&out) - 20.0 * 0.02_f64.log10()).abs() < 0.3,
                 "{slope}"
@@ -304,7 +308,7 @@ mod tests {
     #[test]
     fn a_hum_is_one_tone() {
         let values = [("hum_pa", 0.1), ("hum_hz", 50.0)];
-        let out = recorded(&[law("background_noise", &values)], 4, &[0.0; 16_000]);
+        let out = recorded(&[law("background_noise", &values)], 4, &vec![0.0; 16_000]);
         assert!((level(&out) + 20.0).abs() < 1e-3);
         let omega = TAU * 50.0 / RATE_HZ;
         for three in out.windows(3) {

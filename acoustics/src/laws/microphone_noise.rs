@@ -54,7 +54,7 @@ mod tests {
                 (vec![noise.clone()], 4e-4),
                 (vec![noise.clone(), noise.clone()], 8e-4),
             ] {
-                let out = recorded(&laws, seed, &[0.0; 20_000]);
+                let out = recorded(&laws, seed, &vec![0.0; 20_000]);
                 let found = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / 20_000.0;
                 assert!((found / variance - 1.0).abs() < 5.0 * (2.0 / 20_000.0_f64).sqrt());
             }

@@ -56,7 +56,7 @@ pub(super) fn streamed(laws: &[LawSpec], pressure: &[f32], block: usize) -> Vec<
     for (k, samples) in out.chunks_mut(block).enumerate() {
         let own = Key::root(0).child(k as u64);
         with_listener(&here, 0, own, |listener| {
-            microphones.hear(laws, listener, samples)
+            microphones.hear(laws, listener, samples);
         });
     }
     out
