@@ -88,7 +88,10 @@ class AcousticScene:
     def metrics(
         self, source: Sequence[float], mic: Sequence[float], *, seed: int = 0
     ) -> list[dict[str, Any]]:
-        """``centre_hz`` and T20, T30, EDT, C50, C80, D50, Ts and DRR of each octave band."""
+        """``centre_hz`` and T20, T30, EDT, C50, C80, D50, Ts and DRR of each octave band.
+
+        They are those of the room, without laws of microphones.
+        """
         metrics: list[dict[str, Any]] = json.loads(
             self._native.metrics_json(
                 point("source", source), point("mic", mic), whole("seed", seed)

@@ -263,6 +263,21 @@ def test_calibrate_refuses_a_house_where_none_was_measured_in(tmp_path: Path) ->
     assert "house" in done.stderr
 
 
+def test_a_response_obeys_laws(tmp_path: Path, two_points: tuple[str, str]) -> None:
+    points = ("--source", two_points[0], "--mic", two_points[1], "--rays", "20", "--json")
+    plain = one_object(dwell("ir", HOUSE, *points))
+    laws = tmp_path / "found.json"
+    law = {"id": "microphone_gain", "version": 1, "params": {"gain_db": 20.0}}
+    laws.write_text(json.dumps({"laws": [law], "parameters": {}}), "utf-8")
+    louder = one_object(dwell("ir", HOUSE, *points, "--laws", laws))
+    assert isinstance(louder["peak_pa"], float)
+    assert isinstance(plain["peak_pa"], float)
+    assert abs(louder["peak_pa"] / plain["peak_pa"] - 10.0) < 1e-4
+    missing = dwell("ir", HOUSE, *points, "--laws", tmp_path / "no.json")
+    assert missing.returncode == 1
+    assert "no.json" in missing.stderr
+
+
 def test_measures_of_a_response_name_their_bands(two_points: tuple[str, str]) -> None:
     points = ("--source", two_points[0], "--mic", two_points[1], "--rays", "20")
     metrics = one_object(dwell("ir", HOUSE, *points, "--json"))["metrics"]

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 import multiprocessing
 import os
+import pickle
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import dwell
 from dwell import _native
@@ -64,6 +66,36 @@ def test_ears_tell_left_from_right() -> None:
     # The head faces -Z, so -X is its left.
     assert np.argmax(np.abs(left)) < np.argmax(np.abs(right))
     assert np.sum(left**2) > np.sum(right**2)
+
+
+def test_laws_of_sound_act_on_responses() -> None:
+    house = dwell.House.shoebox((60.0, 60.0, 60.0), absorption=1.0)
+    points = ((30.0, 30.0, 30.0), (33.0, 30.0, 30.0))
+
+    def response(*laws: dict[str, object]) -> NDArray[np.float32]:
+        scene = dwell.AcousticScene(house, laws=laws, rays=0, image_order=0)
+        heard: NDArray[np.float32] = scene.impulse_response(*points)[0]
+        again = pickle.loads(pickle.dumps(scene))
+        assert (again.impulse_response(*points)[0] == heard).all()
+        return heard
+
+    def law(name: str, **params: float) -> dict[str, object]:
+        return {"id": name, "version": 1, "params": params}
+
+    plain = response()
+    assert (response(law("microphone_gain", gain_db=0.0)) == plain).all()
+    louder = response(law("source_gain", gain_db=6.0), law("microphone_gain", gain_db=-26.0))
+    np.testing.assert_allclose(louder, 0.1 * plain, atol=1e-6)
+    late = response(law("recording_delay", delay_s=0.01))
+    assert (late[160:] == plain).all()
+    assert not late[:160].any()
+    warm = response(law("temperature_error", offset_k=30.0))
+    arrival = 3.0 / (343.2 * (323.15 / 293.15) ** 0.5) * 16_000
+    assert abs(np.argmax(np.abs(warm)) - arrival) < 1.0
+    with pytest.raises(ValueError, match="gain_db = 200"):
+        response(law("microphone_gain", gain_db=200.0))
+    with pytest.raises(ValueError, match="microphone_gain"):
+        response(law("nope"))
 
 
 def test_a_snapshot_continues_with_the_same_bits(apartment: dwell.House) -> None:
