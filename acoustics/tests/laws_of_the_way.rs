@@ -96,8 +96,8 @@ fn missing_air_is_decibels_for_every_metre() {
             vec![law("no_air_absorption", &[("missing", missing)])],
         );
         for (a, b) in stated.paths.iter().zip(&less.paths) {
-            for band in 0..BAND_COUNT {
-                let wanted = (missing * per_m[band] * a.length_m).exp();
+            for (band, m) in per_m.iter().enumerate() {
+                let wanted = (missing * m * a.length_m).exp();
                 let found = f64::from(b.energy[band]) / f64::from(a.energy[band]);
                 assert!(
                     (found / wanted - 1.0).abs() < 1e-5,
@@ -112,9 +112,9 @@ fn missing_air_is_decibels_for_every_metre() {
         for (k, (a, b)) in heard {
             let least_m = k as f64 * stated.tail.bin_s * stated.speed_m_s;
             let most_m = least_m + stated.tail.bin_s * stated.speed_m_s;
-            for band in 0..BAND_COUNT {
+            for (band, m) in per_m.iter().enumerate() {
                 let gain = b.energy[band] / a.energy[band];
-                let [least, most] = [least_m, most_m].map(|d| (missing * per_m[band] * d).exp());
+                let [least, most] = [least_m, most_m].map(|d| (missing * m * d).exp());
                 let within = (1.0 - 1e-5) * least..(1.0 + 1e-5) * most;
                 assert!(
                     within.contains(&gain),

@@ -1,6 +1,6 @@
 //! Effects on sound that the basic model lacks: one file and one line each.
 //!
-//! Laws of air and sources change the energies between a source and a microphone ([`Effects`]); laws of microphones change
+//! Laws of air and sources change the energies between a source and a microphone (`Effects`); laws of microphones change
 //! pressure, block by block in a stream and at once in an impulse response (`Stage`). A law at its default is not installed, so
 //! that no bit changes.
 
