@@ -17,6 +17,8 @@ pub type Banded = [f32; BAND_COUNT];
 /// Nominal centres of the octave bands, Hz. Shape (band,).
 pub const NOMINAL_CENTRES_HZ: Banded = [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
 
+/// Filters ring no longer than this to either side, s.
+const LONGEST_RING_S: f64 = 0.05;
 /// Position of the 1 kHz band.
 const BAND_OF_1_KHZ: f64 = 4.0;
 
@@ -65,13 +67,16 @@ pub struct FilterBank {
     fft: RealFft,
     /// Power share of each band at each bin. Shape (band, bin).
     shares: Vec<Vec<f32>>,
+    /// As [`Self::up_to`] and [`Self::passed`].
+    up_to: Vec<Vec<f32>>,
+    passed: Vec<f64>,
 }
 
 impl FilterBank {
     /// A bank for signals of at most `length` samples at `rate_hz`; `overlap` as in [`power_shares`].
     pub fn new(rate_hz: f64, length: usize, overlap: f64) -> Self {
         // A quarter of a second lets the ringing of the lowest band fade before it wraps around.
-        let fft = RealFft::at_least(length + (0.25 * rate_hz) as usize);
+        let mut fft = RealFft::at_least(length + (0.25 * rate_hz) as usize);
         let mut shares = vec![vec![0.0; fft.bins()]; BAND_COUNT];
         for bin in 0..fft.bins() {
             let here = power_shares(bin as f64 * rate_hz / fft.len() as f64, overlap);
@@ -79,7 +84,31 @@ impl FilterBank {
                 band[bin] = share as f32;
             }
         }
-        Self { fft, shares }
+        let reach = (LONGEST_RING_S * rate_hz) as usize;
+        let (mut up_to, mut passed) = (Vec::new(), Vec::new());
+        for share in &shares {
+            let mut spectrum: Vec<Complex<f32>> =
+                share.iter().map(|s| Complex::new(*s, 0.0)).collect();
+            let response = fft.inverse(&mut spectrum);
+            let energy = |k: usize| f64::from(response[k]).powi(2);
+            // Samples before the pulse stand at the end.
+            let samples = (0..2 * reach).map(|k| (k + fft.len() - reach) % fft.len());
+            let mut sum = 0.0;
+            let mut sums = vec![0.0];
+            for k in samples {
+                sum += energy(k);
+                sums.push(sum);
+            }
+            let all: f64 = (0..fft.len()).map(energy).sum();
+            up_to.push(sums.iter().map(|s| (s / sum.max(1e-300)) as f32).collect());
+            passed.push(all);
+        }
+        Self {
+            fft,
+            shares,
+            up_to,
+            passed,
+        }
     }
 
     /// The signal in each band: their powers sum to the signal's, and filtering each again and summing gives it back.
@@ -100,6 +129,50 @@ impl FilterBank {
                 samples
             })
             .collect()
+    }
+
+    /// Each signal filtered by its band's **power share** as a gain: what [`Self::blend`] sums. Shape (band, sample).
+    pub fn filter(&self, signals: &[Vec<f32>], length: usize) -> Vec<Vec<f32>> {
+        let mut fft = self.fft.clone();
+        let bands = signals.iter().zip(&self.shares);
+        bands
+            .map(|(signal, share)| {
+                if signal.iter().all(|x| *x == 0.0) {
+                    return vec![0.0; length];
+                }
+                let mut spectrum = fft.forward(signal);
+                for (value, share) in spectrum.iter_mut().zip(share) {
+                    *value *= share;
+                }
+                let mut samples = fft.inverse(&mut spectrum);
+                samples.resize(length, 0.0);
+                samples
+            })
+            .collect()
+    }
+
+    /// One signal filtered by every band's power share as a gain. Shape (band, sample).
+    pub fn filter_one(&self, signal: &[f32]) -> Vec<Vec<f32>> {
+        let mut fft = self.fft.clone();
+        let spectrum = fft.forward(signal);
+        let filtered = self.shares.iter().map(|share| {
+            let parts = spectrum.iter().zip(share);
+            let mut band: Vec<Complex<f32>> = parts.map(|(value, share)| value * share).collect();
+            let mut samples = fft.inverse(&mut band);
+            samples.resize(signal.len(), 0.0);
+            samples
+        });
+        filtered.collect()
+    }
+
+    /// The energy that the power share of `band`, as a gain, passes of a pulse of energy 1.
+    pub fn passed(&self, band: usize) -> f64 {
+        self.passed[band]
+    }
+
+    /// The fraction of it that is over up to each sample; the middle of the row is the pulse. Shape (odd,).
+    pub fn up_to(&self, band: usize) -> &[f32] {
+        &self.up_to[band]
     }
 
     /// Sums one signal per band, each multiplied by its band's **power share** as a gain: equal signals come back

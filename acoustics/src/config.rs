@@ -25,8 +25,13 @@ pub struct AcousticConfig {
     /// How far a ray may fall below its start before chance ends it, dB; 10 to 120. Above it, every ray is followed; below, the
     /// fewer the fainter they are, and those that go on stand for the others.
     pub roulette_db: f64,
-    /// Radius of the sphere on which paths with specular last reflections are counted, m; 0.05 to 2. Walls make it smaller.
+    /// Radius of the ball in which paths with specular last reflections are counted, m; 0.05 to 2. It is this large for paths up
+    /// to 8 m and grows with the root of their length, up to half the cube root of the volume in sight.
     pub receiver_radius_m: f64,
+    /// Relative standard error of the tail's energy, in every band, below which no more rays are traced; 0 (all rays) to 1.
+    pub max_error: f64,
+    /// Whether small panels mirror only short waves and scatter long ones.
+    pub panel_size: bool,
     /// Temperature, humidity, pressure.
     pub air: Air,
     /// Whether air absorbs.
@@ -57,6 +62,8 @@ impl AcousticConfig {
             discovery_rays: 2_000,
             roulette_db: 40.0,
             receiver_radius_m: 0.5,
+            max_error: 0.0,
+            panel_size: true,
             air: Air::default(),
             air_absorption: true,
             transmission: true,
@@ -129,6 +136,7 @@ impl AcousticConfig {
             (0.05, 2.0),
             "0.05 to 2",
         )?;
+        range(AT, "max_error", self.max_error, (0.0, 1.0), "0 to 1")?;
         range(
             AT,
             "head_radius_m",

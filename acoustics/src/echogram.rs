@@ -1,6 +1,7 @@
 //! Energies over time: what arrives when, in which band, from where.
 
 use crate::bands::{BAND_COUNT, Banded};
+use crate::directions::Directions;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,8 @@ pub struct Path {
     pub departure: Vec3,
     /// How many walls it passes through.
     pub walls: u32,
+    /// Whether its pressure is upside down: it left the source from a lobe of negative gain.
+    pub inverted: bool,
 }
 
 impl Path {
@@ -28,23 +31,17 @@ impl Path {
     }
 }
 
-/// One bin of a [`Histogram`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Bin {
-    /// Energy re 1/d² of a free path, air included. Shape (band,).
-    pub energy: [f64; BAND_COUNT],
-    /// Mean of the unit vectors towards where the energy comes from, weighted with it over all bands, world: length 0 for
-    /// sound from all sides, 1 for sound from one.
-    pub arrival: Vec3,
-}
-
-/// Energy of the tail over time.
+/// Energy of the tail over time, and from where it comes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Histogram {
     /// Width of a bin, s.
     pub bin_s: f64,
-    /// The bins from the moment of the impulse on. Shape (bin,).
-    pub bins: Vec<Bin>,
+    /// Energy re 1/d² of a free path, air included, from the moment of the impulse on. Shape (bin, band).
+    pub bins: Vec<[f64; BAND_COUNT]>,
+    /// Bins that share one entry of `directions`; at least 1.
+    pub bins_per_direction: usize,
+    /// From where it comes. Shape (ceil(bin / `bins_per_direction`),).
+    pub directions: Vec<Directions>,
 }
 
 impl Histogram {
@@ -52,11 +49,16 @@ impl Histogram {
     pub fn total(&self) -> [f64; BAND_COUNT] {
         let mut sum = [0.0; BAND_COUNT];
         for bin in &self.bins {
-            for (total, energy) in sum.iter_mut().zip(bin.energy) {
+            for (total, energy) in sum.iter_mut().zip(bin) {
                 *total += energy;
             }
         }
         sum
+    }
+
+    /// From where the energy of bin `bin` comes, if that is known.
+    pub fn directions_at(&self, bin: usize) -> Option<&Directions> {
+        self.directions.get(bin / self.bins_per_direction.max(1))
     }
 
     /// Time span, s.
@@ -78,6 +80,9 @@ pub struct TraceStatistics {
     pub mean_free_path_m: f64,
     /// Radius of the receiver's sphere that was used, m.
     pub receiver_radius_m: f64,
+    /// Standard error of the tail's energy over its mean, from the scatter among groups of rays; 0 where nothing arrives.
+    /// Shape (band,).
+    pub relative_error: Banded,
     /// Volume that the receiver sees, m³: that of a convex room, and an underestimate behind corners.
     pub seen_volume_m3: f64,
 }

@@ -24,6 +24,14 @@ pub enum AcousticsError {
         /// The coordinates, m.
         found: [f32; 3],
     },
+    /// A source, receiver or microphone is turned by what is no rotation.
+    #[error("{what} is turned by {found:?}; allowed are quaternions of length 1")]
+    Rotation {
+        /// Source, receiver or microphone.
+        what: &'static str,
+        /// The quaternion, x, y, z, w.
+        found: [f32; 4],
+    },
     /// The rays go through another house than the scene was made for.
     #[error("the rays belong to house {rays:?}, the acoustic scene to {scene:?}")]
     OtherHouse {

@@ -25,7 +25,10 @@
 
 pub mod air;
 pub mod bands;
+mod channel;
 mod config;
+mod directions;
+mod directivity;
 mod echogram;
 mod error;
 mod explain;
@@ -48,13 +51,15 @@ mod tail;
 
 pub use air::Air;
 pub use config::AcousticConfig;
-pub use echogram::{Bin, Echogram, Histogram, Path, TraceStatistics};
+pub use directions::{CELL_COUNT, Directions, cell_of, within};
+pub use directivity::Directivity;
+pub use echogram::{Echogram, Histogram, Path, TraceStatistics};
 pub use error::AcousticsError;
 pub use explain::{Explanation, MaterialRow};
 pub use images::{EarlyPath, NEAREST_M};
 pub use impact::ImpactSound;
 pub use planes::{NO_PLANE, Plane, PlaneTable};
-pub use receiver::{Receiver, Source};
+pub use receiver::{MOST_MICROPHONES, Microphone, Receiver, ReceiverKind, Source};
 pub use recordings::Recording;
 pub use response::ImpulseResponse;
 pub use scene::AcousticScene;

@@ -1,71 +1,232 @@
 //! Where sound starts and where it is heard.
 
+use crate::directivity::Directivity;
+use crate::error::{AcousticsError, finite, range};
 use dwell_scene::Pose;
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// A point that radiates equally in all directions.
+/// Most microphones of an array.
+pub const MOST_MICROPHONES: usize = 128;
+/// Highest order of ambisonics.
+const HIGHEST_ORDER: u8 = 3;
+
+/// What radiates sound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Source {
-    /// Where it is in the world, m.
-    pub position: Vec3,
+    /// Where it is, and its axes (forward -Z), m.
+    pub pose: Pose,
+    /// How loud it is towards each side; its level is that on its axis.
+    pub directivity: Directivity,
 }
 
 impl Source {
-    /// A source at `position`.
+    /// A source at `position` that radiates equally in all directions.
     pub const fn at(position: Vec3) -> Self {
-        Self { position }
+        Self {
+            pose: Pose {
+                position,
+                rotation: Quat::IDENTITY,
+            },
+            directivity: Directivity::Omni,
+        }
+    }
+
+    /// A source with a front.
+    pub const fn facing(pose: Pose, directivity: Directivity) -> Self {
+        Self { pose, directivity }
+    }
+
+    /// Where it is, m.
+    pub const fn position(&self) -> Vec3 {
+        self.pose.position
+    }
+
+    /// Where its axis points, unit length.
+    pub fn axis(&self) -> Vec3 {
+        self.pose.rotation * Vec3::NEG_Z
+    }
+
+    /// Whether it is somewhere and its directivity in range.
+    pub(crate) fn check(&self) -> Result<(), AcousticsError> {
+        finite("the source", self.pose.position)?;
+        turned("the source", self.pose.rotation)?;
+        self.directivity.check()
     }
 }
 
-/// What listens.
+/// One microphone of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Microphone {
+    /// Where it is in the array, and its axes (forward -Z), m.
+    pub array_from_microphone: Pose,
+    /// How sensitive it is towards each side.
+    pub directivity: Directivity,
+}
+
+impl Microphone {
+    /// A microphone that hears equally from all sides.
+    pub const fn omni(position: Vec3) -> Self {
+        Self {
+            array_from_microphone: Pose {
+                position,
+                rotation: Quat::IDENTITY,
+            },
+            directivity: Directivity::Omni,
+        }
+    }
+}
+
+/// How a receiver listens.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Receiver {
+pub enum ReceiverKind {
     /// A small microphone that hears equally from all directions: one channel.
-    Omni {
-        /// Where it is in the world, m.
-        position: Vec3,
+    Omni,
+    /// Two ears on a rigid sphere (forward -Z, left -X): channel 0 left, channel 1 right.
+    Binaural,
+    /// Microphones around a centre: a channel each, in their order. All hear one sound field, so that their differences are
+    /// those of a real array, early and late.
+    Array(Vec<Microphone>),
+    /// Spherical harmonics at one point: (order + 1)² channels, ACN order, SN3D weights, x to the front (-Z), y to the left
+    /// (-X), z up.
+    Ambisonics {
+        /// 0 to 3.
+        order: u8,
     },
-    /// Two ears on a rigid sphere: channel 0 left, channel 1 right.
-    Binaural {
-        /// The head: its centre, and its axes (forward -Z, left -X).
-        world_from_head: Pose,
-    },
+}
+
+/// What listens.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Receiver {
+    /// Its centre and its axes (forward -Z), m.
+    pub pose: Pose,
+    /// How it listens.
+    pub kind: ReceiverKind,
 }
 
 impl Receiver {
     /// A microphone at `position`.
     pub const fn omni(position: Vec3) -> Self {
-        Self::Omni { position }
+        Self {
+            pose: Pose {
+                position,
+                rotation: Quat::IDENTITY,
+            },
+            kind: ReceiverKind::Omni,
+        }
     }
 
     /// A head at a pose, such as [`AgentState::world_from_head`](dwell_scene::AgentState::world_from_head).
     pub const fn binaural(world_from_head: Pose) -> Self {
-        Self::Binaural { world_from_head }
+        Self {
+            pose: world_from_head,
+            kind: ReceiverKind::Binaural,
+        }
+    }
+
+    /// Microphones around a pose.
+    pub const fn array(world_from_array: Pose, microphones: Vec<Microphone>) -> Self {
+        Self {
+            pose: world_from_array,
+            kind: ReceiverKind::Array(microphones),
+        }
+    }
+
+    /// Ambisonics of an order from 0 to 3 at a pose.
+    pub const fn ambisonics(pose: Pose, order: u8) -> Self {
+        Self {
+            pose,
+            kind: ReceiverKind::Ambisonics { order },
+        }
     }
 
     /// Its centre, m.
-    pub fn position(&self) -> Vec3 {
-        match self {
-            Self::Omni { position } => *position,
-            Self::Binaural { world_from_head } => world_from_head.position,
-        }
+    pub const fn position(&self) -> Vec3 {
+        self.pose.position
     }
 
     /// How many channels it has.
     pub fn channels(&self) -> usize {
-        match self {
-            Self::Omni { .. } => 1,
-            Self::Binaural { .. } => 2,
+        match &self.kind {
+            ReceiverKind::Omni => 1,
+            ReceiverKind::Binaural => 2,
+            ReceiverKind::Array(microphones) => microphones.len(),
+            ReceiverKind::Ambisonics { order } => (usize::from(*order) + 1).pow(2),
         }
     }
 
     /// How it is turned; nothing turns a microphone.
-    pub fn rotation(&self) -> glam::Quat {
-        match self {
-            Self::Omni { .. } => glam::Quat::IDENTITY,
-            Self::Binaural { world_from_head } => world_from_head.rotation,
+    pub fn rotation(&self) -> Quat {
+        match self.kind {
+            ReceiverKind::Omni => Quat::IDENTITY,
+            _ => self.pose.rotation,
         }
     }
+
+    /// Where the microphones of an array are, m; nothing for a receiver at one point.
+    pub(crate) fn microphone_positions(&self) -> Option<Vec<Vec3>> {
+        let ReceiverKind::Array(microphones) = &self.kind else {
+            return None;
+        };
+        let positions = microphones.iter().map(|microphone| {
+            let position = microphone.array_from_microphone.position;
+            self.pose.transform_point(position)
+        });
+        Some(positions.collect())
+    }
+
+    /// How far its furthest channel is from its centre, m.
+    pub(crate) fn radius_m(&self) -> f64 {
+        let ReceiverKind::Array(microphones) = &self.kind else {
+            return 0.0;
+        };
+        let far = microphones
+            .iter()
+            .map(|microphone| microphone.array_from_microphone.position.length());
+        f64::from(far.fold(0.0, f32::max))
+    }
+
+    /// Whether a turn of it needs no new rays: all its channels are at one point.
+    pub(crate) fn turns_in_place(&self) -> bool {
+        !matches!(self.kind, ReceiverKind::Array(_))
+    }
+
+    /// Whether it is somewhere and all its parts are in range.
+    pub(crate) fn check(&self) -> Result<(), AcousticsError> {
+        const AT: &str = "receiver";
+        finite("the receiver", self.pose.position)?;
+        turned("the receiver", self.pose.rotation)?;
+        match &self.kind {
+            ReceiverKind::Omni | ReceiverKind::Binaural => Ok(()),
+            ReceiverKind::Ambisonics { order } => range(
+                AT,
+                "order",
+                f64::from(*order),
+                (0.0, f64::from(HIGHEST_ORDER)),
+                "0 to 3",
+            ),
+            ReceiverKind::Array(microphones) => {
+                let most = MOST_MICROPHONES as f64;
+                let count = microphones.len() as f64;
+                range(AT, "microphones", count, (1.0, most), "1 to 128")?;
+                microphones.iter().try_for_each(|microphone| {
+                    finite("a microphone", microphone.array_from_microphone.position)?;
+                    turned("a microphone", microphone.array_from_microphone.rotation)?;
+                    microphone.directivity.check()
+                })
+            }
+        }
+    }
+}
+
+/// Whether a rotation turns anything at all.
+fn turned(what: &'static str, rotation: Quat) -> Result<(), AcousticsError> {
+    if rotation.is_finite() && (rotation.length_squared() - 1.0).abs() < 1e-2 {
+        return Ok(());
+    }
+    Err(AcousticsError::Rotation {
+        what,
+        found: rotation.to_array(),
+    })
 }

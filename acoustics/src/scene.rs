@@ -1,8 +1,8 @@
 //! A house as sound sees it.
 
-use crate::bands::{self, BAND_COUNT, Banded};
+use crate::bands::{self, BAND_COUNT, Banded, NOMINAL_CENTRES_HZ};
 use crate::config::AcousticConfig;
-use crate::echogram::Echogram;
+use crate::echogram::{Echogram, Path};
 use crate::error::{AcousticsError, finite};
 use crate::explain::Explanation;
 use crate::laws::{self, Effects, stage::Listener};
@@ -12,6 +12,7 @@ use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
 use crate::synthesis::Synthesizer;
 use crate::{images, tail};
+use dwell_scene::bvh::Hit;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
@@ -27,8 +28,6 @@ pub(crate) struct Surface {
     pub(crate) kept: Banded,
     /// Fraction of it that is scattered.
     pub(crate) scattering: Banded,
-    /// Whether it scatters at all.
-    pub(crate) scatters: bool,
     /// Energy that passes through, from 0 to 1.
     pub(crate) passed: Banded,
 }
@@ -37,7 +36,6 @@ impl Surface {
     const HARD: Self = Self {
         kept: [1.0; BAND_COUNT],
         scattering: [0.0; BAND_COUNT],
-        scatters: false,
         passed: [0.0; BAND_COUNT],
     };
 
@@ -60,7 +58,6 @@ impl Surface {
         Self {
             kept: bands::sample(&absorption).map(|a| (1.0 - a).clamp(0.0, 1.0)),
             scattering,
-            scatters: scattering.iter().any(|s| *s > 0.0),
             passed: loss_db.map(|db| {
                 if db >= Material::OPAQUE_TO_SOUND_DB {
                     0.0
@@ -180,6 +177,40 @@ impl AcousticScene {
         self.surfaces.get(id.index()).unwrap_or(&Surface::HARD)
     }
 
+    /// The fraction of reflected energy that a surface scatters where a ray meets it, after `straight_m` from the source or the
+    /// last scattering and with a cosine of incidence. Shape (band,).
+    ///
+    /// A panel that is small against the wave scatters what it is too small to mirror. Images and rays share this rule, so that
+    /// together they keep all energy; therefore the way after the reflection, which rays do not know yet, counts as the way
+    /// before it.
+    ///
+    /// # Source
+    /// J. H. Rindel, *Attenuation of sound reflections due to diffraction*, Proc. Nordic Acoustical Meeting 86, 257 (1986): below the limiting frequency
+    /// f_g = c a* / (2 S cos theta), a* = 2 d1 d2 / (d1 + d2), the amplitude falls with f / f_g.
+    pub(crate) fn scattering(
+        &self,
+        material: &Surface,
+        hit: &Hit,
+        cosine: f32,
+        straight_m: f64,
+    ) -> Banded {
+        if !self.config.panel_size {
+            return material.scattering;
+        }
+        let area_m2 = self.table.panel_m2(&self.house, hit);
+        // a* = d for equal ways.
+        let limit_hz = self.config.air.speed_of_sound_m_s() as f32 * straight_m as f32
+            / (2.0 * area_m2 * cosine.max(0.05)).max(1e-6);
+        let mut scattering = material.scattering;
+        for (s, centre_hz) in scattering.iter_mut().zip(NOMINAL_CENTRES_HZ) {
+            let ratio = centre_hz / limit_hz;
+            if ratio < 1.0 {
+                *s = 1.0 - (1.0 - *s) * ratio * ratio;
+            }
+        }
+        scattering
+    }
+
     /// Whether the state overrides a number of the material called `name`.
     pub(crate) fn is_overridden(&self, name: &str) -> bool {
         let prefix = format!("material/{name}/");
@@ -202,15 +233,17 @@ impl AcousticScene {
         Explanation::new(self)
     }
 
-    /// Whether points are somewhere, and rays meet this house.
+    /// Whether source and receiver are somewhere, and rays meet this house.
     pub(crate) fn check(
         &self,
         rays: &RayScene,
-        source: Vec3,
-        receiver: Vec3,
+        source: &Source,
+        receivers: &[Vec3],
     ) -> Result<(), AcousticsError> {
-        finite("the source", source)?;
-        finite("the receiver", receiver)?;
+        source.check()?;
+        for receiver in receivers {
+            finite("the receiver", *receiver)?;
+        }
         if !Arc::ptr_eq(rays.house(), &self.house) && **rays.house() != *self.house {
             return Err(AcousticsError::OtherHouse {
                 rays: rays.house().name.clone(),
@@ -237,25 +270,45 @@ impl AcousticScene {
         key: Key,
         threads: Threads,
     ) -> Result<Echogram, AcousticsError> {
-        self.check(rays, source.position, receiver)?;
-        let early = images::find(self, rays, source.position, receiver);
-        let late = tail::trace(
-            self,
-            rays,
-            source.position,
-            receiver,
-            key.child("tail"),
-            threads,
-        );
-        let mut echogram = Echogram {
-            paths: early,
-            tail: late.histogram,
-            trace: late.statistics,
-            direct_length_m: source.position.as_dvec3().distance(receiver.as_dvec3()),
-            speed_m_s: self.config.air.speed_of_sound_m_s(),
-        };
-        self.effects.at_source(&mut echogram);
-        Ok(echogram)
+        let echograms = self.echograms(rays, source, &[receiver], key, threads)?;
+        Ok(echograms.into_iter().next().unwrap_or_default())
+    }
+
+    /// As [`Self::echogram`] for many receivers, which share the source's rays. Shape (receiver,).
+    ///
+    /// # Errors
+    /// As [`Self::echogram`].
+    ///
+    /// # Determinism
+    /// As [`Self::echogram`]; where [`AcousticConfig::max_error`] ends the rays early, all receivers must be good enough.
+    pub fn echograms(
+        &self,
+        rays: &RayScene,
+        source: &Source,
+        receivers: &[Vec3],
+        key: Key,
+        threads: Threads,
+    ) -> Result<Vec<Echogram>, AcousticsError> {
+        self.check(rays, source, receivers)?;
+        let position = source.position();
+        let early = threads.map(receivers.len(), |k| {
+            images::find(self, rays, source, receivers[k])
+        });
+        let late = tail::trace(self, rays, source, receivers, key.child("tail"), threads);
+        let both = early.into_iter().zip(late).zip(receivers);
+        Ok(both
+            .map(|((paths, late), receiver)| {
+                let mut echogram = Echogram {
+                    paths,
+                    tail: late.histogram,
+                    trace: late.statistics,
+                    direct_length_m: position.as_dvec3().distance(receiver.as_dvec3()),
+                    speed_m_s: self.config.air.speed_of_sound_m_s(),
+                };
+                self.effects.at_source(&mut echogram);
+                echogram
+            })
+            .collect())
     }
 
     /// What `receiver` hears when `source` makes an impulse, as the laws of the state that was last given to [`Self::update`]
@@ -265,7 +318,7 @@ impl AcousticScene {
     /// a recording of the impulse.
     ///
     /// # Errors
-    /// As [`Self::echogram`].
+    /// As [`Self::echogram`], and [`AcousticsError::Range`] for a receiver or directivity out of range.
     ///
     /// # Determinism
     /// Equal scene, points and key give equal bits for any number of threads.
@@ -277,22 +330,50 @@ impl AcousticScene {
         key: Key,
         threads: Threads,
     ) -> Result<ImpulseResponse, AcousticsError> {
-        let echogram = self.echogram(rays, source, receiver.position(), key, threads)?;
-        Ok(self.respond(echogram, receiver, key))
+        let responses =
+            self.impulse_responses(rays, source, std::slice::from_ref(receiver), key, threads)?;
+        Ok(responses.into_iter().next().unwrap_or_default())
+    }
+
+    /// As [`Self::impulse_response`] for many receivers, which share the source's rays. Shape (receiver,).
+    ///
+    /// # Errors
+    /// As [`Self::impulse_response`].
+    ///
+    /// # Determinism
+    /// As [`Self::echograms`].
+    pub fn impulse_responses(
+        &self,
+        rays: &RayScene,
+        source: &Source,
+        receivers: &[Receiver],
+        key: Key,
+        threads: Threads,
+    ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
+        let arrived = self.arrivals(rays, source, receivers, key, threads)?;
+        let both = arrived.into_iter().zip(receivers);
+        Ok(both
+            .map(|(response, receiver)| self.record(response, receiver, key))
+            .collect())
     }
 
     /// The impulse response that belongs to an echogram: another turn of the head needs no new rays. Laws of microphones act as
     /// in [`Self::impulse_response`].
+    ///
+    /// The microphones of an array hear the centre's early paths as plane waves here.
     pub fn respond(&self, echogram: Echogram, receiver: &Receiver, key: Key) -> ImpulseResponse {
-        let mut response = self.arrive(echogram, receiver, key);
-        let listener = self.listener(
-            receiver,
-            key.child("room"),
-            key.child("microphone").child(0),
-        );
+        self.record(self.arrive(echogram, receiver, None, key), receiver, key)
+    }
+
+    /// What the laws of microphones make of a response.
+    fn record(&self, response: ImpulseResponse, receiver: &Receiver, key: Key) -> ImpulseResponse {
+        let own = key.child("microphone").child(0);
+        let listener = self.listener(receiver, key.child("room"), own);
         let rate_hz = f64::from(self.config.rate_hz);
-        response.samples = Microphones::record(&self.laws, rate_hz, &listener, response.samples);
-        response
+        ImpulseResponse {
+            samples: Microphones::record(&self.laws, rate_hz, &listener, response.samples),
+            ..response
+        }
     }
 
     /// Who listens; `room` and `own` as in [`Listener`].
@@ -311,21 +392,45 @@ impl AcousticScene {
         }
     }
 
-    /// The impulse response up to the microphones, without their laws.
+    /// The impulse responses up to the microphones, without their laws. Shape (receiver,).
+    pub(crate) fn arrivals(
+        &self,
+        rays: &RayScene,
+        source: &Source,
+        receivers: &[Receiver],
+        key: Key,
+        threads: Threads,
+    ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
+        receivers.iter().try_for_each(Receiver::check)?;
+        let centres: Vec<Vec3> = receivers.iter().map(Receiver::position).collect();
+        let echograms = self.echograms(rays, source, &centres, key, threads)?;
+        Ok(threads.map(receivers.len(), |k| {
+            // The microphones of an array have early paths of their own.
+            let positions = receivers[k].microphone_positions();
+            let early: Option<Vec<Vec<Path>>> = positions.map(|positions| {
+                let found = positions.iter();
+                found
+                    .map(|position| images::find(self, rays, source, *position))
+                    .collect()
+            });
+            self.arrive(echograms[k].clone(), &receivers[k], early.as_deref(), key)
+        }))
+    }
+
+    /// The impulse response that belongs to an echogram, up to the microphones. `early`: the paths of each channel where they are
+    /// not the centre's.
     pub(crate) fn arrive(
         &self,
         echogram: Echogram,
         receiver: &Receiver,
+        early: Option<&[Vec<Path>]>,
         key: Key,
     ) -> ImpulseResponse {
-        let samples = self
-            .synthesizer
-            .render(&echogram, receiver, key.child("noise"));
-        let channels = receiver.channels();
+        let key = key.child("noise");
         ImpulseResponse {
-            channels,
+            channels: receiver.channels(),
             rate_hz: self.config.rate_hz,
-            samples,
+            samples: self.synthesizer.render(&echogram, receiver, early, key),
             echogram,
         }
     }

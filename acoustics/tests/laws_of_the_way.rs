@@ -107,13 +107,13 @@ fn missing_air_is_decibels_for_every_metre() {
         }
         // A bin of the tail holds what went as far as sound goes in its time.
         let bins = stated.tail.bins.iter().zip(&less.tail.bins).enumerate();
-        let heard = bins.filter(|(_, (a, _))| a.energy[7] > 0.0);
+        let heard = bins.filter(|(_, (a, _))| a[7] > 0.0);
         let mut count = 0;
         for (k, (a, b)) in heard {
             let least_m = k as f64 * stated.tail.bin_s * stated.speed_m_s;
             let most_m = least_m + stated.tail.bin_s * stated.speed_m_s;
             for (band, m) in per_m.iter().enumerate() {
-                let gain = b.energy[band] / a.energy[band];
+                let gain = b[band] / a[band];
                 let [least, most] = [least_m, most_m].map(|d| (missing * m * d).exp());
                 let within = (1.0 - 1e-5) * least..(1.0 + 1e-5) * most;
                 assert!(
@@ -153,7 +153,7 @@ fn sources_change_direct_and_late_sound_alike() {
                 is_wanted(band, a.energy[band].into(), b.energy[band].into());
             }
             for (a, b) in stated.tail.bins.iter().zip(&now.tail.bins) {
-                is_wanted(band, a.energy[band], b.energy[band]);
+                is_wanted(band, a[band], b[band]);
             }
         }
     }

@@ -47,8 +47,8 @@ proptest! {
             prop_assert!((a.arrival.length() - 1.0).abs() < 1e-4 || a.length_m < 1e-3);
         }
         for bin in &there.tail.bins {
-            let counted = bin.energy.iter().all(|e| *e >= 0.0 && e.is_finite());
-            prop_assert!(counted && bin.arrival.length() < 1.001);
+            let counted = bin.iter().all(|e| *e >= 0.0 && e.is_finite());
+            prop_assert!(counted);
         }
         prop_assert_eq!(there.trace.escaped, 0);
         let head = Receiver::binaural(Pose::from_position_yaw(to, yaw_rad));

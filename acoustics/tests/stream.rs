@@ -88,7 +88,7 @@ fn a_still_scene_is_a_convolution() {
         &hall,
         &mut stream(&hall, StreamConfig::full()),
         &signal,
-        |_| (SOURCE, receiver),
+        |_| (SOURCE, receiver.clone()),
     );
     let key = Key::root(8).child("source").child(5);
     let response = hall

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from dwell.camera import Camera
     from dwell.envs import register_envs
     from dwell.house import House
+    from dwell.listening import Microphone, Receiver, Source
     from dwell.navigation import Navigation, Walker
     from dwell.world import World
 
@@ -42,9 +43,12 @@ _LAZY = {
     "AcousticScene": "dwell.acoustics",
     "Camera": "dwell.camera",
     "House": "dwell.house",
+    "Microphone": "dwell.listening",
     "Navigation": "dwell.navigation",
     "Outcome": "dwell.actions",
     "Pointed": "dwell.actions",
+    "Receiver": "dwell.listening",
+    "Source": "dwell.listening",
     "Walker": "dwell.navigation",
     "World": "dwell.world",
     "calibrate": "dwell.calibration",
@@ -61,10 +65,13 @@ __all__ = [
     "HouseError",
     "HouseNotFoundError",
     "MeasuredDataError",
+    "Microphone",
     "Navigation",
     "Outcome",
     "Pointed",
+    "Receiver",
     "SceneError",
+    "Source",
     "UsageError",
     "Walker",
     "World",

@@ -226,24 +226,25 @@ class AcousticScene:
         laws_json: str = ...,
         parameters_json: str = ...,
     ) -> Self: ...
-    def impulse_response(
+    def impulse_responses(
         self,
-        source: tuple[float, float, float],
-        mic: tuple[float, float, float],
+        source_json: str,
+        receivers_json: str,
         *,
-        yaw_deg: float = ...,
-        ears: bool = ...,
         seed: int = ...,
         threads: int | None = ...,
-    ) -> NDArray[np.float32]:
-        """Shape (1 or 2, samples): pressure in Pa for a source of 1 Pa at 1 m; the first sample is time zero."""
+    ) -> list[NDArray[np.float32]]:
+        """Shape (channels, samples) each: pressure in Pa for a source of 1 Pa at 1 m; the first sample is time zero."""
     def metrics_json(
-        self, source: tuple[float, float, float], mic: tuple[float, float, float], seed: int = ...
+        self,
+        source_json: str,
+        mics: Sequence[tuple[float, float, float]],
+        *,
+        seed: int = ...,
+        threads: int | None = ...,
     ) -> str:
-        """Band centres and T20, T30, EDT, C50, C80, D50, Ts, DRR by band."""
-    def early_paths_json(
-        self, source: tuple[float, float, float], mic: tuple[float, float, float]
-    ) -> str:
+        """For each microphone: band centres and T20, T30, EDT, C50, C80, D50, Ts, DRR by band."""
+    def early_paths_json(self, source_json: str, mic: tuple[float, float, float]) -> str:
         """``[{points, path: {planes, length_m, energy, arrival, departure, walls}}, ...]``, by length."""
     def explain_json(self) -> str: ...
     @property

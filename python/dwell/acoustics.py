@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
-from dwell.arguments import finite, point, to_json, whole
+from dwell.arguments import point, to_json, whole
 from dwell.house import House
+from dwell.listening import Receiver, Source, source_of
 from dwell.settings import Laws, found
 
 
@@ -55,8 +56,8 @@ class AcousticScene:
 
     def impulse_response(
         self,
-        source: Sequence[float],
-        mic: Sequence[float],
+        source: Source | Sequence[float],
+        mic: Receiver | Sequence[float],
         *,
         ears: bool = False,
         yaw_deg: float = 0.0,
@@ -66,40 +67,65 @@ class AcousticScene:
         """Pressure in Pa for a source that makes an impulse of 1 Pa at 1 m.
 
         Args:
-            source: Where it is, m.
-            mic: Where the microphone, or the middle of the head, is, m.
-            ears: Two ears on a spherical head (left first) instead of a microphone.
-            yaw_deg: Where the head faces.
+            source: What sounds, or the point (m) from which sound goes equally to all sides.
+            mic: What hears, or the point (m) of a microphone or of the middle of a head.
+            ears: At a point: two ears on a spherical head (left first) instead of a microphone.
+            yaw_deg: Where that head faces.
             seed: The seed of the rays and of the tail's details.
             threads: How many threads to use; the result does not depend on it.
 
         Returns:
-            Shape (1 or 2, samples). The first sample is the moment of the impulse.
+            Shape (channels, samples). The first sample is the moment of the impulse.
         """
-        return self._native.impulse_response(
-            point("source", source),
-            point("mic", mic),
-            yaw_deg=finite("yaw_deg", yaw_deg),
-            ears=ears,
+        if not isinstance(mic, Receiver):
+            mic = Receiver.binaural(mic, yaw_deg=yaw_deg) if ears else Receiver.omni(mic)
+        return self.impulse_responses(source, [mic], seed=seed, threads=threads)[0]
+
+    def impulse_responses(
+        self,
+        source: Source | Sequence[float],
+        receivers: Sequence[Receiver],
+        *,
+        seed: int = 0,
+        threads: int | None = None,
+    ) -> list[NDArray[np.float32]]:
+        """As :meth:`impulse_response` for many receivers, which share the source's rays.
+
+        Returns:
+            One array of shape (channels, samples) for each receiver; their lengths differ.
+        """
+        return self._native.impulse_responses(
+            to_json(source_of(source).to_json()),
+            to_json([receiver.to_json() for receiver in receivers]),
             seed=whole("seed", seed),
-            threads=None if threads is None else whole("threads", threads, low=1),
+            threads=_threads(threads),
         )
 
     def metrics(
-        self, source: Sequence[float], mic: Sequence[float], *, seed: int = 0
+        self,
+        source: Source | Sequence[float],
+        mic: Sequence[float],
+        *,
+        seed: int = 0,
+        threads: int | None = None,
     ) -> list[dict[str, Any]]:
         """``centre_hz`` and T20, T30, EDT, C50, C80, D50, Ts and DRR of each octave band.
 
-        They are those of the room, without laws of microphones.
+        They are those of the room, without laws of microphones, and come from exact early paths and the
+        traced tail, without the chance of one noise.
         """
-        metrics: list[dict[str, Any]] = json.loads(
-            self._native.metrics_json(
-                point("source", source), point("mic", mic), whole("seed", seed)
-            )
+        rows = self._native.metrics_json(
+            to_json(source_of(source).to_json()),
+            [point("mic", mic)],
+            seed=whole("seed", seed),
+            threads=_threads(threads),
         )
+        metrics: list[dict[str, Any]] = json.loads(rows)[0]
         return metrics
 
-    def early_paths(self, source: Sequence[float], mic: Sequence[float]) -> list[dict[str, Any]]:
+    def early_paths(
+        self, source: Source | Sequence[float], mic: Sequence[float]
+    ) -> list[dict[str, Any]]:
         """The direct sound and early reflections, by length.
 
         Returns:
@@ -111,7 +137,7 @@ class AcousticScene:
             DwellError: A point is not finite.
         """
         paths: list[dict[str, Any]] = json.loads(
-            self._native.early_paths_json(point("source", source), point("mic", mic))
+            self._native.early_paths_json(to_json(source_of(source).to_json()), point("mic", mic))
         )
         return paths
 
@@ -119,6 +145,10 @@ class AcousticScene:
         """What sound meets: areas, mean absorption, which materials are guesses."""
         explained: dict[str, Any] = json.loads(self._native.explain_json())
         return explained
+
+
+def _threads(threads: int | None) -> int | None:
+    return None if threads is None else whole("threads", threads, low=1)
 
 
 def _again(house: House, laws: dict[str, Any], config: dict[str, Any]) -> AcousticScene:

@@ -4,11 +4,11 @@ use crate::doorway::Doorway;
 use crate::errors::{Fault, to_python};
 use crate::house::PyHouse;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
-use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source};
+use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source, metrics};
+use dwell_scene::LawSpec;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{LawSpec, Pose};
 use glam::Vec3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -50,77 +50,66 @@ impl PyAcousticScene {
     fn early_paths_json(
         &self,
         py: Python<'_>,
-        source: [f32; 3],
+        source_json: &str,
         mic: [f32; 3],
     ) -> PyResult<String> {
         py.engine(|| -> Result<_, Fault> {
-            let (source, mic) = (Vec3::from_array(source), Vec3::from_array(mic));
-            let paths = self.scene.early_paths(&self.rays, source, mic)?;
+            let source: Source = serde_json::from_str(source_json)?;
+            let mic = Vec3::from_array(mic);
+            let paths = self.scene.early_paths(&self.rays, &source, mic)?;
             Ok(serde_json::to_string(&paths)?)
         })
     }
 
-    #[pyo3(signature = (source, mic, *, yaw_deg=0.0, ears=false, seed=0, threads=None))]
-    #[expect(clippy::too_many_arguments, reason = "keyword-only in Python")]
-    fn impulse_response<'py>(
+    #[pyo3(signature = (source_json, receivers_json, *, seed=0, threads=None))]
+    fn impulse_responses<'py>(
         &self,
         py: Python<'py>,
-        source: [f32; 3],
-        mic: [f32; 3],
-        yaw_deg: f32,
-        ears: bool,
+        source_json: &str,
+        receivers_json: &str,
         seed: u64,
         threads: Option<usize>,
-    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let response = py.engine(|| {
-            let mic = Vec3::from_array(mic);
-            let head = Pose::from_position_yaw(mic, yaw_deg.to_radians());
-            let receiver = if ears {
-                Receiver::binaural(head)
-            } else {
-                Receiver::omni(mic)
-            };
-            let source = Source::at(Vec3::from_array(source));
+    ) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
+        let responses = py.engine(|| {
+            let source: Source = serde_json::from_str(source_json)?;
+            let receivers: Vec<Receiver> = serde_json::from_str(receivers_json)?;
             let (key, threads) = (Key::root(seed), Threads::requested(threads)?);
-            let scene = &self.scene;
-            let response = scene.impulse_response(&self.rays, &source, &receiver, key, threads)?;
-            Ok::<_, Fault>(response)
+            let (scene, rays) = (&self.scene, &self.rays);
+            let responses = scene.impulse_responses(rays, &source, &receivers, key, threads)?;
+            Ok::<_, Fault>(responses)
         })?;
-        let (channels, samples) = (response.channels, response.len());
-        response
-            .samples
-            .into_pyarray(py)
-            .reshape([channels, samples])
+        let arrays = responses.into_iter().map(|response| {
+            let shape = [response.channels, response.len()];
+            response.samples.into_pyarray(py).reshape(shape)
+        });
+        arrays.collect()
     }
 
-    #[pyo3(signature = (source, mic, seed=0))]
+    #[pyo3(signature = (source_json, mics, *, seed=0, threads=None))]
     fn metrics_json(
         &self,
         py: Python<'_>,
-        source: [f32; 3],
-        mic: [f32; 3],
+        source_json: &str,
+        mics: Vec<[f32; 3]>,
         seed: u64,
+        threads: Option<usize>,
     ) -> PyResult<String> {
         py.engine(|| -> Result<_, Fault> {
-            let (source, mic) = (Source::at(Vec3::from_array(source)), Vec3::from_array(mic));
-            let echogram = self.scene.echogram(
-                &self.rays,
-                &source,
-                mic,
-                Key::root(seed),
-                Threads::requested(None)?,
-            )?;
-            let bands = dwell_acoustics::metrics::of_echogram(&echogram);
-            let mut rows = serde_json::to_value(bands)?;
-            for (row, centre_hz) in rows
-                .as_array_mut()
-                .into_iter()
-                .flatten()
-                .zip(NOMINAL_CENTRES_HZ)
-            {
-                row["centre_hz"] = centre_hz.into();
+            let source: Source = serde_json::from_str(source_json)?;
+            let mics: Vec<Vec3> = mics.into_iter().map(Vec3::from_array).collect();
+            let (key, threads) = (Key::root(seed), Threads::requested(threads)?);
+            let (scene, rays) = (&self.scene, &self.rays);
+            let echograms = scene.echograms(rays, &source, &mics, key, threads)?;
+            let mut all = Vec::with_capacity(echograms.len());
+            for echogram in &echograms {
+                let mut rows = serde_json::to_value(metrics::of_echogram(echogram))?;
+                let bands = rows.as_array_mut().into_iter().flatten();
+                for (row, centre_hz) in bands.zip(NOMINAL_CENTRES_HZ) {
+                    row["centre_hz"] = centre_hz.into();
+                }
+                all.push(rows);
             }
-            Ok(rows.to_string())
+            Ok(serde_json::to_string(&all)?)
         })
     }
 

@@ -2,6 +2,8 @@
 
 mod series;
 
+pub(crate) use series::sphere_response;
+
 use crate::bands::{self, BAND_COUNT, Banded};
 use realfft::num_complex::Complex;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -76,7 +78,7 @@ impl SphericalHead {
             .collect();
         let response = |frequency_hz: f64| {
             let omega = TAU * frequency_hz;
-            let mut values = series::sphere_response(omega * radius_m / speed_m_s, &cosines);
+            let mut values = sphere_response(omega * radius_m / speed_m_s, &cosines);
             for (value, delay) in values.iter_mut().zip(&advance) {
                 let phase = omega * delay;
                 *value *= Complex::new(libm::cos(phase), libm::sin(phase));

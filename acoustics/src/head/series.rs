@@ -9,7 +9,7 @@ use realfft::num_complex::Complex;
 ///
 /// # Source
 /// R. O. Duda, W. L. Martens, JASA 104, 3048 (1998), the limit of equation (3) for a distant source.
-pub(super) fn sphere_response(ka: f64, cos_incidence: &[f64]) -> Vec<Complex<f64>> {
+pub(crate) fn sphere_response(ka: f64, cos_incidence: &[f64]) -> Vec<Complex<f64>> {
     let mut sum = vec![Complex::new(0.0, 0.0); cos_incidence.len()];
     if ka < 1e-6 {
         return vec![Complex::new(1.0, 0.0); cos_incidence.len()];

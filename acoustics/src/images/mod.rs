@@ -7,6 +7,7 @@ mod validate;
 
 use crate::bands::BAND_COUNT;
 use crate::echogram::Path;
+use crate::receiver::Source;
 use crate::scene::AcousticScene;
 use dwell_scene::rays::RayScene;
 use glam::{DVec3, Vec3};
@@ -20,9 +21,29 @@ pub const NEAREST_M: f64 = 0.1;
 pub(crate) fn find(
     scene: &AcousticScene,
     rays: &RayScene,
-    source: Vec3,
+    source: &Source,
     receiver: Vec3,
 ) -> Vec<Path> {
+    let pattern = source
+        .directivity
+        .pattern(scene.config().air.speed_of_sound_m_s());
+    let mut paths = find_equal(scene, rays, source.position(), receiver);
+    if !pattern.is_omni() {
+        let axis = source.axis();
+        for path in &mut paths {
+            let gain = pattern.gain(axis.dot(path.departure));
+            path.inverted = gain.iter().sum::<f32>() < 0.0;
+            for (e, g) in path.energy.iter_mut().zip(gain) {
+                *e *= g * g;
+            }
+        }
+        paths.retain(|path| path.energy.iter().any(|e| *e > 0.0));
+    }
+    paths
+}
+
+/// The same for a source that radiates equally in all directions.
+fn find_equal(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Vec3) -> Vec<Path> {
     let validator = Validator::new(scene, rays, source, receiver);
     let mut paths: Vec<(Path, DVec3)> = Vec::new();
     paths.extend(

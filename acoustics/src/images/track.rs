@@ -3,6 +3,7 @@
 use super::sequences::mirror;
 use crate::echogram::Path;
 use crate::error::AcousticsError;
+use crate::receiver::Source;
 use crate::scene::AcousticScene;
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
@@ -25,14 +26,14 @@ impl AcousticScene {
     pub fn early_paths(
         &self,
         rays: &RayScene,
-        source: Vec3,
+        source: &Source,
         receiver: Vec3,
     ) -> Result<Vec<EarlyPath>, AcousticsError> {
-        self.check(rays, source, receiver)?;
+        self.check(rays, source, &[receiver])?;
         let paths = super::find(self, rays, source, receiver).into_iter();
         Ok(paths
             .map(|path| EarlyPath {
-                points: self.corners(&path, source, receiver),
+                points: self.corners(&path, source.position(), receiver),
                 path,
             })
             .collect())
@@ -73,7 +74,9 @@ mod tests {
         let rays = RayScene::new(house.clone());
         let scene = AcousticScene::new(house, AcousticConfig::default()).unwrap();
         let (source, receiver) = (Vec3::new(1.0, 1.2, 1.5), Vec3::new(4.5, 1.6, 3.0));
-        let paths = scene.early_paths(&rays, source, receiver).unwrap();
+        let paths = scene
+            .early_paths(&rays, &Source::at(source), receiver)
+            .unwrap();
         let first = paths.iter().filter(|one| one.path.order() == 1).count();
         assert_eq!(first, 6, "one over each side of the box");
         for EarlyPath { points, path } in &paths {

@@ -56,6 +56,7 @@ pub(super) fn direct(
         arrival: -departure,
         departure,
         walls: walls as u32,
+        inverted: false,
     })
 }
 

@@ -67,8 +67,14 @@ impl<'a> Validator<'a> {
             if self.scene.table().of_hit(self.scene.house(), &hit) != planes[k] {
                 return None;
             }
-            let surface = self.scene.surface(self.rays.surface(&hit).material);
-            let factors = surface.kept.iter().zip(surface.scattering);
+            let surface = self.rays.surface(&hit);
+            let material = self.scene.surface(surface.material);
+            let incoming = (from - points[k]).normalize_or_zero().as_vec3();
+            let cosine = incoming.dot(surface.normal).abs();
+            // The way from the source, unfolded.
+            let straight_m = images[k].distance(points[k]);
+            let scattering = self.scene.scattering(material, &hit, cosine, straight_m);
+            let factors = material.kept.iter().zip(scattering);
             for (e, (kept, scattering)) in energy.iter_mut().zip(factors) {
                 *e *= f64::from(*kept) * (1.0 - f64::from(scattering));
             }
@@ -87,6 +93,7 @@ impl<'a> Validator<'a> {
             arrival: towards(self.receiver, points[order - 1]),
             departure: towards(self.source, points[0]),
             walls: 0,
+            inverted: false,
         })
     }
 

@@ -4,8 +4,8 @@ use super::stage::{Block, Listener, Memory, Stage};
 use super::{Acts, Law, Values};
 use crate::bands::{self, BAND_COUNT};
 use crate::fft::RealFft;
-use crate::head::Ear;
-use crate::receiver::Receiver;
+
+use crate::channel::Channel;
 use dwell_scene::LawInfo;
 use dwell_scene::law::{Engine, ParamInfo};
 use dwell_scene::random::Key;
@@ -139,9 +139,9 @@ impl Field {
     /// A frame at every channel, under its window. Shape (channel, 2 hop).
     fn frame(&mut self, number: u64, listener: &Listener<'_>) -> Vec<Vec<f32>> {
         let key = listener.room.child("background noise").child(number);
-        let axes = axes(listener.receiver);
+        let channels = Channel::of(listener.receiver, listener.speed_m_s);
         let bins = self.fft.bins();
-        let mut spectra = vec![vec![Complex::new(0.0_f32, 0.0); bins]; axes.len()];
+        let mut spectra = vec![vec![Complex::new(0.0_f32, 0.0); bins]; channels.len()];
         let step = TAU * self.rate_hz / self.fft.len() as f64;
         for wave in 0..DIRECTIONS {
             let mut stream = key.child(wave as u64).stream();
@@ -150,11 +150,9 @@ impl Field {
             // Earlier where the wave comes from.
             let early_s = centre.dot(DVec3::from(from)) / listener.speed_m_s;
             let turns: Vec<f32> = (0..bins).map(|_| stream.uniform_f32()).collect();
-            for (axis, spectrum) in axes.iter().zip(&mut spectra) {
-                let (gain, delay_s) = match axis {
-                    Some(axis) => listener.head.banded(f64::from(axis.dot(from))),
-                    None => ([1.0; BAND_COUNT], [0.0; BAND_COUNT]),
-                };
+            for (channel, spectrum) in channels.iter().zip(&mut spectra) {
+                let heard = channel.hear(listener.head, listener.speed_m_s, from);
+                let (gain, delay_s) = (heard.gain, heard.delay.banded());
                 for (bin, value) in spectrum.iter_mut().enumerate() {
                     let amplitude = self.amplitude[bin];
                     if amplitude == 0.0 {
@@ -211,17 +209,6 @@ impl Field {
     }
 }
 
-/// Where each channel's ear points to, world; nothing for a microphone.
-fn axes(receiver: &Receiver) -> Vec<Option<glam::Vec3>> {
-    match receiver {
-        Receiver::Omni { .. } => vec![None],
-        Receiver::Binaural { world_from_head } => Ear::BOTH
-            .iter()
-            .map(|ear| Some(world_from_head.rotation * ear.axis_in_head()))
-            .collect(),
-    }
-}
-
 impl Stage for Field {
     fn hear(&mut self, block: &mut Block<'_>) {
         let length = block.len();
@@ -275,6 +262,7 @@ mod tests {
     use super::super::testing::{RATE_HZ, law, recorded, with_listener};
     use super::*;
     use crate::microphones::Microphones;
+    use crate::receiver::Receiver;
     use glam::Vec3;
 
     fn level(samples: &[f32]) -> f64 {

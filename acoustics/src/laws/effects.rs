@@ -57,7 +57,7 @@ impl Effects {
             }
         }
         for bin in &mut echogram.tail.bins {
-            for (energy, gain) in bin.energy.iter_mut().zip(gain) {
+            for (energy, gain) in bin.iter_mut().zip(gain) {
                 *energy *= f64::from(gain);
             }
         }

@@ -5,7 +5,7 @@ mod decay;
 pub use decay::{BandMetrics, EnergyCurve};
 
 use crate::bands::{BAND_COUNT, FilterBank};
-use crate::echogram::{Bin, Echogram};
+use crate::echogram::Echogram;
 
 /// The parameters of every band. Shape (band,).
 pub type Metrics = [BandMetrics; BAND_COUNT];
@@ -21,7 +21,7 @@ pub fn of_echogram(echogram: &Echogram) -> Metrics {
             echogram.paths.iter().map(timed).filter(|(_, e)| *e > 0.0)
         };
         let bins = || {
-            let timed = |(k, bin): (usize, &Bin)| (k as f64 * tail.bin_s, bin.energy[band]);
+            let timed = |(k, bin): (usize, &[f64; BAND_COUNT])| (k as f64 * tail.bin_s, bin[band]);
             tail.bins
                 .iter()
                 .enumerate()

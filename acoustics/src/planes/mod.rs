@@ -1,6 +1,7 @@
 //! The planes of a house: side tables over its triangles, made once and shared by all worlds.
 
 mod cluster;
+mod panels;
 
 pub use cluster::Plane;
 
@@ -31,6 +32,8 @@ pub struct PlaneTable {
     /// Position of the first triangle of each placed mesh in `of_triangle`. Shape (placed,).
     first_triangle: Vec<u32>,
     of_triangle: Vec<u32>,
+    /// Area of the panel that each triangle belongs to, m². As `of_triangle`.
+    panel_m2: Vec<f32>,
     moving: Vec<Moving>,
     /// Planes of everything that never moves, the largest first.
     largest: Vec<u32>,
@@ -58,9 +61,12 @@ impl PlaneTable {
             .collect();
         let (mut at_start, planes) = cluster::cluster(&fixed);
         let mut of_triangle = vec![NO_PLANE; total];
-        for (source, plane) in geometry.static_triangles.iter().zip(planes) {
-            let place = first_triangle[source.placed as usize] + source.triangle;
-            of_triangle[place as usize] = plane;
+        let mut panel_m2 = vec![0.0; total];
+        let areas = panels::areas(&fixed, &planes);
+        for ((source, plane), area) in geometry.static_triangles.iter().zip(planes).zip(areas) {
+            let place = (first_triangle[source.placed as usize] + source.triangle) as usize;
+            of_triangle[place] = plane;
+            panel_m2[place] = area;
         }
         let mut largest: Vec<u32> = (0..at_start.len() as u32).collect();
         largest.sort_by(|a, b| {
@@ -83,6 +89,8 @@ impl PlaneTable {
                 .collect();
             let (planes, of_part) = cluster::cluster(&corners);
             let base = first_triangle[structures + part.index()] as usize;
+            let areas = panels::areas(&corners, &of_part);
+            panel_m2[base..base + areas.len()].copy_from_slice(&areas);
             for (k, plane) in of_part.into_iter().enumerate() {
                 if plane != NO_PLANE {
                     of_triangle[base + k] = at_start.len() as u32 + plane;
@@ -103,6 +111,7 @@ impl PlaneTable {
             at_start,
             first_triangle,
             of_triangle,
+            panel_m2,
             moving,
             largest,
         }
@@ -125,20 +134,28 @@ impl PlaneTable {
 
     /// The plane that a hit lies in; [`NO_PLANE`] where it has none.
     pub(crate) fn of_hit(&self, house: &House, hit: &Hit) -> u32 {
+        let place = self.place_of(house, hit);
+        place.map_or(NO_PLANE, |place| self.of_triangle[place])
+    }
+
+    /// The area of the panel that a hit lies in, m²; 0 where it has none.
+    pub(crate) fn panel_m2(&self, house: &House, hit: &Hit) -> f32 {
+        let place = self.place_of(house, hit);
+        place.map_or(0.0, |place| self.panel_m2[place])
+    }
+
+    /// Where the triangle of a hit stands in the tables.
+    fn place_of(&self, house: &House, hit: &Hit) -> Option<usize> {
         let geometry = house.geometry();
-        let place = if let Some(instance) = hit.instance {
-            let part = geometry.movable.get(instance as usize);
-            part.map(|part| (house.structure.len() + part.index(), hit.triangle))
+        let (placed, triangle) = if let Some(instance) = hit.instance {
+            let part = geometry.movable.get(instance as usize)?;
+            (house.structure.len() + part.index(), hit.triangle)
         } else {
-            let source = geometry.static_triangles.get(hit.triangle as usize);
-            source.map(|source| (source.placed as usize, source.triangle))
+            let source = geometry.static_triangles.get(hit.triangle as usize)?;
+            (source.placed as usize, source.triangle)
         };
-        place
-            .and_then(|(placed, triangle)| {
-                let first = self.first_triangle.get(placed)?;
-                self.of_triangle.get((first + triangle) as usize).copied()
-            })
-            .unwrap_or(NO_PLANE)
+        let place = (self.first_triangle.get(placed)? + triangle) as usize;
+        (place < self.of_triangle.len()).then_some(place)
     }
 
     /// Where the moving parts stand at the start. Shape (moving part,).

@@ -170,7 +170,7 @@ impl Stream {
     ) -> Result<BlockReport, AcousticsError> {
         let size = self.config.block_samples;
         check_length("out", size * receiver.channels(), out.len())?;
-        finite("the receiver", receiver.position())?;
+        receiver.check()?;
         for source in sources {
             check_length("a source's signal", size, source.signal.len())?;
             finite("a source", source.position)?;
@@ -289,7 +289,7 @@ impl Stream {
             };
             let now = Situation {
                 source: position,
-                receiver: *receiver,
+                receiver: receiver.clone(),
                 parts: self
                     .large_parts
                     .iter()
@@ -312,7 +312,7 @@ impl Stream {
                 (Change::Turned, Some((_, response))) => {
                     report.turned += 1;
                     let echogram = response.echogram.clone();
-                    Some(self.scene.arrive(echogram, receiver, key))
+                    Some(self.scene.arrive(echogram, receiver, None, key))
                 }
                 _ => Some(if let Some(response) = known() {
                     response
@@ -320,9 +320,9 @@ impl Stream {
                     report.traced += 1;
                     let source = Source::at(position);
                     let (scene, threads) = (&self.scene, self.threads);
-                    let place = receiver.position();
-                    let echogram = scene.echogram(rays, &source, place, key, threads)?;
-                    scene.arrive(echogram, receiver, key)
+                    let receivers = std::slice::from_ref(receiver);
+                    let arrived = scene.arrivals(rays, &source, receivers, key, threads)?;
+                    arrived.into_iter().next().unwrap_or_default()
                 }),
             };
             let news = response.map(|response| (now, response));

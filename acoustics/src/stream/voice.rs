@@ -50,14 +50,14 @@ impl Situation {
             // Not "farther than", so that a limit of 0 asks for any movement at all.
             a != b && a.distance(b) >= limit
         };
-        let (here, there) = (self.receiver, now.receiver);
+        let (here, there) = (&self.receiver, &now.receiver);
         let parts = self.parts.iter().zip(&now.parts);
         let mut parts = parts.map(|(a, b)| {
             // A part that turns by an angle moves its far edge about as many metres.
             far(a.position, b.position, threshold.part_m)
                 || (a.rotation != b.rotation && angle(a.rotation, b.rotation) >= threshold.part_m)
         });
-        if here.channels() != there.channels()
+        if here.kind != there.kind
             || self.overrides != now.overrides
             || self.effects != now.effects
             || self.parts.len() != now.parts.len()
@@ -69,7 +69,11 @@ impl Situation {
         }
         let (a, b) = (here.rotation(), there.rotation());
         if a != b && angle(a, b) >= threshold.angle_rad {
-            return Change::Turned;
+            return if here.turns_in_place() {
+                Change::Turned
+            } else {
+                Change::Moved
+            };
         }
         Change::None
     }

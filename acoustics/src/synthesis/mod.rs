@@ -1,14 +1,16 @@
 //! From energies to pressure.
 
 mod fractional;
+mod level;
 pub(crate) mod minimum_phase;
 mod noise;
 mod smooth;
 
-use crate::bands::FilterBank;
+use crate::bands::{Banded, FilterBank};
+use crate::channel::Channel;
 use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, Path};
-use crate::head::{Ear, SphericalHead};
+use crate::head::SphericalHead;
 use crate::receiver::Receiver;
 use dwell_scene::random::Key;
 use fractional::Taps;
@@ -19,6 +21,8 @@ use std::sync::OnceLock;
 const MOST_PATHS: usize = 200;
 /// What is left of the energy where an impulse response may end: -70 dB.
 const END: f64 = 1e-7;
+/// How wide the tail's bands cross, octaves: as little as rings no longer than a window of their energy.
+const OVERLAP: f64 = 0.5;
 /// How early the filters of ears begin before the delay, s: room for their ringing.
 const EAR_LEAD_S: f64 = 0.001;
 
@@ -59,7 +63,7 @@ impl Synthesizer {
             2 => (1, self.longest.div_ceil(2)),
             _ => (2, self.longest),
         };
-        self.banks[place].get_or_init(|| FilterBank::new(self.rate_hz, span.max(length), 1.0))
+        self.banks[place].get_or_init(|| FilterBank::new(self.rate_hz, span.max(length), OVERLAP))
     }
 
     /// Samples that an echogram fills: until 1e-7 of its energy is left, at most the configured duration.
@@ -72,7 +76,7 @@ impl Synthesizer {
         let mut left = 0.0;
         let mut bins = echogram.tail.bins.len();
         while bins > 0 {
-            left += sum(&echogram.tail.bins[bins - 1].energy);
+            left += sum(&echogram.tail.bins[bins - 1]);
             if left > END * total {
                 break;
             }
@@ -90,73 +94,86 @@ impl Synthesizer {
 
     /// Pressure at the receiver, Pa for an impulse of 1 Pa at 1 m. Shape (channel, sample), flat.
     ///
-    /// Sample 0 is the moment of the impulse; a free path of d metres arrives d/c later with the amplitude 1/d.
-    pub(crate) fn render(&self, echogram: &Echogram, receiver: &Receiver, key: Key) -> Vec<f32> {
+    /// Sample 0 is the moment of the impulse; a free path of d metres arrives d/c later with the amplitude 1/d. `early`: the
+    /// paths of each channel where they are not the centre's.
+    pub(crate) fn render(
+        &self,
+        echogram: &Echogram,
+        receiver: &Receiver,
+        early: Option<&[Vec<Path>]>,
+        key: Key,
+    ) -> Vec<f32> {
         let length = self.length(echogram);
-        let channels = receiver.channels();
-        let mut out = vec![0.0; channels * length];
+        let mut out = vec![0.0; receiver.channels() * length];
         if length == 0 {
             return out;
         }
-        let ears = match receiver {
-            Receiver::Omni { .. } => vec![None],
-            Receiver::Binaural { world_from_head } => Ear::BOTH
-                .iter()
-                .map(|ear| Some(world_from_head.rotation * ear.axis_in_head()))
-                .collect(),
+        let channels = Channel::of(receiver, echogram.speed_m_s);
+        let mut center = vec![0.0; length];
+        self.add_paths(echogram, &echogram.paths, &Channel::Omni, true, &mut center);
+        // Nothing may be heard before the straight way is over.
+        let radius_m = receiver.radius_m().max(EAR_LEAD_S * echogram.speed_m_s);
+        let quiet_s = (echogram.direct_length_m - radius_m) / echogram.speed_m_s;
+        let quiet = ((quiet_s * self.rate_hz).max(0.0) as usize).min(length);
+        let noise = noise::Noise {
+            echogram,
+            rate_hz: self.rate_hz,
+            length,
+            quiet,
+            head: &self.head,
+            bank: self.bank(length),
         };
-        noise::add(
-            &noise::Noise {
-                echogram,
-                rate_hz: self.rate_hz,
-                length,
-                head: &self.head,
-                bank: self.bank(length),
-            },
-            &ears,
-            key,
-            &mut out,
-        );
-        // Zero-phase bands ring before their pulses: nothing may be heard before the straight way is over.
-        let quiet = (echogram.direct_length_m / echogram.speed_m_s - EAR_LEAD_S) * self.rate_hz;
-        let quiet = (quiet.max(0.0) as usize).min(length);
-        for channel in out.chunks_exact_mut(length) {
-            channel[..quiet].fill(0.0);
+        noise.add(&channels, &center, key, &mut out);
+        for (k, (channel, out)) in channels
+            .iter()
+            .zip(out.chunks_exact_mut(length))
+            .enumerate()
+        {
+            match early.and_then(|early| early.get(k)) {
+                Some(paths) => self.add_paths(echogram, paths, channel, true, out),
+                None => self.add_paths(echogram, &echogram.paths, channel, false, out),
+            }
         }
-        self.add_paths(echogram, &ears, length, &mut out);
         out
     }
 
+    /// Adds early paths as a channel hears them; `there`: whether they end at the channel itself rather than at the centre.
     fn add_paths(
         &self,
         echogram: &Echogram,
-        ears: &[Option<glam::Vec3>],
-        length: usize,
+        paths: &[Path],
+        channel: &Channel,
+        there: bool,
         out: &mut [f32],
     ) {
-        let mut strongest: Vec<&Path> = echogram.paths.iter().collect();
+        let mut strongest: Vec<&Path> = paths.iter().collect();
         if strongest.len() > MOST_PATHS {
             let power = |path: &Path| path.energy.iter().sum::<f32>();
             strongest.sort_by(|a, b| power(b).total_cmp(&power(a)));
             strongest.truncate(MOST_PATHS);
         }
         let mut fft = self.filters.fft();
+        let lead = if channel.rings_early() {
+            (EAR_LEAD_S * self.rate_hz) as usize
+        } else {
+            0
+        };
         for path in strongest {
-            let (spectrum, amplitude) = self.filters.spectrum(&path.energy);
-            let arrival_s = path.length_m.max(crate::images::NEAREST_M) / echogram.speed_m_s;
-            for (ear, channel) in ears.iter().zip(out.chunks_exact_mut(length)) {
-                let mut shaded = spectrum.clone();
-                let (mut delay_s, mut lead) = (arrival_s, 0);
-                if let Some(axis) = ear {
-                    let cosine = f64::from(axis.dot(path.arrival));
-                    self.head.shade(cosine, &mut shaded);
-                    delay_s += self.head.delay_s(cosine);
-                    lead = (EAR_LEAD_S * self.rate_hz) as usize;
-                }
-                let response = PathFilters::impulse_response(&mut fft, &mut shaded, lead);
-                let taps = Taps::new(delay_s * self.rate_hz);
-                taps.add(channel, &response, lead, amplitude);
+            let gain = channel.path_gain(path.arrival);
+            let energy: Banded = std::array::from_fn(|b| path.energy[b] * gain[b] * gain[b]);
+            let (mut spectrum, mut amplitude) = self.filters.spectrum(&energy);
+            if path.inverted != (gain.iter().sum::<f32>() < 0.0) {
+                amplitude = -amplitude;
             }
+            let (head, speed) = (&self.head, echogram.speed_m_s);
+            let mut delay_s = channel.shade(head, speed, path.arrival, &mut spectrum);
+            if there {
+                delay_s = 0.0;
+            }
+            delay_s += path.length_m.max(crate::images::NEAREST_M) / speed;
+            let response = PathFilters::impulse_response(&mut fft, &mut spectrum, lead);
+            let taps = Taps::new(delay_s * self.rate_hz);
+            taps.add(out, &response, lead, amplitude);
         }
     }
 }

@@ -1,15 +1,17 @@
 //! The tail as pressure: random arrivals whose energies are the histogram's.
 
+use super::level::{Energy, Gains, Levels};
 use crate::bands::{BAND_COUNT, Banded, FilterBank};
-use crate::echogram::{Bin, Echogram};
+use crate::channel::{Channel, Delay};
+use crate::directions::Directions;
+use crate::echogram::Echogram;
 use crate::head::SphericalHead;
-use dwell_scene::math::sin_cos;
 use dwell_scene::random::{Key, Stream};
 use glam::Vec3;
-use std::f64::consts::PI;
 
-/// Most arrivals a second: denser ones cannot be told apart.
-const MOST_ARRIVALS_PER_S: f64 = 1e4;
+/// Arrivals a second. Denser ones cannot be told apart, and what is scattered is spread out from the start: the sparse early
+/// reflections are paths.
+const ARRIVALS_PER_S: f64 = 1e4;
 /// Taps on either side of an arrival that falls between samples.
 const HALF: i32 = 4;
 
@@ -18,130 +20,199 @@ pub(super) struct Noise<'a> {
     pub(super) echogram: &'a Echogram,
     pub(super) rate_hz: f64,
     pub(super) length: usize,
+    /// Samples at the start in which nothing may be heard.
+    pub(super) quiet: usize,
     pub(super) head: &'a SphericalHead,
     pub(super) bank: &'a FilterBank,
 }
 
-/// Adds the tail to `out`, shape (ear, sample); an ear is the direction it points to, or nothing for a microphone.
-///
-/// Arrivals come at random (Poisson) with the density of a room of the volume in sight, each with a sign and a direction drawn
-/// from those of its bin. Within a bin all arrivals are equally strong, and their energies sum to the bin's in every band.
-/// Both ears hear the same arrivals, each with its own delay and shadow, so that their coherence is right.
-///
-/// # Source
-/// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
-/// section 5.3.4.
-pub(super) fn add(noise: &Noise<'_>, ears: &[Option<Vec3>], key: Key, out: &mut [f32]) {
-    let tail = &noise.echogram.tail;
-    let mut buses = vec![vec![vec![0.0_f32; noise.length]; BAND_COUNT]; ears.len()];
-    let mut any = false;
-    for (k, bin) in super::smooth::smooth(tail).iter().enumerate() {
-        if bin.energy.iter().all(|e| *e <= 0.0) {
-            continue;
-        }
-        any = true;
-        let start_s = k as f64 * tail.bin_s;
-        if start_s * noise.rate_hz >= noise.length as f64 {
-            break;
-        }
-        // Keyed by the bin, so that what is drawn in one bin does not depend on the others.
-        let mut stream = key.child(k as u64).stream();
-        let time_s = start_s + 0.5 * tail.bin_s;
-        let volume = noise.echogram.trace.seen_volume_m3.max(1.0);
-        let speed = noise.echogram.speed_m_s;
-        let density = 4.0 * PI * speed * speed * speed * time_s * time_s / volume;
-        let count = poisson(density.min(MOST_ARRIVALS_PER_S) * tail.bin_s, &mut stream).max(1);
-        let amplitude: Banded =
-            std::array::from_fn(|b| (bin.energy[b] / count as f64).sqrt() as f32);
-        for _ in 0..count {
-            let time_s = start_s + tail.bin_s * stream.uniform();
-            let sign = if stream.bits() & 1 == 0 { 1.0 } else { -1.0 };
-            let arrival = direction(bin, &mut stream);
-            let pulse = amplitude.map(|a| sign * a);
-            for (ear, bus) in ears.iter().zip(&mut buses) {
-                noise.strike(bus, time_s, &pulse, ear.map(|axis| axis.dot(arrival)));
-            }
-        }
-    }
-    if !any {
-        return;
-    }
-    for (bus, channel) in buses.iter().zip(out.chunks_exact_mut(noise.length)) {
-        for (y, x) in channel.iter_mut().zip(noise.bank.blend(bus, noise.length)) {
-            *y += x;
-        }
-    }
+/// One wave of the tail.
+struct Arrival {
+    /// At the receiver's centre, s.
+    time_s: f64,
+    from: Vec3,
+    amplitude: Banded,
 }
+
+/// One signal for each band. Shape (band, sample).
+type Bus = Vec<Vec<f32>>;
 
 impl Noise<'_> {
-    /// Adds one arrival to the bands of one ear.
-    fn strike(&self, bus: &mut [Vec<f32>], time_s: f64, pulse: &Banded, cosine: Option<f32>) {
-        let Some(cosine) = cosine else {
-            let place = (time_s * self.rate_hz) as usize;
-            for (band, amplitude) in bus.iter_mut().zip(pulse) {
-                if let Some(x) = band.get_mut(place) {
-                    *x += amplitude;
+    /// Adds the tail to `out`, shape (channel, sample). `paths`: what the centre hears of the early paths, shape (sample,).
+    ///
+    /// Arrivals come at random (Poisson), each with a sign and a direction drawn from those of its bin. Within a bin all arrivals are equally strong, and their energies sum to the bin's in every
+    /// band. All channels hear the same arrivals, each with its own delay and gain, so that their coherence is right: that of
+    /// a diffuse field where sound comes from all sides.
+    ///
+    /// # Source
+    /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
+    /// section 5.3.4; coherence after R. K. Cook et al., JASA 27, 1072 (1955).
+    pub(super) fn add(&self, channels: &[Channel], paths: &[f32], key: Key, out: &mut [f32]) {
+        let energy = super::smooth::smooth(&self.echogram.tail);
+        let arrivals = self.arrivals(&energy, key);
+        if arrivals.is_empty() {
+            return;
+        }
+        let levels = self.levels(&energy, &arrivals, paths);
+        let speed = self.echogram.speed_m_s;
+        let mut bus: Bus = vec![Vec::new(); BAND_COUNT];
+        for (channel, out) in channels.iter().zip(out.chunks_exact_mut(self.length)) {
+            for band in &mut bus {
+                band.clear();
+                band.resize(self.length, 0.0);
+            }
+            for arrival in &arrivals {
+                let place = ((arrival.time_s * self.rate_hz) as usize).min(self.length - 1);
+                let heard = channel.hear(self.head, speed, arrival.from);
+                let pulse: Banded = std::array::from_fn(|band| {
+                    arrival.amplitude[band] * heard.gain[band] * levels[band].at(place)
+                });
+                self.strike(&mut bus, arrival.time_s, &pulse, &heard.delay);
+            }
+            let heard = self.bank.blend(&bus, self.length);
+            // Zero-phase bands ring before their pulses.
+            for (y, x) in out.iter_mut().zip(heard).skip(self.quiet) {
+                *y += x;
+            }
+        }
+    }
+
+    /// All waves of the tail, by bins.
+    fn arrivals(&self, energy: &[[f64; BAND_COUNT]], key: Key) -> Vec<Arrival> {
+        let tail = &self.echogram.tail;
+        let nowhere = Directions::default();
+        let mut sampler = None;
+        let mut arrivals = Vec::new();
+        for (k, bin) in energy.iter().enumerate() {
+            if k % tail.bins_per_direction.max(1) == 0 {
+                sampler = None;
+            }
+            if bin.iter().all(|e| *e <= 0.0) {
+                continue;
+            }
+            let start_s = k as f64 * tail.bin_s;
+            if start_s * self.rate_hz >= self.length as f64 {
+                break;
+            }
+            let sampler =
+                sampler.get_or_insert_with(|| tail.directions_at(k).unwrap_or(&nowhere).sampler());
+            // Keyed by the bin, so that what is drawn in one bin does not depend on the others.
+            let mut stream = key.child(k as u64).stream();
+            let count = poisson(ARRIVALS_PER_S * tail.bin_s, &mut stream).max(1);
+            let amplitude: Banded = std::array::from_fn(|b| (bin[b] / count as f64).sqrt() as f32);
+            for _ in 0..count {
+                let time_s = start_s + tail.bin_s * stream.uniform();
+                let sign = if stream.bits() & 1 == 0 { 1.0 } else { -1.0 };
+                let (from, gain) = sampler.draw(&mut stream);
+                arrivals.push(Arrival {
+                    time_s,
+                    from,
+                    amplitude: std::array::from_fn(|b| sign * amplitude[b] * gain[b]),
+                });
+            }
+        }
+        arrivals
+    }
+
+    /// The gains that give the noise, at the receiver's centre and beside the early paths, the energy it should have.
+    fn levels(&self, energy: &[[f64; BAND_COUNT]], arrivals: &[Arrival], paths: &[f32]) -> Levels {
+        let mut bus: Bus = vec![vec![0.0; self.length]; BAND_COUNT];
+        for arrival in arrivals {
+            self.strike(&mut bus, arrival.time_s, &arrival.amplitude, &Delay::None);
+        }
+        let mut noise = self.bank.filter(&bus, self.length);
+        for band in &mut noise {
+            band[..self.quiet].fill(0.0);
+        }
+        let paths = self.bank.filter_one(paths);
+        let samples_per_bin = self.echogram.tail.bin_s * self.rate_hz;
+        std::array::from_fn(|band| {
+            let (passed, up_to) = (self.bank.passed(band), self.bank.up_to(band));
+            let mut wanted = Energy::new(band, self.rate_hz, self.length, self.quiet, up_to);
+            for (k, bin) in energy.iter().enumerate() {
+                let place = ((k as f64 + 0.5) * samples_per_bin) as usize;
+                if place < self.length {
+                    wanted.add(place, bin[band] * passed);
                 }
             }
-            return;
-        };
-        let (gain, delay_s) = self.head.banded(f64::from(cosine));
-        for (band, samples) in bus.iter_mut().enumerate() {
-            let place = (time_s + f64::from(delay_s[band])) * self.rate_hz;
-            add_between(samples, place, pulse[band] * gain[band]);
+            for path in &self.echogram.paths {
+                let place = (self.echogram.delay_s(path) * self.rate_hz) as usize;
+                if place < self.length {
+                    wanted.add(place, f64::from(path.energy[band]) * passed);
+                }
+            }
+            Gains::new(&paths[band], &noise[band], &wanted)
+        })
+    }
+
+    /// Adds one arrival to the bands of one channel.
+    fn strike(&self, bus: &mut Bus, time_s: f64, pulse: &Banded, delay: &Delay) {
+        match delay {
+            Delay::None => {
+                let place = (time_s * self.rate_hz) as usize;
+                for (band, amplitude) in bus.iter_mut().zip(pulse) {
+                    if let Some(x) = band.get_mut(place) {
+                        *x += amplitude;
+                    }
+                }
+            }
+            Delay::Same(delay_s) => {
+                let between = Between::new((time_s + f64::from(*delay_s)) * self.rate_hz);
+                for (band, amplitude) in bus.iter_mut().zip(pulse) {
+                    between.add(band, *amplitude);
+                }
+            }
+            Delay::Banded(delay_s) => {
+                for ((band, amplitude), delay_s) in bus.iter_mut().zip(pulse).zip(delay_s) {
+                    let place = (time_s + f64::from(*delay_s)) * self.rate_hz;
+                    Between::new(place).add(band, *amplitude);
+                }
+            }
         }
     }
 }
 
-/// Adds a pulse of energy `amplitude`² between two samples.
-fn add_between(samples: &mut [f32], place: f64, amplitude: f32) {
-    let whole = place.floor();
-    let fraction = (place - whole) as f32;
-    let mut weights = [0.0; 2 * HALF as usize];
-    let mut energy = 0.0;
-    let sine = libm::sinf(std::f32::consts::PI * fraction);
-    for (weight, n) in weights.iter_mut().zip(1 - HALF..=HALF) {
-        let x = n as f32 - fraction;
-        let sinc = if x.abs() < 1e-4 {
-            1.0
-        } else {
-            let sign = if n % 2 == 0 { -1.0 } else { 1.0 };
-            sign * sine / (std::f32::consts::PI * x)
-        };
-        // A parabola in place of a bell: it is as good for noise, and needs no cosine.
-        let edge = x / (HALF as f32 + 0.5);
-        *weight = sinc * (1.0 - edge * edge);
-        energy += *weight * *weight;
-    }
-    let scale = amplitude / energy.sqrt();
-    let first = whole as i64 + 1 - i64::from(HALF);
-    for (k, weight) in weights.iter().enumerate() {
-        let place = usize::try_from(first + k as i64).ok();
-        if let Some(x) = place.and_then(|place| samples.get_mut(place)) {
-            *x += weight * scale;
-        }
-    }
+/// A pulse of energy 1 between two samples.
+struct Between {
+    weights: [f32; 2 * HALF as usize],
+    first: i64,
 }
 
-/// A direction from the von Mises-Fisher distribution whose mean vector is the bin's.
-///
-/// # Source
-/// K. V. Mardia, P. E. Jupp, *Directional Statistics* (2000), section 9.3.2; the concentration by A. Banerjee et al.,
-/// J. Mach. Learn. Res. 6, 1345 (2005), equation (4.4).
-fn direction(bin: &Bin, stream: &mut Stream) -> Vec3 {
-    let mean = bin.arrival.length().min(0.9999);
-    if mean < 1e-3 {
-        return stream.direction();
+impl Between {
+    fn new(place: f64) -> Self {
+        let whole = place.floor();
+        let fraction = (place - whole) as f32;
+        let mut weights = [0.0; 2 * HALF as usize];
+        let mut energy = 0.0;
+        let sine = libm::sinf(std::f32::consts::PI * fraction);
+        for (weight, n) in weights.iter_mut().zip(1 - HALF..=HALF) {
+            let x = n as f32 - fraction;
+            let sinc = if x.abs() < 1e-4 {
+                1.0
+            } else {
+                let sign = if n % 2 == 0 { -1.0 } else { 1.0 };
+                sign * sine / (std::f32::consts::PI * x)
+            };
+            // A parabola in place of a bell: it is as good for noise, and needs no cosine.
+            let edge = x / (HALF as f32 + 0.5);
+            *weight = sinc * (1.0 - edge * edge);
+            energy += *weight * *weight;
+        }
+        let scale = 1.0 / energy.sqrt();
+        Self {
+            weights: weights.map(|weight| weight * scale),
+            first: whole as i64 + 1 - i64::from(HALF),
+        }
     }
-    let axis = bin.arrival / bin.arrival.length();
-    let concentration = mean * (3.0 - mean * mean) / (1.0 - mean * mean);
-    let u = stream.uniform_f32();
-    let cosine = 1.0 + libm::logf(u + (1.0 - u) * libm::expf(-2.0 * concentration)) / concentration;
-    let cosine = cosine.clamp(-1.0, 1.0);
-    let (s, c) = sin_cos(std::f32::consts::TAU * stream.uniform_f32());
-    let (tangent, bitangent) = axis.any_orthonormal_pair();
-    let across = (1.0 - cosine * cosine).sqrt();
-    axis * cosine + (tangent * c + bitangent * s) * across
+
+    fn add(&self, samples: &mut [f32], amplitude: f32) {
+        for (k, weight) in self.weights.iter().enumerate() {
+            let place = usize::try_from(self.first + k as i64).ok();
+            if let Some(x) = place.and_then(|place| samples.get_mut(place)) {
+                *x += weight * amplitude;
+            }
+        }
+    }
 }
 
 /// A count from the Poisson distribution with mean `mean`, at most a few hundred.
@@ -185,28 +256,11 @@ mod tests {
     }
 
     #[test]
-    fn directions_have_their_bins_mean() {
-        for (seed, mean) in [(0, 0.0), (1, 0.2), (2, 0.6), (3, 0.95)] {
-            let wanted = Vec3::new(0.6, 0.0, -0.8) * mean;
-            let bin = Bin {
-                energy: [1.0; BAND_COUNT],
-                arrival: wanted,
-            };
-            let mut stream = Key::root(seed).stream();
-            let n = 20_000;
-            let sum: Vec3 = (0..n).map(|_| direction(&bin, &mut stream)).sum();
-            let found = sum / n as f32;
-            // The concentration is an approximation within a few hundredths.
-            assert!((found - wanted).length() < 0.03, "{mean}: {found}");
-        }
-    }
-
-    #[test]
     fn a_pulse_between_samples_keeps_its_energy_and_place() {
         for k in 0..20 {
             let place = 50.0 + f64::from(k) * 0.05;
             let mut samples = vec![0.0; 100];
-            add_between(&mut samples, place, 2.0);
+            Between::new(place).add(&mut samples, 2.0);
             let energy: f32 = samples.iter().map(|x| x * x).sum();
             assert!((energy - 4.0).abs() < 1e-4);
             // The delay of the phase at a third of Nyquist's frequency.

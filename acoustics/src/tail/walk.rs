@@ -1,14 +1,17 @@
 //! One ray's way through the house.
 
-use super::{Chunk, Deposit, RAYS_PER_CHUNK, fibonacci_direction, margin_m};
+use super::listener::Listener;
+use super::{Chunk, RAYS_PER_CHUNK, margin_m, sequence_direction};
 use crate::bands::{BAND_COUNT, Banded};
+use crate::directions::{CELL_COUNT, cell_of};
+use crate::directivity::Pattern;
 use crate::scene::AcousticScene;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::math::sin_cos;
 use dwell_scene::random::{Key, Stream};
 use dwell_scene::rays::RayScene;
 use glam::{Quat, Vec3};
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 use std::ops::Range;
 
 /// Shadow rays shorter than this count as so long, m: it bounds the variance that a near surface brings.
@@ -21,58 +24,81 @@ pub(super) struct Walk<'a> {
     pub(super) scene: &'a AcousticScene,
     pub(super) rays: &'a RayScene,
     pub(super) source: Vec3,
-    pub(super) receiver: Vec3,
-    pub(super) radius_m: f32,
+    /// The source's axis and how loud it is around it.
+    pub(super) axis: Vec3,
+    pub(super) pattern: Pattern,
+    pub(super) listeners: &'a [Listener],
     pub(super) turn: Quat,
+    /// Where the sequence of directions begins.
+    pub(super) place: (f64, f64),
     pub(super) bins_per_m: f32,
     pub(super) furthest_m: f32,
     pub(super) bin_count: usize,
+    pub(super) bins_per_direction: usize,
+    /// Entries of directions over time.
+    pub(super) times: usize,
     /// Energy re the start below which rays are thinned out.
     pub(super) roulette: f32,
+}
+
+/// A ray on its way.
+struct Traveller {
+    ray: Ray,
+    energy: Banded,
+    /// Mean energy over the bands at the start.
+    power: f32,
+    travelled_m: f32,
+    /// Way since the source or the last scattering, m.
+    straight_m: f32,
+    /// Whether it was ever scattered, and whether its last reflection was a mirror's.
+    scattered: bool,
+    mirrored: bool,
+    /// Mirrors so far.
+    order: usize,
 }
 
 impl Walk<'_> {
     /// Traces the rays of `range`, at most a chunk.
     pub(super) fn chunk(&self, range: Range<usize>, key: Key) -> Chunk {
         debug_assert!(range.len() <= RAYS_PER_CHUNK);
+        let receivers = self.listeners.len();
         let mut chunk = Chunk {
-            bins: vec![Deposit::default(); self.bin_count],
+            energy: vec![[0.0; BAND_COUNT]; receivers * self.bin_count],
+            directions: vec![[0.0; BAND_COUNT]; receivers * self.times * CELL_COUNT],
             segments: 0,
             escaped: 0,
             length_m: 0.0,
         };
         let mut stream = key.stream();
-        let count = self.scene.config().rays;
         for k in range {
-            let direction = self.turn * fibonacci_direction(k, count);
-            self.ray(direction, 1.0 / count as f32, &mut stream, &mut chunk);
+            let direction = self.turn * sequence_direction(k, self.place);
+            let energy = self.pattern.gain(direction.dot(self.axis)).map(|g| g * g);
+            let power = energy.iter().sum::<f32>() / BAND_COUNT as f32;
+            if power > 0.0 {
+                let traveller = Traveller {
+                    ray: Ray::new(self.source, direction),
+                    energy,
+                    power,
+                    travelled_m: 0.0,
+                    straight_m: 0.0,
+                    scattered: false,
+                    mirrored: false,
+                    order: 0,
+                };
+                self.follow(traveller, &mut stream, &mut chunk);
+            }
         }
         chunk
     }
 
-    /// Follows one ray that starts with `power`, the source's being 1.
-    fn ray(&self, direction: Vec3, power: f32, stream: &mut Stream, chunk: &mut Chunk) {
+    /// Follows one ray to its end.
+    fn follow(&self, mut one: Traveller, stream: &mut Stream, chunk: &mut Chunk) {
         let images = self.scene.config().image_order;
-        let mut ray = Ray::new(self.source, direction);
-        let mut energy: Banded = [power; BAND_COUNT];
-        let mut travelled_m = 0.0;
-        let (mut scattered, mut specular_last, mut order) = (false, false, 0);
         for _ in 0..MOST_REFLECTIONS {
-            let hit = self.rays.closest(&ray, RayMask::EAR);
-            let reach_m = hit.map_or(f32::INFINITY, |hit| hit.distance_m);
-            if specular_last
-                && (scattered || order > images)
-                && let Some((middle_m, chord_m)) = self.crossing(&ray, reach_m)
-            {
-                let volume = 4.0 / 3.0 * PI * self.radius_m * self.radius_m * self.radius_m;
-                let factor = 4.0 * PI * chord_m / volume;
-                self.deposit(
-                    chunk,
-                    travelled_m + middle_m,
-                    &energy,
-                    factor,
-                    -ray.direction,
-                );
+            let hit = self.rays.closest(&one.ray, RayMask::EAR);
+            if one.mirrored && (one.scattered || one.order > images) {
+                let reach_m = hit.map_or(f32::INFINITY, |hit| hit.distance_m);
+                self.cross(&one, reach_m, stream, chunk);
             }
             let Some(hit) = hit else {
                 chunk.escaped += 1;
@@ -80,119 +106,146 @@ impl Walk<'_> {
             };
             chunk.segments += 1;
             chunk.length_m += f64::from(hit.distance_m);
-            travelled_m += hit.distance_m;
-            if travelled_m >= self.furthest_m {
+            one.travelled_m += hit.distance_m;
+            one.straight_m += hit.distance_m;
+            if one.travelled_m >= self.furthest_m {
                 return;
             }
             let surface = self.rays.surface(&hit);
-            let material = *self.scene.surface(surface.material);
-            multiply(&mut energy, &material.kept);
-            let point = ray.at(hit.distance_m);
-            let normal = if surface.normal.dot(ray.direction) > 0.0 {
+            let material = self.scene.surface(surface.material);
+            multiply(&mut one.energy, &material.kept);
+            let point = one.ray.at(hit.distance_m);
+            let cosine = surface.normal.dot(one.ray.direction);
+            let normal = if cosine > 0.0 {
                 -surface.normal
             } else {
                 surface.normal
             };
+            let scattering =
+                self.scene
+                    .scattering(material, &hit, cosine.abs(), f64::from(one.straight_m));
             let start = point + normal * margin_m(point);
-            if material.scatters {
-                self.shine(
-                    start,
-                    normal,
-                    travelled_m,
-                    &energy,
-                    &material.scattering,
-                    chunk,
-                );
+            if scattering.iter().any(|s| *s > 0.0) {
+                self.shine(start, normal, &one, &scattering, chunk);
             }
-            let mean = energy.iter().sum::<f32>() / (BAND_COUNT as f32 * power);
+            let mean = one.energy.iter().sum::<f32>() / (BAND_COUNT as f32 * one.power);
             if mean < self.roulette {
                 let survival = mean / self.roulette;
                 if survival < 1e-3 || stream.uniform_f32() >= survival {
                     return;
                 }
-                energy = energy.map(|e| e / survival);
+                one.energy = one.energy.map(|e| e / survival);
             }
-            // The fraction of this ray's energy that is scattered: with it, both branches keep the sum over the bands, and no
-            // band's weight can grow from reflection to reflection.
-            let all: f32 = energy.iter().sum();
-            let scattered_part: f32 = energy
-                .iter()
-                .zip(material.scattering)
-                .map(|(e, s)| e * s)
-                .sum();
-            let scatter = (scattered_part / all).clamp(0.0, 1.0);
-            if scatter > 0.0 && stream.uniform_f32() < scatter {
-                multiply(&mut energy, &material.scattering.map(|s| s / scatter));
-                ray = Ray::new(start, lambert(normal, stream));
-                (scattered, specular_last) = (true, false);
-            } else {
-                let kept = 1.0 - scatter;
-                multiply(&mut energy, &material.scattering.map(|s| (1.0 - s) / kept));
-                let mirrored = ray.direction - 2.0 * ray.direction.dot(normal) * normal;
-                ray = Ray::new(start, mirrored);
-                specular_last = true;
-                order += 1;
-            }
+            one.turn(start, normal, &scattering, stream);
         }
     }
 
-    /// Counts what the surface at `start` scatters straight to the receiver.
+    /// Counts what the surface at `start` scatters straight to the receivers.
     fn shine(
         &self,
         start: Vec3,
         normal: Vec3,
-        travelled_m: f32,
-        energy: &Banded,
+        one: &Traveller,
         scattering: &Banded,
         chunk: &mut Chunk,
     ) {
-        let way = self.receiver - start;
-        let distance_m = way.length();
-        let cosine = normal.dot(way) / distance_m;
-        // A receiver on the very surface has no cosine (0 / 0).
-        if cosine.is_nan() || cosine <= 0.0 || travelled_m + distance_m >= self.furthest_m {
-            return;
-        }
-        let direction = way / distance_m;
-        let shadow = Ray {
-            origin: start,
-            direction,
-            near_m: 0.0,
-            far_m: distance_m,
-        };
-        if self.rays.occluded(&shadow, RayMask::EAR) {
-            return;
-        }
-        let nearest = distance_m.max(NEAREST_M);
-        let mut share = *energy;
-        multiply(&mut share, scattering);
-        let factor = 4.0 * cosine / (nearest * nearest);
-        self.deposit(chunk, travelled_m + distance_m, &share, factor, -direction);
-    }
-
-    fn deposit(&self, chunk: &mut Chunk, way_m: f32, energy: &Banded, factor: f32, from: Vec3) {
-        if let Some(bin) = chunk.bins.get_mut((way_m * self.bins_per_m) as usize) {
-            let mut all = 0.0;
-            for (total, e) in bin.energy.iter_mut().zip(energy) {
-                let share = e * factor;
-                *total += share;
-                all += share;
+        for (receiver, listener) in self.listeners.iter().enumerate() {
+            let way = listener.position - start;
+            let distance_m = way.length();
+            let cosine = normal.dot(way) / distance_m;
+            let way_m = one.travelled_m + distance_m;
+            // A receiver on the very surface has no cosine (0 / 0).
+            if cosine.is_nan() || cosine <= 0.0 || way_m >= self.furthest_m {
+                continue;
             }
-            bin.all += all;
-            bin.from += from * all;
+            let direction = way / distance_m;
+            let shadow = Ray {
+                origin: start,
+                direction,
+                near_m: 0.0,
+                far_m: distance_m,
+            };
+            if self.rays.occluded(&shadow, RayMask::EAR) {
+                continue;
+            }
+            let nearest = distance_m.max(NEAREST_M);
+            let mut share = one.energy;
+            multiply(&mut share, scattering);
+            let factor = 4.0 * cosine / (nearest * nearest);
+            self.deposit(chunk, receiver, way_m, &share, factor, -direction);
         }
     }
 
-    /// Where a ray crosses the receiver's sphere before `reach_m`: distance to the chord's middle, and its length, m.
-    fn crossing(&self, ray: &Ray, reach_m: f32) -> Option<(f32, f32)> {
-        let to_center = self.receiver - ray.origin;
-        let along = to_center.dot(ray.direction);
-        let miss_squared = (to_center - ray.direction * along).length_squared();
-        let half = (self.radius_m * self.radius_m - miss_squared)
-            .max(0.0)
-            .sqrt();
-        let (enter, leave) = ((along - half).max(0.0), (along + half).min(reach_m));
-        (half > 0.0 && leave > enter).then_some((0.5 * (enter + leave), leave - enter))
+    /// Counts a ray where it crosses the balls around receivers.
+    fn cross(&self, one: &Traveller, reach_m: f32, stream: &mut Stream, chunk: &mut Chunk) {
+        // Drawn once, so that a receiver's energies do not depend on which others there are.
+        let place = stream.uniform_f32();
+        for (receiver, listener) in self.listeners.iter().enumerate() {
+            let Some(crossing) = listener.crossing(
+                &one.ray,
+                reach_m - margin_m(one.ray.origin),
+                one.travelled_m,
+            ) else {
+                continue;
+            };
+            // Only what the receiver sees of its ball counts: one point of the piece stands for it.
+            let along = crossing.enter_m + place * (crossing.leave_m - crossing.enter_m);
+            let point = one.ray.at(along);
+            let sight = Ray::segment(listener.position, point, 0.0);
+            if self.rays.occluded(&sight, RayMask::EAR) {
+                continue;
+            }
+            let way_m = one.travelled_m + 0.5 * (crossing.enter_m + crossing.leave_m);
+            let from = -one.ray.direction;
+            self.deposit(chunk, receiver, way_m, &one.energy, crossing.factor, from);
+        }
+    }
+
+    fn deposit(
+        &self,
+        chunk: &mut Chunk,
+        receiver: usize,
+        way_m: f32,
+        energy: &Banded,
+        factor: f32,
+        from: Vec3,
+    ) {
+        let bin = (way_m * self.bins_per_m) as usize;
+        if bin >= self.bin_count {
+            return;
+        }
+        let time = receiver * self.times + bin / self.bins_per_direction;
+        let cell = &mut chunk.directions[time * CELL_COUNT + cell_of(from)];
+        let bin = &mut chunk.energy[receiver * self.bin_count + bin];
+        for ((total, cell), e) in bin.iter_mut().zip(cell).zip(energy) {
+            *total += e * factor;
+            *cell += e * factor;
+        }
+    }
+}
+
+impl Traveller {
+    /// Leaves a surface, scattered or mirrored.
+    ///
+    /// The fraction of this ray's energy that is scattered is the chance: with it, both branches keep the sum over the bands,
+    /// and no band's weight can grow from reflection to reflection.
+    fn turn(&mut self, start: Vec3, normal: Vec3, scattering: &Banded, stream: &mut Stream) {
+        let all: f32 = self.energy.iter().sum();
+        let parts = self.energy.iter().zip(scattering);
+        let scattered_part: f32 = parts.map(|(e, s)| e * s).sum();
+        let scatter = (scattered_part / all).clamp(0.0, 1.0);
+        if scatter > 0.0 && stream.uniform_f32() < scatter {
+            multiply(&mut self.energy, &scattering.map(|s| s / scatter));
+            self.ray = Ray::new(start, lambert(normal, stream));
+            (self.scattered, self.mirrored, self.straight_m) = (true, false, 0.0);
+        } else {
+            let kept = 1.0 - scatter;
+            multiply(&mut self.energy, &scattering.map(|s| (1.0 - s) / kept));
+            let direction = self.ray.direction;
+            self.ray = Ray::new(start, direction - 2.0 * direction.dot(normal) * normal);
+            self.mirrored = true;
+            self.order += 1;
+        }
     }
 }
 

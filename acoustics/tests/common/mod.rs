@@ -31,12 +31,13 @@ pub(crate) fn material(absorption: f32, scattering: f32) -> Material {
     }
 }
 
-/// Settings without air or transmission, at 343.2 m/s.
+/// Settings without air or transmission, with walls that mirror all waves alike, at 343.2 m/s.
 pub(crate) fn dry(rays: usize) -> AcousticConfig {
     AcousticConfig {
         rays,
         air_absorption: false,
         transmission: false,
+        panel_size: false,
         ..AcousticConfig::full()
     }
 }

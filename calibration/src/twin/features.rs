@@ -144,7 +144,7 @@ impl Smear {
             .collect();
         let bin_s = echogram.tail.bin_s;
         let bins = echogram.tail.bins.iter().enumerate();
-        arrivals.extend(bins.map(|(k, bin)| ((k as f64 + 0.5) * bin_s - direct_s, bin.energy)));
+        arrivals.extend(bins.map(|(k, bin)| ((k as f64 + 0.5) * bin_s - direct_s, *bin)));
         let mut levels = Vec::new();
         for band in bands(self.rate_hz) {
             let mut energies = [0.0; WINDOWS];
@@ -203,6 +203,7 @@ mod tests {
             arrival: Vec3::X,
             departure: Vec3::X,
             walls: 0,
+            inverted: false,
         };
         let echogram = Echogram {
             paths: vec![path(0.01, 0.25), path(0.035, 0.0625)],

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dwell.arguments import finite, whole
 from dwell.cli.common import Bar, atomic, print_json
+from dwell.listening import Receiver
 
 # Larger files are no scenes.
 _MOST_BYTES = 64 * 1024 * 1024
+# Receivers this near are one array, of at most so many microphones.
+_ARRAY_M = 0.5
+_MOST_MICROPHONES = 128
 _AIR = {"temperature_c": 20.0, "humidity_pct": 50.0, "pressure_pa": 101325.0}
 
 
@@ -99,16 +103,16 @@ def run(args: argparse.Namespace) -> int:
     built = time.perf_counter()
     length = round(room.duration_s * room.rate_hz)
     responses = np.zeros((len(sources), len(receivers), length), np.float32)
-    bar, done, pairs = Bar(), 0, len(sources) * len(receivers)
+    groups = together(list(receivers.values()))
+    bar, pairs = Bar(), len(sources) * len(receivers)
     for i, source in enumerate(sources.values()):
-        for j, receiver in enumerate(receivers.values()):
-            one: NDArray[np.float32] = scene.impulse_response(
-                source, receiver, seed=args.seed, threads=args.threads
-            )
-            used = min(one.shape[1], length)
-            responses[i, j, :used] = one[0, :used]
-            done += 1
-            bar(done / pairs, f"{done} of {pairs} responses")
+        heard = scene.impulse_responses(
+            source, [group.receiver for group in groups], seed=args.seed, threads=args.threads
+        )
+        for group, response in zip(groups, heard, strict=True):
+            used = min(response.shape[1], length)
+            responses[i, group.members, :used] = response[:, :used]
+        bar((i + 1) / len(sources), f"{i + 1} of {len(sources)} sources")
     took = time.perf_counter() - built
     if args.out:
         with atomic(args.out) as path, path.open("wb") as out:
@@ -132,6 +136,40 @@ def run(args: argparse.Namespace) -> int:
         }
     )
     return 0
+
+
+@dataclass(frozen=True)
+class Group:
+    """Receivers that are heard as one array, and which they are among all."""
+
+    members: list[int]
+    receiver: Receiver
+
+
+def together(places: list[tuple[float, float, float]]) -> list[Group]:
+    """Receivers near each other as arrays, whose tails then differ as a real array's do.
+
+    Each joins the first group whose first member is within 0.5 m and that has less than 128.
+    """
+    members: list[list[int]] = []
+    for k, place in enumerate(places):
+        near = (
+            group
+            for group in members
+            if math.dist(places[group[0]], place) <= _ARRAY_M and len(group) < _MOST_MICROPHONES
+        )
+        group = next(near, None)
+        if group is None:
+            members.append([k])
+        else:
+            group.append(k)
+    groups = []
+    for group in members:
+        centre = [sum(places[k][axis] for k in group) / len(group) for axis in range(3)]
+        around = [[places[k][axis] - centre[axis] for axis in range(3)] for k in group]
+        alone = Receiver.omni(places[group[0]])
+        groups.append(Group(group, Receiver.array(centre, around) if len(group) > 1 else alone))
+    return groups
 
 
 def _resident_mb() -> float | None:

@@ -1,0 +1,119 @@
+//! How large the pieces of a plane are: triangles that touch make one panel.
+
+use super::NO_PLANE;
+use dwell_scene::Aabb;
+use glam::Vec3;
+
+/// Triangles of one plane whose boxes come this near are one panel, m.
+const GAP_M: f32 = 0.005;
+
+/// The area of the panel that each triangle belongs to, m²; 0 for triangles without a plane. Shape (triangle,).
+///
+/// Touching is judged by boxes along the world's axes: panels that stand askew and close together may count as one.
+pub(super) fn areas(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<f32> {
+    let boxes: Vec<Aabb> = corners
+        .iter()
+        .map(|corners| Aabb::from_points(corners.iter().copied()).grown(0.5 * GAP_M))
+        .collect();
+    let mut order: Vec<usize> = (0..corners.len())
+        .filter(|k| of_triangle[*k] != NO_PLANE)
+        .collect();
+    order.sort_by(|a, b| {
+        let plane = of_triangle[*a].cmp(&of_triangle[*b]);
+        plane
+            .then(boxes[*a].min.x.total_cmp(&boxes[*b].min.x))
+            .then(a.cmp(b))
+    });
+    let mut sets = Sets::new(corners.len());
+    for (place, &a) in order.iter().enumerate() {
+        // Boxes are sorted by where they begin: those further on overlap until one begins after this one's end.
+        for &b in &order[place + 1..] {
+            if of_triangle[b] != of_triangle[a] || boxes[b].min.x > boxes[a].max.x {
+                break;
+            }
+            let (p, q) = (&boxes[a], &boxes[b]);
+            if p.min.y <= q.max.y && q.min.y <= p.max.y && p.min.z <= q.max.z && q.min.z <= p.max.z
+            {
+                sets.join(a, b);
+            }
+        }
+    }
+    let mut total = vec![0.0_f64; corners.len()];
+    for &k in &order {
+        let [a, b, c] = corners[k].map(Vec3::as_dvec3);
+        total[sets.root(k)] += 0.5 * (b - a).cross(c - a).length();
+    }
+    (0..corners.len())
+        .map(|k| {
+            if of_triangle[k] == NO_PLANE {
+                0.0
+            } else {
+                total[sets.root(k)] as f32
+            }
+        })
+        .collect()
+}
+
+/// Disjoint sets.
+struct Sets {
+    parent: Vec<usize>,
+}
+
+impl Sets {
+    fn new(count: usize) -> Self {
+        Self {
+            parent: (0..count).collect(),
+        }
+    }
+
+    fn root(&mut self, mut k: usize) -> usize {
+        while self.parent[k] != k {
+            self.parent[k] = self.parent[self.parent[k]];
+            k = self.parent[k];
+        }
+        k
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b)] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(x: f32, size: f32) -> [[Vec3; 3]; 2] {
+        let p = |u: f32, v: f32| Vec3::new(x + u * size, 1.0, v * size);
+        [
+            [p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0)],
+            [p(0.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)],
+        ]
+    }
+
+    #[test]
+    fn touching_triangles_are_one_panel_and_a_gap_parts_them() {
+        let mut corners = Vec::new();
+        // Two that share an edge, one a centimetre further on, one in another plane, one without any.
+        corners.extend(square(0.0, 1.0));
+        corners.extend(square(1.0, 1.0));
+        corners.extend(square(2.01, 0.5));
+        corners.extend(square(2.5, 0.1));
+        let of_triangle = [0, 0, 0, 0, 0, 0, 1, NO_PLANE];
+        let found = areas(&corners, &of_triangle);
+        for (k, wanted) in [2.0, 2.0, 2.0, 2.0, 0.25, 0.25, 0.005, 0.0]
+            .into_iter()
+            .enumerate()
+        {
+            assert!((found[k] - wanted).abs() < 1e-5, "{k}: {}", found[k]);
+        }
+    }
+
+    #[test]
+    fn a_wall_of_many_triangles_with_loose_corners_is_one_panel() {
+        let corners: Vec<[Vec3; 3]> = (0..40).flat_map(|k| square(0.1 * k as f32, 0.1)).collect();
+        let found = areas(&corners, &vec![0; corners.len()]);
+        assert!(found.iter().all(|area| (area - 0.4).abs() < 1e-4));
+    }
+}

@@ -1,0 +1,158 @@
+"""What makes sound and what hears it: sources and receivers for :class:`dwell.AcousticScene`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from dwell.arguments import finite, point, whole
+
+Point = tuple[float, float, float]
+
+#: Directivities by name; ``loudspeaker`` and ``talker`` are points on rigid spheres.
+DIRECTIVITIES: dict[str, Any] = {
+    "omni": "omni",
+    "cardioid": {"first_order": {"gradient": [0.5] * 8}},
+    "figure_of_eight": {"first_order": {"gradient": [1.0] * 8}},
+    "talker": {"sphere": {"radius_m": 0.0875}},
+    "loudspeaker": {"sphere": {"radius_m": 0.15}},
+}
+
+
+@dataclass(frozen=True)
+class Source:
+    """What radiates sound.
+
+    Attributes:
+        position: Where it is, m.
+        yaw_deg: Where its front points: 0 to -Z, 90 to -X.
+        pitch_deg: How far its front is raised.
+        directivity: A name of :data:`DIRECTIVITIES`. Its level is that in front of it.
+    """
+
+    position: Point
+    yaw_deg: float = 0.0
+    pitch_deg: float = 0.0
+    directivity: str = "omni"
+
+    def to_json(self) -> dict[str, Any]:
+        """As the engine takes it."""
+        return {
+            "pose": _pose(self.position, self.yaw_deg, self.pitch_deg),
+            "directivity": _directivity(self.directivity),
+        }
+
+
+@dataclass(frozen=True)
+class Microphone:
+    """One microphone of an array.
+
+    Attributes:
+        position: Where it is in the array's axes (forward -Z, left -X, up +Y), m.
+        yaw_deg: Where its front points, in the array.
+        pitch_deg: How far its front is raised, in the array.
+        directivity: A name of :data:`DIRECTIVITIES`.
+    """
+
+    position: Point
+    yaw_deg: float = 0.0
+    pitch_deg: float = 0.0
+    directivity: str = "omni"
+
+
+@dataclass(frozen=True)
+class Receiver:
+    """What listens: see :meth:`omni`, :meth:`binaural`, :meth:`array` and :meth:`ambisonics`."""
+
+    pose: dict[str, Any]
+    kind: Any
+
+    @classmethod
+    def omni(cls, position: Sequence[float]) -> Receiver:
+        """A microphone that hears equally from all sides: one channel."""
+        return cls(_pose(point("position", position), 0.0, 0.0), "omni")
+
+    @classmethod
+    def binaural(
+        cls, position: Sequence[float], *, yaw_deg: float = 0.0, pitch_deg: float = 0.0
+    ) -> Receiver:
+        """Two ears on a sphere: left, right. ``position``: the middle of the head, m."""
+        return cls(_pose(point("position", position), yaw_deg, pitch_deg), "binaural")
+
+    @classmethod
+    def array(
+        cls,
+        position: Sequence[float],
+        microphones: Sequence[Microphone | Sequence[float]],
+        *,
+        yaw_deg: float = 0.0,
+        pitch_deg: float = 0.0,
+    ) -> Receiver:
+        """Microphones around a centre: a channel each. All hear one sound field, early and late.
+
+        Args:
+            position: The centre, m.
+            microphones: 1 to 128; a point (m, in the array's axes) hears equally from all sides.
+            yaw_deg: Where the array's front points.
+            pitch_deg: How far its front is raised.
+        """
+        items = [
+            item if isinstance(item, Microphone) else Microphone(point("microphones", item))
+            for item in microphones
+        ]
+        kind = {
+            "array": [
+                {
+                    "array_from_microphone": _pose(
+                        point("microphones", item.position), item.yaw_deg, item.pitch_deg
+                    ),
+                    "directivity": _directivity(item.directivity),
+                }
+                for item in items
+            ]
+        }
+        return cls(_pose(point("position", position), yaw_deg, pitch_deg), kind)
+
+    @classmethod
+    def ambisonics(
+        cls,
+        position: Sequence[float],
+        *,
+        order: int = 1,
+        yaw_deg: float = 0.0,
+        pitch_deg: float = 0.0,
+    ) -> Receiver:
+        """Spherical harmonics of an order from 0 to 3.
+
+        (order + 1)^2 channels in ACN order with SN3D weights.
+        """
+        kind = {"ambisonics": {"order": whole("order", order, low=0, high=3)}}
+        return cls(_pose(point("position", position), yaw_deg, pitch_deg), kind)
+
+    def to_json(self) -> dict[str, Any]:
+        """As the engine takes it."""
+        return {"pose": self.pose, "kind": self.kind}
+
+
+def source_of(source: Source | Sequence[float]) -> Source:
+    """A point is a source that radiates equally on all sides."""
+    return source if isinstance(source, Source) else Source(point("source", source))
+
+
+def _directivity(name: str) -> Any:  # noqa: ANN401 - a name or a table with numbers
+    if name not in DIRECTIVITIES:
+        raise ValueError(f"directivity: no {name!r}; there are {', '.join(DIRECTIVITIES)}")
+    return DIRECTIVITIES[name]
+
+
+def _pose(position: Sequence[float], yaw_deg: float, pitch_deg: float) -> dict[str, Any]:
+    """Turned about the vertical, after being raised about its own X axis."""
+    yaw = 0.5 * math.radians(finite("yaw_deg", yaw_deg))
+    pitch = 0.5 * math.radians(finite("pitch_deg", pitch_deg))
+    (sy, cy), (sp, cp) = (math.sin(yaw), math.cos(yaw)), (math.sin(pitch), math.cos(pitch))
+    return {
+        "position": list(point("position", position)),
+        "rotation": [cy * sp, sy * cp, -sy * sp, cy * cp],
+    }
