@@ -2,7 +2,7 @@
 //!
 //! An [`AcousticScene`] is a house as sound sees it. Between a [`Source`] and a [`Receiver`] it finds an [`Echogram`] (exact
 //! early paths and a traced energy tail, per octave band), and from that an [`ImpulseResponse`]. A [`Stream`] convolves
-//! sources with them, block by block, in step with a world. [`signals`] and [`ImpactSound`] are what things sound like, and
+//! sources with them, block by block, in step with a world. [`signals`], [`recordings`] and [`contact`] are what things sound like, and
 //! [`metrics`] what rooms sound like.
 //!
 //! Units: pressure in Pa, energy e = 1/d² for a free path of d metres (amplitude 1/d re 1 m), sample 0 of a response is the
@@ -27,6 +27,7 @@ pub mod air;
 pub mod bands;
 mod channel;
 mod config;
+pub mod contact;
 mod directions;
 mod directivity;
 mod echogram;
@@ -35,7 +36,6 @@ mod explain;
 mod fft;
 pub mod head;
 mod images;
-mod impact;
 pub mod laws;
 pub mod metrics;
 mod microphones;
@@ -57,7 +57,6 @@ pub use echogram::{Echogram, Histogram, Path, TraceStatistics};
 pub use error::AcousticsError;
 pub use explain::{Explanation, MaterialRow};
 pub use images::{EarlyPath, NEAREST_M};
-pub use impact::ImpactSound;
 pub use planes::{NO_PLANE, Plane, PlaneTable};
 pub use receiver::{MOST_MICROPHONES, Microphone, Receiver, ReceiverKind, Source};
 pub use recordings::Recording;

@@ -44,7 +44,7 @@ def read_wav(path: str | os.PathLike[str]) -> tuple[NDArray[np.float32], int]:
 
 
 def signals() -> list[dict[str, Any]]:
-    """The built-in signals, by name: name, description, loop_s, usual_level_db (dB SPL at 1 m)."""
+    """The built-in signals: name, description, loop_s, usual_level_db (dB SPL at 1 m), level_source."""
     rows: list[dict[str, Any]] = json.loads(_native.signals_json())
     return rows
 

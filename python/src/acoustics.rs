@@ -141,7 +141,7 @@ pub(crate) fn synthesize<'py>(
     Ok(out.into_pyarray(py))
 }
 
-/// The built-in signals: `[{name, description, loop_s, usual_level_db}, ...]`.
+/// The built-in signals: `[{name, description, loop_s, usual_level_db, level_source}, ...]`.
 #[pyfunction]
 pub(crate) fn signals_json() -> String {
     let rows = dwell_acoustics::signals::list().iter().map(|signal| {
@@ -150,6 +150,7 @@ pub(crate) fn signals_json() -> String {
             "description": signal.description,
             "loop_s": signal.loop_s,
             "usual_level_db": signal.usual_level_db,
+            "level_source": signal.level_source,
         })
     });
     serde_json::Value::from(rows.collect::<Vec<_>>()).to_string()

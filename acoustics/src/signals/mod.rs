@@ -4,10 +4,15 @@
 //! multiplies by [`pa_from_db_spl`](dwell_scene::units::pa_from_db_spl) of the source's level. Any sample can be asked for:
 //! blocks of any size give the same signal.
 
+mod appliances;
 mod canvas;
 mod household;
+mod measuring;
 mod music;
 mod speech;
+mod table;
+
+pub use measuring::{Sweep, maximum_length_sequence};
 
 use crate::error::AcousticsError;
 use canvas::Canvas;
@@ -26,131 +31,14 @@ pub struct SignalInfo {
     pub loop_s: f64,
     /// A usual level at 1 m, dB SPL.
     pub usual_level_db: f32,
+    /// Where that level comes from.
+    pub level_source: &'static str,
     paint: fn(&mut Canvas),
 }
-
-const fn signal(
-    name: &'static str,
-    description: &'static str,
-    loop_s: f64,
-    usual_level_db: f32,
-    paint: fn(&mut Canvas),
-) -> SignalInfo {
-    SignalInfo {
-        name,
-        description,
-        loop_s,
-        usual_level_db,
-        paint,
-    }
-}
-
-/// By name.
-const ALL: [SignalInfo; 15] = [
-    signal(
-        "alarm",
-        "a smoke alarm: three beeps and a pause",
-        4.0,
-        85.0,
-        household::alarm,
-    ),
-    signal(
-        "clock",
-        "a clock that ticks every second",
-        2.0,
-        35.0,
-        household::clock,
-    ),
-    signal(
-        "fan",
-        "a fan or a hood: broad noise with a blade tone",
-        4.0,
-        55.0,
-        household::fan,
-    ),
-    signal(
-        "footsteps",
-        "steps of a walking person",
-        4.0,
-        55.0,
-        household::footsteps,
-    ),
-    signal(
-        "fridge",
-        "the hum of a compressor",
-        4.0,
-        40.0,
-        household::fridge,
-    ),
-    signal(
-        "hum",
-        "mains hum of a transformer",
-        2.0,
-        35.0,
-        household::hum,
-    ),
-    signal(
-        "kettle",
-        "water that heats up",
-        4.0,
-        60.0,
-        household::kettle,
-    ),
-    signal(
-        "noise",
-        "pink noise, for measuring",
-        4.0,
-        70.0,
-        household::pink,
-    ),
-    signal(
-        "phone",
-        "a telephone that rings two seconds of six",
-        6.0,
-        75.0,
-        household::phone,
-    ),
-    signal("radio", "music with a beat", 16.0, 65.0, music::radio),
-    signal(
-        "speech",
-        "one voice without words",
-        8.0,
-        62.0,
-        speech::speech,
-    ),
-    signal(
-        "tap",
-        "water that runs into a sink",
-        4.0,
-        60.0,
-        household::tap,
-    ),
-    signal(
-        "television",
-        "two voices over music",
-        16.0,
-        62.0,
-        speech::television,
-    ),
-    signal(
-        "toilet_flush",
-        "a cistern that empties and fills again",
-        12.0,
-        70.0,
-        household::toilet_flush,
-    ),
-    signal(
-        "washing_machine",
-        "a washing machine: drum, motor, water",
-        6.0,
-        58.0,
-        household::washing_machine,
-    ),
-];
 
 /// All signals, by name.
 pub fn list() -> &'static [SignalInfo] {
-    &ALL
+    &table::ALL
 }
 
 /// What is known about the signal called `name`.

@@ -133,3 +133,29 @@ pub(super) fn television(canvas: &mut Canvas) {
     }
     music::band(canvas, 0.12);
 }
+
+/// Six voices at once: a room full of people.
+pub(super) fn babble(canvas: &mut Canvas) {
+    let end_s = canvas.loop_s();
+    for (k, (pitch_hz, size)) in [
+        (104.0, 1.0),
+        (118.0, 0.98),
+        (131.0, 1.03),
+        (188.0, 1.14),
+        (205.0, 1.17),
+        (226.0, 1.2),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let voice = Voice { pitch_hz, size };
+        // They begin in turn, so that pauses do not fall together.
+        let start_s = 0.21 * k as f64;
+        talk(
+            canvas,
+            &voice,
+            &format!("talker {k}"),
+            (start_s, start_s + end_s),
+        );
+    }
+}

@@ -68,6 +68,10 @@ pub(crate) struct Before {
     parts: Vec<Pose>,
     eyes: Vec<Pose>,
     feet: Vec<Vec3>,
+    /// Where agents stood, m, and faced, rad. Shape (agent,).
+    pub(crate) agents: Vec<(Vec3, f32)>,
+    /// Positions and velocities of joints. Shape (joint,).
+    pub(crate) joints: Vec<(f32, f32)>,
 }
 
 impl Before {
@@ -84,6 +88,14 @@ impl Before {
         self.feet.clear();
         self.feet
             .extend(state.agents.iter().map(|agent| agent.position));
+        self.agents.clear();
+        let agents = state.agents.iter();
+        self.agents
+            .extend(agents.map(|agent| (agent.position, agent.yaw_rad)));
+        self.joints.clear();
+        let joints = state.joint_position.iter().zip(state.joint_velocity.iter());
+        self.joints
+            .extend(joints.map(|(position, velocity)| (*position, *velocity)));
     }
 }
 

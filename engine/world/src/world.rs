@@ -4,7 +4,7 @@ use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::past::{Before, Past};
-use crate::sound::Sound;
+use crate::sound::{Sound, Step};
 use crate::start::Start;
 use dwell_physics::{
     Action, ActionOutcome, AgentControl, AgentPlacement, BodyState, ContactEvent, JointState,
@@ -98,9 +98,17 @@ impl World {
         self.state.time_s = self.state.step as f64 * self.config.step_s();
         self.past.remember(&self.before, &self.state);
         self.rays.update(&self.state);
-        let key = self.key.child("sound");
-        self.sound
-            .take_events(self.engines.house(), &self.events, began_s, key);
+        self.sound.take_events(&Step {
+            house: self.engines.house(),
+            rays: &self.rays,
+            state: &self.state,
+            events: &self.events,
+            agents_before: &self.before.agents,
+            joints_before: &self.before.joints,
+            start_s: began_s,
+            length_s: self.config.step_s(),
+            key: self.key.child("sound"),
+        });
         self.sound.advance(&self.engines, &self.rays, &self.state)
     }
 

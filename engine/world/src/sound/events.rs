@@ -1,71 +1,407 @@
-//! What touches become sounds here, and nowhere else: physics knows no sounds, the acoustics no physics.
+//! What touches, swings and walks becomes sound here, and nowhere else: physics knows no sounds, the acoustics no physics.
 
 use super::Sound;
-use dwell_acoustics::ImpactSound;
-use dwell_physics::{ContactEvent, ContactKind, Toucher};
+use super::gait::{Stride, mass_kg};
+use dwell_acoustics::contact::{
+    ContactSound, CreakSound, FootstepSound, ImpactSound, Partner, RubKind, RubSound,
+};
+use dwell_physics::{ContactEvent, ContactKind, ContactPhase, Toucher};
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::material::library;
 use dwell_scene::random::Key;
-use dwell_scene::{House, PartId};
+use dwell_scene::rays::RayScene;
+use dwell_scene::{
+    AgentId, Articulation, House, Id, JointId, JointKind, PartId, Pose, State, StructureKind,
+};
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
+use std::sync::OnceLock;
 
 /// Blows weaker than this are not heard, N·s.
 const FAINTEST_N_S: f32 = 0.02;
 /// The most blows that begin to sound in one step; the hardest win.
 const MOST_BLOWS: usize = 16;
-/// Source ids of blows begin here.
+/// The most pairs that scrape or roll in one step; the hardest win.
+const MOST_RUBS: usize = 8;
+/// Source ids of blows begin here, those of pairs that rub, of joints and of agents' feet behind them.
 const FIRST_BLOW_ID: u64 = 1 << 32;
+const FIRST_RUB_ID: u64 = 2 << 32;
+const FIRST_JOINT_ID: u64 = 3 << 32;
+const FIRST_FOOT_ID: u64 = 4 << 32;
 
-/// A blow that still rings.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Blow {
+/// A floor's covering lies on boards or a slab: the least that is struck, kg/m². Walls are struck as they are.
+const FLOOR_KG_M2: f32 = 120.0;
+const WALL_KG_M2: f32 = 10.0;
+/// What a door's frame and a cupboard's body take of a slam, kg/m²: estimate.
+const FRAME_KG_M2: f32 = 40.0;
+/// Slower than this no door slams, rad/s or m/s.
+const SLAM_SPEED: f32 = 0.05;
+/// The tongue of a latch, kg and m, and how fast it snaps, m/s: estimates.
+const LATCH_KG: f32 = 0.05;
+const LATCH_M: [f32; 3] = [0.06, 0.02, 0.01];
+const LATCH_M_S: f32 = 0.5;
+
+/// A sound of touch that is still heard.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Touch {
     pub(super) id: u64,
-    pub(super) sound: ImpactSound,
+    pub(super) sound: ContactSound,
     /// The sample, since the world's start, at which it begins.
     pub(super) start: u64,
+    /// Samples.
+    pub(super) length: u64,
+    /// Made when somebody listens.
+    #[serde(skip)]
+    rendered: OnceLock<Vec<f32>>,
 }
 
-impl Sound {
-    /// Lets the impacts of the last step sound in the block that ends now; the acoustics have no sound of scraping yet.
-    pub(crate) fn take_events(
-        &mut self,
-        house: &House,
-        events: &[ContactEvent],
-        step_start_s: f64,
-        key: Key,
-    ) {
-        let mut hard: Vec<&ContactEvent> = events
-            .iter()
-            .filter(|event| event.kind == ContactKind::Impact && event.impulse_n_s >= FAINTEST_N_S)
-            .collect();
-        hard.sort_by(|a, b| b.impulse_n_s.total_cmp(&a.impulse_n_s));
-        let size = |toucher: Toucher| match toucher {
-            Toucher::Part(part) => Some(part_size_m(house, part)),
-            _ => None,
-        };
-        for event in hard.into_iter().take(MOST_BLOWS) {
-            let late_s = (event.time_s - step_start_s).max(0.0);
-            let late = ((late_s * f64::from(self.rate_hz)) as u64).min(self.block as u64 - 1);
-            self.blows.push(Blow {
-                id: FIRST_BLOW_ID + self.next_blow,
-                sound: ImpactSound {
-                    position: event.position,
-                    impulse_n_s: event.impulse_n_s,
-                    substances: [event.substance_a.to_owned(), event.substance_b.to_owned()],
-                    size_m: [size(event.a), size(event.b)],
-                    key: key.child("blow").child(self.next_blow),
-                },
-                start: self.blocks * self.block as u64 + late,
-            });
-            self.next_blow += 1;
+impl Touch {
+    /// Writes the block that begins at `start`.
+    pub(super) fn read(&self, rate_hz: u32, start: u64, out: &mut [f32]) {
+        let samples = self.rendered.get_or_init(|| self.sound.render(rate_hz));
+        for (k, y) in out.iter_mut().enumerate() {
+            let at = (start + k as u64).checked_sub(self.start);
+            *y = at.map_or(0.0, |at| samples.get(at as usize).copied().unwrap_or(0.0));
         }
     }
 }
 
-/// The largest edge of a part's mesh, m.
-fn part_size_m(house: &House, part: PartId) -> f32 {
-    let part = &house.parts[part];
-    house.meshes[part.mesh]
-        .bounds()
-        .transformed(&part.part_from_mesh)
-        .size()
-        .max_element()
+/// The world at the end of a step, and what was before it.
+pub(crate) struct Step<'a> {
+    pub(crate) house: &'a House,
+    pub(crate) rays: &'a RayScene,
+    pub(crate) state: &'a State,
+    pub(crate) events: &'a [ContactEvent],
+    /// The agents' feet before the step, m, and where they faced, rad. Shape (agent,).
+    pub(crate) agents_before: &'a [(Vec3, f32)],
+    /// The joints before the step: position and velocity. Shape (joint,).
+    pub(crate) joints_before: &'a [(f32, f32)],
+    /// Since the world was made, s.
+    pub(crate) start_s: f64,
+    pub(crate) length_s: f64,
+    pub(crate) key: Key,
+}
+
+impl Sound {
+    /// Lets what touched, swung and walked in the last step sound in the block that ends now.
+    pub(crate) fn take_events(&mut self, step: &Step<'_>) {
+        self.take_blows(step);
+        self.take_rubs(step);
+        for (joint, articulation) in step.house.joints.iter_ids() {
+            if articulation.opens() {
+                self.take_joint(step, joint, articulation);
+            }
+        }
+        self.take_steps(step);
+    }
+
+    fn add(&mut self, id: u64, late_s: f64, sound: ContactSound) {
+        let late = ((late_s.max(0.0) * f64::from(self.rate_hz)) as u64).min(self.block as u64 - 1);
+        let length = (sound.duration_s() * f64::from(self.rate_hz)).ceil() as u64;
+        self.touches.push(Touch {
+            id,
+            sound,
+            start: self.blocks * self.block as u64 + late,
+            length,
+            rendered: OnceLock::new(),
+        });
+    }
+
+    fn add_blow(&mut self, late_s: f64, sound: ImpactSound) {
+        let id = FIRST_BLOW_ID + self.next_blow % FIRST_BLOW_ID;
+        self.next_blow += 1;
+        self.add(id, late_s, ContactSound::Impact(sound));
+    }
+
+    fn take_blows(&mut self, step: &Step<'_>) {
+        let blows = step
+            .events
+            .iter()
+            .filter(|event| event.kind == ContactKind::Impact && event.impulse_n_s >= FAINTEST_N_S);
+        for event in hardest(blows, MOST_BLOWS) {
+            let sound = ImpactSound {
+                position: event.position,
+                impulse_n_s: event.impulse_n_s,
+                speed_m_s: event.relative_normal_speed_m_s,
+                partners: partners(step, event),
+                key: step.key.child("blow").child(self.next_blow),
+            };
+            self.add_blow(event.time_s - step.start_s, sound);
+        }
+    }
+
+    fn take_rubs(&mut self, step: &Step<'_>) {
+        let rubs = step.events.iter().filter(|event| {
+            let rubs = matches!(event.kind, ContactKind::Scrape | ContactKind::Roll);
+            rubs && event.phase != ContactPhase::End && event.duration_s > 0.0
+        });
+        for event in hardest(rubs, MOST_RUBS) {
+            let (kind, speed_m_s) = match event.kind {
+                ContactKind::Roll => (RubKind::Roll, event.rolling_speed_m_s),
+                _ => (RubKind::Slide, event.relative_tangential_speed_m_s),
+            };
+            let [a, b] = [event.a, event.b].map(number);
+            let place = step.key.child("rub").child(a).child(b);
+            // The mean over the step: what touched for half of it sounds half as loud as what touched all along.
+            let sound = RubSound {
+                position: event.position,
+                kind,
+                force_n: event.impulse_n_s / step.length_s as f32,
+                speed_m_s,
+                length_s: 2.0 * step.length_s as f32,
+                partners: partners(step, event),
+                key: place.child(self.blocks),
+                place,
+            };
+            let id = FIRST_RUB_ID + (a.rotate_left(20) ^ b) % FIRST_BLOW_ID;
+            self.add(id, 0.0, ContactSound::Rub(sound));
+        }
+    }
+
+    /// A hinge that creaks, a drawer that rubs, a door that slams.
+    fn take_joint(&mut self, step: &Step<'_>, joint: JointId, of: &Articulation) {
+        let (house, state) = (step.house, step.state);
+        let Some((before, speed_before)) = step.joints_before.get(joint.index()).copied() else {
+            return;
+        };
+        let now = state.joint_position[joint];
+        let speed = ((now - before) / step.length_s as f32).abs();
+        if now == before || !speed.is_finite() {
+            return;
+        }
+        let leaf = part(house, state, of.child);
+        let frame = match of.parent {
+            Some(parent) => part(house, state, parent),
+            None => Partner::leaf("wood", FRAME_KG_M2),
+        };
+        let parent = of
+            .parent
+            .map_or(Pose::IDENTITY, |parent| state.part_pose[parent]);
+        let anchor = (parent * of.parent_from_joint).position;
+        let middle = middle(house, state, of.child);
+        let place = step.key.child("joint").child(u64::from(joint.0));
+        let friction = state.joint_values(house, joint).friction;
+        let partners = [leaf.clone(), frame];
+        let sound = match of.kind {
+            JointKind::Hinge => ContactSound::Creak(CreakSound {
+                position: anchor,
+                angle_rad: [before, now],
+                length_s: step.length_s as f32,
+                friction_n_m: friction,
+                partners: partners.clone(),
+                place,
+            }),
+            JointKind::Slide => ContactSound::Rub(RubSound {
+                position: middle,
+                kind: RubKind::Slide,
+                force_n: friction / library().pair("wood", "wood").friction.max(0.1),
+                speed_m_s: speed,
+                length_s: 2.0 * step.length_s as f32,
+                partners: partners.clone(),
+                key: place.child(self.blocks),
+                place,
+            }),
+        };
+        if friction > 0.0 {
+            self.add(FIRST_JOINT_ID + u64::from(joint.0), 0.0, sound);
+        }
+        let shut = |position: f32| (position - of.closed).abs() <= closed_within(of.kind);
+        let hits = speed.max(speed_before.abs());
+        if !shut(now) || shut(before) || hits < SLAM_SPEED {
+            return;
+        }
+        let mass_kg = part_mass_kg(house, state, of.child);
+        // A leaf that turns about its edge meets the frame with m w / 3 of its speed there.
+        let (impulse_n_s, speed_m_s, position) = match of.kind {
+            JointKind::Hinge => {
+                let axis = parent.transform_vector(of.parent_from_joint.transform_vector(of.axis));
+                let out = middle - anchor;
+                let across = out - axis * out.dot(axis);
+                let speed = 2.0 * across.length() * hits;
+                (mass_kg * speed / 3.0, speed, middle + across)
+            }
+            JointKind::Slide => (mass_kg * hits, hits, middle),
+        };
+        let slam = |impulse_n_s, speed_m_s, partners, label: &str| ImpactSound {
+            position,
+            impulse_n_s,
+            speed_m_s,
+            partners,
+            key: place.child(label).child(self.blocks),
+        };
+        let blow = slam(impulse_n_s, speed_m_s, partners, "slam");
+        let tongue = Partner::body("steel", LATCH_KG, LATCH_M);
+        let latch = slam(LATCH_KG * LATCH_M_S, LATCH_M_S, [tongue, leaf], "latch");
+        self.add_blow(0.0, blow);
+        if of.kind == JointKind::Hinge && of.parent.is_none() {
+            self.add_blow(0.01, latch);
+        }
+    }
+
+    fn take_steps(&mut self, step: &Step<'_>) {
+        self.gaits
+            .resize_with(step.state.agents.len(), Default::default);
+        for (id, agent) in step.state.agents.iter_ids() {
+            let Some((feet, yaw_rad)) = step.agents_before.get(id.index()).copied() else {
+                continue;
+            };
+            let gait = &mut self.gaits[id.index()];
+            let Some(stride) = gait.follow(agent, feet, yaw_rad, step.length_s) else {
+                continue;
+            };
+            let foot = match stride {
+                Stride::Step { side_m, .. } => {
+                    let left = Pose::from_position_yaw(agent.position, agent.yaw_rad);
+                    left.transform_point(Vec3::new(-side_m, 0.0, 0.0))
+                }
+                Stride::Wheels { .. } => agent.position,
+            };
+            let Some(floor) = floor_at(step, foot) else {
+                continue;
+            };
+            let key = step.key.child("foot").child(u64::from(id.0));
+            let (late_s, sound) = match stride {
+                Stride::Step {
+                    late_s,
+                    speed_m_s,
+                    period_s,
+                    ..
+                } => (
+                    late_s,
+                    ContactSound::Footstep(FootstepSound {
+                        position: foot,
+                        mass_kg: mass_kg(agent.body.height_m),
+                        speed_m_s,
+                        period_s,
+                        floor,
+                        key: key.child(self.blocks),
+                    }),
+                ),
+                Stride::Wheels { speed_m_s } => (
+                    0.0,
+                    ContactSound::Rub(RubSound {
+                        position: foot,
+                        kind: RubKind::Roll,
+                        force_n: mass_kg(agent.body.height_m) * 9.8,
+                        speed_m_s,
+                        length_s: 2.0 * step.length_s as f32,
+                        partners: [agent_partner(agent.body.height_m, "plastic"), floor],
+                        key: key.child(self.blocks),
+                        place: key,
+                    }),
+                ),
+            };
+            self.add(FIRST_FOOT_ID + u64::from(id.0), late_s, sound);
+        }
+    }
+}
+
+/// The `most` events with the largest impulse; equal ones in their order.
+fn hardest<'a>(
+    events: impl Iterator<Item = &'a ContactEvent>,
+    most: usize,
+) -> impl Iterator<Item = &'a ContactEvent> {
+    let mut events: Vec<&ContactEvent> = events.collect();
+    events.sort_by(|a, b| b.impulse_n_s.total_cmp(&a.impulse_n_s));
+    events.into_iter().take(most)
+}
+
+/// How near to its closed position a door is closed, rad or m; as physics has it.
+fn closed_within(kind: JointKind) -> f32 {
+    match kind {
+        JointKind::Hinge => 0.02,
+        JointKind::Slide => 0.005,
+    }
+}
+
+/// A number that tells touchers apart.
+fn number(toucher: Toucher) -> u64 {
+    match toucher {
+        Toucher::Structure(id) => id.index() as u64,
+        Toucher::Part(id) => (1 << 40) + id.index() as u64,
+        Toucher::Agent(id) => (2 << 40) + id.index() as u64,
+    }
+}
+
+fn partners(step: &Step<'_>, event: &ContactEvent) -> [Partner; 2] {
+    let partner = |toucher, substance: &str| match toucher {
+        Toucher::Structure(id) => {
+            let floor = matches!(
+                step.house.structure[id].kind,
+                StructureKind::Floor | StructureKind::Ground
+            );
+            leaf(substance, floor)
+        }
+        Toucher::Part(id) => {
+            let size = part_size_m(step.house, id);
+            Partner::body(substance, part_mass_kg(step.house, step.state, id), size)
+        }
+        Toucher::Agent(id) => agent(step.state, id, substance),
+    };
+    [
+        partner(event.a, event.substance_a),
+        partner(event.b, event.substance_b),
+    ]
+}
+
+fn leaf(substance: &str, floor: bool) -> Partner {
+    let own = library().get_or_default(substance).surface_density_kg_m2;
+    let least = if floor { FLOOR_KG_M2 } else { WALL_KG_M2 };
+    Partner::leaf(substance, own.max(least))
+}
+
+fn agent(state: &State, id: AgentId, substance: &str) -> Partner {
+    let height_m = state
+        .agents
+        .get(id)
+        .map_or(1.7, |agent| agent.body.height_m);
+    agent_partner(height_m, substance)
+}
+
+fn agent_partner(height_m: f32, substance: &str) -> Partner {
+    Partner::body(substance, mass_kg(height_m), [0.4, 0.25, height_m])
+}
+
+/// A part with the substance of its first material.
+fn part(house: &House, state: &State, id: PartId) -> Partner {
+    let material = house.parts[id].materials.first();
+    let substance = material.map_or("wood", |id| house.materials[*id].substance.as_str());
+    Partner::body(
+        substance,
+        part_mass_kg(house, state, id),
+        part_size_m(house, id),
+    )
+}
+
+/// kg; of parts without a mass of their own as if they filled half of their box.
+fn part_mass_kg(house: &House, state: &State, id: PartId) -> f32 {
+    let part = &house.parts[id];
+    let nominal = part.mass_kg.unwrap_or_else(|| {
+        let size = part_size_m(house, id);
+        0.5 * part.density_kg_m3 * size[0] * size[1] * size[2]
+    });
+    nominal * state.part_mass_factor(house, id)
+}
+
+/// The edges of the box around a part's mesh, m.
+fn part_size_m(house: &House, id: PartId) -> [f32; 3] {
+    let part = &house.parts[id];
+    let bounds = house.meshes[part.mesh].bounds();
+    bounds.transformed(&part.part_from_mesh).size().to_array()
+}
+
+/// The middle of a part's box, m.
+fn middle(house: &House, state: &State, id: PartId) -> Vec3 {
+    let part = &house.parts[id];
+    let bounds = house.meshes[part.mesh].bounds();
+    let middle = bounds.transformed(&part.part_from_mesh).center();
+    state.part_pose[id].transform_point(middle)
+}
+
+/// What is under a foot.
+fn floor_at(step: &Step<'_>, foot: Vec3) -> Option<Partner> {
+    let ray = Ray::new(foot + Vec3::Y * 0.25, Vec3::NEG_Y).between(0.0, 0.6);
+    let hit = step.rays.closest(&ray, RayMask::EAR)?;
+    let material = step.rays.surface(&hit).material;
+    Some(leaf(&step.house.materials[material].substance, true))
 }

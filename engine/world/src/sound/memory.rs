@@ -2,7 +2,8 @@
 
 use super::ears::Ears;
 use super::emitters::Emitters;
-use super::events::Blow;
+use super::events::Touch;
+use super::gait::Gait;
 use super::playing::{Playing, Told};
 use super::{FIRST_PLAYED_ID, Sound};
 use crate::config::WorldConfig;
@@ -18,8 +19,9 @@ struct Memory {
     /// Samples a control step.
     block: usize,
     blocks: u64,
-    blows: Vec<Blow>,
+    touches: Vec<Touch>,
     next_blow: u64,
+    gaits: Vec<Gait>,
     emitters: Emitters,
     playing: Vec<Told>,
     next_played: u64,
@@ -36,7 +38,8 @@ impl Sound {
             rate_hz: self.rate_hz,
             block: self.block,
             blocks: self.blocks,
-            blows: self.blows.clone(),
+            touches: self.touches.clone(),
+            gaits: self.gaits.clone(),
             next_blow: self.next_blow,
             emitters: self.emitters.clone(),
             playing: self.playing.iter().map(|p| p.told.clone()).collect(),
@@ -65,8 +68,9 @@ impl Sound {
         if memory.blocks == 0 {
             return Err(WorldError::Snapshot("no block of sound is over".to_owned()));
         }
-        (sound.blocks, sound.blows, sound.next_blow) =
-            (memory.blocks, memory.blows, memory.next_blow);
+        (sound.blocks, sound.touches, sound.next_blow) =
+            (memory.blocks, memory.touches, memory.next_blow);
+        sound.gaits = memory.gaits;
         let house = engines.house();
         let most = house.emitters.len() as u64;
         let fades = memory.emitters.fades.len() as u64;

@@ -1,7 +1,7 @@
 //! What sounds in a world, and what its agents hear.
 //!
 //! - `emitters`: the sounds of the house's own objects; `playing`: what was told to play; `control`: how both are told.
-//! - `events`: the one file that turns what touches into sounds.
+//! - `events`: the one file that turns what touches, swings and walks into sounds; `gait`: when feet come down.
 //! - `ears`: a stream for each agent that listens; `fade`: levels without clicks; `memory`: all of it as bytes.
 
 mod control;
@@ -9,10 +9,12 @@ mod ears;
 mod emitters;
 mod events;
 mod fade;
+mod gait;
 mod memory;
 mod playing;
 
 pub use control::SoundNow;
+pub(crate) use events::Step;
 pub use playing::{PlayRequest, SoundName, SoundPlace, usual_level_db};
 
 use crate::config::WorldConfig;
@@ -25,7 +27,8 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, House, State};
 use ears::Ears;
 use emitters::Emitters;
-use events::Blow;
+use events::Touch;
+use gait::Gait;
 use glam::Vec3;
 use playing::Playing;
 
@@ -40,8 +43,10 @@ pub(crate) struct Sound {
     preset: String,
     /// Blocks that are over. The first is the one before the world's start, so that there is something to hear at once.
     blocks: u64,
-    blows: Vec<Blow>,
+    touches: Vec<Touch>,
     next_blow: u64,
+    /// Shape (agent,).
+    gaits: Vec<Gait>,
     emitters: Emitters,
     playing: Vec<Playing>,
     next_played: u64,
@@ -64,8 +69,9 @@ impl Sound {
             block: config.samples_per_step(),
             preset: config.sound_preset.clone(),
             blocks: 1,
-            blows: Vec::new(),
+            touches: Vec::new(),
             next_blow: 0,
+            gaits: Vec::new(),
             emitters: Emitters::default(),
             playing: Vec::new(),
             next_played: 0,
@@ -76,8 +82,9 @@ impl Sound {
     /// Silence, and no one who listens.
     pub(crate) fn reset(&mut self) {
         self.blocks = 1;
-        self.blows.clear();
+        self.touches.clear();
         self.next_blow = 0;
+        self.gaits.clear();
         self.emitters = Emitters::default();
         self.playing.clear();
         self.next_played = 0;
@@ -103,11 +110,10 @@ impl Sound {
             }
         }
         self.blocks += 1;
-        // What rang in the block that has just ended is kept for ears that begin to listen after it.
+        // What sounded in the block that has just ended is kept for ears that begin to listen after it.
         let ended = (self.blocks - 1) * self.block as u64;
-        let rate = f64::from(self.rate_hz);
-        self.blows
-            .retain(|blow| blow.start as f64 + blow.sound.duration_s() * rate > ended as f64);
+        self.touches
+            .retain(|touch| touch.start + touch.length > ended);
         self.playing.retain(|playing| !playing.is_over(ended));
         Ok(())
     }
@@ -162,7 +168,7 @@ impl Sound {
         Ok(Stream::new(scene, config, own, Threads::ONE)?.in_room(key.child("room")))
     }
 
-    /// What sounds in the block that has just ended or ends now: emitters, what plays, and blows that ring.
+    /// What sounds in the block that has just ended or ends now: emitters, what plays, and what touched.
     fn sources(
         &self,
         house: &House,
@@ -195,17 +201,12 @@ impl Sound {
                 signal,
             });
         }
-        for blow in &self.blows {
+        for touch in &self.touches {
             let mut signal = vec![0.0; self.block];
-            let (skip, elapsed) = (
-                blow.start.saturating_sub(start) as usize,
-                start.saturating_sub(blow.start),
-            );
-            blow.sound
-                .synthesize(self.rate_hz, elapsed, &mut signal[skip.min(self.block)..]);
+            touch.read(self.rate_hz, start, &mut signal);
             sources.push(Sounding {
-                id: blow.id,
-                position: blow.sound.position,
+                id: touch.id,
+                position: touch.sound.position(),
                 signal,
             });
         }

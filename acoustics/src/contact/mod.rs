@@ -1,0 +1,132 @@
+//! What touching things sound like: blows, scrapes, rolling, creaking hinges, steps.
+//!
+//! Every sound here is a force and two things that it acts on. The force comes from how they touch (`strike`, `rub`, `creak`,
+//! `footstep`); what each makes of it from its modes (`modes`, `substances`) and from how it radiates (`radiation`). Figures
+//! of substances stand in `assets/ringing.toml`, with sources.
+//!
+//! It is a model of plain bars, panels and walls, not of a violin: things are taken for the simplest body that has their
+//! size, mass and substance.
+
+mod creak;
+mod footstep;
+mod impact;
+pub mod modes;
+mod radiation;
+mod rub;
+mod strike;
+mod substances;
+
+pub use creak::CreakSound;
+pub use footstep::FootstepSound;
+pub use impact::ImpactSound;
+pub use rub::{RubKind, RubSound};
+pub use substances::{Elastic, elastic};
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// A thing that moves, as sound knows it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Body {
+    /// kg; above 0.
+    pub mass_kg: f32,
+    /// The edges of a box around it, m, in any order.
+    pub size_m: [f32; 3],
+}
+
+/// One of two things that touch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Partner {
+    /// What it is made of there: a name of the materials' library; unknown ones count as its default.
+    pub substance: String,
+    /// What it is.
+    pub kind: PartnerKind,
+}
+
+/// What a thing that is touched is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum PartnerKind {
+    /// A thing with modes of its own.
+    Body(Body),
+    /// A wall, floor or ceiling, endless for the blow: kg/m² of the leaf that is struck.
+    Leaf(f32),
+}
+
+impl Partner {
+    /// A thing that moves.
+    pub fn body(substance: &str, mass_kg: f32, size_m: [f32; 3]) -> Self {
+        Self {
+            substance: substance.to_owned(),
+            kind: PartnerKind::Body(Body { mass_kg, size_m }),
+        }
+    }
+
+    /// A wall, floor or ceiling.
+    pub fn leaf(substance: &str, surface_density_kg_m2: f32) -> Self {
+        Self {
+            substance: substance.to_owned(),
+            kind: PartnerKind::Leaf(surface_density_kg_m2),
+        }
+    }
+
+    /// kg; `None` for what does not yield.
+    fn mass_kg(&self) -> Option<f64> {
+        match self.kind {
+            PartnerKind::Body(body) => Some(f64::from(body.mass_kg).max(1e-4)),
+            PartnerKind::Leaf(_) => None,
+        }
+    }
+}
+
+/// A sound of touch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ContactSound {
+    /// A blow.
+    Impact(ImpactSound),
+    /// A stretch of scraping or rolling.
+    Rub(RubSound),
+    /// A stretch of a hinge's creaking.
+    Creak(CreakSound),
+    /// A step.
+    Footstep(FootstepSound),
+}
+
+impl ContactSound {
+    /// Where it sounds, m.
+    pub fn position(&self) -> Vec3 {
+        match self {
+            Self::Impact(sound) => sound.position,
+            Self::Rub(sound) => sound.position,
+            Self::Creak(sound) => sound.position,
+            Self::Footstep(sound) => sound.position,
+        }
+    }
+
+    /// How long it lasts with its ringing, s; at most 6.
+    pub fn duration_s(&self) -> f64 {
+        match self {
+            Self::Impact(sound) => sound.duration_s(),
+            Self::Rub(sound) => sound.duration_s(),
+            Self::Creak(sound) => sound.duration_s(),
+            Self::Footstep(sound) => sound.duration_s(),
+        }
+    }
+
+    /// The whole sound: pressure at 1 m in the free field, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
+    ///
+    /// # Determinism
+    /// The samples depend on the sound and the rate alone.
+    pub fn render(&self, rate_hz: u32) -> Vec<f32> {
+        match self {
+            Self::Impact(sound) => sound.render(rate_hz),
+            Self::Rub(sound) => sound.render(rate_hz),
+            Self::Creak(sound) => sound.render(rate_hz),
+            Self::Footstep(sound) => sound.render(rate_hz),
+        }
+    }
+}
+
+/// How many samples a sound of a duration has.
+fn samples(duration_s: f64, rate_hz: u32) -> usize {
+    (duration_s * f64::from(rate_hz)).ceil() as usize
+}

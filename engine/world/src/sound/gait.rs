@@ -1,0 +1,166 @@
+//! When the feet of who walks come down.
+
+use dwell_scene::math::wrap_angle;
+use dwell_scene::{AgentState, Locomotion};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Length of a step over the steps a second, m s, of a body 1.7 m high.
+///
+/// # Source
+/// The walk ratio is the same at all speeds, 0.0065 m a step a minute: N. Sekiya, H. Nagasaki, H. Ito, T. Furuna, J. Orthop.
+/// Sports Phys. Ther. 24, 1996.
+const WALK_RATIO: f32 = 0.39;
+/// A turn on the spot that takes a step, rad.
+const TURN_RAD: f32 = std::f32::consts::FRAC_PI_4;
+/// How fast feet move while one turns on the spot, m/s.
+const TURN_M_S: f32 = 0.4;
+/// Half the distance between the feet, m, of a body 1.7 m high.
+const SIDE_M: f32 = 0.08;
+/// Slower than this nobody walks, m/s.
+const SLOWEST_M_S: f32 = 0.02;
+
+/// The mass of a person of a height, kg: body mass index 22.
+pub(super) fn mass_kg(height_m: f32) -> f32 {
+    22.0 * height_m * height_m
+}
+
+/// Where in its gait an agent is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Gait {
+    /// Of the step that is made, 0 to 1.
+    phase: f32,
+    /// Whether the left foot comes down next.
+    left: bool,
+}
+
+impl Default for Gait {
+    fn default() -> Self {
+        Self {
+            phase: STANDING,
+            left: false,
+        }
+    }
+}
+
+/// Who stands begins with half a step.
+const STANDING: f32 = 0.5;
+
+/// What an agent's feet or wheels do in a control step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Stride {
+    /// A foot comes down.
+    Step {
+        /// From the beginning of the control step, s.
+        late_s: f64,
+        /// How fast it walks, m/s.
+        speed_m_s: f32,
+        /// The time from step to step, s.
+        period_s: f32,
+        /// How far to the left the foot is, m.
+        side_m: f32,
+    },
+    /// It rolls.
+    Wheels {
+        /// m/s.
+        speed_m_s: f32,
+    },
+}
+
+impl Gait {
+    /// Goes on from where the agent was, `feet` and `yaw_rad`, a control step ago.
+    pub(super) fn follow(
+        &mut self,
+        agent: &AgentState,
+        feet: Vec3,
+        yaw_rad: f32,
+        step_s: f64,
+    ) -> Option<Stride> {
+        let way = agent.position - feet;
+        let speed_m_s = Vec3::new(way.x, 0.0, way.z).length() / step_s as f32;
+        if !agent.grounded {
+            return None;
+        }
+        if !matches!(agent.body.locomotion, Locomotion::Walking(_)) {
+            return (speed_m_s > SLOWEST_M_S).then_some(Stride::Wheels { speed_m_s });
+        }
+        let height = agent.body.height_m / 1.7;
+        let length_m = (WALK_RATIO * speed_m_s).sqrt() * height;
+        let turn = wrap_angle(agent.yaw_rad - yaw_rad).abs() / TURN_RAD;
+        let walk = if speed_m_s > SLOWEST_M_S {
+            speed_m_s * step_s as f32 / length_m
+        } else {
+            0.0
+        };
+        // Curves cost no further steps.
+        let steps = walk.max(turn);
+        if steps < 1e-4 {
+            self.phase = STANDING;
+            return None;
+        }
+        let before = self.phase;
+        self.phase += steps;
+        if self.phase < 1.0 {
+            return None;
+        }
+        let late_s = f64::from((1.0 - before) / steps) * step_s;
+        // Nobody makes more than one step in a control step worth hearing.
+        self.phase -= self.phase.floor();
+        let side_m = if self.left { SIDE_M } else { -SIDE_M } * height;
+        self.left = !self.left;
+        Some(Stride::Step {
+            late_s,
+            speed_m_s: speed_m_s.max(TURN_M_S),
+            period_s: (step_s as f32 / steps).min(2.0),
+            side_m,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::AgentBody;
+
+    fn steps(speed_m_s: f32, yaw_rate_rad_s: f32, seconds: f32) -> Vec<(f64, f32)> {
+        let (mut gait, step_s) = (Gait::default(), 0.05);
+        let body = AgentBody {
+            height_m: 1.7,
+            ..AgentBody::default()
+        };
+        let mut agent = AgentState::new(body, Vec3::ZERO, 0.0);
+        let mut heard = Vec::new();
+        for k in 0..(seconds * 20.0) as usize {
+            let before = (agent.position, agent.yaw_rad);
+            agent.position.z -= speed_m_s * 0.05;
+            agent.yaw_rad = wrap_angle(agent.yaw_rad + yaw_rate_rad_s * 0.05);
+            match gait.follow(&agent, before.0, before.1, step_s) {
+                Some(Stride::Step { late_s, side_m, .. }) => {
+                    heard.push((k as f64 * step_s + late_s, side_m));
+                }
+                Some(Stride::Wheels { .. }) => panic!("legs have no wheels"),
+                None => {}
+            }
+        }
+        heard
+    }
+
+    /// 1.3 m/s: steps of 0.71 m, 1.83 a second; left and right in turn, evenly.
+    #[test]
+    fn a_walker_makes_as_many_steps_as_walkers_do() {
+        let heard = steps(1.3, 0.0, 20.0);
+        assert!(
+            (heard.len() as f32 / 20.0 - 1.826).abs() < 0.06,
+            "{}",
+            heard.len()
+        );
+        for pair in heard.windows(2) {
+            assert!((pair[1].0 - pair[0].0 - 0.5477).abs() < 0.002);
+            assert_eq!(pair[0].1, -pair[1].1);
+        }
+        assert!(steps(2.6, 0.0, 20.0).len() > heard.len());
+        assert!(steps(0.0, 0.0, 20.0).is_empty());
+        // A full turn on the spot takes eight.
+        assert_eq!(steps(0.0, 1.0, std::f32::consts::TAU + 0.1).len(), 8);
+    }
+}
