@@ -262,6 +262,7 @@ def expand(house: str) -> list[str]: ...
 def synthesize(signal: str, rate_hz: int, samples: int) -> NDArray[np.float32]: ...
 def signals_json() -> str:
     """``[{name, description, loop_s, usual_level_db, level_source}, ...]``."""
+
 def calibrate(
     measured: str,
     house: str | None = ...,

@@ -1,18 +1,16 @@
-"""Sound files, with the standard library alone, and sounds that a world is told to play."""
+"""Sound files, with the standard library alone; and the built-in signals."""
 
 from __future__ import annotations
 
 import json
 import os
 import wave
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
-from dwell.arguments import finite, flag, path, point, to_json, whole
 
 
 def write_wav(
@@ -44,41 +42,6 @@ def read_wav(path: str | os.PathLike[str]) -> tuple[NDArray[np.float32], int]:
 
 
 def signals() -> list[dict[str, Any]]:
-    """The built-in signals: name, description, loop_s, usual_level_db (dB SPL at 1 m), level_source."""
+    """The built-in signals: name, description, loop_s, usual_level_db (at 1 m), level_source."""
     rows: list[dict[str, Any]] = json.loads(_native.signals_json())
     return rows
-
-
-#: What the names of sound files end with.
-_ENDINGS = (".wav", ".flac", ".ogg", ".oga")
-
-
-def play_json(
-    sound: str | os.PathLike[str],
-    at: str | int | Sequence[float],
-    *,
-    level_db: float | None,
-    loop: bool,
-) -> str:
-    """What ``World.play`` asks of the native side.
-
-    Raises:
-        ConfigError: For what is no name, place, level or flag.
-    """
-    name = path("sound", sound)
-    kind = "file" if name.lower().endswith(_ENDINGS) else "signal"
-    place: dict[str, object]
-    if isinstance(at, str):
-        place = {"object": at}
-    elif isinstance(at, int | np.integer):
-        place = {"agent": whole("at", at)}
-    else:
-        place = {"position": point("at", at)}
-    return to_json(
-        {
-            "sound": {kind: name},
-            "at": place,
-            "level_db": None if level_db is None else finite("level_db", level_db),
-            "loops": flag("loop", loop),
-        }
-    )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
@@ -30,8 +29,8 @@ from dwell.arguments import (
 from dwell.camera import Camera, Channel, camera_settings
 from dwell.house import House
 from dwell.navigation import Navigation, Walker, walker_json
+from dwell.playing import Sounds
 from dwell.settings import Laws, world_settings
-from dwell.sounds import play_json
 
 #: Ids have 32 bits.
 _MOST_IDS = 2**32 - 1
@@ -39,7 +38,7 @@ _MOST_IDS = 2**32 - 1
 JointCommand = Literal["off", "position", "velocity", "effort"]
 
 
-class World:
+class World(Sounds):
     """A running world with its own state over a shared house.
 
     A copy, or what comes out of a pickle, goes on from the moment it was made.
@@ -357,72 +356,6 @@ class World:
         nothing.
         """
         return self._native.listen(whole("agent", agent), whole("samples", samples))
-
-    def play(
-        self,
-        sound: str | os.PathLike[str],
-        *,
-        at: str | int | Sequence[float],
-        level_db: float | None = None,
-        loop: bool = False,
-    ) -> int:
-        """Plays a sound from the next step on, until it is over or stopped.
-
-        Args:
-            sound: The name of a signal, as :func:`dwell.sounds.signals` lists them, or the path of a WAV,
-                FLAC or Ogg Vorbis file below the world's ``sound_root``: what ends with ``.wav``,
-                ``.flac``, ``.ogg`` or ``.oga``. Channels are mixed, any rate is taken.
-            at: A point in m, the name of an object (the sound moves with it), or the number of an
-                agent, at whose mouth it sounds.
-            level_db: Level at 1 m in the free field, dB SPL (RMS over the whole sound); without it
-                the usual one of a signal. Files need one.
-            loop: Whether it begins again when it is over.
-
-        Returns:
-            A handle for :meth:`stop_sound` and kin. No other sound of the world has it.
-
-        Raises:
-            ConfigError: There is no such signal, object or agent, a number is out of range, or a
-                file is asked for without ``sound_root``.
-            DwellError: The file cannot be read or is no sound.
-
-        Examples:
-            >>> import dwell
-            >>> world = dwell.World("builtin:apartment")
-            >>> bell = world.play("phone", at=(2.0, 1.0, 2.0), level_db=70.0, loop=True)
-            >>> world.step()
-            >>> [row["on"] for row in world.sounds() if row["handle"] == bell]
-            [True]
-            >>> world.stop_sound(bell)
-        """
-        return self._native.play(play_json(sound, at, level_db=level_db, loop=loop))
-
-    def stop_sound(self, handle: int) -> None:
-        """Silences a sound within 5 ms of the next step.
-
-        What was played is then forgotten; the sound of an object can be started again.
-
-        Raises:
-            UsageError: No sound has the handle, as when it is over.
-        """
-        self._native.stop_sound(whole("handle", handle))
-
-    def start_sound(self, handle: int) -> None:
-        """Lets the sound of an object sound again that was stopped, while the object is on."""
-        self._native.start_sound(whole("handle", handle))
-
-    def set_sound_level(self, handle: int, level_db: float) -> None:
-        """Sets the level of a sound at 1 m, dB SPL, from the next step on."""
-        self._native.set_sound_level(whole("handle", handle), finite("level_db", level_db))
-
-    def sounds(self) -> list[dict[str, Any]]:
-        """Every source: the sounds of objects, then what was told to play.
-
-        Each has handle, sound (``{"signal": name}`` or ``{"file": path}``), position, level_db,
-        loops, on and object (whose own sound it is, or None).
-        """
-        sounds: list[dict[str, Any]] = json.loads(self._native.sounds_json())
-        return sounds
 
     def describe(self, level: str = "house") -> list[str]:
         """As :meth:`House.describe`, of the house as it is now."""

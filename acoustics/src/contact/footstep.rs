@@ -15,8 +15,9 @@ const LEG: f64 = 0.061;
 const HEEL: f64 = 0.23;
 /// Radius of the heel, m.
 const HEEL_M: f64 = 0.03;
-/// The sole's own hard edge: its mass over that of the leg, and its radius, m: estimates. It is what is heard above 200 Hz.
-const EDGE: f64 = 0.04;
+/// The sole's own hard edge: its mass over that of the leg (a third of the foot), and its radius, m: estimates, so that steps are
+/// as loud as steps are. It is what is heard above 200 Hz.
+const EDGE: f64 = 0.08;
 const EDGE_M: f64 = 0.003;
 /// When the forefoot follows, over the time between steps, and how hard, over the heel.
 const TOE_AFTER: f64 = 0.2;

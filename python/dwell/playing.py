@@ -1,0 +1,119 @@
+"""Sounds that a world is told to play."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from dwell import _native
+from dwell.arguments import finite, flag, path, point, to_json, whole
+
+#: What the names of sound files end with.
+_ENDINGS = (".wav", ".flac", ".ogg", ".oga")
+
+
+def _play_json(
+    sound: str | os.PathLike[str],
+    at: str | int | Sequence[float],
+    *,
+    level_db: float | None,
+    loop: bool,
+) -> str:
+    """What ``World.play`` asks of the native side.
+
+    Raises:
+        ConfigError: For what is no name, place, level or flag.
+    """
+    name = path("sound", sound)
+    kind = "file" if name.lower().endswith(_ENDINGS) else "signal"
+    place: dict[str, object]
+    if isinstance(at, str):
+        place = {"object": at}
+    elif isinstance(at, int | np.integer):
+        place = {"agent": whole("at", at)}
+    else:
+        place = {"position": point("at", at)}
+    return to_json(
+        {
+            "sound": {kind: name},
+            "at": place,
+            "level_db": None if level_db is None else finite("level_db", level_db),
+            "loops": flag("loop", loop),
+        }
+    )
+
+
+class Sounds:
+    """The sounds of a world."""
+
+    _native: _native.World
+
+    def play(
+        self,
+        sound: str | os.PathLike[str],
+        *,
+        at: str | int | Sequence[float],
+        level_db: float | None = None,
+        loop: bool = False,
+    ) -> int:
+        """Plays a sound from the next step on, until it is over or stopped.
+
+        Args:
+            sound: The name of a signal, as :func:`dwell.sounds.signals` lists them, or the path of
+                a WAV, FLAC or Ogg Vorbis file below the world's ``sound_root``: what ends with
+                ``.wav``, ``.flac``, ``.ogg`` or ``.oga``. Channels are mixed, any rate is taken.
+            at: A point in m, the name of an object (the sound moves with it), or the number of an
+                agent, at whose mouth it sounds.
+            level_db: Level at 1 m in the free field, dB SPL (RMS over the whole sound); without it
+                the usual one of a signal. Files need one.
+            loop: Whether it begins again when it is over.
+
+        Returns:
+            A handle for :meth:`stop_sound` and kin. No other sound of the world has it.
+
+        Raises:
+            ConfigError: There is no such signal, object or agent, a number is out of range, or a
+                file is asked for without ``sound_root``.
+            DwellError: The file cannot be read or is no sound.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment")
+            >>> bell = world.play("phone", at=(2.0, 1.0, 2.0), level_db=70.0, loop=True)
+            >>> world.step()
+            >>> [row["on"] for row in world.sounds() if row["handle"] == bell]
+            [True]
+            >>> world.stop_sound(bell)
+        """
+        return self._native.play(_play_json(sound, at, level_db=level_db, loop=loop))
+
+    def stop_sound(self, handle: int) -> None:
+        """Silences a sound within 5 ms of the next step.
+
+        What was played is then forgotten; the sound of an object can be started again.
+
+        Raises:
+            UsageError: No sound has the handle, as when it is over.
+        """
+        self._native.stop_sound(whole("handle", handle))
+
+    def start_sound(self, handle: int) -> None:
+        """Lets the sound of an object sound again that was stopped, while the object is on."""
+        self._native.start_sound(whole("handle", handle))
+
+    def set_sound_level(self, handle: int, level_db: float) -> None:
+        """Sets the level of a sound at 1 m, dB SPL, from the next step on."""
+        self._native.set_sound_level(whole("handle", handle), finite("level_db", level_db))
+
+    def sounds(self) -> list[dict[str, Any]]:
+        """Every source: the sounds of objects, then what was told to play.
+
+        Each has handle, sound (``{"signal": name}`` or ``{"file": path}``), position, level_db,
+        loops, on and object (whose own sound it is, or None).
+        """
+        sounds: list[dict[str, Any]] = json.loads(self._native.sounds_json())
+        return sounds
