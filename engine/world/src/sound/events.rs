@@ -23,6 +23,9 @@ const FAINTEST_N_S: f32 = 0.02;
 const MOST_BLOWS: usize = 16;
 /// The most pairs that scrape or roll in one step; the hardest win.
 const MOST_RUBS: usize = 8;
+/// The most sounds of touch that ring at once; the oldest are forgotten, which have decayed the most. A heap of a hundred things
+/// that falls makes as many in half a second, and snapshots have a bound.
+const MOST_RINGING: usize = 256;
 /// Source ids of blows begin here, those of pairs that rub, of joints and of agents' feet behind them.
 const FIRST_BLOW_ID: u64 = 1 << 32;
 const FIRST_RUB_ID: u64 = 2 << 32;
@@ -98,6 +101,9 @@ impl Sound {
     fn add(&mut self, id: u64, late_s: f64, sound: ContactSound) {
         let late = ((late_s.max(0.0) * f64::from(self.rate_hz)) as u64).min(self.block as u64 - 1);
         let length = (sound.duration_s() * f64::from(self.rate_hz)).ceil() as u64;
+        if self.touches.len() == MOST_RINGING {
+            self.touches.remove(0);
+        }
         self.touches.push(Touch {
             id,
             sound,
