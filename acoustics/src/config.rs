@@ -36,7 +36,7 @@ pub struct AcousticConfig {
     pub air: Air,
     /// Whether air absorbs.
     pub air_absorption: bool,
-    /// Whether the direct sound passes through walls and doors by their materials' transmission loss.
+    /// Whether sound passes through walls and doors by their materials' transmission loss.
     pub transmission: bool,
     /// Radius of the spherical head, m; 0.03 to 0.2.
     pub head_radius_m: f64,

@@ -48,6 +48,7 @@ pub mod signals;
 mod stream;
 mod synthesis;
 mod tail;
+mod transmission;
 
 pub use air::Air;
 pub use config::AcousticConfig;

@@ -1,8 +1,8 @@
 //! Early sound: the direct path and mirror images up to a low order, each checked against the geometry.
 
+mod direct;
 mod sequences;
 mod track;
-mod transmission;
 mod validate;
 
 use crate::bands::BAND_COUNT;
@@ -47,7 +47,7 @@ fn find_equal(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Ve
     let validator = Validator::new(scene, rays, source, receiver);
     let mut paths: Vec<(Path, DVec3)> = Vec::new();
     paths.extend(
-        transmission::direct(scene, rays, source, receiver).map(|path| (path, source.as_dvec3())),
+        direct::direct(scene, rays, source, receiver).map(|path| (path, source.as_dvec3())),
     );
     sequences::for_each(scene, rays, source, receiver, |planes, images| {
         if let Some(path) = validator.path(planes, images) {

@@ -28,11 +28,19 @@ pub(super) struct Listener {
     balls: Vec<Ball>,
     /// Volume in sight, m³.
     pub(super) seen_volume_m3: f64,
+    /// Whether the source is out of sight. Beside what is in sight, what comes through walls is not heard.
+    pub(super) hidden: bool,
 }
 
 impl Listener {
     /// Looks around from `position` with `probes` rays.
-    pub(super) fn new(rays: &RayScene, position: Vec3, radius_m: f64, probes: usize) -> Self {
+    pub(super) fn new(
+        rays: &RayScene,
+        source: Vec3,
+        position: Vec3,
+        radius_m: f64,
+        probes: usize,
+    ) -> Self {
         let distances: Vec<f64> = (0..probes)
             .map(|k| {
                 let ray = Ray::new(position, fibonacci_direction(k, probes));
@@ -60,6 +68,7 @@ impl Listener {
             position,
             balls,
             seen_volume_m3,
+            hidden: rays.occluded(&Ray::segment(source, position, 0.0), RayMask::EAR),
         }
     }
 

@@ -27,6 +27,8 @@ const RAYS_PER_CHUNK: usize = 64;
 const CHUNKS_PER_WAVE: usize = 32;
 /// Bytes of the sums that are held at once.
 const MOST_BYTES: usize = 64 << 20;
+/// The chance that a ray that meets a wall also goes on behind it.
+const THROUGH: f32 = 0.05;
 /// Rays that look around from a receiver, at most and at least.
 const PROBES: (usize, usize) = (128, 512);
 /// How far a probe that leaves the house counts, m.
@@ -145,8 +147,10 @@ pub(crate) fn trace(
     let times = bin_count.div_ceil(bins_per_direction);
     let probes = config.discovery_rays.clamp(PROBES.0, PROBES.1);
     let listeners = threads.map(receivers.len(), |k| {
-        Listener::new(rays, receivers[k], config.receiver_radius_m, probes)
+        let (radius_m, source) = (config.receiver_radius_m, source.position());
+        Listener::new(rays, source, receivers[k], radius_m, probes)
     });
+    let hidden = listeners.iter().any(|listener| listener.hidden);
     let mut start = key.child("turn").stream();
     let walk = Walk {
         scene,
@@ -163,6 +167,11 @@ pub(crate) fn trace(
         bins_per_direction,
         times,
         roulette: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
+        through: if config.transmission && hidden {
+            THROUGH
+        } else {
+            0.0
+        },
     };
     let mut sums = vec![
         Sums {

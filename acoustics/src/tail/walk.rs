@@ -6,7 +6,8 @@ use crate::bands::{BAND_COUNT, Banded};
 use crate::directions::{CELL_COUNT, cell_of};
 use crate::directivity::Pattern;
 use crate::scene::AcousticScene;
-use dwell_scene::bvh::{Ray, RayMask};
+use crate::transmission;
+use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::math::sin_cos;
 use dwell_scene::random::{Key, Stream};
 use dwell_scene::rays::RayScene;
@@ -16,6 +17,8 @@ use std::ops::Range;
 
 /// Shadow rays shorter than this count as so long, m: it bounds the variance that a near surface brings.
 const NEAREST_M: f32 = 0.1;
+/// The chance that a surface looks for receivers behind walls.
+const LOOK_THROUGH: f32 = 0.25;
 /// No ray is followed further than this many reflections.
 const MOST_REFLECTIONS: usize = 20_000;
 
@@ -39,6 +42,20 @@ pub(super) struct Walk<'a> {
     pub(super) times: usize,
     /// Energy re the start below which rays are thinned out.
     pub(super) roulette: f32,
+    /// The chance that a ray goes on behind a wall, too; 0 where nobody listens there.
+    pub(super) through: f32,
+}
+
+/// Chance: of rays that never went through a wall, and of all the rest.
+struct Random<'a> {
+    own: &'a mut Stream,
+    aside: &'a mut Stream,
+}
+
+impl Random<'_> {
+    fn of(&mut self, one: &Traveller) -> &mut Stream {
+        if one.walls == 0 { self.own } else { self.aside }
+    }
 }
 
 /// A ray on its way.
@@ -55,6 +72,8 @@ struct Traveller {
     mirrored: bool,
     /// Mirrors so far.
     order: usize,
+    /// Walls that it went through.
+    walls: usize,
 }
 
 impl Walk<'_> {
@@ -70,6 +89,8 @@ impl Walk<'_> {
             length_m: 0.0,
         };
         let mut stream = key.stream();
+        // What goes through walls has its own chance, so that what stays is the same with and without it.
+        let mut aside = key.child("walls").stream();
         for k in range {
             let direction = self.turn * sequence_direction(k, self.place);
             let energy = self.pattern.gain(direction.dot(self.axis)).map(|g| g * g);
@@ -84,28 +105,47 @@ impl Walk<'_> {
                     scattered: false,
                     mirrored: false,
                     order: 0,
+                    walls: 0,
                 };
-                self.follow(traveller, &mut stream, &mut chunk);
+                let mut beyond = Vec::new();
+                let random = &mut Random {
+                    own: &mut stream,
+                    aside: &mut aside,
+                };
+                self.follow(traveller, random, &mut chunk, &mut beyond);
+                while let Some(traveller) = beyond.pop() {
+                    self.follow(traveller, random, &mut chunk, &mut beyond);
+                }
             }
         }
         chunk
     }
 
-    /// Follows one ray to its end.
-    fn follow(&self, mut one: Traveller, stream: &mut Stream, chunk: &mut Chunk) {
+    /// Follows one ray to its end; what goes on behind walls is added to `beyond`.
+    fn follow(
+        &self,
+        mut one: Traveller,
+        random: &mut Random<'_>,
+        chunk: &mut Chunk,
+        beyond: &mut Vec<Traveller>,
+    ) {
         let images = self.scene.config().image_order;
         for _ in 0..MOST_REFLECTIONS {
             let hit = self.rays.closest(&one.ray, RayMask::EAR);
-            if one.mirrored && (one.scattered || one.order > images) {
+            // Images go through no walls.
+            if one.mirrored && (one.scattered || one.order > images || one.walls > 0) {
                 let reach_m = hit.map_or(f32::INFINITY, |hit| hit.distance_m);
-                self.cross(&one, reach_m, stream, chunk);
+                self.cross(&one, reach_m, random.of(&one), chunk);
             }
             let Some(hit) = hit else {
-                chunk.escaped += 1;
+                // Behind an outer wall all is open.
+                chunk.escaped += u64::from(one.walls == 0);
                 return;
             };
-            chunk.segments += 1;
-            chunk.length_m += f64::from(hit.distance_m);
+            if one.walls == 0 {
+                chunk.segments += 1;
+                chunk.length_m += f64::from(hit.distance_m);
+            }
             one.travelled_m += hit.distance_m;
             one.straight_m += hit.distance_m;
             if one.travelled_m >= self.furthest_m {
@@ -113,6 +153,9 @@ impl Walk<'_> {
             }
             let surface = self.rays.surface(&hit);
             let material = self.scene.surface(surface.material);
+            if self.through > 0.0 && material.passed.iter().any(|passed| *passed > 0.0) {
+                self.pass(&one, &hit, random.aside, beyond);
+            }
             multiply(&mut one.energy, &material.kept);
             let point = one.ray.at(hit.distance_m);
             let cosine = surface.normal.dot(one.ray.direction);
@@ -126,8 +169,9 @@ impl Walk<'_> {
                     .scattering(material, &hit, cosine.abs(), f64::from(one.straight_m));
             let start = point + normal * margin_m(point);
             if scattering.iter().any(|s| *s > 0.0) {
-                self.shine(start, normal, &one, &scattering, chunk);
+                self.shine(start, normal, &one, &scattering, random.aside, chunk);
             }
+            let stream = random.of(&one);
             let mean = one.energy.iter().sum::<f32>() / (BAND_COUNT as f32 * one.power);
             if mean < self.roulette {
                 let survival = mean / self.roulette;
@@ -147,9 +191,14 @@ impl Walk<'_> {
         normal: Vec3,
         one: &Traveller,
         scattering: &Banded,
+        aside: &mut Stream,
         chunk: &mut Chunk,
     ) {
+        let looks_through = self.through > 0.0 && aside.uniform_f32() < LOOK_THROUGH;
         for (receiver, listener) in self.listeners.iter().enumerate() {
+            if one.walls > 0 && !listener.hidden {
+                continue;
+            }
             let way = listener.position - start;
             let distance_m = way.length();
             let cosine = normal.dot(way) / distance_m;
@@ -165,15 +214,45 @@ impl Walk<'_> {
                 near_m: 0.0,
                 far_m: distance_m,
             };
+            let mut share = one.energy;
             if self.rays.occluded(&shadow, RayMask::EAR) {
-                continue;
+                if !(looks_through && listener.hidden) {
+                    continue;
+                }
+                let (scene, rays) = (self.scene, self.rays);
+                let passed = transmission::through(scene, rays, start, listener.position);
+                let Some((passed, _)) = passed else {
+                    continue;
+                };
+                multiply(&mut share, &passed.map(|p| p / LOOK_THROUGH));
             }
             let nearest = distance_m.max(NEAREST_M);
-            let mut share = one.energy;
             multiply(&mut share, scattering);
             let factor = 4.0 * cosine / (nearest * nearest);
             self.deposit(chunk, receiver, way_m, &share, factor, -direction);
         }
+    }
+
+    /// Now and then, lets what a wall lets through go on behind it.
+    fn pass(&self, one: &Traveller, hit: &Hit, aside: &mut Stream, beyond: &mut Vec<Traveller>) {
+        if one.walls == transmission::MOST_WALLS || aside.uniform_f32() >= self.through {
+            return;
+        }
+        let Some(exit) = transmission::beyond(self.scene, self.rays, &one.ray, hit) else {
+            return;
+        };
+        let mut energy = one.energy;
+        multiply(&mut energy, &exit.passed.map(|p| p / self.through));
+        let inside_m = exit.start.distance(one.ray.at(hit.distance_m));
+        beyond.push(Traveller {
+            ray: Ray::new(exit.start, one.ray.direction),
+            power: energy.iter().sum::<f32>() / BAND_COUNT as f32,
+            energy,
+            travelled_m: one.travelled_m + inside_m,
+            straight_m: one.straight_m + inside_m,
+            walls: one.walls + 1,
+            ..*one
+        });
     }
 
     /// Counts a ray where it crosses the balls around receivers.
@@ -181,6 +260,9 @@ impl Walk<'_> {
         // Drawn once, so that a receiver's energies do not depend on which others there are.
         let place = stream.uniform_f32();
         for (receiver, listener) in self.listeners.iter().enumerate() {
+            if one.walls > 0 && !listener.hidden {
+                continue;
+            }
             let Some(crossing) = listener.crossing(
                 &one.ray,
                 reach_m - margin_m(one.ray.origin),

@@ -1,0 +1,131 @@
+//! Sound through walls and doors.
+
+use crate::bands::{BAND_COUNT, Banded};
+use crate::scene::AcousticScene;
+use crate::tail::margin_m;
+use dwell_scene::SurfaceOwner;
+use dwell_scene::bvh::{Hit, Ray, RayMask};
+use dwell_scene::rays::RayScene;
+use glam::Vec3;
+
+/// Walls that sound passes through at most.
+pub(crate) const MOST_WALLS: usize = 3;
+/// Surfaces that are looked at between source and receiver.
+const MOST_SURFACES: usize = 64;
+/// Parallel faces of the structure that are no further apart than this are the two sides of one wall, m.
+const THICKEST_WALL_M: f32 = 0.5;
+
+/// One obstacle on the way.
+struct Wall {
+    owner: SurfaceOwner,
+    normal: Vec3,
+    /// Where the first of its faces is, m from the source.
+    first_m: f32,
+    /// The least energy that one of its materials lets pass.
+    passed: Banded,
+}
+
+/// The energy that gets from `source` to `receiver` through what stands between, and how many walls that is.
+pub(crate) fn through(
+    scene: &AcousticScene,
+    rays: &RayScene,
+    source: Vec3,
+    receiver: Vec3,
+) -> Option<(Banded, usize)> {
+    let whole = Ray::segment(source, receiver, 0.0);
+    let mut near_m = 0.0;
+    let mut walls: Vec<Wall> = Vec::new();
+    for _ in 0..MOST_SURFACES {
+        let Some(hit) = rays.closest(&whole.between(near_m, whole.far_m), RayMask::EAR) else {
+            let fractions = walls.iter().fold([1.0; BAND_COUNT], |product, wall| {
+                std::array::from_fn(|band| product[band] * wall.passed[band])
+            });
+            return Some((fractions, walls.len()));
+        };
+        near_m = hit.distance_m + margin_m(whole.at(hit.distance_m));
+        let here = Wall::new(scene, rays, &hit);
+        // Both faces of a solid, or both shells of a wall, are crossed by one sound: it counts once, by its better insulator.
+        if let Some(wall) = walls.iter_mut().find(|wall| wall.is_same(&here)) {
+            wall.join(&here);
+        } else if walls.len() == MOST_WALLS {
+            return None;
+        } else {
+            walls.push(here);
+        }
+        let blocks = |wall: &Wall| wall.passed.iter().all(|passed| *passed <= 0.0);
+        if walls.iter().any(blocks) {
+            return None;
+        }
+    }
+    None
+}
+
+/// The far side of a wall that a ray meets.
+pub(crate) struct Beyond {
+    /// Where the ray goes on.
+    pub(crate) start: Vec3,
+    /// Energy that gets there. Shape (band,).
+    pub(crate) passed: Banded,
+}
+
+/// Where `ray`, which meets a wall at `hit`, comes out of it; `None` where nothing gets through.
+pub(crate) fn beyond(
+    scene: &AcousticScene,
+    rays: &RayScene,
+    ray: &Ray,
+    hit: &Hit,
+) -> Option<Beyond> {
+    let mut wall = Wall::new(scene, rays, hit);
+    let mut last_m = hit.distance_m;
+    for _ in 0..MOST_SURFACES {
+        if wall.passed.iter().all(|passed| *passed <= 0.0) {
+            return None;
+        }
+        let near_m = last_m + margin_m(ray.at(last_m));
+        let rest = ray.between(near_m, hit.distance_m + THICKEST_WALL_M);
+        let next = rays.closest(&rest, RayMask::EAR);
+        match next.map(|next| (Wall::new(scene, rays, &next), next.distance_m)) {
+            Some((here, distance_m)) if wall.is_same(&here) => {
+                wall.join(&here);
+                last_m = distance_m;
+            }
+            _ => {
+                return Some(Beyond {
+                    start: ray.at(near_m),
+                    passed: wall.passed,
+                });
+            }
+        }
+    }
+    None
+}
+
+impl Wall {
+    fn new(scene: &AcousticScene, rays: &RayScene, hit: &Hit) -> Self {
+        let surface = rays.surface(hit);
+        Self {
+            owner: surface.owner,
+            normal: surface.normal,
+            first_m: hit.distance_m,
+            passed: scene.surface(surface.material).passed,
+        }
+    }
+
+    /// Another face of it: it insulates as well as its better one.
+    fn join(&mut self, face: &Self) {
+        for (a, b) in self.passed.iter_mut().zip(face.passed) {
+            *a = a.min(b);
+        }
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        let near = other.first_m - self.first_m <= THICKEST_WALL_M;
+        match (self.owner, other.owner) {
+            (SurfaceOwner::Part(a), SurfaceOwner::Part(b)) => a == b,
+            (SurfaceOwner::Structure(_), SurfaceOwner::Structure(_)) => {
+                near && self.normal.dot(other.normal).abs() > 0.94
+            }
+            _ => false,
+        }
+    }
+}
