@@ -8,12 +8,16 @@ use crate::echogram::Echogram;
 use crate::head::SphericalHead;
 use dwell_scene::random::{Key, Stream};
 use glam::Vec3;
+use std::sync::LazyLock;
 
 /// Arrivals a second. Denser ones cannot be told apart, and what is scattered is spread out from the start: the sparse early
 /// reflections are paths.
 const ARRIVALS_PER_S: f64 = 1e4;
 /// Taps on either side of an arrival that falls between samples.
 const HALF: i32 = 4;
+const TAPS: usize = 2 * HALF as usize;
+/// Places between two samples.
+const PHASES: usize = 64;
 
 /// What the noise is made from.
 pub(super) struct Noise<'a> {
@@ -172,40 +176,59 @@ impl Noise<'_> {
     }
 }
 
-/// A pulse of energy 1 between two samples.
+/// Weights of a pulse of energy 1 at each 64th between two samples. Shape (phase, tap).
+static WEIGHTS: LazyLock<[[f32; TAPS]; PHASES]> =
+    LazyLock::new(|| std::array::from_fn(|k| weights(k as f32 / PHASES as f32)));
+
+fn weights(fraction: f32) -> [f32; TAPS] {
+    let mut weights = [0.0; TAPS];
+    let mut energy = 0.0;
+    let sine = libm::sinf(std::f32::consts::PI * fraction);
+    for (weight, n) in weights.iter_mut().zip(1 - HALF..=HALF) {
+        let x = n as f32 - fraction;
+        let sinc = if x.abs() < 1e-4 {
+            1.0
+        } else {
+            let sign = if n % 2 == 0 { -1.0 } else { 1.0 };
+            sign * sine / (std::f32::consts::PI * x)
+        };
+        // A parabola in place of a bell: it is as good for noise, and needs no cosine.
+        let edge = x / (HALF as f32 + 0.5);
+        *weight = sinc * (1.0 - edge * edge);
+        energy += *weight * *weight;
+    }
+    let scale = 1.0 / energy.sqrt();
+    weights.map(|weight| weight * scale)
+}
+
+/// A pulse of energy 1 between two samples, within a 128th of its place.
 struct Between {
-    weights: [f32; 2 * HALF as usize],
+    weights: &'static [f32; TAPS],
     first: i64,
 }
 
 impl Between {
     fn new(place: f64) -> Self {
-        let whole = place.floor();
-        let fraction = (place - whole) as f32;
-        let mut weights = [0.0; 2 * HALF as usize];
-        let mut energy = 0.0;
-        let sine = libm::sinf(std::f32::consts::PI * fraction);
-        for (weight, n) in weights.iter_mut().zip(1 - HALF..=HALF) {
-            let x = n as f32 - fraction;
-            let sinc = if x.abs() < 1e-4 {
-                1.0
-            } else {
-                let sign = if n % 2 == 0 { -1.0 } else { 1.0 };
-                sign * sine / (std::f32::consts::PI * x)
-            };
-            // A parabola in place of a bell: it is as good for noise, and needs no cosine.
-            let edge = x / (HALF as f32 + 0.5);
-            *weight = sinc * (1.0 - edge * edge);
-            energy += *weight * *weight;
-        }
-        let scale = 1.0 / energy.sqrt();
+        let place = (place * PHASES as f64).round() as i64;
+        let (whole, phase) = (
+            place.div_euclid(PHASES as i64),
+            place.rem_euclid(PHASES as i64),
+        );
         Self {
-            weights: weights.map(|weight| weight * scale),
-            first: whole as i64 + 1 - i64::from(HALF),
+            weights: &WEIGHTS[phase as usize],
+            first: whole + 1 - i64::from(HALF),
         }
     }
 
     fn add(&self, samples: &mut [f32], amplitude: f32) {
+        let first = usize::try_from(self.first).ok();
+        let inside = first.and_then(|first| samples.get_mut(first..first + TAPS));
+        if let Some(inside) = inside {
+            for (x, weight) in inside.iter_mut().zip(self.weights) {
+                *x += weight * amplitude;
+            }
+            return;
+        }
         for (k, weight) in self.weights.iter().enumerate() {
             let place = usize::try_from(self.first + k as i64).ok();
             if let Some(x) = place.and_then(|place| samples.get_mut(place)) {
