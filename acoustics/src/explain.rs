@@ -4,6 +4,7 @@ use crate::bands::{BAND_COUNT, Banded};
 use crate::scene::AcousticScene;
 use dwell_scene::material::library;
 use dwell_scene::{Id, MaterialId};
+use glam::Vec3;
 use serde::Serialize;
 
 /// One material of a house, as sound meets it.
@@ -40,6 +41,8 @@ pub struct Explanation {
     pub mean_absorption: [f64; BAND_COUNT],
     /// Mean scattering over the area. Shape (band,).
     pub mean_scattering: [f64; BAND_COUNT],
+    /// The box around all triangles: its lowest and its highest corner, m; zeros without any.
+    pub bounds_m: [[f32; 3]; 2],
     /// Planes into which the triangles fall.
     pub planes: usize,
     /// Triangles.
@@ -50,11 +53,16 @@ impl Explanation {
     pub(crate) fn new(scene: &AcousticScene) -> Self {
         let house = scene.house();
         let mut area_of = vec![0.0_f64; house.materials.len()];
+        let mut bounds: Option<(Vec3, Vec3)> = None;
         for placed in &house.geometry().placed {
             let mesh = &house.meshes[placed.mesh];
             for triangle in 0..mesh.triangles.len() {
                 let corners = mesh.corners(triangle);
                 let [a, b, c] = corners.map(|p| placed.world_from_mesh.transform_point3(p));
+                for corner in [a, b, c] {
+                    let (low, high) = bounds.unwrap_or((corner, corner));
+                    bounds = Some((low.min(corner), high.max(corner)));
+                }
                 let material = house.slot_material(placed.owner, mesh.slot(triangle));
                 area_of[material.index()] += 0.5 * f64::from((b - a).cross(c - a).length());
             }
@@ -105,6 +113,9 @@ impl Explanation {
                 .map(|row| row.area_m2)
                 .sum(),
             area_m2,
+            bounds_m: bounds.map_or_else(Default::default, |(low, high)| {
+                [low.to_array(), high.to_array()]
+            }),
             planes: scene.planes().len(),
             triangles: house.triangle_count(),
             materials: rows,
@@ -129,6 +140,7 @@ mod tests {
         let house = Arc::new(House::shoebox([6.0, 3.0, 5.0], &materials).unwrap());
         let mut scene = AcousticScene::new(house.clone(), AcousticConfig::rl()).unwrap();
         let told = scene.explain();
+        assert_eq!(told.bounds_m, [[0.0; 3], [6.0, 3.0, 5.0]]);
         assert!((told.area_m2 - 126.0).abs() < 1e-3 && (told.default_area_m2 - 96.0).abs() < 1e-3);
         let wanted =
             (30.0 * carpet.absorption.at(1000.0) + 96.0 * unknown.absorption.at(1000.0)) / 126.0;

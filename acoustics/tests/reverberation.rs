@@ -299,7 +299,11 @@ fn the_impulse_response_decays_as_its_echogram() {
             .unwrap();
         let energies = metrics::of_echogram(&response.echogram);
         for channel in 0..receiver.channels() {
-            let pressure = metrics::of_impulse_response(response.channel(channel), 16_000.0);
+            let pressure = metrics::of_impulse_response(
+                response.channel(channel),
+                16_000.0,
+                metrics::BandWidth::Octave,
+            );
             // Above 250 Hz a band holds enough independent values for 15 %.
             for band in 3..7 {
                 let (a, b) = (energies[band].t30_s.unwrap(), pressure[band].t30_s.unwrap());

@@ -1,11 +1,19 @@
-//! Reverberation, clarity and kin, per band: from energies (no noise), or from an impulse response.
+//! Reverberation, clarity and kin, per band: from energies (no noise), or from an impulse response; what two ears make of it.
 
 mod decay;
+mod ears;
+mod filters;
+mod lateral;
+mod response;
 
 pub use decay::{BandMetrics, EnergyCurve};
+pub use ears::{EarBand, EarMetrics, of_ears};
+pub use filters::BandWidth;
+pub use lateral::{lateral_axis, lateral_fraction};
+pub use response::of_impulse_response;
 
-use crate::bands::{BAND_COUNT, FilterBank};
-use crate::echogram::Echogram;
+use crate::bands::BAND_COUNT;
+use crate::echogram::{Echogram, Path};
 
 /// The parameters of every band. Shape (band,).
 pub type Metrics = [BandMetrics; BAND_COUNT];
@@ -28,8 +36,7 @@ pub fn of_echogram(echogram: &Echogram) -> Metrics {
                 .map(timed)
                 .filter(|(_, e)| *e > 0.0)
         };
-        let first = paths().map(|(time, _)| time).reduce(f64::min);
-        let Some(first) = first.or_else(|| bins().next().map(|(start, _)| start)) else {
+        let Some(first) = first_arrival(echogram, band) else {
             return BandMetrics::default();
         };
         let mut curve = EnergyCurve::new();
@@ -48,82 +55,29 @@ pub fn of_echogram(echogram: &Echogram) -> Metrics {
     })
 }
 
-/// The parameters of an impulse response, in octave bands.
-///
-/// `samples`: shape (sample,). Times count from where the response first rises to -20 dB of its peak; the direct sound is what
-/// arrives within 2.5 ms of that. White noise in the recording is not compensated for.
-///
-/// # Source
-/// ISO 3382-1:2009, clause 5.3.3 (backward integration) and annex A.3.4 (start).
-pub fn of_impulse_response(samples: &[f32], rate_hz: f64) -> Metrics {
-    const DIRECT_S: f64 = 0.0025;
-    let peak = samples.iter().fold(0.0_f32, |peak, x| peak.max(x.abs()));
-    let Some(start) = samples
-        .iter()
-        .position(|x| x.abs() >= 0.1 * peak && peak > 0.0)
-    else {
-        return Metrics::default();
-    };
-    let bands = FilterBank::new(rate_hz, samples.len(), 0.5).split(samples);
-    // A filter spreads a pulse to both sides; the time before the start belongs to it.
-    let arrival_s = start as f64 / rate_hz;
-    // An impulse has equal energy at all frequencies; a band's filter passes its share of them.
-    std::array::from_fn(|band| {
-        let share = pass_band(band, rate_hz);
-        let mut curve = EnergyCurve::new();
-        let mut direct = 0.0;
-        for (k, x) in bands[band].iter().enumerate() {
-            let time = k as f64 / rate_hz;
-            let energy = f64::from(*x) * f64::from(*x) / share.max(1e-12);
-            curve.add(time.max(arrival_s), time.max(arrival_s), energy);
-            if time <= arrival_s + DIRECT_S {
-                direct += energy;
-            }
-        }
-        curve.metrics(arrival_s, direct)
+/// When the first sound of a band arrives, s; nothing in silence.
+fn first_arrival(echogram: &Echogram, band: usize) -> Option<f64> {
+    let heard = |path: &&Path| path.energy[band] > 0.0;
+    let paths = echogram.paths.iter().filter(heard);
+    let first = paths.map(|path| echogram.delay_s(path)).reduce(f64::min);
+    first.or_else(|| {
+        let mut bins = echogram.tail.bins.iter();
+        let bin = bins.position(|bin| bin[band] > 0.0)?;
+        Some(bin as f64 * echogram.tail.bin_s)
     })
 }
 
-/// The energy that a band's filter passes of an impulse of energy 1.
-fn pass_band(band: usize, rate_hz: f64) -> f64 {
-    const POINTS: usize = 4000;
-    let share = |k: usize| {
-        let frequency_hz = 0.5 * rate_hz * (k as f64 + 0.5) / POINTS as f64;
-        crate::bands::power_shares(frequency_hz, 0.5)[band]
-    };
-    (0..POINTS).map(share).sum::<f64>() / POINTS as f64
+/// A ratio of energies, dB; nothing where one of them is nothing.
+fn decibels(a: f64, b: f64) -> Option<f64> {
+    (a > 0.0 && b > 0.0).then(|| 10.0 * libm::log10(a / b))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
-
-    #[test]
-    fn exponential_noise_gives_its_decay_in_every_band() {
-        let (rate_hz, t60) = (16_000.0, 0.6);
-        let mut stream = Key::root(3).stream();
-        let samples: Vec<f32> = (0..16_000)
-            .map(|k| {
-                let level =
-                    libm::exp(-3.0 * std::f64::consts::LN_10 * f64::from(k) / rate_hz / t60);
-                (stream.normal() * level) as f32
-            })
-            .collect();
-        let found = of_impulse_response(&samples, rate_hz);
-        // A band B Hz wide holds B T independent values: low bands scatter, the upper ones must be close.
-        for (band, metrics) in found.iter().enumerate().skip(3) {
-            let t30 = metrics.t30_s.unwrap();
-            assert!((t30 / t60 - 1.0).abs() < 0.1, "{band}: {t30}");
-        }
-    }
 
     #[test]
     fn silence_has_no_numbers() {
-        assert_eq!(
-            of_impulse_response(&[0.0; 100], 16_000.0),
-            Metrics::default()
-        );
         assert_eq!(of_echogram(&Echogram::default()), Metrics::default());
     }
 }

@@ -1,0 +1,143 @@
+//! The parameters of an impulse response, however it was made.
+
+use super::decay::{BandMetrics, EnergyCurve};
+use super::filters::{BandWidth, Filters};
+
+/// The direct sound is what arrives within this after the start, s.
+pub(super) const DIRECT_S: f64 = 0.0025;
+
+/// The parameters of an impulse response, by octave or third octave. Shape (band,).
+///
+/// `samples`: shape (sample,), re a pulse of 1 at 1 m. Times count from where the response first rises to -20 dB of its peak; the
+/// direct sound is what arrives within 2.5 ms of that. A band above half the rate, and silence, give nothing. White noise in the
+/// recording is not compensated for. A band B Hz wide rings itself: decays shorter than 16 / B are the filter's.
+///
+/// # Source
+/// ISO 3382-1:2009, clause 5.3.3 (backward integration) and annex A.3.4 (start); IEC 61260-1:2014 (bands); F. Jacobsen, J. Sound
+/// Vib. 115, 163 (1987) (ringing).
+pub fn of_impulse_response(samples: &[f32], rate_hz: f64, width: BandWidth) -> Vec<BandMetrics> {
+    let mut metrics = vec![BandMetrics::default(); width.count()];
+    let Some(start) = start(&[samples]) else {
+        return metrics;
+    };
+    let direct = (start + (DIRECT_S * rate_hz) as usize + 1).min(samples.len());
+    let mut rest = samples.to_vec();
+    rest[..direct].fill(0.0);
+    let mut filters = Filters::new(width, rate_hz, samples.len());
+    // Cut before it is filtered: a narrow filter spreads the direct sound over far more than its 2.5 ms.
+    let [all, direct, rest] =
+        [samples, &samples[..direct], &rest[..]].map(|part| filters.spectrum(part));
+    let arrival_s = start as f64 / rate_hz;
+    for (band, found) in metrics.iter_mut().enumerate() {
+        let Some(filtered) = filters.band(band, &all) else {
+            continue;
+        };
+        let mut curve = EnergyCurve::new();
+        let end = filtered.len() - filters.before();
+        for (k, x) in filtered.iter().enumerate() {
+            // A filter spreads a pulse to both sides; the time before the start belongs to it.
+            let sample = if k < end { k.max(start) } else { start };
+            let time_s = sample as f64 / rate_hz;
+            curve.add(time_s, time_s, f64::from(*x) * f64::from(*x));
+        }
+        let mut energy = |part| filters.band(band, part).map_or(0.0, |part| energy(&part));
+        let (direct, rest) = (energy(&direct), energy(&rest));
+        *found = BandMetrics {
+            drr_db: super::decibels(direct, rest),
+            ..curve.metrics(arrival_s, 0.0)
+        };
+    }
+    metrics
+}
+
+/// The sample at which the first of several channels rises to -20 dB of the peak of all; nothing in silence.
+pub(super) fn start(channels: &[&[f32]]) -> Option<usize> {
+    let all = channels.iter().flat_map(|channel| channel.iter());
+    let peak = all.fold(0.0_f32, |peak, x| peak.max(x.abs()));
+    let loud = |x: &f32| peak > 0.0 && x.abs() >= 0.1 * peak;
+    let starts = channels
+        .iter()
+        .filter_map(|channel| channel.iter().position(loud));
+    starts.min()
+}
+
+pub(super) fn energy(samples: &[f32]) -> f64 {
+    samples.iter().map(|x| f64::from(*x).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::random::Key;
+
+    /// Noise that falls by 60 dB in `t60` s.
+    fn decaying(rate_hz: f64, t60: f64, samples: usize) -> Vec<f32> {
+        let mut stream = Key::root(3).stream();
+        let per_sample = -3.0 * std::f64::consts::LN_10 / rate_hz / t60;
+        (0..samples)
+            .map(|k| (stream.normal() * libm::exp(per_sample * k as f64)) as f32)
+            .collect()
+    }
+
+    #[test]
+    fn exponential_noise_gives_its_decay_in_every_band() {
+        let (rate_hz, t60) = (16_000.0, 0.6);
+        let samples = decaying(rate_hz, t60, 16_000);
+        // A band B Hz wide holds B T independent values: low bands scatter, the upper ones must be close.
+        for (width, from) in [(BandWidth::Octave, 3), (BandWidth::ThirdOctave, 14)] {
+            let found = of_impulse_response(&samples, rate_hz, width);
+            for (band, metrics) in found.iter().enumerate().skip(from) {
+                let Some(t30) = metrics.t30_s else {
+                    assert!(width.edges_hz(band).0 >= 8000.0);
+                    continue;
+                };
+                assert!((t30 / t60 - 1.0).abs() < 0.1, "{width:?} {band}: {t30}");
+            }
+        }
+    }
+
+    /// Two pulses 100 ms apart, of 2 and 1: every band has their ratio and the first one's strength, down to bands that ring for
+    /// longer than the direct sound lasts.
+    #[test]
+    fn a_pulse_and_its_echo_have_their_ratio_in_every_band() {
+        let rate_hz = 48_000.0;
+        let mut samples = vec![0.0; 24_000];
+        samples[480] = 2.0;
+        samples[480 + 4800] = 1.0;
+        for width in [BandWidth::Octave, BandWidth::ThirdOctave] {
+            for (band, found) in of_impulse_response(&samples, rate_hz, width)
+                .iter()
+                .enumerate()
+            {
+                let drr_db = found.drr_db.unwrap();
+                assert!(
+                    (drr_db - 10.0 * libm::log10(4.0)).abs() < 0.01,
+                    "{band}: {drr_db}"
+                );
+                let (low_hz, high_hz) = width.edges_hz(band);
+                // Echoes meet in narrow bands.
+                if high_hz - low_hz > 300.0 {
+                    let g_db = found.g_db.unwrap();
+                    assert!(
+                        (g_db - 10.0 * libm::log10(500.0)).abs() < 0.1,
+                        "{band}: {g_db}"
+                    );
+                    let c80 = found.c80_db.unwrap();
+                    assert!((c80 - 10.0 * libm::log10(4.0)).abs() < 0.1, "{band}: {c80}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn silence_and_bands_above_half_the_rate_have_no_numbers() {
+        for samples in [&[0.0_f32; 100][..], &[]] {
+            let found = of_impulse_response(samples, 16_000.0, BandWidth::ThirdOctave);
+            assert_eq!(found, vec![BandMetrics::default(); 24]);
+        }
+        let mut pulse = [0.0; 100];
+        pulse[20] = 1.0;
+        let found = of_impulse_response(&pulse, 8_000.0, BandWidth::Octave);
+        assert!(found[6].g_db.is_some() && found[7] == BandMetrics::default());
+    }
+}
