@@ -238,15 +238,26 @@ class AcousticScene:
     def metrics_json(
         self,
         source_json: str,
-        mics: Sequence[tuple[float, float, float]],
+        receivers_json: str,
         *,
         seed: int = ...,
         threads: int | None = ...,
     ) -> str:
-        """For each microphone: band centres and T20, T30, EDT, C50, C80, D50, Ts, DRR by band."""
+        """For each receiver and band: centre_hz and EDT, T20, T30, C50, C80, D50, Ts, G, DRR, LF."""
+    def echogram_json(
+        self,
+        source_json: str,
+        receiver_json: str,
+        *,
+        seed: int = ...,
+        threads: int | None = ...,
+    ) -> str:
+        """``{paths, tail: {bin_s, bins, bins_per_direction, directions}, direct_length_m, speed_m_s, trace}``."""
     def early_paths_json(self, source_json: str, mic: tuple[float, float, float]) -> str:
         """``[{points, path: {planes, length_m, energy, arrival, departure, walls}}, ...]``, by length."""
     def explain_json(self) -> str: ...
+    def config_json(self) -> str:
+        """The fields of ``AcousticConfig``, with the air as laws make it."""
     @property
     def rate_hz(self) -> int: ...
 
@@ -259,6 +270,14 @@ def charset() -> str: ...
 def max_text_length() -> int: ...
 def doctor_json() -> str: ...
 def expand(house: str) -> list[str]: ...
+def response_metrics_json(samples: NDArray[np.float32], rate_hz: float, width_json: str) -> str:
+    """For each band: centre_hz and EDT, T20, T30, C50, C80, D50, Ts, G, DRR. ``width_json``: octave or third_octave."""
+
+def ear_metrics_json(
+    left: NDArray[np.float32], right: NDArray[np.float32], rate_hz: float, width_json: str
+) -> str:
+    """``{itd_s, ild_db, bands: [{centre_hz, iacc_early, iacc_late, iacc, itd_s, ild_db}, ...]}``."""
+
 def synthesize(signal: str, rate_hz: int, samples: int) -> NDArray[np.float32]: ...
 def signals_json() -> str:
     """``[{name, description, loop_s, usual_level_db, level_source}, ...]``."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from dwell import _native
 from dwell.arguments import point, to_json, whole
+from dwell.echogram import Echogram
 from dwell.house import House
 from dwell.listening import Receiver, Source, source_of
 from dwell.settings import Laws, found
@@ -53,6 +54,12 @@ class AcousticScene:
     def rate_hz(self) -> int:
         """Samples a second of impulse responses."""
         return self._native.rate_hz
+
+    @property
+    def config(self) -> dict[str, Any]:
+        """All settings, with the air as laws make it."""
+        config: dict[str, Any] = json.loads(self._native.config_json())
+        return config
 
     def impulse_response(
         self,
@@ -104,24 +111,60 @@ class AcousticScene:
     def metrics(
         self,
         source: Source | Sequence[float],
-        mic: Sequence[float],
+        mic: Receiver | Sequence[float],
         *,
         seed: int = 0,
         threads: int | None = None,
     ) -> list[dict[str, Any]]:
-        """``centre_hz`` and T20, T30, EDT, C50, C80, D50, Ts and DRR of each octave band.
+        """The measures of each octave band (ISO 3382-1:2009), without the chance of one noise.
 
-        They are those of the room, without laws of microphones, and come from exact early paths and the
-        traced tail, without the chance of one noise.
+        They are those of the room, without laws of microphones, and come from exact early paths and
+        the traced tail. :mod:`dwell.measures` has those of an impulse response.
+
+        Returns:
+            For each band ``centre_hz``, ``edt_s``, ``t20_s``, ``t30_s`` (s for 60 dB), ``c50_db``,
+            ``c80_db``, ``d50`` (0 to 1), ``ts_s``, ``g_db`` (re the free field at 10 m), ``drr_db``
+            and ``lf`` (0 to 1; a microphone faces the source, other receivers stay as they are);
+            ``None`` where the decay is too short for one, or nothing is heard.
         """
+        return self.metrics_at(source, [mic], seed=seed, threads=threads)[0]
+
+    def metrics_at(
+        self,
+        source: Source | Sequence[float],
+        mics: Sequence[Receiver | Sequence[float]],
+        *,
+        seed: int = 0,
+        threads: int | None = None,
+    ) -> list[list[dict[str, Any]]]:
+        """As :meth:`metrics` at many places, which share the source's rays."""
+        receivers = [mic if isinstance(mic, Receiver) else Receiver.omni(mic) for mic in mics]
         rows = self._native.metrics_json(
             to_json(source_of(source).to_json()),
-            [point("mic", mic)],
+            to_json([receiver.to_json() for receiver in receivers]),
             seed=whole("seed", seed),
             threads=_threads(threads),
         )
-        metrics: list[dict[str, Any]] = json.loads(rows)[0]
+        metrics: list[list[dict[str, Any]]] = json.loads(rows)
         return metrics
+
+    def echogram(
+        self,
+        source: Source | Sequence[float],
+        mic: Receiver | Sequence[float],
+        *,
+        seed: int = 0,
+        threads: int | None = None,
+    ) -> Echogram:
+        """Energies over time at the middle of a receiver, from which responses are made."""
+        receiver = mic if isinstance(mic, Receiver) else Receiver.omni(mic)
+        text = self._native.echogram_json(
+            to_json(source_of(source).to_json()),
+            to_json(receiver.to_json()),
+            seed=whole("seed", seed),
+            threads=_threads(threads),
+        )
+        return Echogram.from_json(json.loads(text))
 
     def early_paths(
         self, source: Source | Sequence[float], mic: Sequence[float]

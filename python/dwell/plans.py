@@ -21,6 +21,8 @@ _PAPER = (250, 249, 246)
 _INK = (38, 40, 46)
 _SOFT = (110, 113, 122)
 _DOOR = (176, 92, 44)
+#: How much squares hide of what is below them, of 255.
+_PAINT = 190
 #: Lengths that a scale may show, m.
 _SCALES_M = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 _MOST_PIXELS = 8192
@@ -34,6 +36,7 @@ def floor_plan(
     *,
     longest_edge: int = 1000,
     ways: Sequence[tuple[str, Sequence[Sequence[float]]]] = (),
+    squares: Sequence[tuple[float, float, float, tuple[int, int, int]]] = (),
 ) -> Image.Image:
     """A storey from above with its rooms' names and sizes, the swing of its doors, and a scale.
 
@@ -42,6 +45,8 @@ def floor_plan(
         level: The storey, from 0.
         longest_edge: Pixels of the plan's longer edge, 16 to 8192; the scale stands below it.
         ways: Lines to draw over it: for each a colour and positions (x, y, z) in m.
+        squares: Squares to paint on its floor: for each the middle (x, z) and the edge in m, and a
+            colour, which lets the plan shine through.
 
     Raises:
         DwellError: There is no such storey.
@@ -52,18 +57,25 @@ def floor_plan(
     foot = round(max(_FINER * edge * 0.05, 40.0))
     canvas = Image.new("RGB", (picture.shape[1], picture.shape[0] + foot), _PAPER)
     canvas.paste(Image.fromarray(picture))
-    draw = ImageDraw.Draw(canvas)
     line = max(round(_FINER * edge / 700), 1)
 
     def place(x: float, z: float) -> tuple[float, float]:
         return (x - left) * scale, (z - top) * scale
 
+    if squares:
+        paint = Image.new("RGBA", canvas.size)
+        brush = ImageDraw.Draw(paint)
+        for x, z, wide, color in squares:
+            corners = [place(x - 0.5 * wide, z - 0.5 * wide), place(x + 0.5 * wide, z + 0.5 * wide)]
+            brush.rectangle(corners, (*color, _PAINT))
+        canvas.paste(paint, mask=paint)
+    draw = ImageDraw.Draw(canvas)
     for door in plan["doors"]:
         hinge = place(*door["hinge"])
         draw.line([hinge, place(*door["open"])], fill=_DOOR, width=2 * line)
         draw.line([place(*point) for point in _swing(door)], fill=_DOOR, width=line)
-    for color, way in ways:
-        _way(draw, color, [place(x, z) for x, _, z in way], line)
+    for stroke, way in ways:
+        _way(draw, stroke, [place(x, z) for x, _, z in way], line)
     for room in plan["rooms"]:
         _name(draw, room, place(*room["place"]), _FINER * edge)
     _scale(draw, canvas.size, scale, foot, line)

@@ -4,13 +4,14 @@ use crate::doorway::Doorway;
 use crate::errors::{Fault, to_python};
 use crate::house::PyHouse;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
-use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source, metrics};
+use dwell_acoustics::metrics::BandWidth;
+use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, Receiver, Source, metrics};
 use dwell_scene::LawSpec;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 
@@ -85,26 +86,30 @@ impl PyAcousticScene {
         arrays.collect()
     }
 
-    #[pyo3(signature = (source_json, mics, *, seed=0, threads=None))]
+    #[pyo3(signature = (source_json, receivers_json, *, seed=0, threads=None))]
     fn metrics_json(
         &self,
         py: Python<'_>,
         source_json: &str,
-        mics: Vec<[f32; 3]>,
+        receivers_json: &str,
         seed: u64,
         threads: Option<usize>,
     ) -> PyResult<String> {
         py.engine(|| -> Result<_, Fault> {
             let source: Source = serde_json::from_str(source_json)?;
-            let mics: Vec<Vec3> = mics.into_iter().map(Vec3::from_array).collect();
-            let (key, threads) = (Key::root(seed), Threads::requested(threads)?);
-            let (scene, rays) = (&self.scene, &self.rays);
-            let echograms = scene.echograms(rays, &source, &mics, key, threads)?;
-            let mut all = Vec::with_capacity(echograms.len());
-            for echogram in &echograms {
+            let receivers: Vec<Receiver> = serde_json::from_str(receivers_json)?;
+            let mut all = Vec::with_capacity(receivers.len());
+            for (echogram, receiver) in self
+                .echograms(&source, &receivers, seed, threads)?
+                .iter()
+                .zip(&receivers)
+            {
+                let axis = metrics::lateral_axis(receiver, source.position());
+                let lateral = metrics::lateral_fraction(echogram, axis);
                 let mut rows = serde_json::to_value(metrics::of_echogram(echogram))?;
                 let bands = rows.as_array_mut().into_iter().flatten();
-                for (row, centre_hz) in bands.zip(NOMINAL_CENTRES_HZ) {
+                for ((row, centre_hz), lf) in bands.zip(NOMINAL_CENTRES_HZ).zip(lateral) {
+                    row["lf"] = lf.into();
                     row["centre_hz"] = centre_hz.into();
                 }
                 all.push(rows);
@@ -113,14 +118,97 @@ impl PyAcousticScene {
         })
     }
 
+    #[pyo3(signature = (source_json, receiver_json, *, seed=0, threads=None))]
+    fn echogram_json(
+        &self,
+        py: Python<'_>,
+        source_json: &str,
+        receiver_json: &str,
+        seed: u64,
+        threads: Option<usize>,
+    ) -> PyResult<String> {
+        py.engine(|| -> Result<_, Fault> {
+            let source: Source = serde_json::from_str(source_json)?;
+            let receiver: Receiver = serde_json::from_str(receiver_json)?;
+            let found = self.echograms(&source, &[receiver], seed, threads)?;
+            Ok(serde_json::to_string(&found[0])?)
+        })
+    }
+
     fn explain_json(&self, py: Python<'_>) -> PyResult<String> {
         py.engine(|| Ok::<_, Fault>(serde_json::to_string(&self.scene.explain())?))
+    }
+
+    fn config_json(&self, py: Python<'_>) -> PyResult<String> {
+        py.engine(|| Ok::<_, Fault>(serde_json::to_string(self.scene.config())?))
     }
 
     #[getter]
     fn rate_hz(&self) -> u32 {
         self.scene.config().rate_hz
     }
+}
+
+impl PyAcousticScene {
+    /// Shape (receiver,).
+    fn echograms(
+        &self,
+        source: &Source,
+        receivers: &[Receiver],
+        seed: u64,
+        threads: Option<usize>,
+    ) -> Result<Vec<Echogram>, Fault> {
+        let centres: Vec<Vec3> = receivers.iter().map(Receiver::position).collect();
+        let (key, threads) = (Key::root(seed), Threads::requested(threads)?);
+        let echograms = self
+            .scene
+            .echograms(&self.rays, source, &centres, key, threads)?;
+        Ok(echograms)
+    }
+}
+
+/// The measures of an impulse response: one JSON row for each octave, or third octave.
+#[pyfunction]
+pub(crate) fn response_metrics_json(
+    py: Python<'_>,
+    samples: PyReadonlyArray1<'_, f32>,
+    rate_hz: f64,
+    width_json: &str,
+) -> PyResult<String> {
+    let samples = samples.as_slice()?;
+    py.engine(|| -> Result<_, Fault> {
+        let width: BandWidth = serde_json::from_str(width_json)?;
+        let found = metrics::of_impulse_response(samples, rate_hz, width);
+        named_bands(serde_json::to_value(found)?, width)
+    })
+}
+
+/// What two ears make of their impulse responses: one JSON object.
+#[pyfunction]
+pub(crate) fn ear_metrics_json(
+    py: Python<'_>,
+    left: PyReadonlyArray1<'_, f32>,
+    right: PyReadonlyArray1<'_, f32>,
+    rate_hz: f64,
+    width_json: &str,
+) -> PyResult<String> {
+    let (left, right) = (left.as_slice()?, right.as_slice()?);
+    py.engine(|| -> Result<_, Fault> {
+        let width: BandWidth = serde_json::from_str(width_json)?;
+        let found = metrics::of_ears(left, right, rate_hz, width);
+        let mut found = serde_json::to_value(found)?;
+        let bands = named_bands(found["bands"].take(), width)?;
+        found["bands"] = serde_json::from_str(&bands)?;
+        Ok(found.to_string())
+    })
+}
+
+/// Rows with the nominal centre of each band, as JSON.
+fn named_bands(mut rows: serde_json::Value, width: BandWidth) -> Result<String, Fault> {
+    for (band, row) in rows.as_array_mut().into_iter().flatten().enumerate() {
+        row["centre_hz"] = width.nominal_centre_hz(band).into();
+    }
+    Ok(rows.to_string())
 }
 
 /// The built-in signal called `signal` from its start: shape (samples,), 1 Pa RMS.

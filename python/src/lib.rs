@@ -39,6 +39,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(facts::max_text_length, module)?)?;
     module.add_function(wrap_pyfunction!(facts::doctor_json, module)?)?;
     module.add_function(wrap_pyfunction!(facts::expand, module)?)?;
+    module.add_function(wrap_pyfunction!(acoustics::response_metrics_json, module)?)?;
+    module.add_function(wrap_pyfunction!(acoustics::ear_metrics_json, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::synthesize, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::signals_json, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::calibrate, module)?)?;

@@ -15,11 +15,9 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from dwell.cli.common import Bar, atomic, count, print_json, read_json
-from dwell.cli.journal import Journal
+from dwell.cli.common import Bar, count, print_json
+from dwell.cli.journal import Journal, claim
 
-#: What is the same for the whole folder; it stands there from the beginning.
-_DATASET = "dataset.json"
 _FORMS = ("dwell", "suncg", "glb")
 
 
@@ -64,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
         "split": args.split,
         "spec": [_field(field) for field in args.spec],
     }
-    _claim(args.out, dataset)
+    claim(args.out, dataset)
     shard, shards = args.shard
     seeds = list(itertools.islice(_seeds(args.seed, args.split), args.count))[shard::shards]
     name = "manifest" if shards == 1 else f"manifest-{shard:05}-of-{shards:05}"
@@ -170,22 +168,6 @@ def _seeds(first: int, split: str) -> Iterator[int]:
     from dwell.house import split_of_seed
 
     return (seed for seed in itertools.count(first) if split in ("all", split_of_seed(seed)))
-
-
-def _claim(out: Path, dataset: dict[str, Any]) -> None:
-    """Says what the folder holds; another job's folder is refused."""
-    path = out / _DATASET
-    if path.exists():
-        found = read_json(path)
-        other = [key for key in dataset if found.get(key) != dataset[key]]
-        if other:
-            said = ", ".join(f"{key} {found.get(key)!r}" for key in other)
-            raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
-        return
-    if out.exists() and any(out.iterdir()):
-        raise ValueError(f"{out} holds something else; expected an empty or a new folder")
-    with atomic(path) as draft:
-        draft.write_text(json.dumps(dataset, indent=2) + "\n", "utf-8")
 
 
 def _field(text: str) -> str:

@@ -1,4 +1,4 @@
-"""``dwell ir``: an impulse response between two points, or all those of a measured room."""
+"""``dwell ir``: an impulse response between two points, maps, charts, grids, measured rooms."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dwell.cli import measured_room
+from dwell.cli import ir_grid, ir_picture, measured_room
 from dwell.cli.common import atomic, count, number, point, print_json
 
 
@@ -33,14 +33,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="JSON: a list of laws {id, version, target, params}, or what dwell calibrate found",
     )
     parser.add_argument("--threads", type=count, help="default: one for each core")
-    parser.add_argument("--sources", metavar="ID,ID", help="of a measured room; default: all")
+    parser.add_argument(
+        "--sources", metavar="ID,ID|N", help="of a measured room (default: all); how many of a grid"
+    )
     parser.add_argument("--receivers", metavar="ID,ID", help="of a measured room; default: all")
     parser.add_argument(
         "--out",
         type=Path,
         metavar="FILE",
-        help="FILE.wav: 16 bit, peak at full scale; of a measured room FILE.npz: ir, fs",
+        help="FILE.wav: 16 bit, peak at full scale; of a measured room FILE.npz: ir, fs; "
+        "of pictures FILE.png or .jpg; of a grid a folder",
     )
+    ir_picture.configure(parser)
+    ir_grid.configure(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
@@ -51,6 +56,10 @@ def run(args: argparse.Namespace) -> int:
 
     if measured_room.is_measured_room(args.house):
         return measured_room.run(args)
+    if args.grid is not None and args.map is None:
+        return ir_grid.run(args)
+    if args.map or args.plot:
+        return ir_picture.run(args)
     if args.source is None or args.mic is None:
         raise ValueError("--source and --mic are needed: two points X,Y,Z in metres")
     scene = AcousticScene(

@@ -8,9 +8,31 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
-from dwell.cli.common import atomic
+from dwell.cli.common import atomic, read_json
 
 _JOB, _DONE = "job", "done"
+#: What is the same for a whole folder; it stands there from the beginning.
+_DATASET = "dataset.json"
+
+
+def claim(out: Path, dataset: dict[str, Any]) -> None:
+    """Says what a folder holds.
+
+    Raises:
+        ValueError: It holds something else, or was begun by another job.
+    """
+    path = out / _DATASET
+    if path.exists():
+        found = read_json(path)
+        other = [key for key in dataset if found.get(key) != dataset[key]]
+        if other:
+            said = ", ".join(f"{key} {found.get(key)!r}" for key in other)
+            raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
+        return
+    if out.exists() and any(out.iterdir()):
+        raise ValueError(f"{out} holds something else; expected an empty or a new folder")
+    with atomic(path) as draft:
+        draft.write_text(json.dumps(dataset, indent=2) + "\n", "utf-8")
 
 
 class Journal:

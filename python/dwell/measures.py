@@ -1,0 +1,95 @@
+"""Room-acoustic measures of impulse responses, simulated or recorded.
+
+:meth:`dwell.AcousticScene.metrics` gives those of a house without the chance of one response.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dwell import ConfigError, _native
+from dwell.arguments import choice, finite
+
+#: How wide bands are: eight octaves from 62.5 Hz, or 24 third octaves from 50 Hz (IEC 61260-1).
+Bands = Literal["octave", "third_octave"]
+
+
+def of_response(
+    response: NDArray[Any], rate_hz: float, *, bands: Bands = "octave"
+) -> list[dict[str, float | None]]:
+    """The measures of one channel, by band (ISO 3382-1:2009).
+
+    Times count from where the response first rises to -20 dB of its peak; the direct sound is what
+    arrives within 2.5 ms of that. Noise of a recording is not compensated for.
+
+    Args:
+        response: The impulse response (samples,); for levels, re a pulse of 1 at 1 m.
+        rate_hz: Samples a second.
+        bands: How wide the bands are.
+
+    Returns:
+        For each band ``centre_hz`` (nominal), ``edt_s``, ``t20_s``, ``t30_s`` (s for 60 dB),
+        ``c50_db``, ``c80_db``, ``d50`` (0 to 1), ``ts_s``, ``g_db`` (re the free field at 10 m) and
+        ``drr_db``;
+        ``None`` where the response is too short for one, or holds nothing there.
+
+    Raises:
+        ConfigError: The response is not one row of finite numbers, or the rate is out of range.
+    """
+    samples, rate = _channel("response", response), _rate(rate_hz)
+    rows: list[dict[str, float | None]] = json.loads(
+        _native.response_metrics_json(samples, rate, json.dumps(_width(bands)))
+    )
+    return [{key: row[key] for key in row if key != "lf"} for row in rows]
+
+
+def of_ears(ears: NDArray[Any], rate_hz: float, *, bands: Bands = "octave") -> dict[str, Any]:
+    """What two ears make of one impulse (ISO 3382-1:2009, annex B).
+
+    Args:
+        ears: The impulse responses (2, samples), left first.
+        rate_hz: Samples a second.
+        bands: How wide the bands are.
+
+    Returns:
+        ``itd_s`` and ``ild_db``: how much earlier (up to 1.5 kHz) and louder the direct sound is
+        at the left ear; ``bands``: for each ``centre_hz``, ``iacc_early`` (first 80 ms),
+        ``iacc_late``, ``iacc`` (0 to 1), ``itd_s`` and ``ild_db``. ``None`` where an ear hears
+        nothing.
+
+    Raises:
+        ConfigError: There are not two rows of finite numbers, or the rate is out of range.
+    """
+    rows = np.asarray(ears)
+    if rows.ndim != 2 or rows.shape[0] != 2:
+        raise ConfigError(f"ears: expected shape (2, samples), found {rows.shape}")
+    left, right = _channel("ears[0]", rows[0]), _channel("ears[1]", rows[1])
+    found: dict[str, Any] = json.loads(
+        _native.ear_metrics_json(left, right, _rate(rate_hz), json.dumps(_width(bands)))
+    )
+    return found
+
+
+def _channel(name: str, samples: object) -> NDArray[np.float32]:
+    row = np.asarray(samples)
+    if row.ndim != 1 or row.dtype.kind not in "fiu":
+        raise ConfigError(f"{name}: expected one row of numbers, found {row.dtype} {row.shape}")
+    row = np.ascontiguousarray(row, np.float32)
+    if not np.isfinite(row).all():
+        raise ConfigError(f"{name}: allowed are finite numbers")
+    return row
+
+
+def _rate(rate_hz: object) -> float:
+    rate = finite("rate_hz", rate_hz)
+    if not 1000.0 <= rate <= 1e6:
+        raise ConfigError(f"rate_hz is {rate:g}; allowed are 1000 to 1000000")
+    return rate
+
+
+def _width(bands: object) -> str:
+    return choice("bands", bands, ("octave", "third_octave"))
