@@ -32,7 +32,7 @@ def write_sofa(path: Path, data: Dataset) -> None:
     h5py = hdf5_module("SOFA")
     sources, receivers, channels, samples = data.shape
     sizes = {"I": 1, "C": 3, "M": sources * receivers, "R": channels, "E": 1, "N": samples}
-    with h5py.File(path, "w", track_order=True) as file:
+    with h5py.File(path, "w") as file:
         for name, value in _attributes(data).items():
             file.attrs[name] = _text(value)
         for number, (name, size) in enumerate(sizes.items()):
