@@ -179,7 +179,7 @@ pub(crate) fn response_metrics_json(
     py.engine(|| -> Result<_, Fault> {
         let width: BandWidth = serde_json::from_str(width_json)?;
         let found = metrics::of_impulse_response(samples, rate_hz, width);
-        named_bands(serde_json::to_value(found)?, width)
+        Ok(named_bands(serde_json::to_value(found)?, width).to_string())
     })
 }
 
@@ -197,18 +197,17 @@ pub(crate) fn ear_metrics_json(
         let width: BandWidth = serde_json::from_str(width_json)?;
         let found = metrics::of_ears(left, right, rate_hz, width);
         let mut found = serde_json::to_value(found)?;
-        let bands = named_bands(found["bands"].take(), width)?;
-        found["bands"] = serde_json::from_str(&bands)?;
+        found["bands"] = named_bands(found["bands"].take(), width);
         Ok(found.to_string())
     })
 }
 
-/// Rows with the nominal centre of each band, as JSON.
-fn named_bands(mut rows: serde_json::Value, width: BandWidth) -> Result<String, Fault> {
+/// Rows with the nominal centre of each band.
+fn named_bands(mut rows: serde_json::Value, width: BandWidth) -> serde_json::Value {
     for (band, row) in rows.as_array_mut().into_iter().flatten().enumerate() {
         row["centre_hz"] = width.nominal_centre_hz(band).into();
     }
-    Ok(rows.to_string())
+    rows
 }
 
 /// The built-in signal called `signal` from its start: shape (samples,), 1 Pa RMS.

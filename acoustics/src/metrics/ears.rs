@@ -266,7 +266,12 @@ mod tests {
         let found = of_ears(&[0.0; 100], &[0.0; 100], RATE_HZ, BandWidth::Octave);
         assert_eq!((found.itd_s, found.ild_db), (None, None));
         assert!(found.bands.iter().all(|band| *band == EarBand::default()));
-        let one = of_ears(&pulse(0.01, 1.0), &[0.0; 9600], RATE_HZ, BandWidth::Octave);
+        let one = of_ears(
+            &pulse(0.01, 1.0),
+            &vec![0.0; 9600],
+            RATE_HZ,
+            BandWidth::Octave,
+        );
         assert_eq!((one.bands[4].iacc, one.bands[4].ild_db), (None, None));
     }
 }
