@@ -152,7 +152,7 @@ impl Channel {
 /// Real spherical harmonic number `acn` (up to 15) with SN3D weight towards a unit vector in the receiver's axes.
 ///
 /// # Source
-/// C. Nachbar, F. Zotter, E. Deleflie, A. Sontacchi, *AmbiX - a suggested ambisonics format*, Ambisonics Symposium 2011,
+/// C. Nachbar, F. Zotter, E. Deleflie, A. Sontacchi, `AmbiX`, a suggested ambisonics format, Ambisonics Symposium 2011,
 /// section 2.
 fn harmonic(acn: usize, towards: Vec3) -> f32 {
     // Its x is to the front, y to the left, z up.

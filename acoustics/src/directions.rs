@@ -175,7 +175,7 @@ mod tests {
         for _ in 0..n {
             count[cell_of(stream.direction())] += 1.0_f64;
         }
-        let expected = n as f64 / CELL_COUNT as f64;
+        let expected = f64::from(n) / CELL_COUNT as f64;
         assert!(
             count
                 .iter()

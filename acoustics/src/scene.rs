@@ -186,7 +186,7 @@ impl AcousticScene {
     ///
     /// # Source
     /// J. H. Rindel, *Attenuation of sound reflections due to diffraction*, Proc. Nordic Acoustical Meeting 86, 257 (1986): below the limiting frequency
-    /// f_g = c a* / (2 S cos theta), a* = 2 d1 d2 / (d1 + d2), the amplitude falls with f / f_g.
+    /// `f_g = c a / (2 S cos theta)` with `a = 2 d1 d2 / (d1 + d2)`, the amplitude falls with `f / f_g`.
     pub(crate) fn scattering(
         &self,
         material: &Surface,

@@ -1,5 +1,7 @@
 //! Sound from room to room: through walls and open doors, against statistical theory.
 
+#![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
+
 mod common;
 
 use common::{Hall, box_sides, dry, material, pieces, rectangle};
