@@ -28,7 +28,7 @@ const CHUNKS_PER_WAVE: usize = 32;
 /// Bytes of the sums that are held at once.
 const MOST_BYTES: usize = 64 << 20;
 /// The chance that a ray that meets a wall also goes on behind it.
-const THROUGH: f32 = 0.05;
+const THROUGH: f32 = 0.02;
 /// Rays that look around from a receiver, at most and at least.
 const PROBES: (usize, usize) = (128, 512);
 /// How far a probe that leaves the house counts, m.

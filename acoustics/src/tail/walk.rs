@@ -18,7 +18,7 @@ use std::ops::Range;
 /// Shadow rays shorter than this count as so long, m: it bounds the variance that a near surface brings.
 const NEAREST_M: f32 = 0.1;
 /// The chance that a surface looks for receivers behind walls.
-const LOOK_THROUGH: f32 = 0.25;
+const LOOK_THROUGH: f32 = 0.1;
 /// No ray is followed further than this many reflections.
 const MOST_REFLECTIONS: usize = 20_000;
 
