@@ -27,8 +27,9 @@ const RAYS_PER_CHUNK: usize = 64;
 const CHUNKS_PER_WAVE: usize = 32;
 /// Bytes of the sums that are held at once.
 const MOST_BYTES: usize = 64 << 20;
-/// The chance that a ray that meets a wall also goes on behind it.
-const THROUGH: f32 = 0.02;
+/// The chance that a ray that meets a wall also goes on behind it: over the hundred reflections of a ray less than 1, so that rays
+/// behind walls behind walls do not become ever more.
+const THROUGH: f32 = 0.005;
 /// Rays that look around from a receiver, at most and at least.
 const PROBES: (usize, usize) = (128, 512);
 /// How far a probe that leaves the house counts, m.

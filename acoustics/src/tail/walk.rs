@@ -19,6 +19,8 @@ use std::ops::Range;
 const NEAREST_M: f32 = 0.1;
 /// The chance that a surface looks for receivers behind walls.
 const LOOK_THROUGH: f32 = 0.1;
+/// Panels at least this large are walls and doors, m².
+const WALL_M2: f32 = 0.5;
 /// No ray is followed further than this many reflections.
 const MOST_REFLECTIONS: usize = 20_000;
 
@@ -236,6 +238,10 @@ impl Walk<'_> {
     /// Now and then, lets what a wall lets through go on behind it.
     fn pass(&self, one: &Traveller, hit: &Hit, aside: &mut Stream, beyond: &mut Vec<Traveller>) {
         if one.walls == transmission::MOST_WALLS || aside.uniform_f32() >= self.through {
+            return;
+        }
+        // Nothing of furniture keeps rooms apart.
+        if self.scene.table().panel_m2(self.scene.house(), hit) < WALL_M2 {
             return;
         }
         let Some(exit) = transmission::beyond(self.scene, self.rays, &one.ray, hit) else {
