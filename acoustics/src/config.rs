@@ -30,7 +30,7 @@ pub struct AcousticConfig {
     pub receiver_radius_m: f64,
     /// Relative standard error of the tail's energy, in every band, below which no more rays are traced; 0 (all rays) to 1.
     pub max_error: f64,
-    /// Whether small panels mirror only short waves and scatter long ones.
+    /// Whether panels below 4 m² mirror only short waves and scatter long ones.
     pub panel_size: bool,
     /// Temperature, humidity, pressure.
     pub air: Air,

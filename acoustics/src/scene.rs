@@ -21,6 +21,11 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Panels at least this large are walls of rooms, m².
+const WALL_M2: f32 = 4.0;
+/// How far sound goes from a panel to what it meets next, m: the mean free path of a living room.
+const NEXT_WAY_M: f64 = 3.0;
+
 /// What a material does to sound energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Surface {
@@ -181,11 +186,11 @@ impl AcousticScene {
     /// last scattering and with a cosine of incidence. Shape (band,).
     ///
     /// A panel that is small against the wave scatters what it is too small to mirror. Images and rays share this rule, so that
-    /// together they keep all energy; therefore the way after the reflection, which rays do not know yet, counts as the way
-    /// before it.
+    /// together they keep all energy; therefore the way after the reflection, which rays do not know yet, counts as
+    /// [`NEXT_WAY_M`]. Walls end at other walls, where their images go on: they mirror all waves.
     ///
     /// # Source
-    /// J. H. Rindel, *Attenuation of sound reflections due to diffraction*, Proc. Nordic Acoustical Meeting 86, 257 (1986): below the limiting frequency
+    /// J. H. Rindel, *Attenuation of sound reflections due to diffraction*, Proc. Nordic Acoustical Meeting 86, 257 (1986): below
     /// `f_g = c a / (2 S cos theta)` with `a = 2 d1 d2 / (d1 + d2)`, the amplitude falls with `f / f_g`.
     pub(crate) fn scattering(
         &self,
@@ -194,14 +199,17 @@ impl AcousticScene {
         cosine: f32,
         straight_m: f64,
     ) -> Banded {
+        let mut scattering = material.scattering;
         if !self.config.panel_size {
-            return material.scattering;
+            return scattering;
         }
         let area_m2 = self.table.panel_m2(&self.house, hit);
-        // a* = d for equal ways.
-        let limit_hz = self.config.air.speed_of_sound_m_s() as f32 * straight_m as f32
-            / (2.0 * area_m2 * cosine.max(0.05)).max(1e-6);
-        let mut scattering = material.scattering;
+        if area_m2 >= WALL_M2 {
+            return scattering;
+        }
+        let way_m = 2.0 * straight_m * NEXT_WAY_M / (straight_m + NEXT_WAY_M);
+        let speed = self.config.air.speed_of_sound_m_s();
+        let limit_hz = (speed * way_m) as f32 / (2.0 * area_m2 * cosine.max(0.05)).max(1e-6);
         for (s, centre_hz) in scattering.iter_mut().zip(NOMINAL_CENTRES_HZ) {
             let ratio = centre_hz / limit_hz;
             if ratio < 1.0 {
