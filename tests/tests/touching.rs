@@ -100,7 +100,7 @@ fn doors_creak_while_they_move_and_slam_when_they_are_shut_fast() {
         .min_by(|a, b| a.distance(near).total_cmp(&b.distance(near)))
         .unwrap();
     let mut loud = Vec::new();
-    for speed in [0.5_f32, 4.0] {
+    for speed in [0.5_f32, 8.0] {
         let mut world = quiet(near);
         let away = 0.25 * (joint.open - joint.closed).signum();
         world
@@ -120,7 +120,10 @@ fn doors_creak_while_they_move_and_slam_when_they_are_shut_fast() {
             .map(|_| heard(&mut world, AgentControl::default()))
             .collect();
         assert!((world.state().joint_position[door] - joint.closed).abs() < 0.03);
-        loud.push(blocks.iter().map(|block| energy(block)).fold(0.0, f64::max));
+        // The loudest tenth of a second: a slam may fall between two blocks.
+        let pairs = blocks.windows(2);
+        let tenths = pairs.map(|pair| energy(&pair[0]) + energy(&pair[1]));
+        loud.push(tenths.fold(0.0, f64::max));
         // Shut, it is silent again.
         for _ in 0..60 {
             heard(&mut world, AgentControl::default());
@@ -132,7 +135,7 @@ fn doors_creak_while_they_move_and_slam_when_they_are_shut_fast() {
         );
     }
     // A hand that shuts a door gently drives it all the same.
-    println!("  {loud:?} Pa2 in the loudest block, gently and fast");
+    println!("  {loud:?} Pa2 in the loudest tenth of a second, gently and fast");
     assert!(loud[0] > 0.0 && loud[1] > 2.0 * loud[0], "{loud:?}");
     // A rusty hinge creaks on the way, before anything is shut.
     let mut world = quiet(near);
