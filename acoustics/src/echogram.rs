@@ -78,7 +78,7 @@ pub struct TraceStatistics {
     pub escaped: u64,
     /// Mean length of the pieces, m: 4 V / S in a closed room with scattering walls.
     pub mean_free_path_m: f64,
-    /// Radius of the receiver's sphere that was used, m.
+    /// Radius of the largest ball around the receiver in which rays were counted, m.
     pub receiver_radius_m: f64,
     /// Standard error of the tail's energy over its mean, from the scatter among groups of rays; 0 where nothing arrives.
     /// Shape (band,).

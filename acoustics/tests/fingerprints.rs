@@ -8,7 +8,7 @@
 
 mod common;
 
-use common::{Hall, dry, material};
+use common::{Hall, dry, law, material};
 use dwell_acoustics::bands::FilterBank;
 use dwell_acoustics::{
     AcousticConfig, ActiveSource, Air, Receiver, Source, Stream, StreamConfig, laws,
@@ -26,18 +26,6 @@ const NEAR: Vec3 = Vec3::new(3.0, 1.4, 3.1);
 const FAR: Vec3 = Vec3::new(7.0, 1.4, 3.1);
 /// Bands that are looked at: 250 Hz to 4 kHz.
 const BANDS: std::ops::Range<usize> = 2..7;
-
-fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
-    let params = values
-        .iter()
-        .map(|(name, value)| ((*name).to_owned(), *value));
-    LawSpec {
-        id: id.to_owned(),
-        version: 1,
-        target: None,
-        params: params.collect(),
-    }
-}
 
 fn room() -> Hall {
     let config = AcousticConfig {

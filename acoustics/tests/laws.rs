@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Hall, dry, material};
+use common::{Hall, dry, law, material};
 use dwell_acoustics::{AcousticConfig, ActiveSource, Receiver, Source, Stream, StreamConfig, laws};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
@@ -15,18 +15,6 @@ const BLOCK: usize = 800;
 const SOURCE: Vec3 = Vec3::new(1.2, 1.5, 1.4);
 /// The number of the source that sounds.
 const ID: u64 = 5;
-
-fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
-    let params = values
-        .iter()
-        .map(|(name, value)| ((*name).to_owned(), *value));
-    LawSpec {
-        id: id.to_owned(),
-        version: 1,
-        target: None,
-        params: params.collect(),
-    }
-}
 
 /// Every law with numbers at which it is plainly heard.
 fn each() -> Vec<LawSpec> {

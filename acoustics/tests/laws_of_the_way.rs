@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Hall, dry, material};
+use common::{Hall, dry, law, material};
 use dwell_acoustics::bands::BAND_COUNT;
 use dwell_acoustics::{
     AcousticConfig, ActiveSource, Air, Echogram, Receiver, Source, Stream, StreamConfig,
@@ -25,18 +25,6 @@ fn hall() -> Hall {
         ..dry(300)
     };
     Hall::shoebox([9.0, 3.0, 6.0], &material(0.3, 0.5), config)
-}
-
-fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
-    let params = values
-        .iter()
-        .map(|(name, value)| ((*name).to_owned(), *value));
-    LawSpec {
-        id: id.to_owned(),
-        version: 1,
-        target: None,
-        params: params.collect(),
-    }
 }
 
 fn echogram(hall: &Hall, laws: Vec<LawSpec>) -> Echogram {

@@ -50,6 +50,9 @@ proptest! {
             let counted = bin.iter().all(|e| *e >= 0.0 && e.is_finite());
             prop_assert!(counted);
         }
+        for directions in &there.tail.directions {
+            prop_assert!(directions.mean().length() < 1.001);
+        }
         prop_assert_eq!(there.trace.escaped, 0);
         let head = Receiver::binaural(Pose::from_position_yaw(to, yaw_rad));
         let source = Source::at(from);

@@ -17,7 +17,7 @@ use fractional::Taps;
 use minimum_phase::PathFilters;
 use std::sync::OnceLock;
 
-/// Paths whose filters are computed, the strongest first; all beyond carry less than these together.
+/// Paths whose filters are computed, the strongest first; fainter ones beyond these are left out.
 const MOST_PATHS: usize = 200;
 /// What is left of the energy where an impulse response may end: -70 dB.
 const END: f64 = 1e-7;

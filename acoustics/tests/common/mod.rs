@@ -8,7 +8,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Bands, House, HouseData, Level, LevelId, Material, Mesh, ShoeboxMaterials, Structure,
+    Bands, House, HouseData, LawSpec, Level, LevelId, Material, Mesh, ShoeboxMaterials, Structure,
     StructureKind, material::library,
 };
 use glam::Vec3;
@@ -28,6 +28,19 @@ pub(crate) fn material(absorption: f32, scattering: f32) -> Material {
         scattering: Bands::constant(scattering),
         transmission_loss_db: Bands::constant(Material::OPAQUE_TO_SOUND_DB),
         ..Material::of("test", library().default_substance())
+    }
+}
+
+/// A law with some of its values given.
+pub(crate) fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
+    let params = values
+        .iter()
+        .map(|(name, value)| ((*name).to_owned(), *value));
+    LawSpec {
+        id: id.to_owned(),
+        version: 1,
+        target: None,
+        params: params.collect(),
     }
 }
 
