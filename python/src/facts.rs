@@ -99,7 +99,7 @@ fn graphics_adapters() -> Vec<serde_json::Value> {
             "interface": adapter.interface,
             "driver": adapter.driver,
         });
-        match speeds(&adapter.name) {
+        match speeds(&adapter) {
             Ok(speeds) => {
                 facts["path"] = speeds.best().word().into();
                 facts["compute_views_per_s"] = speeds.compute_views_per_s.into();
@@ -113,10 +113,10 @@ fn graphics_adapters() -> Vec<serde_json::Value> {
 }
 
 /// How quick the paths of an adapter are in a built-in house.
-fn speeds(adapter: &str) -> Result<dwell_render::PathSpeeds, String> {
+fn speeds(adapter: &dwell_render::Adapter) -> Result<dwell_render::PathSpeeds, String> {
     let house = dwell_houses::open("builtin:studio").map_err(|error| error.to_string())?;
     let tables = Arc::new(dwell_render::CpuRenderer::new(&Arc::new(house.0)));
-    dwell_render::Gpu::shared(Some(adapter))
+    dwell_render::Gpu::shared_adapter(adapter)
         .and_then(|gpu| gpu.speeds(&tables))
         .map_err(|error| error.to_string())
 }

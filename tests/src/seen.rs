@@ -15,7 +15,7 @@ pub fn adapter_paths() -> Vec<BackEnd> {
         return Vec::new();
     };
     let by = |path: &str| {
-        let text = format!("gpu+{path}:{}", first.name);
+        let text = format!("gpu+{path}:{}/{}", first.interface, first.name);
         text.parse().expect("an adapter has a name")
     };
     ["compute", "raster"].map(by).to_vec()

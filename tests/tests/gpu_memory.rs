@@ -1,7 +1,8 @@
 //! What a batch takes from the heap: after the first ones of a kind no more than its lists, and nothing that grows.
 
 use dwell_render::{
-    Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, Preset, View, adapters,
+    BatchLimits, Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, Preset, View,
+    adapters,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -39,7 +40,7 @@ fn later_batches_take_little_from_the_heap() {
         .map(|room| room.bounds.center())
         .collect();
     for path in Path::ALL {
-        let gpu = Gpu::open(Some(&first.name)).unwrap();
+        let gpu = Gpu::open_adapter(&first, BatchLimits::NONE).unwrap();
         let renderer = GpuRenderer::new(gpu, cpu.clone(), path).unwrap();
         let mut taken = Vec::new();
         for _ in 0..8 {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Who renders, as files and people say it: `cpu`; `gpu` for the likely quickest adapter that is not software; or
-/// `gpu:NAME` for the first whose name holds `NAME`. `gpu+compute` and `gpu+raster` (or `gpu+raster:NAME`) choose the
+/// `gpu:NAME` for the first whose name or place on the bus holds `NAME` (`gpu:vulkan/NAME` among those of one interface). `gpu+compute` and `gpu+raster` (or `gpu+raster:NAME`) choose the
 /// [`Path`]; otherwise the one that a short measurement finds quicker is taken.
 ///
 /// ```
@@ -155,7 +155,7 @@ impl Renderer {
     /// Waits for a batch that [`Self::submit`] has started, and writes its images; see [`GpuRenderer::collect`].
     ///
     /// # Errors
-    /// As [`GpuRenderer::collect`]; [`RenderError::Count`] for a batch of another renderer.
+    /// As [`GpuRenderer::collect`]; [`RenderError::OtherRenderer`] for a batch of another renderer.
     pub fn collect(
         &self,
         submitted: Submitted,
@@ -164,10 +164,7 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         match self {
             Self::Gpu(gpu) => gpu.collect(submitted, frames, threads),
-            Self::Cpu(_) => Err(RenderError::Count {
-                views: 0,
-                frames: frames.len(),
-            }),
+            Self::Cpu(_) => Err(RenderError::OtherRenderer),
         }
     }
 

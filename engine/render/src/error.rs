@@ -46,6 +46,23 @@ pub enum RenderError {
         /// Frames found.
         frames: usize,
     },
+    /// A frame with other images than were announced when its batch was submitted.
+    #[error(
+        "frame {view}: {channel} {now} wanted now, unlike when the batch was submitted; batches are collected into frames of the \
+         same images",
+        now = if *.was_wanted { "is not" } else { "is" }
+    )]
+    OtherImages {
+        /// The position in the list of frames.
+        view: usize,
+        /// The channel's name.
+        channel: &'static str,
+        /// Whether it was announced.
+        was_wanted: bool,
+    },
+    /// A batch that another renderer was given.
+    #[error("this batch was submitted to another renderer; the one that has it collects it")]
+    OtherRenderer,
     /// A scene over another house than the renderer's.
     #[error("view {view}: the scene is over another house than this renderer was made for")]
     OtherHouse {

@@ -179,6 +179,8 @@ macro_rules! each_image {
     };
 }
 
+pub(crate) use each_image;
+
 impl<'a> FrameMut<'a> {
     /// The same frame for a shorter time.
     pub fn reborrow(&mut self) -> FrameMut<'_> {

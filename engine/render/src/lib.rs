@@ -57,7 +57,9 @@ pub use camera::{Camera, Projection};
 pub use cpu::{CpuRenderer, Job};
 pub use error::RenderError;
 pub use frame::{Before, Channels, Frame, FrameMut, Preset, View};
-pub use gpu::{Adapter, AdapterKind, Gpu, GpuRenderer, Path, PathSpeeds, Submitted, adapters};
+pub use gpu::{
+    Adapter, AdapterKind, BatchLimits, Gpu, GpuRenderer, Path, PathSpeeds, Submitted, adapters,
+};
 pub use laws::{Optics, Shutter};
 pub use map::{Dollhouse, DollhouseConfig, Map};
 pub use semantic::{Classes, EntityClasses, semantic_classes};

@@ -1,4 +1,4 @@
-//! The graphics adapters of this machine.
+//! The graphics adapters of this machine, and which of them is meant.
 
 use crate::error::RenderError;
 use std::pin::pin;
@@ -32,17 +32,24 @@ impl AdapterKind {
     }
 }
 
-/// One adapter.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// One adapter. Two of them are the same when all of this is: names alone are shared by equal cards, and by one card behind two
+/// interfaces.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Adapter {
-    /// As its driver calls it.
-    pub name: String,
     /// What it is made of.
     pub kind: AdapterKind,
     /// `vulkan`, `metal`, `dx12` or `gl`.
     pub interface: String,
+    /// As its driver calls it.
+    pub name: String,
+    /// The numbers of its maker and model, as the interface has them (those of PCI as a rule); 0 where it has none.
+    pub ids: [u32; 2],
+    /// Where it is plugged in, such as `0000:01:00.0`; empty where the interface does not say.
+    pub bus: String,
     /// The driver and its version.
     pub driver: String,
+    /// How many that are equal in all else the interface lists before it.
+    pub twin: usize,
 }
 
 impl Adapter {
@@ -57,7 +64,7 @@ impl Adapter {
         };
         let name = info.name.to_lowercase();
         // Behind GL some software adapters do not say what they are.
-        let software = ["llvmpipe", "swiftshader", "softpipe"];
+        let software = ["llvmpipe", "swiftshader", "softpipe", "basic render"];
         let kind = if software.iter().any(|word| name.contains(word)) {
             AdapterKind::Software
         } else {
@@ -67,6 +74,9 @@ impl Adapter {
             name: info.name,
             kind,
             interface: info.backend.to_str().to_owned(),
+            ids: [info.vendor, info.device],
+            bus: info.device_pci_bus_id,
+            twin: 0,
             driver: format!("{} {}", info.driver, info.driver_info)
                 .trim()
                 .to_owned(),
@@ -95,53 +105,197 @@ pub(super) fn ready<T>(future: impl Future<Output = T>) -> T {
     }
 }
 
-/// All adapters, the likely quickest first. GL is asked only where nothing else answers.
+/// Which adapter is meant.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Wanted<'a> {
+    /// The likely quickest that is not software.
+    Hardware,
+    /// The first whose name or place on the bus holds this, in upper or lower case; behind `vulkan/`, `metal/`, `dx12/` or `gl/`
+    /// only those of that interface.
+    Named(&'a str),
+    /// This one.
+    Exactly(&'a Adapter),
+}
+
+const INTERFACES: [&str; 4] = ["vulkan", "metal", "dx12", "gl"];
+
+impl Wanted<'_> {
+    fn is(&self, adapter: &Adapter) -> bool {
+        let is_hardware = adapter.kind != AdapterKind::Software;
+        match self {
+            Self::Hardware => is_hardware,
+            Self::Exactly(wanted) => adapter == *wanted,
+            Self::Named(text) => {
+                let text = text.to_lowercase();
+                let split = text.split_once('/');
+                let behind = split.filter(|(interface, _)| INTERFACES.contains(interface));
+                let (interface, name) = behind.map_or((None, &*text), |(i, name)| (Some(i), name));
+                interface.is_none_or(|interface| interface == adapter.interface)
+                    && (is_hardware || !name.is_empty())
+                    && [&adapter.name, &adapter.bus]
+                        .iter()
+                        .any(|held| held.to_lowercase().contains(name))
+            }
+        }
+    }
+}
+
+impl std::fmt::Display for Wanted<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Hardware => f.write_str("of hardware"),
+            Self::Named(text) => write!(f, "with {text:?} in its name"),
+            Self::Exactly(adapter) => write!(f, "that is {adapter}"),
+        }
+    }
+}
+
+/// All adapters, the likely quickest first and software last. `ask`: those behind some interfaces. GL is asked where nothing else
+/// answers but software: a card may have no other driver. Its software is listed only where there is no other.
+fn gather<T>(mut ask: impl FnMut(wgpu::Backends) -> Vec<(Adapter, T)>) -> Vec<(Adapter, T)> {
+    let is_hardware = |(adapter, _): &(Adapter, T)| adapter.kind != AdapterKind::Software;
+    let mut all = ask(wgpu::Backends::PRIMARY);
+    if !all.iter().any(is_hardware) {
+        let is_first = all.is_empty();
+        let more = ask(wgpu::Backends::GL).into_iter();
+        all.extend(more.filter(|found| is_first || is_hardware(found)));
+    }
+    all.sort_by_key(|(adapter, _)| {
+        let interface = INTERFACES
+            .iter()
+            .position(|known| *known == adapter.interface);
+        (adapter.kind, interface)
+    });
+    for k in 0..all.len() {
+        let (before, rest) = all.split_at_mut(k);
+        let own = &mut rest[0].0;
+        let same = |(other, _): &&(Adapter, T)| {
+            let twin = own.twin;
+            Adapter {
+                twin,
+                ..other.clone()
+            } == *own
+        };
+        own.twin = before.iter().filter(same).count();
+    }
+    all
+}
+
 fn list() -> Vec<(Adapter, wgpu::Adapter)> {
-    let found = |backends: wgpu::Backends| {
+    gather(|backends| {
         let mut description = wgpu::InstanceDescriptor::new_without_display_handle();
         description.backends = backends;
         description.flags = wgpu::InstanceFlags::empty();
         let instance = wgpu::Instance::new(description);
-        ready(instance.enumerate_adapters(backends))
-    };
-    let mut all = found(wgpu::Backends::PRIMARY);
-    if all.is_empty() {
-        all = found(wgpu::Backends::GL);
-    }
-    let mut all: Vec<(Adapter, wgpu::Adapter)> = all
-        .into_iter()
-        .map(|adapter| (Adapter::of(&adapter), adapter))
-        .collect();
-    all.sort_by_key(|(adapter, _)| adapter.kind);
-    all
+        let found = ready(instance.enumerate_adapters(backends)).into_iter();
+        found
+            .map(|adapter| (Adapter::of(&adapter), adapter))
+            .collect()
+    })
 }
 
-/// The adapters of this machine, the likely quickest first; none where there is no driver.
+/// The adapters of this machine, the likely quickest first and software last; none where there is no driver.
 pub fn adapters() -> Vec<Adapter> {
     list().into_iter().map(|(adapter, _)| adapter).collect()
 }
 
-/// The first adapter whose name holds `name` in upper or lower case; without a name the first that is not software.
+/// The first adapter that is meant.
 ///
 /// # Errors
 /// [`RenderError::NoAdapter`].
-pub(super) fn find(name: Option<&str>) -> Result<(Adapter, wgpu::Adapter), RenderError> {
+pub(super) fn find(wanted: Wanted<'_>) -> Result<(Adapter, wgpu::Adapter), RenderError> {
     let all = list();
     let names: Vec<String> = all.iter().map(|(adapter, _)| adapter.to_string()).collect();
-    let fits = |adapter: &Adapter| match name {
-        Some(name) => adapter.name.to_lowercase().contains(&name.to_lowercase()),
-        None => adapter.kind != AdapterKind::Software,
-    };
-    let found = all.into_iter().find(|(adapter, _)| fits(adapter));
+    let found = all.into_iter().find(|(adapter, _)| wanted.is(adapter));
     found.ok_or_else(|| RenderError::NoAdapter {
-        wanted: name.map_or_else(
-            || "of hardware".to_owned(),
-            |name| format!("with {name:?} in its name"),
-        ),
+        wanted: wanted.to_string(),
         found: if names.is_empty() {
             "none (no Vulkan, Metal, DX12 or GL driver)".to_owned()
         } else {
             names.join(", ")
         },
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn adapter(kind: AdapterKind, interface: &str, name: &str, bus: &str) -> Adapter {
+        Adapter {
+            kind,
+            interface: interface.into(),
+            name: name.into(),
+            ids: [0x10de, 0x2335],
+            bus: bus.into(),
+            driver: String::new(),
+            twin: 0,
+        }
+    }
+
+    fn pipe(interface: &str) -> Adapter {
+        adapter(AdapterKind::Software, interface, "llvmpipe (LLVM 15)", "")
+    }
+
+    /// The adapters of a machine whose Vulkan and GL have these.
+    fn machine(vulkan: &[Adapter], gl: &[Adapter]) -> Vec<Adapter> {
+        let listed = gather(|backends| {
+            let of = if backends == wgpu::Backends::GL {
+                gl
+            } else {
+                vulkan
+            };
+            of.iter().map(|adapter| (adapter.clone(), ())).collect()
+        });
+        listed.into_iter().map(|(adapter, ())| adapter).collect()
+    }
+
+    fn chosen(all: &[Adapter], wanted: Wanted<'_>) -> Option<usize> {
+        all.iter().position(|adapter| wanted.is(adapter))
+    }
+
+    #[test]
+    fn a_card_with_a_driver_for_gl_alone_comes_before_software() {
+        let card = adapter(AdapterKind::Integrated, "gl", "HD Graphics 4000", "");
+        let all = machine(&[pipe("vulkan")], &[card.clone(), pipe("gl")]);
+        assert_eq!(all, [card.clone(), pipe("vulkan")]);
+        assert_eq!(chosen(&all, Wanted::Hardware), Some(0));
+        // A name that both hold means the card.
+        assert_eq!(chosen(&all, Wanted::Named("p")), Some(0));
+        assert_eq!(
+            machine(&[], &[pipe("gl"), card.clone()]),
+            [card, pipe("gl")]
+        );
+    }
+
+    #[test]
+    fn software_is_taken_by_name_alone() {
+        let all = machine(&[pipe("vulkan")], &[]);
+        assert_eq!(chosen(&all, Wanted::Hardware), None);
+        assert_eq!(chosen(&all, Wanted::Named("vulkan/")), None);
+        for name in ["LLVMpipe", "vulkan/llvm"] {
+            assert_eq!(chosen(&all, Wanted::Named(name)), Some(0));
+        }
+        assert_eq!(chosen(&all, Wanted::Named("gl/llvm")), None);
+    }
+
+    #[test]
+    fn equal_names_are_told_apart_by_interface_bus_and_order() {
+        let card =
+            |interface: &str, bus: &str| adapter(AdapterKind::Discrete, interface, "R5/R7 X", bus);
+        let first = card("vulkan", "0000:01:00.0");
+        let second = card("vulkan", "0000:65:00.0");
+        let all = machine(
+            &[card("dx12", ""), first.clone(), second, card("dx12", "")],
+            &[],
+        );
+        for (k, adapter) in all.iter().enumerate() {
+            assert_eq!(chosen(&all, Wanted::Exactly(adapter)), Some(k));
+        }
+        assert_eq!(all[0], first, "vulkan comes before dx12");
+        assert_eq!(chosen(&all, Wanted::Named("r5/r7")), Some(0));
+        assert_eq!(chosen(&all, Wanted::Named("0000:65")), Some(1));
+        assert_eq!(chosen(&all, Wanted::Named("dx12/r5")), Some(2));
+        assert_eq!((all[2].twin, all[3].twin), (0, 1));
+    }
 }

@@ -1,6 +1,6 @@
 //! An adapter in use.
 
-use super::adapter::{Adapter, find, ready};
+use super::adapter::{Adapter, Wanted, find, ready};
 use super::kernels::{Kernels, Layouts};
 use super::path::PathSpeeds;
 use super::raster;
@@ -34,16 +34,89 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Most that batches take of an adapter at once: what is more is cut into several submissions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BatchLimits {
+    /// Of each buffer, a house's included, bytes.
+    pub buffer_bytes: u64,
+    /// Groups of 64 pixels along either axis of a call.
+    pub groups: u32,
+}
+
+impl BatchLimits {
+    /// What adapters allow.
+    pub const NONE: Self = Self {
+        buffer_bytes: u64::MAX,
+        groups: u32::MAX,
+    };
+}
+
+/// Kernels count the words of images in 32 bits.
+const MOST_BYTES: u64 = 4 * u32::MAX as u64;
+
+static OPEN: Mutex<Open> = Mutex::new(Open::NONE);
+
+/// Adapters in use by this process.
+struct Open {
+    /// What names meant.
+    names: BTreeMap<Option<String>, Adapter>,
+    gpus: BTreeMap<Adapter, Arc<Gpu>>,
+}
+
+impl Open {
+    const NONE: Self = Self {
+        names: BTreeMap::new(),
+        gpus: BTreeMap::new(),
+    };
+
+    fn known(&mut self, adapter: &Adapter) -> Option<Arc<Gpu>> {
+        let gpu = self.gpus.get(adapter)?;
+        if gpu.check_process().is_ok() {
+            return Some(gpu.clone());
+        }
+        // Closing what another process opened would call its driver, which is not there.
+        std::mem::forget(self.gpus.remove(adapter));
+        None
+    }
+}
+
+/// Bytes of the buffer that is made for so many.
+pub(super) fn buffer_size(bytes: u64) -> u64 {
+    bytes.max(64).next_multiple_of(16)
+}
+
 impl Gpu {
-    /// Opens an adapter: the first whose name holds `name`, in upper or lower case; without a name the likely quickest that is
-    /// not software.
+    /// Opens an adapter: the first whose name or place on the bus holds `name`, in upper or lower case; without a name the likely
+    /// quickest that is not software. Behind `vulkan/`, `metal/`, `dx12/` or `gl/` only adapters of that interface are meant.
     ///
     /// # Errors
     /// [`RenderError::NoAdapter`] says what was found instead, [`RenderError::TooLarge`] what the adapter is too small for,
     /// [`RenderError::Driver`] what its driver said.
     pub fn open(name: Option<&str>) -> Result<Arc<Self>, RenderError> {
-        let (adapter, handle) = find(name)?;
-        let limits = handle.limits();
+        let (adapter, handle) = find(name.map_or(Wanted::Hardware, Wanted::Named))?;
+        Self::open_found(adapter, &handle, BatchLimits::NONE)
+    }
+
+    /// Opens one of [`adapters`](crate::adapters), and takes no more of it than `most`.
+    ///
+    /// # Errors
+    /// As [`Self::open`]; where houses do not fit, making renderers fails.
+    pub fn open_adapter(adapter: &Adapter, most: BatchLimits) -> Result<Arc<Self>, RenderError> {
+        let (adapter, handle) = find(Wanted::Exactly(adapter))?;
+        Self::open_found(adapter, &handle, most)
+    }
+
+    fn open_found(
+        adapter: Adapter,
+        handle: &wgpu::Adapter,
+        most: BatchLimits,
+    ) -> Result<Arc<Self>, RenderError> {
+        let mut limits = handle.limits();
+        let bytes = &mut limits.max_storage_buffer_binding_size;
+        *bytes = most.buffer_bytes.min(*bytes);
+        limits.max_buffer_size = most.buffer_bytes.min(limits.max_buffer_size);
+        let groups = &mut limits.max_compute_workgroups_per_dimension;
+        *groups = most.groups.min(*groups);
         let needed = u64::from(Layouts::BUFFERS);
         let allowed = u64::from(limits.max_storage_buffers_per_shader_stage);
         if allowed < needed {
@@ -100,18 +173,41 @@ impl Gpu {
     /// # Errors
     /// As [`Self::open`].
     pub fn shared(name: Option<&str>) -> Result<Arc<Self>, RenderError> {
-        static OPEN: Mutex<BTreeMap<Option<String>, Arc<Gpu>>> = Mutex::new(BTreeMap::new());
         let mut open = lock(&OPEN);
         let key = name.map(str::to_lowercase);
-        if let Some(gpu) = open.get(&key) {
-            if gpu.check_process().is_ok() {
-                return Ok(gpu.clone());
-            }
-            // Closing what another process opened would call its driver, which is not there.
-            std::mem::forget(open.remove(&key));
+        if let Some(adapter) = open.names.get(&key).cloned()
+            && let Some(gpu) = open.known(&adapter)
+        {
+            return Ok(gpu);
         }
-        let gpu = Self::open(name)?;
-        open.insert(key, gpu.clone());
+        let (adapter, handle) = find(name.map_or(Wanted::Hardware, Wanted::Named))?;
+        open.names.insert(key, adapter.clone());
+        Self::share(&mut open, adapter, &handle)
+    }
+
+    /// As [`Self::shared`], for one of [`adapters`](crate::adapters).
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn shared_adapter(adapter: &Adapter) -> Result<Arc<Self>, RenderError> {
+        let mut open = lock(&OPEN);
+        if let Some(gpu) = open.known(adapter) {
+            return Ok(gpu);
+        }
+        let (adapter, handle) = find(Wanted::Exactly(adapter))?;
+        Self::share(&mut open, adapter, &handle)
+    }
+
+    fn share(
+        open: &mut Open,
+        adapter: Adapter,
+        handle: &wgpu::Adapter,
+    ) -> Result<Arc<Self>, RenderError> {
+        if let Some(gpu) = open.known(&adapter) {
+            return Ok(gpu);
+        }
+        let gpu = Self::open_found(adapter.clone(), handle, BatchLimits::NONE)?;
+        open.gpus.insert(adapter, gpu.clone());
         Ok(gpu)
     }
 
@@ -185,6 +281,12 @@ impl Gpu {
         limits
             .max_storage_buffer_binding_size
             .min(limits.max_buffer_size)
+            .min(MOST_BYTES)
+    }
+
+    /// Most groups of a kernel along one axis.
+    pub(super) fn most_groups(&self) -> usize {
+        self.device.limits().max_compute_workgroups_per_dimension as usize
     }
 
     /// A buffer of at least 64 bytes.
@@ -215,7 +317,8 @@ impl Gpu {
         mapped_at_creation: bool,
     ) -> Result<wgpu::Buffer, RenderError> {
         let allowed = self.most_bytes();
-        if bytes > allowed {
+        let size = buffer_size(bytes);
+        if size > allowed {
             return Err(RenderError::TooLarge {
                 what: what.to_owned(),
                 needed: bytes,
@@ -226,7 +329,7 @@ impl Gpu {
         }
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size: bytes.max(64).next_multiple_of(16),
+            size,
             usage,
             mapped_at_creation,
         });

@@ -19,6 +19,6 @@ mod slot;
 mod worlds;
 
 pub use adapter::{Adapter, AdapterKind, adapters};
-pub use device::Gpu;
+pub use device::{BatchLimits, Gpu};
 pub use path::{Path, PathSpeeds};
 pub use renderer::{GpuRenderer, Submitted};

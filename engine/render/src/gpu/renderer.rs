@@ -1,18 +1,15 @@
 //! Batches of views by an adapter.
 
-use super::device::{Gpu, lock};
+use super::device::{Gpu, buffer_size, lock};
 use super::house::HouseBuffers;
 use super::path::Path;
-use super::rows::{Places, words_per_pixel};
+use super::rows::{Places, tiles, words_per_pixel};
 use super::slot::{SEEN_BYTES, Slot};
 use crate::cpu::{CpuRenderer, Job};
 use crate::error::RenderError;
 use crate::frame::{FrameMut, Preset};
 use dwell_scene::parallel::Threads;
 use std::sync::{Arc, Mutex, mpsc};
-
-/// Most groups of a kernel along one axis.
-const MOST_GROUPS: usize = 65_535;
 
 /// Renders views of one house, in any of its worlds, by a graphics adapter.
 ///
@@ -26,12 +23,16 @@ pub struct GpuRenderer {
     path: Path,
     /// Memory of earlier batches.
     slots: Mutex<Vec<Slot>>,
+    /// Shared with the batches that it was given.
+    own: Arc<()>,
 }
 
 /// Batches under way; see [`GpuRenderer::submit`].
 #[derive(Debug)]
 pub struct Submitted {
     parts: Vec<Part>,
+    /// Of the renderer that was given it.
+    owner: Arc<()>,
 }
 
 impl Submitted {
@@ -39,6 +40,11 @@ impl Submitted {
     pub fn draws(&self) -> usize {
         let parts = self.parts.iter();
         parts.map(|part| part.slot.batch.drawing.calls()).sum()
+    }
+
+    /// Into how many submissions the batch was cut.
+    pub fn parts(&self) -> usize {
+        self.parts.len()
     }
 }
 
@@ -69,6 +75,7 @@ impl GpuRenderer {
             house,
             path,
             slots: Mutex::new(Vec::new()),
+            own: Arc::default(),
         })
     }
 
@@ -132,19 +139,28 @@ impl GpuRenderer {
             }
         }
         let mut parts = Vec::new();
-        let mut rest = jobs;
+        let (mut rest, mut most) = (jobs, usize::MAX);
         while !rest.is_empty() {
-            let (some, more) = rest.split_at(self.fitting(rest));
-            parts.push(self.submit_part(some, threads)?);
-            rest = more;
+            let some = self.fitting(rest).min(most);
+            let part = self.submit_part(&rest[..some], threads)?;
+            let taken = part.slot.batch.places.len();
+            // What follows is as large as a rule.
+            most = if taken < some { taken } else { most };
+            parts.push(part);
+            rest = &rest[taken..];
         }
-        Ok(Submitted { parts })
+        Ok(Submitted {
+            parts,
+            owner: self.own.clone(),
+        })
     }
 
     /// Waits for a batch and writes its images. `frames`: as those of the jobs, in their order.
     ///
     /// # Errors
-    /// [`RenderError::Count`] or [`RenderError::Length`] for other frames than were announced; [`RenderError::Driver`].
+    /// [`RenderError::Count`], [`RenderError::Length`] or [`RenderError::OtherImages`] for other frames than were announced,
+    /// [`RenderError::OtherRenderer`] for a batch that another renderer was given: then nothing is written.
+    /// [`RenderError::Driver`].
     pub fn collect(
         &self,
         submitted: Submitted,
@@ -154,25 +170,48 @@ impl GpuRenderer {
         self.deliver(submitted, frames.iter_mut(), threads)
     }
 
-    /// How many of the first jobs fit into one submission; at least one.
+    /// How many of the first jobs fit into one submission as far as their images go; at least one.
     fn fitting(&self, jobs: &[Job<'_>]) -> usize {
-        let most = self.gpu.most_bytes();
-        let (mut seen, mut words) = (0, 0);
+        let (most, most_groups) = (self.gpu.most_bytes(), self.gpu.most_groups());
+        let (mut seen, mut words, mut groups) = (0, 0, 0);
         let fits = |job: &&Job<'_>| {
             let (first, end) = job.row_range();
             let pixels = ((end - first) * job.view.camera.width() as usize) as u64;
             seen += pixels * SEEN_BYTES;
             words += pixels * words_per_pixel(&job.frame) as u64 * 4;
-            seen <= most && words <= most
+            groups += tiles(job.view.camera.width(), (end - first) as u32);
+            seen.max(words) <= most && groups.div_ceil(most_groups) <= most_groups
         };
         jobs.iter().take_while(fits).count().max(1)
+    }
+
+    /// Writes the rows of as many of the first jobs as fit into the buffers; at least of one.
+    fn fill(&self, slot: &mut Slot, jobs: &[Job<'_>], threads: Threads) {
+        let most = self.gpu.most_bytes();
+        let draws =
+            (self.path == Path::Raster).then(|| (&self.house.drawable, self.gpu.most_edge()));
+        let (mut count, mut is_fresh) = (jobs.len(), false);
+        loop {
+            let batch = &mut slot.batch;
+            batch.fill(&self.cpu, &jobs[..count], draws, threads);
+            let fits = batch
+                .bytes()
+                .iter()
+                .all(|bytes| buffer_size(*bytes) <= most);
+            if fits || (count == 1 && is_fresh) {
+                break;
+            }
+            // First without the lenses of earlier batches, then with half the views.
+            count = if is_fresh { count.div_ceil(2) } else { count };
+            batch.lenses.forget();
+            is_fresh = true;
+        }
     }
 
     fn submit_part(&self, jobs: &[Job<'_>], threads: Threads) -> Result<Part, RenderError> {
         let gpu = &*self.gpu;
         let mut slot = lock(&self.slots).pop().unwrap_or_else(Slot::new);
-        let draws = (self.path == Path::Raster).then(|| (&self.house.drawable, gpu.most_edge()));
-        slot.batch.fill(&self.cpu, jobs, draws, threads);
+        self.fill(&mut slot, jobs, threads);
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -190,7 +229,7 @@ impl GpuRenderer {
             pass.set_bind_group(1, rows, &[]);
             slot.batch.drawing.draw(&mut pass);
         }
-        let groups_x = slot.batch.tiles.clamp(1, MOST_GROUPS);
+        let groups_x = slot.batch.tiles.clamp(1, gpu.most_groups());
         let groups_y = slot.batch.tiles.div_ceil(groups_x).max(1);
         if let Some(group) = slot.group() {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -242,6 +281,9 @@ impl GpuRenderer {
         frames: impl ExactSizeIterator<Item = &'a mut FrameMut<'b>>,
         threads: Threads,
     ) -> Result<(), RenderError> {
+        if !Arc::ptr_eq(&submitted.owner, &self.own) {
+            return Err(RenderError::OtherRenderer);
+        }
         let views = submitted
             .parts
             .iter()
@@ -253,25 +295,30 @@ impl GpuRenderer {
                 frames: frames.len(),
             });
         }
-        let mut frames = frames.enumerate();
+        let places = submitted
+            .parts
+            .iter()
+            .flat_map(|part| &part.slot.batch.places);
+        let mut all = Vec::with_capacity(views);
+        for (view, (places, frame)) in places.zip(frames).enumerate() {
+            places.check(view, frame)?;
+            frame.check(view, places.pixels)?;
+            all.push(Delivery {
+                places: *places,
+                frame,
+            });
+        }
+        let mut rest = &mut all[..];
         for part in submitted.parts {
-            let mut deliveries = Vec::with_capacity(part.slot.batch.places.len());
-            for places in &part.slot.batch.places {
-                if let Some((view, frame)) = frames.next() {
-                    frame.check(view, places.pixels)?;
-                    deliveries.push(Delivery {
-                        places: *places,
-                        frame,
-                    });
-                }
-            }
+            let (deliveries, more) = rest.split_at_mut(part.slot.batch.places.len());
+            rest = more;
             self.gpu.wait(&part.index, &part.mapped)?;
             let (_, back) = part.slot.ways(&self.gpu)?;
             let range = 0..part.slot.image_bytes().max(16);
             let held = back.get_mapped_range(range);
             let held = held.map_err(|error| self.gpu.driver("to read", error.to_string()))?;
             let bytes: &[u8] = &held;
-            threads.for_each(&mut deliveries, |_, delivery| delivery.write(bytes));
+            threads.for_each(deliveries, |_, delivery| delivery.write(bytes));
             drop(held);
             back.unmap();
             lock(&self.slots).push(part.slot);

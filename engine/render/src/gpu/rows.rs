@@ -2,10 +2,12 @@
 
 use super::house::point;
 use super::raster::{Drawable, Drawing};
+use super::slot::SEEN_BYTES;
 use super::worlds::{Worlds, runs};
 use crate::camera::{Camera, Projection};
 use crate::cpu::{CpuRenderer, Job};
-use crate::frame::{Before, FrameMut, Preset};
+use crate::error::RenderError;
+use crate::frame::{Before, FrameMut, Preset, each_image};
 use crate::light::Lighting;
 use dwell_scene::bvh::flat::{Row, flat_pose};
 use dwell_scene::parallel::Threads;
@@ -32,6 +34,31 @@ pub(super) struct Places {
     pub(super) normals: Option<usize>,
     pub(super) albedo: Option<usize>,
     pub(super) flow: Option<usize>,
+}
+
+impl Places {
+    /// Checks that a frame wants the images that were announced.
+    pub(super) fn check(&self, view: usize, frame: &FrameMut<'_>) -> Result<(), RenderError> {
+        macro_rules! check {
+            ($image:ident, $parts:expr) => {
+                let was_wanted = self.$image.is_some();
+                if frame.$image.is_some() != was_wanted {
+                    return Err(RenderError::OtherImages {
+                        view,
+                        channel: stringify!($image),
+                        was_wanted,
+                    });
+                }
+            };
+        }
+        each_image!(check);
+        Ok(())
+    }
+}
+
+/// Groups of a kernel for a view of so many pixels.
+pub(super) fn tiles(width: u32, rows: u32) -> usize {
+    width.div_ceil(TILE) as usize * rows.div_ceil(TILE) as usize
 }
 
 /// Words of all wanted images for each pixel.
@@ -62,9 +89,14 @@ impl LensRays {
     /// Forgets old cameras when there are too many; before a batch.
     fn tidy(&mut self) {
         if self.rays.len() > MOST_LENS_RAYS {
-            self.cameras.clear();
-            self.rays.clear();
+            self.forget();
         }
+    }
+
+    /// Forgets all cameras.
+    pub(super) fn forget(&mut self) {
+        self.cameras.clear();
+        self.rays.clear();
     }
 
     /// The position of a camera's first ray.
@@ -178,6 +210,16 @@ impl Batch {
         self.rows[0] = [jobs.len(), self.tiles, records, pieces].map(|number| number as u32);
     }
 
+    /// Bytes of what grows with the batch: rows, rays of lenses, first hits and images.
+    pub(super) fn bytes(&self) -> [u64; 4] {
+        [
+            size_of_val(&self.rows[..]) as u64,
+            size_of_val(&self.lenses.rays[..]) as u64,
+            self.pixels as u64 * SEEN_BYTES,
+            self.words as u64 * 4,
+        ]
+    }
+
     /// The light of a world, and which things are switched off; returns the first row.
     fn add_light(&mut self, cpu: &CpuRenderer, lighting: &Lighting, state: &State) -> u32 {
         let first = self.rows.len() as u32;
@@ -240,7 +282,7 @@ impl Batch {
         ];
         let first = 1 + k * VIEW_ROWS;
         self.rows[first..first + written.len()].copy_from_slice(&written);
-        self.tiles += (camera.width().div_ceil(TILE) * rows.div_ceil(TILE)) as usize;
+        self.tiles += tiles(camera.width(), rows);
         self.pixels += pixels;
         self.places.push(places);
         let frame = &job.frame;

@@ -149,15 +149,14 @@ impl Slot {
     ) -> Result<(), RenderError> {
         let rows: &[u8] = bytemuck::cast_slice(&self.batch.rows);
         let rays: &[u8] = bytemuck::cast_slice(&self.batch.lenses.rays);
-        let words = self.batch.words as u64 * 4;
-        let mut changed = self.rows.reserve(gpu, rows.len() as u64)?;
-        let new_lenses = self.lenses.reserve(gpu, rays.len().max(16) as u64)?;
+        let [row_bytes, lens_bytes, seen_bytes, image_bytes] =
+            self.batch.bytes().map(|bytes| bytes.max(16));
+        let mut changed = self.rows.reserve(gpu, row_bytes)?;
+        let new_lenses = self.lenses.reserve(gpu, lens_bytes)?;
         changed |= new_lenses;
-        changed |= self
-            .seen
-            .reserve(gpu, (self.batch.pixels as u64 * SEEN_BYTES).max(16))?;
-        changed |= self.images.reserve(gpu, words.max(16))?;
-        self.back.reserve(gpu, words.max(16))?;
+        changed |= self.seen.reserve(gpu, seen_bytes)?;
+        changed |= self.images.reserve(gpu, image_bytes)?;
+        self.back.reserve(gpu, image_bytes)?;
         self.upload.send(gpu, rows, self.rows.held(gpu)?, encoder)?;
         if (self.batch.lenses.changed || new_lenses) && !rays.is_empty() {
             gpu.queue.write_buffer(self.lenses.held(gpu)?, 0, rays);

@@ -3,8 +3,8 @@
 use super::agreement::{Pair, gpu};
 use super::houses::views;
 use dwell_render::{
-    Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, PathSpeeds, Preset,
-    RenderError, View,
+    BatchLimits, Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, PathSpeeds,
+    Preset, RenderError, View,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -110,7 +110,7 @@ fn later_batches_make_no_buffers() {
             return;
         };
         // Other tests run side by side on the shared adapter.
-        let own = Gpu::open(Some(&shared.adapter().name)).unwrap();
+        let own = Gpu::open_adapter(shared.adapter(), BatchLimits::NONE).unwrap();
         pair.gpu = GpuRenderer::new(own, pair.cpu.clone(), path).unwrap();
         let mut views = mixed(&pair);
         for (k, view) in views.iter_mut().enumerate() {
@@ -252,6 +252,72 @@ fn other_frames_than_announced_are_refused() {
         matches!(error, Err(RenderError::Length { view: 0, .. })),
         "{error:?}"
     );
+}
+
+#[test]
+fn frames_of_other_images_are_refused() {
+    let Some(pair) = pair() else { return };
+    let view = mixed(&pair)[0];
+    let [all, some] = [Channels::ALL, Channels::default()];
+    let submit = |frame: &mut Frame| {
+        let job = Job::new(&pair.scene, &pair.state, view, frame.as_mut());
+        pair.gpu.submit(&[job], Threads::ONE).unwrap()
+    };
+    let depths = |was_wanted| RenderError::OtherImages {
+        view: 0,
+        channel: "depth",
+        was_wanted,
+    };
+    let few = Channels {
+        depth: false,
+        ..some
+    };
+    for (announced, found, error) in [
+        (all, some, None),
+        (some, all, None),
+        (some, few, Some(depths(true))),
+        (few, some, Some(depths(false))),
+    ] {
+        let submitted = submit(&mut Frame::new(&view.camera, announced));
+        let mut into = Frame::new(&view.camera, found);
+        let frames = &mut [into.as_mut()];
+        let refused = pair.gpu.collect(submitted, frames, Threads::ONE);
+        let refused = refused.unwrap_err();
+        assert!(error.is_none_or(|error| error == refused), "{refused}");
+        assert!(
+            into == Frame::new(&view.camera, found),
+            "something is written"
+        );
+    }
+    assert_eq!(
+        depths(true).to_string(),
+        "frame 0: depth is not wanted now, unlike when the batch was submitted; batches are collected into frames of the same \
+         images"
+    );
+    assert!(depths(false).to_string().contains("depth is wanted now"));
+}
+
+#[test]
+fn a_batch_of_another_renderer_is_refused() {
+    let (Some(pair), Some(other)) = (pair(), pair()) else {
+        return;
+    };
+    let view = mixed(&pair)[0];
+    let mut frame = Frame::new(&view.camera, Channels::ALL);
+    let submit = |frame: &mut Frame| {
+        let job = Job::new(&pair.scene, &pair.state, view, frame.as_mut());
+        pair.gpu.submit(&[job], Threads::ONE).unwrap()
+    };
+    let submitted = submit(&mut frame);
+    let error = other
+        .gpu
+        .collect(submitted, &mut [frame.as_mut()], Threads::ONE);
+    assert_eq!(error, Err(RenderError::OtherRenderer));
+    let submitted = submit(&mut frame);
+    let cpu = dwell_render::Renderer::Cpu(pair.cpu.clone());
+    let error = cpu.collect(submitted, &mut [frame.as_mut()], Threads::ONE);
+    assert_eq!(error, Err(RenderError::OtherRenderer));
+    assert!(frame == Frame::new(&view.camera, Channels::ALL));
 }
 
 #[test]

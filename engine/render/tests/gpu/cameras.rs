@@ -1,13 +1,14 @@
 //! Agreement for every camera, with things and agents that have moved.
 
-use super::agreement::{Count, Pair};
+use super::agreement::Pair;
+use super::compare::Count;
 use super::houses::views;
 use dwell_render::{Before, Camera, Path, Projection};
 use dwell_scene::{AgentBody, AgentState, Id, PartId, Pose};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-fn cameras() -> Vec<(&'static str, Camera)> {
+pub(crate) fn cameras() -> Vec<(&'static str, Camera)> {
     let new = |projection| Camera::new(64, 48, projection).unwrap();
     let (fx, fy, cx, cy) = (30.0, 29.0, 31.0, 25.0);
     vec![
@@ -127,6 +128,6 @@ fn cameras_agree(path: Path, cameras: &[(&'static str, Camera)]) {
                 compared.compare(&format!("{name}, view {k}"), &camera, &frames);
             }
         }
-        compared.finish(&format!("{name}, {}", path.word()), 0.03);
+        compared.finish(name, path, 0.03);
     }
 }

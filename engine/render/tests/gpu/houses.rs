@@ -1,6 +1,7 @@
 //! Agreement in whole houses.
 
-use super::agreement::{Count, Pair};
+use super::agreement::Pair;
+use super::compare::Count;
 use dwell_render::{Camera, Path, Preset, View};
 use dwell_scene::random::Key;
 use dwell_scene::{House, Pose, space};
@@ -44,6 +45,11 @@ pub(crate) fn suncg() -> Option<Arc<House>> {
     Some(Arc::new(dwell_houses::open(root.to_str()?).unwrap().0))
 }
 
+/// Whether tests take all their views (`make test-all`).
+fn tests_all() -> bool {
+    std::env::var_os("DWELL_TEST_ALL").is_some()
+}
+
 fn agree(name: &str, house: &Arc<House>, count: usize, path: Path) {
     let Some(pair) = Pair::new(house.clone(), path) else {
         return;
@@ -55,7 +61,7 @@ fn agree(name: &str, house: &Arc<House>, count: usize, path: Path) {
         compared.compare(&format!("{name}, view {k}"), &camera, frames);
     }
     // Slanted floors jump by more than 2 % from pixel to pixel of small pictures.
-    compared.finish(&format!("{name}, {}", path.word()), 0.05);
+    compared.finish(name, path, 0.05);
 }
 
 #[test]
@@ -67,8 +73,8 @@ fn the_sample_house_looks_the_same_by_cpu_and_gpu() {
 }
 
 /// Lit views look as bright and as coloured, from inside and from the open air, by day and with lamps.
-fn lit_agrees(name: &str, house: Arc<House>, count: usize) {
-    let Some(mut pair) = Pair::new(house, Path::Compute) else {
+fn lit_agrees(name: &str, house: Arc<House>, count: usize, path: Path) {
+    let Some(mut pair) = Pair::new(house, path) else {
         return;
     };
     let camera = Camera::from_fov(64, 48, 90.0).unwrap();
@@ -95,17 +101,21 @@ fn lit_agrees(name: &str, house: Arc<House>, count: usize) {
             let name = format!("{name}, lit view {k}, switches {is_on}");
             compared.compare(&name, &camera, frames);
         }
-        compared.finish(&format!("{name}, lit, switches {is_on}"), 0.03);
+        compared.finish(&format!("{name}, lit, switches {is_on}"), path, 0.03);
     }
 }
 
 #[test]
 fn lit_houses_look_the_same_by_cpu_and_gpu() {
-    if let Some(house) = suncg() {
-        lit_agrees("SUNCG", house, 12);
-    }
-    for seed in ["seed:2", "seed:9"] {
-        lit_agrees(seed, Arc::new(dwell_houses::open(seed).unwrap().0), 6);
+    let (in_suncg, generated) = if tests_all() { (200, 40) } else { (12, 6) };
+    for path in Path::ALL {
+        if let Some(house) = suncg() {
+            lit_agrees("SUNCG", house, in_suncg, path);
+        }
+        for seed in ["seed:2", "seed:9"] {
+            let house = Arc::new(dwell_houses::open(seed).unwrap().0);
+            lit_agrees(seed, house, generated, path);
+        }
     }
 }
 
@@ -113,7 +123,8 @@ fn lit_houses_look_the_same_by_cpu_and_gpu() {
 fn generated_houses_look_the_same_by_cpu_and_gpu() {
     for seed in ["seed:3", "seed:8"] {
         let house = Arc::new(dwell_houses::open(seed).unwrap().0);
-        agree(seed, &house, 40, Path::Compute);
-        agree(seed, &house, 40, Path::Raster);
+        let count = if tests_all() { 200 } else { 40 };
+        agree(seed, &house, count, Path::Compute);
+        agree(seed, &house, count, Path::Raster);
     }
 }

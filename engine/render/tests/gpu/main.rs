@@ -11,4 +11,6 @@ mod common;
 mod agreement;
 mod batches;
 mod cameras;
+mod compare;
 mod houses;
+mod limits;
