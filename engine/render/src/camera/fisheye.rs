@@ -81,7 +81,8 @@ pub(super) fn direction(at: Vec2, k: [f32; 4], half_angle: f32) -> Vec3 {
 pub(super) fn project(point: Vec3, k: [f32; 4], half_angle: f32) -> Option<Vec2> {
     let across = point.truncate().length();
     let angle = math::atan2(across, -point.z);
-    if angle > half_angle || point == Vec3::ZERO {
+    // Beyond the square root of what numbers hold there is no length.
+    if angle > half_angle || point == Vec3::ZERO || !across.is_finite() {
         return None;
     }
     let scale = if across > 0.0 {

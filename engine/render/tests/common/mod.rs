@@ -109,7 +109,10 @@ pub(crate) struct World {
 
 impl World {
     pub(crate) fn new(house: House) -> Self {
-        let house = Arc::new(house);
+        Self::over(Arc::new(house))
+    }
+
+    pub(crate) fn over(house: Arc<House>) -> Self {
         Self {
             state: State::new(&house),
             scene: RayScene::new(house.clone()),

@@ -12,5 +12,7 @@ mod agreement;
 mod batches;
 mod cameras;
 mod compare;
+mod faults;
 mod houses;
 mod limits;
+mod optics;

@@ -102,6 +102,11 @@ fn arc_tangent2(y: f32, x: f32) -> f32 {
     return select(angle + PI, angle - PI, y < 0.0);
 }
 
+// Whether a number is infinite or none. Asked of its bits, since compilers may take it that no number is.
+fn is_endless(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) == 0x7f800000u;
+}
+
 struct Projected {
     is_seen: bool,
     image: vec2<f32>,
@@ -203,7 +208,7 @@ fn project(v: View, point: vec3<f32>) -> Projected {
         }
         case FISHEYE: {
             let angle = arc_tangent2(across, depth);
-            if angle > v.more.y || (across == 0.0 && depth == 0.0) {
+            if angle > v.more.y || is_endless(across) || (across == 0.0 && depth == 0.0) {
                 return nowhere();
             }
             let s = angle * angle;

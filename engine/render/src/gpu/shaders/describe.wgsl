@@ -31,6 +31,10 @@ fn flow_of(v: View, image: vec2<f32>, was_in_camera: vec3<f32>) -> vec2<f32> {
     } else if v.kind == CUBEMAP && floor(image.y / width) != floor(was.image.y / width) {
         return vec2<f32>(0.0);
     }
+    // As by `cpu`: what was infinitely far outside the image has no flow.
+    if is_endless(flow.x) || is_endless(flow.y) {
+        return vec2<f32>(0.0);
+    }
     return flow;
 }
 
