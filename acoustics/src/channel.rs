@@ -2,7 +2,7 @@
 
 use crate::bands::{BAND_COUNT, Banded};
 use crate::directivity::Pattern;
-use crate::head::{Ear, SphericalHead};
+use crate::head::{Heads, WornEar};
 use crate::receiver::{Receiver, ReceiverKind};
 use glam::{Quat, Vec3};
 use realfft::num_complex::Complex;
@@ -38,8 +38,8 @@ impl Delay {
 pub(crate) enum Channel {
     /// Everything alike.
     Omni,
-    /// An ear on a sphere and the direction it points to.
-    Ear(Vec3),
+    /// An ear of a head.
+    Ear(WornEar),
     /// A microphone off the centre, with its axis.
     Microphone {
         offset: Vec3,
@@ -55,15 +55,12 @@ pub(crate) enum Channel {
 
 impl Channel {
     /// The channels of a receiver, in order.
-    pub(crate) fn of(receiver: &Receiver, speed_m_s: f64) -> Vec<Self> {
+    pub(crate) fn of(receiver: &Receiver, heads: &Heads, speed_m_s: f64) -> Vec<Self> {
         let rotation = receiver.pose.rotation;
         match &receiver.kind {
             ReceiverKind::Omni => vec![Self::Omni],
-            ReceiverKind::Binaural => {
-                let ears = Ear::BOTH.iter();
-                ears.map(|ear| Self::Ear(rotation * ear.axis_in_head()))
-                    .collect()
-            }
+            ReceiverKind::Binaural => heads.ears(None, rotation).map(Self::Ear).into(),
+            ReceiverKind::Head(id) => heads.ears(Some(*id), rotation).map(Self::Ear).into(),
             ReceiverKind::Array(microphones) => microphones
                 .iter()
                 .map(|microphone| {
@@ -85,11 +82,11 @@ impl Channel {
     }
 
     /// How it hears a wave that comes from `towards`, unit length, world.
-    pub(crate) fn hear(&self, head: &SphericalHead, speed_m_s: f64, towards: Vec3) -> Heard {
+    pub(crate) fn hear(&self, speed_m_s: f64, towards: Vec3) -> Heard {
         let (gain, delay) = match self {
             Self::Omni => ([1.0; BAND_COUNT], Delay::None),
-            Self::Ear(axis) => {
-                let (gain, delay) = head.banded(f64::from(axis.dot(towards)));
+            Self::Ear(ear) => {
+                let (gain, delay) = ear.banded(towards);
                 (gain, Delay::Banded(delay))
             }
             Self::Microphone {
@@ -120,18 +117,13 @@ impl Channel {
     /// the receiver's centre, s.
     pub(crate) fn shade(
         &self,
-        head: &SphericalHead,
         speed_m_s: f64,
         towards: Vec3,
         spectrum: &mut [Complex<f32>],
     ) -> f64 {
         match self {
             Self::Omni | Self::Harmonic { .. } => 0.0,
-            Self::Ear(axis) => {
-                let cosine = f64::from(axis.dot(towards));
-                head.shade(cosine, spectrum);
-                head.delay_s(cosine)
-            }
+            Self::Ear(ear) => ear.shade(towards, spectrum),
             Self::Microphone { offset, .. } => -f64::from(offset.dot(towards)) / speed_m_s,
         }
     }

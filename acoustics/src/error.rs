@@ -60,6 +60,15 @@ pub enum AcousticsError {
         /// What is allowed.
         allowed: String,
     },
+    /// A measurement that is no head.
+    #[error("the head's responses: {0}")]
+    Head(String),
+    /// A receiver wears a head that the scene was not given.
+    #[error("the receiver wears head {id}, which the scene does not know: add it first")]
+    UnknownHead {
+        /// Its number.
+        id: u64,
+    },
     /// A buffer has the wrong length.
     #[error("{at}: expected {expected} samples, found {found}")]
     Buffer {

@@ -57,6 +57,7 @@ pub use directivity::Directivity;
 pub use echogram::{Echogram, Histogram, Path, TraceStatistics};
 pub use error::AcousticsError;
 pub use explain::{Explanation, MaterialRow};
+pub use head::{Head, HeadId};
 pub use images::{EarlyPath, NEAREST_M};
 pub use planes::{NO_PLANE, Plane, PlaneTable};
 pub use receiver::{MOST_MICROPHONES, Microphone, Receiver, ReceiverKind, Source};

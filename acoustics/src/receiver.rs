@@ -2,6 +2,7 @@
 
 use crate::directivity::Directivity;
 use crate::error::{AcousticsError, finite, range};
+use crate::head::HeadId;
 use dwell_scene::Pose;
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
@@ -83,8 +84,10 @@ impl Microphone {
 pub enum ReceiverKind {
     /// A small microphone that hears equally from all directions: one channel.
     Omni,
-    /// Two ears on a rigid sphere (forward -Z, left -X): channel 0 left, channel 1 right.
+    /// Two ears on the scene's built-in sphere (forward -Z, left -X): channel 0 left, channel 1 right.
     Binaural,
+    /// Two ears on a head that the scene was given: channel 0 left, channel 1 right.
+    Head(HeadId),
     /// Microphones around a centre: a channel each, in their order. All hear one sound field, so that their differences are
     /// those of a real array, early and late.
     Array(Vec<Microphone>),
@@ -125,6 +128,15 @@ impl Receiver {
         }
     }
 
+    /// Another head than the built-in one at a pose;
+    /// [`AcousticScene::add_head`](crate::AcousticScene::add_head) makes it known.
+    pub const fn wearing(head: HeadId, world_from_head: Pose) -> Self {
+        Self {
+            pose: world_from_head,
+            kind: ReceiverKind::Head(head),
+        }
+    }
+
     /// Microphones around a pose.
     pub const fn array(world_from_array: Pose, microphones: Vec<Microphone>) -> Self {
         Self {
@@ -150,7 +162,7 @@ impl Receiver {
     pub fn channels(&self) -> usize {
         match &self.kind {
             ReceiverKind::Omni => 1,
-            ReceiverKind::Binaural => 2,
+            ReceiverKind::Binaural | ReceiverKind::Head(_) => 2,
             ReceiverKind::Array(microphones) => microphones.len(),
             ReceiverKind::Ambisonics { order } => (usize::from(*order) + 1).pow(2),
         }
@@ -198,7 +210,7 @@ impl Receiver {
         finite("the receiver", self.pose.position)?;
         turned("the receiver", self.pose.rotation)?;
         match &self.kind {
-            ReceiverKind::Omni | ReceiverKind::Binaural => Ok(()),
+            ReceiverKind::Omni | ReceiverKind::Binaural | ReceiverKind::Head(_) => Ok(()),
             ReceiverKind::Ambisonics { order } => range(
                 AT,
                 "order",

@@ -5,6 +5,7 @@ use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, Path};
 use crate::error::{AcousticsError, finite};
 use crate::explain::Explanation;
+use crate::head::{Head, Heads};
 use crate::laws::{self, Effects, stage::Listener};
 use crate::microphones::Microphones;
 use crate::planes::{Plane, PlaneTable};
@@ -89,6 +90,7 @@ pub struct AcousticScene {
     laws: Vec<LawSpec>,
     table: Arc<PlaneTable>,
     synthesizer: Arc<Synthesizer>,
+    heads: Arc<Heads>,
     /// Where all planes are now.
     planes: Vec<Plane>,
     /// Where the moving parts are now. Shape (moving part,).
@@ -116,6 +118,7 @@ impl AcousticScene {
                 .map(|id| Surface::new(&house, None, id))
                 .collect(),
             synthesizer: Arc::new(Synthesizer::new(&config)),
+            heads: Arc::new(Heads::new(&config)),
             overrides: BTreeMap::new(),
             stated: config,
             effects: Effects::default(),
@@ -148,7 +151,14 @@ impl AcousticScene {
         self.effects = effects;
         if self.config.air != before {
             // Ears are as far apart as sound is slow.
-            self.synthesizer = Arc::new(Synthesizer::new(&self.config));
+            self.heads = Arc::new(self.heads.in_air(&self.config));
+        }
+    }
+
+    /// One more head that receivers of this scene may wear ([`Receiver::wearing`]). A head that is known already costs nothing.
+    pub fn add_head(&mut self, head: &Head) {
+        if !self.heads.knows(head.id()) {
+            Arc::make_mut(&mut self.heads).add(head);
         }
     }
 
@@ -326,7 +336,8 @@ impl AcousticScene {
     /// a recording of the impulse.
     ///
     /// # Errors
-    /// As [`Self::echogram`], and [`AcousticsError::Range`] for a receiver or directivity out of range.
+    /// As [`Self::echogram`], [`AcousticsError::Range`] for a receiver or directivity out of range, and
+    /// [`AcousticsError::UnknownHead`].
     ///
     /// # Determinism
     /// Equal scene, points and key give equal bits for any number of threads.
@@ -368,7 +379,8 @@ impl AcousticScene {
     /// The impulse response that belongs to an echogram: another turn of the head needs no new rays. Laws of microphones act as
     /// in [`Self::impulse_response`].
     ///
-    /// The microphones of an array hear the centre's early paths as plane waves here.
+    /// The microphones of an array hear the centre's early paths as plane waves here. A head that the scene does not know is
+    /// heard as the built-in one.
     pub fn respond(&self, echogram: Echogram, receiver: &Receiver, key: Key) -> ImpulseResponse {
         self.record(self.arrive(echogram, receiver, None, key), receiver, key)
     }
@@ -393,11 +405,17 @@ impl AcousticScene {
     ) -> Listener<'a> {
         Listener {
             receiver,
-            head: self.synthesizer.head(),
+            heads: &self.heads,
             speed_m_s: self.config.air.speed_of_sound_m_s(),
             room,
             own,
         }
+    }
+
+    /// Whether a receiver is in range, and its head known.
+    pub(crate) fn check_receiver(&self, receiver: &Receiver) -> Result<(), AcousticsError> {
+        receiver.check()?;
+        self.heads.check(receiver)
     }
 
     /// The impulse responses up to the microphones, without their laws. Shape (receiver,).
@@ -409,7 +427,9 @@ impl AcousticScene {
         key: Key,
         threads: Threads,
     ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
-        receivers.iter().try_for_each(Receiver::check)?;
+        for receiver in receivers {
+            self.check_receiver(receiver)?;
+        }
         let centres: Vec<Vec3> = receivers.iter().map(Receiver::position).collect();
         let echograms = self.echograms(rays, source, &centres, key, threads)?;
         Ok(threads.map(receivers.len(), |k| {
@@ -438,7 +458,9 @@ impl AcousticScene {
         ImpulseResponse {
             channels: receiver.channels(),
             rate_hz: self.config.rate_hz,
-            samples: self.synthesizer.render(&echogram, receiver, early, key),
+            samples: self
+                .synthesizer
+                .render(&echogram, receiver, &self.heads, early, key),
             echogram,
         }
     }

@@ -1,15 +1,26 @@
-//! Two ears on a rigid sphere.
+//! Heads: what they do to sound before it is at the ears.
+//!
+//! A [`Head`] is a rigid sphere or what was measured on a person or a manikin. A scene has a built-in sphere, and every other head
+//! that was given to it by [`AcousticScene::add_head`](crate::AcousticScene::add_head); receivers name theirs by its [`HeadId`].
 
+mod measured;
 mod series;
+mod sphere;
+mod worn;
 
+pub use measured::{About, Measurement};
 pub(crate) use series::sphere_response;
+pub use sphere::woodworth_delay_s;
+pub(crate) use worn::{Heads, WornEar};
 
-use crate::bands::{self, BAND_COUNT, Banded};
-use realfft::num_complex::Complex;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
-/// Angles of incidence in the table: every 3 degrees.
-const ANGLES: usize = 61;
+use crate::error::{AcousticsError, range};
+use measured::{MeasuredHead, Responses};
+use serde::{Deserialize, Serialize};
+use sphere::SphericalHead;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+use xxhash_rust::xxh3::xxh3_64;
 
 /// Left or right; the channel order of everything binaural.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,156 +44,118 @@ impl Ear {
     }
 }
 
-/// When a wave from far away reaches a point on a sphere, s, against when it would pass the centre.
-///
-/// # Source
-/// R. S. Woodworth, H. Schlosberg, *Experimental Psychology* (1954): straight on the lit side, along the great circle on
-/// the other. The difference of two ears is (a/c)(theta + sin theta).
-pub fn woodworth_delay_s(cos_incidence: f64, radius_m: f64, speed_m_s: f64) -> f64 {
-    let cos = cos_incidence.clamp(-1.0, 1.0);
-    let way = if cos >= 0.0 {
-        -cos
-    } else {
-        libm::acos(cos) - FRAC_PI_2
-    };
-    way * radius_m / speed_m_s
+/// Names a head by what it is: equal heads have equal ids, in every process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct HeadId(pub u64);
+
+/// A head that a receiver can wear. A clone is the same head.
+#[derive(Clone)]
+pub struct Head {
+    id: HeadId,
+    shape: Shape,
 }
 
-/// What a spherical head does to sound, tabulated over the angle of incidence.
-///
-/// The exact response is split into the delay of [`woodworth_delay_s`], which paths carry with sub-sample precision, and a
-/// smooth rest: head shadow, the doubling on the near side, and the longer delay of long waves.
-#[derive(Debug)]
-pub struct SphericalHead {
-    radius_m: f64,
-    speed_m_s: f64,
-    /// The rest at each bin of the path filters. Shape (angle, bin).
-    rest: Vec<Vec<Complex<f32>>>,
-    /// Gain of amplitude in each band. Shape (angle, band).
-    gain: Vec<Banded>,
-    /// Whole delay in each band, s. Shape (angle, band).
-    delay_s: Vec<Banded>,
+#[derive(Clone)]
+enum Shape {
+    Sphere { radius_m: f64 },
+    Measured(Arc<Measured>),
 }
 
-fn angle_of(index: usize) -> f64 {
-    PI * index as f64 / (ANGLES - 1) as f64
+/// What was measured, and its tables by sample rate (Hz) and number of bins.
+struct Measured {
+    responses: Responses,
+    tables: Mutex<BTreeMap<(u64, usize), Arc<MeasuredHead>>>,
 }
 
-impl SphericalHead {
-    /// A head of `radius_m` in air with `speed_m_s`, for spectra of `bins` values up to half of `rate_hz`.
-    pub fn new(radius_m: f64, speed_m_s: f64, rate_hz: f64, bins: usize) -> Self {
-        let cosines: Vec<f64> = (0..ANGLES).map(|k| libm::cos(angle_of(k))).collect();
-        let advance: Vec<f64> = cosines
-            .iter()
-            .map(|cos| woodworth_delay_s(*cos, radius_m, speed_m_s))
-            .collect();
-        let response = |frequency_hz: f64| {
-            let omega = TAU * frequency_hz;
-            let mut values = sphere_response(omega * radius_m / speed_m_s, &cosines);
-            for (value, delay) in values.iter_mut().zip(&advance) {
-                let phase = omega * delay;
-                *value *= Complex::new(libm::cos(phase), libm::sin(phase));
+/// What a head does to sound, for one sample rate and one speed of sound.
+#[derive(Clone, Debug)]
+enum Tables {
+    Sphere(Arc<SphericalHead>),
+    Measured(Arc<MeasuredHead>),
+}
+
+impl Head {
+    /// A rigid sphere with ears at both ends of a diameter. `radius_m`: 0.03 to 0.2.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Range`].
+    ///
+    /// # Source
+    /// R. O. Duda, W. L. Martens, JASA 104, 3048 (1998).
+    pub fn sphere(radius_m: f64) -> Result<Self, AcousticsError> {
+        range("head", "radius_m", radius_m, (0.03, 0.2), "0.03 to 0.2")?;
+        let mut bytes = b"sphere".to_vec();
+        bytes.extend_from_slice(&radius_m.to_le_bytes());
+        Ok(Self {
+            id: HeadId(xxh3_64(&bytes)),
+            shape: Shape::Sphere { radius_m },
+        })
+    }
+
+    /// A head as it was measured; [`Measurement`] says how it is heard.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Head`] says what is wrong with the measurement.
+    ///
+    /// # Determinism
+    /// Equal measurements give equal bits.
+    pub fn measured(measurement: &Measurement) -> Result<Self, AcousticsError> {
+        let responses = Responses::new(measurement)?;
+        Ok(Self {
+            id: HeadId(measurement.hash()),
+            shape: Shape::Measured(Arc::new(Measured {
+                responses,
+                tables: Mutex::default(),
+            })),
+        })
+    }
+
+    /// Its name in receivers.
+    pub fn id(&self) -> HeadId {
+        self.id
+    }
+
+    /// What was found in the measurement; `None` for a sphere.
+    pub fn about(&self) -> Option<&About> {
+        match &self.shape {
+            Shape::Sphere { .. } => None,
+            Shape::Measured(measured) => Some(measured.responses.about()),
+        }
+    }
+
+    /// Tables for spectra of `bins` values up to half of `rate_hz`, in air with `speed_m_s`; those of a measurement are made once.
+    fn tables(&self, speed_m_s: f64, rate_hz: f64, bins: usize) -> Tables {
+        match &self.shape {
+            Shape::Sphere { radius_m } => {
+                let sphere = SphericalHead::new(*radius_m, speed_m_s, rate_hz, bins);
+                Tables::Sphere(Arc::new(sphere))
             }
-            values
+            Shape::Measured(measured) => {
+                let made = measured.tables.lock();
+                let mut made = made.unwrap_or_else(PoisonError::into_inner);
+                let tables = made
+                    .entry((rate_hz.to_bits(), bins))
+                    .or_insert_with(|| Arc::new(measured.responses.tables(rate_hz, bins)));
+                Tables::Measured(tables.clone())
+            }
+        }
+    }
+}
+
+impl PartialEq for Head {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+impl fmt::Debug for Head {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut name = f.debug_struct("Head");
+        name.field("id", &self.id);
+        match &self.shape {
+            Shape::Sphere { radius_m } => name.field("radius_m", radius_m),
+            Shape::Measured(measured) => name.field("about", measured.responses.about()),
         };
-        let mut rest = vec![vec![Complex::default(); bins]; ANGLES];
-        for bin in 0..bins {
-            let frequency_hz = 0.5 * rate_hz * bin as f64 / (bins - 1).max(1) as f64;
-            for (row, value) in rest.iter_mut().zip(response(frequency_hz)) {
-                row[bin] = Complex::new(value.re as f32, value.im as f32);
-            }
-        }
-        let mut gain = vec![[0.0; BAND_COUNT]; ANGLES];
-        let mut delay_s = vec![[0.0; BAND_COUNT]; ANGLES];
-        for band in 0..BAND_COUNT {
-            let frequency_hz = bands::exact_centre_hz(band);
-            for (k, value) in response(frequency_hz).into_iter().enumerate() {
-                gain[k][band] = value.norm() as f32;
-                delay_s[k][band] = (advance[k] - value.arg() / (TAU * frequency_hz)) as f32;
-            }
-        }
-        Self {
-            radius_m,
-            speed_m_s,
-            rest,
-            gain,
-            delay_s,
-        }
-    }
-
-    /// Place between two rows of the tables.
-    fn place(cos_incidence: f64) -> (usize, f32) {
-        let place = libm::acos(cos_incidence.clamp(-1.0, 1.0)) / PI * (ANGLES - 1) as f64;
-        let below = (place.floor() as usize).min(ANGLES - 2);
-        (below, (place - below as f64) as f32)
-    }
-
-    /// Delay of a path against the head's centre, s; negative on the near side.
-    pub fn delay_s(&self, cos_incidence: f64) -> f64 {
-        woodworth_delay_s(cos_incidence, self.radius_m, self.speed_m_s)
-    }
-
-    /// Multiplies a path's spectrum by what the delay leaves over.
-    pub(crate) fn shade(&self, cos_incidence: f64, spectrum: &mut [Complex<f32>]) {
-        let (below, way) = Self::place(cos_incidence);
-        let rows = self.rest[below].iter().zip(&self.rest[below + 1]);
-        for (value, (a, b)) in spectrum.iter_mut().zip(rows) {
-            *value *= a + (b - a) * way;
-        }
-    }
-
-    /// Gain of amplitude and delay against the head's centre (s) in each band.
-    pub(crate) fn banded(&self, cos_incidence: f64) -> (Banded, Banded) {
-        let (below, way) = Self::place(cos_incidence);
-        let mix = |table: &[Banded]| {
-            let (a, b) = (&table[below], &table[below + 1]);
-            std::array::from_fn(|band| a[band] + (b[band] - a[band]) * way)
-        };
-        (mix(&self.gain), mix(&self.delay_s))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// V17: Woodworth's differences for a radius of 8.75 cm, in microseconds.
-    #[test]
-    fn ear_delays_differ_as_woodworth_has_it() {
-        let printed = [
-            (30.0, 261.0),
-            (45.0, 381.0),
-            (60.0, 488.0),
-            (90.0, 655.0),
-            (120.0, 488.0),
-            (150.0, 261.0),
-        ];
-        for (azimuth_deg, microseconds) in printed {
-            let sin = libm::sin(f64::to_radians(azimuth_deg));
-            // The source stands to the left: the left ear's incidence has the positive cosine.
-            let left = woodworth_delay_s(sin, 0.0875, 343.2);
-            let right = woodworth_delay_s(-sin, 0.0875, 343.2);
-            assert!(
-                (1e6 * (right - left) - microseconds).abs() < 1.0,
-                "{azimuth_deg}"
-            );
-        }
-    }
-
-    #[test]
-    fn the_table_shades_the_far_ear_more_at_high_frequencies() {
-        let head = SphericalHead::new(0.0875, 343.2, 16_000.0, 257);
-        let (near, near_delay) = head.banded(1.0);
-        let (far, far_delay) = head.banded(-0.7);
-        assert!(
-            near[0] / far[0] < 1.02 && near[7] / far[7] > 3.0,
-            "{near:?} {far:?}"
-        );
-        // Long waves: 1.5 a/c (cos a - cos b); short waves near Woodworth.
-        let low = f64::from(far_delay[0] - near_delay[0]);
-        assert!((low - 1.5 * 0.0875 / 343.2 * 1.7).abs() < 10e-6, "{low}");
-        let high = f64::from(far_delay[6] - near_delay[6]);
-        let woodworth = head.delay_s(-0.7) - head.delay_s(1.0);
-        assert!((high - woodworth).abs() < 60e-6, "{high} {woodworth}");
+        name.finish_non_exhaustive()
     }
 }

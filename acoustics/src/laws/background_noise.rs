@@ -139,7 +139,7 @@ impl Field {
     /// A frame at every channel, under its window. Shape (channel, 2 hop).
     fn frame(&mut self, number: u64, listener: &Listener<'_>) -> Vec<Vec<f32>> {
         let key = listener.room.child("background noise").child(number);
-        let channels = Channel::of(listener.receiver, listener.speed_m_s);
+        let channels = Channel::of(listener.receiver, listener.heads, listener.speed_m_s);
         let bins = self.fft.bins();
         let mut spectra = vec![vec![Complex::new(0.0_f32, 0.0); bins]; channels.len()];
         let step = TAU * self.rate_hz / self.fft.len() as f64;
@@ -151,7 +151,7 @@ impl Field {
             let early_s = centre.dot(DVec3::from(from)) / listener.speed_m_s;
             let turns: Vec<f32> = (0..bins).map(|_| stream.uniform_f32()).collect();
             for (channel, spectrum) in channels.iter().zip(&mut spectra) {
-                let heard = channel.hear(listener.head, listener.speed_m_s, from);
+                let heard = channel.hear(listener.speed_m_s, from);
                 let (gain, delay_s) = (heard.gain, heard.delay.banded());
                 for (bin, value) in spectrum.iter_mut().enumerate() {
                     let amplitude = self.amplitude[bin];

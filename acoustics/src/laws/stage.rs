@@ -1,6 +1,6 @@
 //! What a law of microphones does to pressure, block by block.
 
-use crate::head::SphericalHead;
+use crate::head::Heads;
 use crate::receiver::Receiver;
 use dwell_scene::random::Key;
 use serde::{Deserialize, Serialize};
@@ -10,8 +10,8 @@ use std::fmt;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Listener<'a> {
     pub(crate) receiver: &'a Receiver,
-    /// What a head does to sound, if the receiver is one.
-    pub(crate) head: &'a SphericalHead,
+    /// What heads do to sound, if the receiver is one.
+    pub(crate) heads: &'a Heads,
     /// Of sound, m/s.
     pub(crate) speed_m_s: f64,
     /// What is random in the place, for all who listen there.

@@ -1,7 +1,7 @@
 //! What tests of laws share.
 
 use super::stage::Listener;
-use crate::head::SphericalHead;
+use crate::head::Heads;
 use crate::microphones::Microphones;
 use crate::receiver::Receiver;
 use dwell_scene::LawSpec;
@@ -28,12 +28,12 @@ pub(super) fn with_listener<T>(
     own: Key,
     then: impl FnOnce(&Listener<'_>) -> T,
 ) -> T {
-    static HEAD: std::sync::LazyLock<SphericalHead> =
-        std::sync::LazyLock::new(|| SphericalHead::new(0.0875, 343.2, RATE_HZ, 9));
-    let (head, room) = (&*HEAD, Key::root(room));
+    static HEADS: std::sync::LazyLock<Heads> =
+        std::sync::LazyLock::new(|| Heads::with_bins(0.0875, 343.2, RATE_HZ, 9));
+    let (heads, room) = (&*HEADS, Key::root(room));
     then(&Listener {
         receiver,
-        head,
+        heads,
         speed_m_s: 343.2,
         room,
         own,

@@ -170,7 +170,7 @@ impl Stream {
     ) -> Result<BlockReport, AcousticsError> {
         let size = self.config.block_samples;
         check_length("out", size * receiver.channels(), out.len())?;
-        receiver.check()?;
+        self.scene.check_receiver(receiver)?;
         for source in sources {
             check_length("a source's signal", size, source.signal.len())?;
             finite("a source", source.position)?;

@@ -7,6 +7,13 @@ use realfft::num_complex::Complex;
 /// Energies below this fraction of a path's strongest band are raised to it: -120 dB.
 const FLOOR: f32 = 1e-12;
 
+/// Time that the transforms of paths span, s.
+const SPAN_S: f64 = 0.032;
+
+fn transform_length(rate_hz: f64, span_s: f64) -> usize {
+    ((span_s * rate_hz) as usize).next_power_of_two()
+}
+
 /// Minimum-phase spectra for energies per band: the logarithm of the gain is interpolated between the bands.
 ///
 /// The logarithm of a minimum-phase spectrum is linear in the logarithm of the gain, so that a spectrum is one
@@ -21,12 +28,17 @@ pub(crate) struct PathFilters {
 impl PathFilters {
     /// Filters for `rate_hz`; their transforms span 32 ms.
     pub(crate) fn new(rate_hz: f64) -> Self {
-        Self::spanning(rate_hz, 0.032)
+        Self::spanning(rate_hz, SPAN_S)
+    }
+
+    /// Values of a spectrum of [`Self::new`].
+    pub(crate) fn bins_at(rate_hz: f64) -> usize {
+        transform_length(rate_hz, SPAN_S) / 2 + 1
     }
 
     /// Filters whose transforms span at least `span_s`.
     pub(crate) fn spanning(rate_hz: f64, span_s: f64) -> Self {
-        let mut fft = RealFft::new(((span_s * rate_hz) as usize).next_power_of_two());
+        let mut fft = RealFft::new(transform_length(rate_hz, span_s));
         let (length, bins) = (fft.len(), fft.bins());
         let basis = (0..BAND_COUNT)
             .map(|band| {

@@ -10,7 +10,7 @@ use crate::bands::{Banded, FilterBank};
 use crate::channel::Channel;
 use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, Path};
-use crate::head::SphericalHead;
+use crate::head::Heads;
 use crate::receiver::Receiver;
 use dwell_scene::random::Key;
 use fractional::Taps;
@@ -31,7 +31,6 @@ const EAR_LEAD_S: f64 = 0.001;
 pub(crate) struct Synthesizer {
     rate_hz: f64,
     filters: PathFilters,
-    head: SphericalHead,
     longest: usize,
     /// Filter banks for a quarter, half and all of the longest response, made when first needed.
     banks: [OnceLock<FilterBank>; 3],
@@ -41,19 +40,12 @@ impl Synthesizer {
     pub(crate) fn new(config: &AcousticConfig) -> Self {
         let rate_hz = f64::from(config.rate_hz);
         let filters = PathFilters::new(rate_hz);
-        let speed = config.air.speed_of_sound_m_s();
         Self {
-            head: SphericalHead::new(config.head_radius_m, speed, rate_hz, filters.bins()),
             longest: ((config.max_duration_s + 0.05) * rate_hz) as usize,
             banks: [const { OnceLock::new() }; 3],
             filters,
             rate_hz,
         }
-    }
-
-    /// What a head does to sound.
-    pub(crate) fn head(&self) -> &SphericalHead {
-        &self.head
     }
 
     fn bank(&self, length: usize) -> &FilterBank {
@@ -100,6 +92,7 @@ impl Synthesizer {
         &self,
         echogram: &Echogram,
         receiver: &Receiver,
+        heads: &Heads,
         early: Option<&[Vec<Path>]>,
         key: Key,
     ) -> Vec<f32> {
@@ -108,7 +101,7 @@ impl Synthesizer {
         if length == 0 {
             return out;
         }
-        let channels = Channel::of(receiver, echogram.speed_m_s);
+        let channels = Channel::of(receiver, heads, echogram.speed_m_s);
         let mut center = vec![0.0; length];
         self.add_paths(echogram, &echogram.paths, &Channel::Omni, true, &mut center);
         // Nothing may be heard before the straight way is over.
@@ -120,7 +113,6 @@ impl Synthesizer {
             rate_hz: self.rate_hz,
             length,
             quiet,
-            head: &self.head,
             bank: self.bank(length),
         };
         noise.add(&channels, &center, key, &mut out);
@@ -165,8 +157,8 @@ impl Synthesizer {
             if path.inverted != (gain.iter().sum::<f32>() < 0.0) {
                 amplitude = -amplitude;
             }
-            let (head, speed) = (&self.head, echogram.speed_m_s);
-            let mut delay_s = channel.shade(head, speed, path.arrival, &mut spectrum);
+            let speed = echogram.speed_m_s;
+            let mut delay_s = channel.shade(speed, path.arrival, &mut spectrum);
             if there {
                 delay_s = 0.0;
             }

@@ -5,7 +5,6 @@ use crate::bands::{BAND_COUNT, Banded, FilterBank};
 use crate::channel::{Channel, Delay};
 use crate::directions::Directions;
 use crate::echogram::Echogram;
-use crate::head::SphericalHead;
 use dwell_scene::random::{Key, Stream};
 use glam::Vec3;
 use std::sync::LazyLock;
@@ -26,7 +25,6 @@ pub(super) struct Noise<'a> {
     pub(super) length: usize,
     /// Samples at the start in which nothing may be heard.
     pub(super) quiet: usize,
-    pub(super) head: &'a SphericalHead,
     pub(super) bank: &'a FilterBank,
 }
 
@@ -67,7 +65,7 @@ impl Noise<'_> {
             }
             for arrival in &arrivals {
                 let place = ((arrival.time_s * self.rate_hz) as usize).min(self.length - 1);
-                let heard = channel.hear(self.head, speed, arrival.from);
+                let heard = channel.hear(speed, arrival.from);
                 let pulse: Banded = std::array::from_fn(|band| {
                     arrival.amplitude[band] * heard.gain[band] * levels[band].at(place)
                 });

@@ -1,0 +1,156 @@
+//! The sphere that a measured head resembles.
+
+use super::spectra::Waves;
+use crate::head::{Ear, sphere_response, woodworth_delay_s};
+use glam::DVec3;
+use realfft::num_complex::Complex;
+use std::f64::consts::TAU;
+
+/// Of sound in the rooms where heads are measured, m/s.
+const SPEED_M_S: f64 = 343.2;
+/// Frequencies at which levels are compared, Hz: a head is small against their waves, and loudspeakers have them.
+const LEVELS_HZ: [f64; 5] = [200.0, 250.0, 315.0, 400.0, 500.0];
+/// Radii of heads, m.
+const RADII_M: (f64, f64) = (0.05, 0.15);
+/// A usual head's, where delays do not say, m.
+const USUAL_RADIUS_M: f64 = 0.0875;
+/// Measured directions that speak for one that was not.
+const NEIGHBOURS: usize = 6;
+/// Directions within this of each other share their weight: the cosine of 10 degrees.
+const CLOSE_COSINE: f64 = 0.984_807_753;
+
+/// What a sphere has in common with a head.
+pub(super) struct Fit {
+    pub(super) radius_m: f64,
+    /// How much later all responses are than at the sphere, s.
+    pub(super) late_s: f64,
+    /// The part of the sphere that each direction stands for, up to a factor.
+    weights: Vec<f64>,
+}
+
+/// Measured directions and how much they count.
+pub(super) struct Weighed(pub(super) Vec<(usize, f64)>);
+
+impl Weighed {
+    /// Those next to a direction, by one over the square of the distance; they sum to 1.
+    pub(super) fn near(directions: &[DVec3], towards: DVec3) -> Self {
+        let mut all: Vec<(usize, f64)> = directions
+            .iter()
+            .map(|d| d.distance_squared(towards))
+            .enumerate()
+            .collect();
+        all.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        all.truncate(NEIGHBOURS);
+        for (_, x) in &mut all {
+            *x = 1.0 / x.max(1e-9);
+        }
+        let sum: f64 = all.iter().map(|(_, w)| w).sum();
+        for (_, x) in &mut all {
+            *x /= sum;
+        }
+        Self(all)
+    }
+}
+
+/// The cosine of the angle between a direction and an ear's axis.
+pub(super) fn cosine(direction: DVec3, ear: usize) -> f64 {
+    direction.dot(Ear::BOTH[ear].axis_in_head().as_dvec3())
+}
+
+impl Fit {
+    /// The radius and the common delay with the least squares between all delays and Woodworth's.
+    pub(super) fn new(directions: &[DVec3], delay_s: &[[f64; 2]]) -> Self {
+        let crowd = |d: &DVec3| {
+            let close = directions.iter().filter(|e| e.dot(*d) > CLOSE_COSINE);
+            1.0 / close.count().max(1) as f64
+        };
+        let weights: Vec<f64> = directions.iter().map(crowd).collect();
+        let of_unit = |k: usize, ear: usize| {
+            // For a radius of 1 m.
+            woodworth_delay_s(cosine(directions[k], ear), 1.0, SPEED_M_S)
+        };
+        let mean = |value: &dyn Fn(usize, usize) -> f64| {
+            let (mut sum, mut all) = (0.0, 0.0);
+            for (k, weight) in weights.iter().enumerate() {
+                for ear in 0..2 {
+                    sum += weight * value(k, ear);
+                    all += weight;
+                }
+            }
+            sum / all
+        };
+        let (x, y) = (mean(&of_unit), mean(&|k, ear| delay_s[k][ear]));
+        let xx = mean(&|k, ear| (of_unit(k, ear) - x) * (of_unit(k, ear) - x));
+        let xy = mean(&|k, ear| (of_unit(k, ear) - x) * (delay_s[k][ear] - y));
+        // Directions in the median plane alone say nothing about the radius.
+        let radius_m = if xx * SPEED_M_S * SPEED_M_S > 1e-3 {
+            (xy / xx).clamp(RADII_M.0, RADII_M.1)
+        } else {
+            USUAL_RADIUS_M
+        };
+        Self {
+            radius_m,
+            late_s: y - radius_m * x,
+            weights,
+        }
+    }
+
+    /// The delay of a wave at the sphere, s.
+    fn delay_s(&self, direction: DVec3, ear: usize) -> f64 {
+        woodworth_delay_s(cosine(direction, ear), self.radius_m, SPEED_M_S)
+    }
+
+    /// The gain that makes the energy of all responses at low frequencies that at the sphere.
+    pub(super) fn gain(
+        &self,
+        directions: &[DVec3],
+        responses: &[[Vec<f32>; 2]],
+        rate_hz: f64,
+        samples: usize,
+    ) -> f64 {
+        let waves = Waves::new(&LEVELS_HZ, rate_hz, samples);
+        let (mut sphere, mut head) = (0.0, 0.0);
+        for ((direction, pair), weight) in directions.iter().zip(responses).zip(&self.weights) {
+            for (ear, response) in pair.iter().enumerate() {
+                for (frequency_hz, value) in LEVELS_HZ.iter().zip(waves.of(response)) {
+                    let there = self.response(*frequency_hz, &[cosine(*direction, ear)]);
+                    sphere += weight * there[0].norm_sqr();
+                    head += weight * f64::from(value.norm_sqr());
+                }
+            }
+        }
+        (sphere / head.max(1e-30)).sqrt()
+    }
+
+    /// Pressure at the sphere over that at its centre without it. Shape (cosine,).
+    fn response(&self, frequency_hz: f64, cosines: &[f64]) -> Vec<Complex<f64>> {
+        response_of(self.radius_m, frequency_hz, cosines)
+    }
+
+    /// The delays from a direction that was not measured: the sphere's, and by how much those nearby differ from it, s.
+    pub(super) fn filled_delay_s(
+        &self,
+        directions: &[DVec3],
+        delay_s: &[[f64; 2]],
+        near: &Weighed,
+        towards: DVec3,
+    ) -> [f64; 2] {
+        [0, 1].map(|ear| {
+            let differs = |(k, weight): &(usize, f64)| {
+                weight * (delay_s[*k][ear] - self.delay_s(directions[*k], ear))
+            };
+            self.delay_s(towards, ear) + near.0.iter().map(differs).sum::<f64>()
+        })
+    }
+}
+
+/// Pressure at a sphere, with the delay of [`woodworth_delay_s`] still in it. Shape (cosine,).
+pub(super) fn response_of(radius_m: f64, frequency_hz: f64, cosines: &[f64]) -> Vec<Complex<f64>> {
+    sphere_response(TAU * frequency_hz * radius_m / SPEED_M_S, cosines)
+}
+
+/// The phase that takes Woodworth's delay out of [`response_of`].
+pub(super) fn undelayed(radius_m: f64, frequency_hz: f64, cosine: f64) -> Complex<f64> {
+    let phase = TAU * frequency_hz * woodworth_delay_s(cosine, radius_m, SPEED_M_S);
+    Complex::new(libm::cos(phase), libm::sin(phase))
+}

@@ -1,0 +1,143 @@
+//! Heads that were measured: from responses to tables.
+//!
+//! - `measurement`: what comes in, checked; `onset`: when each response begins; `spectra`: responses at any frequencies.
+//! - `fit`: the sphere that a head resembles, which gives level, time and what was not measured.
+//! - `hull`: triangles between directions; `tables`: what is heard from any direction.
+
+mod fit;
+mod hull;
+mod measurement;
+mod onset;
+mod spectra;
+mod tables;
+
+pub use measurement::Measurement;
+pub(crate) use tables::MeasuredHead;
+
+use crate::error::AcousticsError;
+use fit::{Fit, Weighed};
+use glam::DVec3;
+use hull::Triangulation;
+use measurement::SAME;
+use onset::Onsets;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// How long a head rings after its onset, s; what is later is the room's.
+const RINGING_S: f64 = 0.010;
+/// The end of the ringing over which it fades, s.
+const FADE_S: f64 = 0.002;
+/// Farther than this from every measured direction, a sphere takes over: the cosine of 25 degrees.
+const GAP_COSINE: f64 = 0.906_307_787;
+/// Directions that are looked at for gaps.
+const FILLERS: usize = 240;
+
+/// What was found in a measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct About {
+    /// Different directions.
+    pub directions: usize,
+    /// Directions that were filled in because nothing was measured within 25 degrees.
+    pub filled: usize,
+    /// Of the sphere whose delays are nearest to those of the ears, m.
+    pub radius_m: f64,
+    /// The gain by which all responses were changed, dB.
+    pub gain_db: f64,
+    /// What was taken off all delays, s: the way from the measurement's loudspeaker, and its own delay.
+    pub removed_delay_s: f64,
+}
+
+/// A measurement ready to be tabulated at any rate.
+pub(crate) struct Responses {
+    about: About,
+    rate_hz: f64,
+    samples: usize,
+    /// Unit vectors in head space, first those that were measured, then those filled in.
+    directions: Vec<DVec3>,
+    mesh: Arc<Triangulation>,
+    /// Responses, cut and scaled. Shape (measured direction, ear).
+    pressure: Vec<[Vec<f32>; 2]>,
+    /// When each begins after its first sample, s. Shape (measured direction, ear).
+    begin_s: Vec<[f64; 2]>,
+    /// Of a wave against the head's centre, s. Shape (direction, ear).
+    delay_s: Vec<[f64; 2]>,
+}
+
+impl Responses {
+    pub(super) fn new(measurement: &Measurement) -> Result<Self, AcousticsError> {
+        let rows = measurement.rows()?;
+        let rate_hz = measurement.rate_hz;
+        let mut onsets = Onsets::new(rate_hz);
+        let mut responses = Vec::with_capacity(rows.len());
+        let (mut begins_s, mut delay_s) = (Vec::new(), Vec::new());
+        for row in &rows {
+            let begin_s = row.responses.map(|response| onsets.of(response));
+            responses.push([0, 1].map(|ear| cut(row.responses[ear], begin_s[ear], rate_hz)));
+            delay_s.push([0, 1].map(|ear| row.delay_s[ear] + begin_s[ear]));
+            begins_s.push(begin_s);
+        }
+        let mut directions: Vec<DVec3> = rows.iter().map(|row| row.direction).collect();
+        let fit = Fit::new(&directions, &delay_s);
+        for late_s in delay_s.iter_mut().flatten() {
+            *late_s -= fit.late_s;
+        }
+        let samples = responses.iter().flatten().map(Vec::len).max().unwrap_or(0);
+        let gain = fit.gain(&directions, &responses, rate_hz, samples);
+        for x in responses.iter_mut().flatten().flatten() {
+            *x *= gain as f32;
+        }
+        let measured = directions.len();
+        for k in 0..FILLERS {
+            let direction = crate::tail::fibonacci_direction(k, FILLERS).as_dvec3();
+            let direction = direction / direction.length();
+            let nearest = directions[..measured].iter().map(|d| d.dot(direction));
+            if nearest.fold(-1.0, f64::max) < GAP_COSINE {
+                let near = Weighed::near(&directions[..measured], direction);
+                delay_s.push(fit.filled_delay_s(&directions, &delay_s, &near, direction));
+                directions.push(direction);
+            }
+        }
+        let Some(mesh) = Triangulation::new(&directions) else {
+            // Cannot be: what is filled in leaves no gap, and no two are as near as this.
+            return Err(AcousticsError::Head(format!(
+                "directions {SAME} apart cannot be joined to triangles"
+            )));
+        };
+        tracing::debug!(measured, triangles = mesh.len(), "measured head read");
+        Ok(Self {
+            about: About {
+                directions: measured,
+                filled: directions.len() - measured,
+                radius_m: fit.radius_m,
+                gain_db: 20.0 * libm::log10(gain),
+                removed_delay_s: fit.late_s,
+            },
+            rate_hz,
+            samples,
+            directions,
+            mesh: Arc::new(mesh),
+            pressure: responses,
+            begin_s: begins_s,
+            delay_s,
+        })
+    }
+
+    pub(super) fn about(&self) -> &About {
+        &self.about
+    }
+}
+
+/// A response up to the end of its ringing.
+fn cut(response: &[f32], begin_s: f64, rate_hz: f64) -> Vec<f32> {
+    let samples = |time_s: f64| (time_s.max(0.0) * rate_hz) as usize;
+    let end = samples(begin_s + RINGING_S).clamp(1, response.len());
+    let mut kept = response[..end].to_vec();
+    if end < response.len() {
+        let fade = samples(FADE_S).min(end);
+        for (k, x) in kept[end - fade..].iter_mut().enumerate() {
+            let turn = std::f64::consts::PI * (k + 1) as f64 / (fade + 1) as f64;
+            *x *= (0.5 + 0.5 * libm::cos(turn)) as f32;
+        }
+    }
+    kept
+}

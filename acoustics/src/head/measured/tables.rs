@@ -1,0 +1,241 @@
+//! What is heard from any direction.
+
+use super::Responses;
+use super::fit::{Weighed, cosine, response_of, undelayed};
+use super::hull::Triangulation;
+use super::spectra::{Waves, modulus};
+use crate::bands::{self, BAND_COUNT, Banded};
+use crate::head::Ear;
+use glam::{DVec3, Vec3};
+use realfft::num_complex::Complex;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// From the first to the second, the measured response takes over from that of no head, Hz.
+const BASS_HZ: (f64, f64) = (80.0, 160.0);
+/// Highest frequency that is taken from a measurement, over its sample rate.
+const HIGHEST: f64 = 0.46;
+
+/// A measured head at one sample rate.
+#[derive(Debug)]
+pub(crate) struct MeasuredHead {
+    mesh: Arc<Triangulation>,
+    /// Shape (direction, ear).
+    rows: Vec<[Row; 2]>,
+}
+
+/// What an ear hears from a direction of the table.
+#[derive(Debug)]
+struct Row {
+    /// Against the head's centre, s.
+    delay_s: f64,
+    /// What the delay leaves over. Shape (bin,).
+    rest: Vec<Complex<f32>>,
+    /// Gain of amplitude and whole delay (s) in each band.
+    gain: Banded,
+    late_s: Banded,
+}
+
+impl Responses {
+    /// Tables for spectra of `bins` values up to half of `rate_hz`.
+    pub(in crate::head) fn tables(&self, rate_hz: f64, bins: usize) -> MeasuredHead {
+        let step_hz = 0.5 * rate_hz / (bins - 1).max(1) as f64;
+        let frequencies: Vec<f64> = (0..bins).map(|bin| bin as f64 * step_hz).collect();
+        let highest_hz = HIGHEST * self.rate_hz;
+        let heard: Vec<f64> = frequencies.iter().map(|f| f.min(highest_hz)).collect();
+        let waves = Waves::new(&heard, self.rate_hz, self.samples);
+        let shares: Vec<[f64; BAND_COUNT]> = frequencies
+            .iter()
+            .map(|f| bands::power_shares(*f, 1.0))
+            .collect();
+        let finish = |delay_s: f64, rest: Vec<Complex<f32>>| {
+            let gain = band_gains(&rest, &shares);
+            let late_s = band_delays(&rest, step_hz, delay_s);
+            Row {
+                delay_s,
+                rest,
+                gain,
+                late_s,
+            }
+        };
+        let measured = self.pressure.len();
+        let mut rows: Vec<[Row; 2]> = Vec::with_capacity(self.directions.len());
+        for (k, pair) in self.pressure.iter().enumerate() {
+            rows.push([0, 1].map(|ear| {
+                let delay_s = self.delay_s[k][ear];
+                let early_s = self.begin_s[k][ear];
+                let mut rest = waves.of(&pair[ear]);
+                for (value, frequency_hz) in rest.iter_mut().zip(&heard) {
+                    let turns = frequency_hz * early_s;
+                    let (s, c) = libm::sincos(TAU * (turns - turns.floor()));
+                    *value *= Complex::new(c as f32, s as f32);
+                }
+                without_bass(&mut rest, &frequencies);
+                finish(delay_s, rest)
+            }));
+        }
+        let radius_m = self.about.radius_m;
+        for (k, direction) in self.directions.iter().enumerate().skip(measured) {
+            let near = Weighed::near(&self.directions[..measured], *direction);
+            let pair = [0, 1].map(|ear| {
+                let like = |k: &usize| &rows[*k][ear].rest;
+                let rest = filled(
+                    &self.directions,
+                    &near,
+                    like,
+                    *direction,
+                    ear,
+                    radius_m,
+                    &frequencies,
+                );
+                finish(self.delay_s[k][ear], rest)
+            });
+            rows.push(pair);
+        }
+        MeasuredHead {
+            mesh: self.mesh.clone(),
+            rows,
+        }
+    }
+}
+
+/// The rest of a sphere towards a direction, with the levels by which those nearby differ from theirs.
+fn filled<'a>(
+    directions: &[DVec3],
+    near: &Weighed,
+    rest_of: impl Fn(&usize) -> &'a Vec<Complex<f32>>,
+    towards: DVec3,
+    ear: usize,
+    radius_m: f64,
+    frequencies: &[f64],
+) -> Vec<Complex<f32>> {
+    let own = cosine(towards, ear);
+    let mut cosines = vec![own];
+    cosines.extend(near.0.iter().map(|(k, _)| cosine(directions[*k], ear)));
+    let log = |x: f64| libm::log(x.max(1e-12));
+    frequencies
+        .iter()
+        .enumerate()
+        .map(|(bin, frequency_hz)| {
+            let sphere = response_of(radius_m, *frequency_hz, &cosines);
+            let differs: f64 = near
+                .0
+                .iter()
+                .zip(&sphere[1..])
+                .map(|((k, weight), there)| {
+                    let found = f64::from(modulus(rest_of(k)[bin]));
+                    weight * (log(found) - 0.5 * log(there.norm_sqr()))
+                })
+                .sum();
+            let rest = sphere[0] * undelayed(radius_m, *frequency_hz, own) * libm::exp(differs);
+            Complex::new(rest.re as f32, rest.im as f32)
+        })
+        .collect()
+}
+
+/// Takes the level to nothing below [`BASS_HZ`], and lets the phase go on as a delay.
+fn without_bass(rest: &mut [Complex<f32>], frequencies: &[f64]) {
+    let (low, high) = BASS_HZ;
+    let angle = |value: &Complex<f32>| libm::atan2f(value.im, value.re);
+    let first = frequencies.partition_point(|f| *f < high);
+    let Some(value) = rest.get(first) else {
+        return;
+    };
+    let per_hz = angle(value) / frequencies[first] as f32;
+    for (value, frequency_hz) in rest[..first].iter_mut().zip(frequencies) {
+        let octaves = libm::log2(frequency_hz.max(1.0) / low) / libm::log2(high / low);
+        let sine = libm::sin(std::f64::consts::FRAC_PI_2 * octaves.clamp(0.0, 1.0));
+        let own = (sine * sine) as f32;
+        let level = libm::expf(own * libm::logf(modulus(*value).max(1e-6)));
+        let (s, c) =
+            libm::sincosf(own * angle(value) + (1.0 - own) * per_hz * *frequency_hz as f32);
+        *value = Complex::new(level * c, level * s);
+    }
+}
+
+/// The root of the mean energy in each band.
+fn band_gains(rest: &[Complex<f32>], shares: &[[f64; BAND_COUNT]]) -> Banded {
+    std::array::from_fn(|band| {
+        let (mut sum, mut all) = (0.0, 0.0);
+        for (value, share) in rest.iter().zip(shares) {
+            sum += share[band] * f64::from(value.norm_sqr());
+            all += share[band];
+        }
+        if all > 0.0 {
+            (sum / all).sqrt() as f32
+        } else {
+            1.0
+        }
+    })
+}
+
+/// The delay of a wave at each band's centre, s: that of the whole, and that of the phase of the rest.
+fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64) -> Banded {
+    // The phase without jumps, from 0 Hz on.
+    let mut phase = Vec::with_capacity(rest.len());
+    let mut last = 0.0_f64;
+    for value in rest {
+        let principal = f64::from(libm::atan2f(value.im, value.re));
+        last = principal - TAU * ((principal - last) / TAU).round();
+        phase.push(last);
+    }
+    std::array::from_fn(|band| {
+        let place = bands::exact_centre_hz(band) / step_hz;
+        let below = (place as usize).min(phase.len().saturating_sub(2));
+        let way = place - below as f64;
+        if below + 1 >= phase.len() || way > 1.0 {
+            // Above half of the sample rate.
+            return delay_s as f32;
+        }
+        let there = phase[below] + (phase[below + 1] - phase[below]) * way;
+        (delay_s - there / (TAU * bands::exact_centre_hz(band))) as f32
+    })
+}
+
+impl MeasuredHead {
+    /// The rows around a direction of an ear, and their weights.
+    fn around(&self, ear: Ear, towards: Vec3) -> ([&Row; 3], [f32; 3]) {
+        let (corners, weights) = self.mesh.locate(towards);
+        let ear = match ear {
+            Ear::Left => 0,
+            Ear::Right => 1,
+        };
+        (corners.map(|k| &self.rows[k as usize][ear]), weights)
+    }
+
+    /// Gain of amplitude and delay against the head's centre (s) in each band, from `towards` in head space.
+    pub(in crate::head) fn banded(&self, ear: Ear, towards: Vec3) -> (Banded, Banded) {
+        let ([a, b, c], [u, v, w]) = self.around(ear, towards);
+        let mix = |of: fn(&Row) -> &Banded| {
+            let (a, b, c) = (of(a), of(b), of(c));
+            std::array::from_fn(|band| u * a[band] + v * b[band] + w * c[band])
+        };
+        (mix(|row| &row.gain), mix(|row| &row.late_s))
+    }
+
+    /// Multiplies a spectrum by what the delay leaves over, and returns the delay against the head's centre, s.
+    pub(in crate::head) fn shade(
+        &self,
+        ear: Ear,
+        towards: Vec3,
+        spectrum: &mut [Complex<f32>],
+    ) -> f64 {
+        let ([a, b, c], [u, v, w]) = self.around(ear, towards);
+        let rests = a.rest.iter().zip(&b.rest).zip(&c.rest);
+        for (value, ((a, b), c)) in spectrum.iter_mut().zip(rests) {
+            // Phases that differ must not take away level.
+            let mean = a * u + b * v + c * w;
+            let size = modulus(*a) * u + modulus(*b) * v + modulus(*c) * w;
+            let found = modulus(mean);
+            *value *= if found > 0.0 {
+                mean * (size / found)
+            } else {
+                Complex::new(size, 0.0)
+            };
+        }
+        let delays = [a, b, c].into_iter().zip([u, v, w]);
+        delays
+            .map(|(row, weight)| f64::from(weight) * row.delay_s)
+            .sum()
+    }
+}
