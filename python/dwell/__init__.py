@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from dwell.calibration import calibrate
     from dwell.camera import Camera
     from dwell.envs import register_envs
+    from dwell.heads import Head
     from dwell.house import House
     from dwell.listening import Microphone, Receiver, Source
     from dwell.navigation import Navigation, Walker
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
 _LAZY = {
     "AcousticScene": "dwell.acoustics",
     "Camera": "dwell.camera",
+    "Head": "dwell.heads",
     "House": "dwell.house",
     "Microphone": "dwell.listening",
     "Navigation": "dwell.navigation",
@@ -61,6 +63,7 @@ __all__ = [
     "ConfigError",
     "DwellError",
     "EngineBug",
+    "Head",
     "House",
     "HouseError",
     "HouseNotFoundError",

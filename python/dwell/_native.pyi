@@ -18,6 +18,7 @@ __all__ = [
     "ConfigError",
     "DwellError",
     "EngineBug",
+    "Head",
     "House",
     "HouseError",
     "HouseNotFoundError",
@@ -64,6 +65,25 @@ class MeasuredDataError(DwellError, ValueError): ...
 class EngineBug(DwellError, RuntimeError): ...
 
 @final
+class Head:
+    """A head that receivers and agents can wear."""
+
+    @staticmethod
+    def sphere(radius_m: float) -> Head: ...
+    @staticmethod
+    def measured(
+        sources: NDArray[np.float64],
+        responses: NDArray[np.float32],
+        rate_hz: float,
+        delays: NDArray[np.float64],
+    ) -> Head:
+        """Shapes (direction, 3), m in head space; (direction, 2, sample); (direction, 2), samples."""
+    @property
+    def id(self) -> int: ...
+    def about_json(self) -> str:
+        """``{directions, filled, radius_m, gain_db, removed_delay_s}``, or ``null`` for a sphere."""
+
+@final
 class House:
     """A checked, immutable house, shared by everything that is made from it."""
 
@@ -85,6 +105,8 @@ class House:
         fixed_base: bool | None = ...,
     ) -> House:
         """A house with the robot of a ``.urdf`` or MuJoCo ``.xml`` in it; meshes are shared."""
+    def add_head(self, head: Head) -> None:
+        """Agents of worlds over this house may wear it; ``sound_head`` in their config names it."""
     @property
     def name(self) -> str: ...
     def info_json(self) -> str:
@@ -233,6 +255,7 @@ class AcousticScene:
         source_json: str,
         receivers_json: str,
         *,
+        heads: Sequence[Head],
         seed: int = ...,
         threads: int | None = ...,
     ) -> list[NDArray[np.float32]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from dwell import _native
 from dwell.arguments import point, to_json, whole
 from dwell.echogram import Echogram
+from dwell.heads import Head
 from dwell.house import House
 from dwell.listening import Receiver, Source, source_of
 from dwell.settings import Laws, found
@@ -68,6 +70,7 @@ class AcousticScene:
         *,
         ears: bool = False,
         yaw_deg: float = 0.0,
+        head: Head | str | os.PathLike[str] | None = None,
         seed: int = 0,
         threads: int | None = None,
     ) -> NDArray[np.float32]:
@@ -78,6 +81,8 @@ class AcousticScene:
             mic: What hears, or the point (m) of a microphone or of the middle of a head.
             ears: At a point: two ears on a spherical head (left first) instead of a microphone.
             yaw_deg: Where that head faces.
+            head: At a point: the head that the ears are on, or the path of its SOFA file; by
+                default, with ``ears``, a sphere of ``head_radius_m``.
             seed: The seed of the rays and of the tail's details.
             threads: How many threads to use; the result does not depend on it.
 
@@ -85,7 +90,10 @@ class AcousticScene:
             Shape (channels, samples). The first sample is the moment of the impulse.
         """
         if not isinstance(mic, Receiver):
-            mic = Receiver.binaural(mic, yaw_deg=yaw_deg) if ears else Receiver.omni(mic)
+            if ears or head is not None:
+                mic = Receiver.binaural(mic, yaw_deg=yaw_deg, head=head)
+            else:
+                mic = Receiver.omni(mic)
         return self.impulse_responses(source, [mic], seed=seed, threads=threads)[0]
 
     def impulse_responses(
@@ -104,6 +112,7 @@ class AcousticScene:
         return self._native.impulse_responses(
             to_json(source_of(source).to_json()),
             to_json([receiver.to_json() for receiver in receivers]),
+            heads=[receiver.head.native for receiver in receivers if receiver.head is not None],
             seed=whole("seed", seed),
             threads=_threads(threads),
         )

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from dwell.arguments import finite, point, whole
+from dwell.heads import Head, head_of
 
 Point = tuple[float, float, float]
 
@@ -68,6 +70,7 @@ class Receiver:
 
     pose: dict[str, Any]
     kind: Any
+    head: Head | None = None
 
     @classmethod
     def omni(cls, position: Sequence[float]) -> Receiver:
@@ -76,10 +79,24 @@ class Receiver:
 
     @classmethod
     def binaural(
-        cls, position: Sequence[float], *, yaw_deg: float = 0.0, pitch_deg: float = 0.0
+        cls,
+        position: Sequence[float],
+        *,
+        yaw_deg: float = 0.0,
+        pitch_deg: float = 0.0,
+        head: Head | str | os.PathLike[str] | None = None,
     ) -> Receiver:
-        """Two ears on a sphere: left, right. ``position``: the middle of the head, m."""
-        return cls(_pose(point("position", position), yaw_deg, pitch_deg), "binaural")
+        """Two ears: left, right.
+
+        Args:
+            position: The middle of the head, m.
+            yaw_deg: Where it faces.
+            pitch_deg: How far its front is raised.
+            head: A head or the path of its SOFA file; by default the scene's built-in sphere.
+        """
+        head = head_of("head", head)
+        kind: Any = "binaural" if head is None else {"head": head.id}
+        return cls(_pose(point("position", position), yaw_deg, pitch_deg), kind, head)
 
     @classmethod
     def array(

@@ -10,6 +10,7 @@ from typing import Any
 
 from dwell._native import ConfigError
 from dwell.arguments import fields, finite, mapping, path, text, whole
+from dwell.heads import Head, head_of
 
 #: Laws to install; or what calibration found (laws and parameters), as a mapping or by path.
 Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[Mapping[str, Any]] | None
@@ -80,6 +81,21 @@ _LAW: dict[str, Callable[[str, object], Any]] = {
 }
 
 
+def with_head(
+    further: Mapping[str, Any] | None,
+) -> tuple[Mapping[str, Any] | None, tuple[Head, ...]]:
+    """Settings whose ``sound_head`` is a head also where a SOFA file's path was given, and heads.
+
+    Raises:
+        ConfigError: It is neither.
+        MeasuredDataError: The file is none of a head.
+    """
+    if not isinstance(further, Mapping) or further.get("sound_head") is None:
+        return further, ()
+    head = head_of("sound_head", further["sound_head"])
+    return {**further, "sound_head": head}, () if head is None else (head,)
+
+
 def world_settings(
     laws: Laws, parameters: Mapping[str, float] | None, further: Mapping[str, Any] | None
 ) -> dict[str, Any]:
@@ -94,6 +110,10 @@ def world_settings(
     for name in further:
         if name.endswith("_hz"):
             finite(name, further[name])
+    if (head := further.get("sound_head")) is not None:
+        if not isinstance(head, Head):
+            raise ConfigError(f"sound_head is {head!r}; allowed is a dwell.Head")
+        further = {**further, "sound_head": head.id}
     if further.get("sound_root") is not None:
         further = {**further, "sound_root": path("sound_root", further["sound_root"])}
     rows, values = found(laws)

@@ -27,10 +27,11 @@ from dwell.arguments import (
     whole,
 )
 from dwell.camera import Camera, Channel, camera_settings
+from dwell.heads import Head
 from dwell.house import House
 from dwell.navigation import Navigation, Walker, walker_json
 from dwell.playing import Sounds
-from dwell.settings import Laws, world_settings
+from dwell.settings import Laws, with_head, world_settings
 
 #: Ids have 32 bits.
 _MOST_IDS = 2**32 - 1
@@ -75,27 +76,36 @@ class World(Sounds):
             parameters: Values by address, such as ``{"world/gravity_m_s2": 1.62}``; they go before
                 those that calibration found.
             **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``,
-                ``sound_root`` (the folder below which sound files are), and ``renderer``, who makes
-                pictures: ``"cpu"`` (default, or what the variable DWELL_RENDERER says), ``"gpu"``,
-                or ``"gpu:NAME"`` with a part of an adapter's name.
+                ``sound_root`` (the folder below which sound files are), ``sound_head`` (a
+                :class:`dwell.Head` or the path of its SOFA file: on it are all ears), and
+                ``renderer``, who makes pictures: ``"cpu"`` (default, or what the variable
+                DWELL_RENDERER says), ``"gpu"``, or ``"gpu:NAME"`` with a part of an adapter's name.
         """
         self.house = house if isinstance(house, House) else House.open(house)
-        settings = {"agents": bodies(agents), **world_settings(laws, parameters, config)}
+        further, self._heads = with_head(config)
+        for head in self._heads:
+            self.house.native.add_head(head.native)
+        settings = {"agents": bodies(agents), **world_settings(laws, parameters, further)}
         self._config, self._seed = to_json(settings), whole("seed", seed)
         self._native = _native.World(self.house.native, self._config, self._seed)
 
     @classmethod
-    def _again(cls, house: House, config: str, seed: int, snapshot: bytes) -> World:
+    def _again(
+        cls, house: House, config: str, seed: int, heads: tuple[Head, ...], snapshot: bytes
+    ) -> World:
         """A world as it was when it was pickled."""
         world = cls.__new__(cls)
-        world.house, world._config, world._seed = house, config, seed
+        world.house, world._config, world._seed, world._heads = house, config, seed, heads
+        for head in heads:
+            house.native.add_head(head.native)
         world._native = _native.World(house.native, config, seed)
         world.restore(snapshot)
         return world
 
-    def __reduce__(self) -> tuple[Any, tuple[House, str, int, bytes]]:
-        """House, settings and a snapshot."""
-        return World._again, (self.house, self._config, self._seed, self.snapshot())
+    def __reduce__(self) -> tuple[Any, tuple[House, str, int, tuple[Head, ...], bytes]]:
+        """House, settings, heads and a snapshot."""
+        again = (self.house, self._config, self._seed, self._heads, self.snapshot())
+        return World._again, again
 
     @property
     def native(self) -> _native.World:

@@ -2,6 +2,7 @@
 
 use crate::doorway::Doorway;
 use crate::errors::{Fault, to_python};
+use crate::head::PyHead;
 use crate::house::PyHouse;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::metrics::BandWidth;
@@ -62,12 +63,13 @@ impl PyAcousticScene {
         })
     }
 
-    #[pyo3(signature = (source_json, receivers_json, *, seed=0, threads=None))]
+    #[pyo3(signature = (source_json, receivers_json, *, heads, seed=0, threads=None))]
     fn impulse_responses<'py>(
         &self,
         py: Python<'py>,
         source_json: &str,
         receivers_json: &str,
+        heads: Vec<Py<PyHead>>,
         seed: u64,
         threads: Option<usize>,
     ) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
@@ -75,8 +77,12 @@ impl PyAcousticScene {
             let source: Source = serde_json::from_str(source_json)?;
             let receivers: Vec<Receiver> = serde_json::from_str(receivers_json)?;
             let (key, threads) = (Key::root(seed), Threads::requested(threads)?);
-            let (scene, rays) = (&self.scene, &self.rays);
-            let responses = scene.impulse_responses(rays, &source, &receivers, key, threads)?;
+            let mut scene = self.scene.clone();
+            for head in &heads {
+                scene.add_head(&head.get().head);
+            }
+            let responses =
+                scene.impulse_responses(&self.rays, &source, &receivers, key, threads)?;
             Ok::<_, Fault>(responses)
         })?;
         let arrays = responses.into_iter().map(|response| {

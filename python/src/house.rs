@@ -2,6 +2,7 @@
 
 use crate::doorway::Doorway;
 use crate::errors::Fault;
+use crate::head::PyHead;
 use dwell::Engines;
 use dwell_houses::Loss;
 use dwell_scene::material::library;
@@ -50,6 +51,10 @@ impl PyHouse {
             }
             Ok(Self::from_house(house, rows))
         })
+    }
+
+    fn add_head(&self, head: &Bound<'_, PyHead>) {
+        self.engines.add_head(&head.get().head);
     }
 
     #[staticmethod]

@@ -12,6 +12,7 @@ mod calibrate;
 mod doorway;
 mod errors;
 mod facts;
+mod head;
 mod house;
 mod navigation;
 mod picture;
@@ -30,6 +31,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<navigation::PyNavigation>()?;
     module.add_class::<batch::PyBatch>()?;
     module.add_class::<acoustics::PyAcousticScene>()?;
+    module.add_class::<head::PyHead>()?;
     module.add_function(wrap_pyfunction!(facts::actions, module)?)?;
     module.add_function(wrap_pyfunction!(facts::tasks_json, module)?)?;
     module.add_function(wrap_pyfunction!(facts::sensors_json, module)?)?;

@@ -1,6 +1,7 @@
 //! How a world runs.
 
 use crate::error::WorldError;
+use dwell_acoustics::HeadId;
 use dwell_render::BackEnd;
 use dwell_scene::{AgentBody, LawSpec};
 use serde::{Deserialize, Serialize};
@@ -18,6 +19,10 @@ pub struct WorldConfig {
     pub sound_rate_hz: u32,
     /// How carefully sound is traced: `"rl"` (fast, default) or `"full"`.
     pub sound_preset: String,
+    /// The head on which all agents' ears are, of those that [`Engines::add_head`](crate::Engines::add_head) got; without one a
+    /// sphere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sound_head: Option<HeadId>,
     /// The folder below which sound files are, as a path; without one no file is played.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sound_root: Option<String>,
@@ -44,6 +49,7 @@ impl Default for WorldConfig {
             physics_rate_hz: 120.0,
             sound_rate_hz: 16_000,
             sound_preset: "rl".to_owned(),
+            sound_head: None,
             sound_root: None,
             renderer: BackEnd::Cpu,
             agents: vec![AgentBody::default()],

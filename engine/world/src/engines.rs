@@ -5,7 +5,7 @@ use crate::error::WorldError;
 use crate::recordings::Recordings;
 use crate::start::Start;
 use dwell_acoustics::signals::Signal;
-use dwell_acoustics::{AcousticConfig, AcousticScene};
+use dwell_acoustics::{AcousticConfig, AcousticScene, Head, HeadId};
 use dwell_physics::PhysicsModel;
 use dwell_render::{BackEnd, CpuRenderer, Renderer};
 use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
@@ -25,6 +25,7 @@ pub struct Engines {
     physics: OnceLock<Arc<PhysicsModel>>,
     /// By preset and sample rate.
     acoustics: Mutex<BTreeMap<(String, u32), AcousticScene>>,
+    heads: Mutex<BTreeMap<HeadId, Head>>,
     recordings: Recordings,
     /// For the walker whose radius, height and step these are; others get a grid of their own.
     navigation: OnceLock<(NavConfig, Arc<NavGrid>)>,
@@ -42,6 +43,7 @@ impl Engines {
             semantics: OnceLock::new(),
             physics: OnceLock::new(),
             acoustics: Mutex::default(),
+            heads: Mutex::default(),
             recordings: Recordings::default(),
             navigation: OnceLock::new(),
             start: Mutex::default(),
@@ -125,6 +127,25 @@ impl Engines {
             .entry((preset.to_owned(), rate_hz))
             .or_insert(scene)
             .clone())
+    }
+
+    /// One more head on which agents may have their ears; [`WorldConfig::sound_head`] names it.
+    pub fn add_head(&self, head: &Head) {
+        let mut heads = self.heads.lock().unwrap_or_else(PoisonError::into_inner);
+        heads.entry(head.id()).or_insert_with(|| head.clone());
+    }
+
+    /// A head that was added.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] for one that was not.
+    pub(crate) fn head(&self, id: HeadId) -> Result<Head, WorldError> {
+        let heads = self.heads.lock().unwrap_or_else(PoisonError::into_inner);
+        heads.get(&id).cloned().ok_or_else(|| WorldError::Config {
+            field: "sound_head",
+            found: id.0.to_string(),
+            allowed: "heads that the house's engines were given".to_owned(),
+        })
     }
 
     /// A sound file below `root` at a sample rate, and its check sum; read once.

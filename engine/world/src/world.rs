@@ -50,6 +50,9 @@ impl World {
         if config.renderer != BackEnd::Cpu {
             engines.pictures(&config.renderer)?;
         }
+        if let Some(head) = config.sound_head {
+            engines.head(head)?;
+        }
         let start = engines.start(config)?;
         let (state, physics) = (start.state.clone(), start.physics.clone());
         let mut rays = RayScene::new(engines.house().clone());

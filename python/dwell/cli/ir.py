@@ -22,6 +22,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--ears", action="store_true", help="two ears on a head instead of a microphone"
     )
+    parser.add_argument(
+        "--head",
+        type=Path,
+        metavar="FILE.sofa",
+        help="ears on the measured head of a SOFA file (SimpleFreeFieldHRIR)",
+    )
     parser.add_argument("--yaw-deg", type=number, default=0.0, help="where the head faces")
     parser.add_argument("--seed", type=count, default=0)
     parser.add_argument("--rays", type=count, default=5000)
@@ -52,8 +58,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Computes the response, writes it, and prints its measures."""
     from dwell.acoustics import AcousticScene
+    from dwell.heads import Head
     from dwell.sounds import write_wav
 
+    if args.head is not None:
+        if args.map or args.plot or measured_room.is_measured_room(args.house):
+            raise ValueError("--head goes with --mic or --grid in a HOUSE")
+        # Before anything is computed.
+        args.head, args.ears = Head.from_sofa(args.head), True
     if measured_room.is_measured_room(args.house):
         return measured_room.run(args)
     if args.grid is not None and args.map is None:
@@ -74,6 +86,7 @@ def run(args: argparse.Namespace) -> int:
         args.mic,
         ears=args.ears,
         yaw_deg=args.yaw_deg,
+        head=args.head,
         seed=args.seed,
         threads=args.threads,
     )

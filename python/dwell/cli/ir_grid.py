@@ -90,7 +90,9 @@ def _job(args: argparse.Namespace) -> dict[str, Any]:
     sources = args.sources or "1"
     if args.source is None and not re.fullmatch(r"[0-9]{1,5}", sources):
         raise ValueError(f"--sources is {sources!r}; of a grid it is how many")
+    head = {} if args.head is None else {"head": args.head.id}
     return {
+        **head,
         "grid_m": args.grid,
         "height_m": args.height,
         "sources": list(args.source) if args.source else int(sources),
@@ -137,6 +139,7 @@ def _house(args: argparse.Namespace, name: str, out: Path, job: dict[str, Any]) 
         with atomic(part) as path, path.open("wb") as file:
             np.save(file, found)
         made += len(receivers)
+    radius = None if args.head is None else args.head.about
     data = Dataset(
         house=name,
         fingerprint=fingerprint,
@@ -145,7 +148,7 @@ def _house(args: argparse.Namespace, name: str, out: Path, job: dict[str, Any]) 
         receivers=receivers,
         yaw_deg=args.yaw_deg,
         parts=[parts / f"{k}.npy" for k in range(len(sources))],
-        head_radius_m=float(scene.config["head_radius_m"]),
+        head_radius_m=float(radius["radius_m"] if radius else scene.config["head_radius_m"]),
         corners=np.array(scene.explain()["bounds_m"], np.float64),
         air=scene.config["air"],
         settings=job,
@@ -179,7 +182,9 @@ def _source(
 ) -> NDArray[np.float32]:
     """The responses from one source, shape (receiver, channel, sample)."""
     listeners = [
-        Receiver.binaural(place, yaw_deg=args.yaw_deg) if args.ears else Receiver.omni(place)
+        Receiver.binaural(place, yaw_deg=args.yaw_deg, head=args.head)
+        if args.ears
+        else Receiver.omni(place)
         for place in receivers
     ]
     found: list[NDArray[np.float32]] = []

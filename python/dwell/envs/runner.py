@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dwell import _native
 from dwell.envs.spaces import specs
+from dwell.heads import Head
 from dwell.house import House
 
 #: Keys of a step's answer that become ``info``.
@@ -35,8 +36,12 @@ class Runner:
         threads: int | None,
         *,
         overlap: bool = False,
+        heads: Sequence[Head] = (),
     ) -> None:
-        """Builds the environments, one for each house of ``houses``."""
+        """Builds the environments, one for each house of ``houses``; agents may wear ``heads``."""
+        for house in houses:
+            for head in heads:
+                house.native.add_head(head.native)
         self.batch = _native.Batch([house.native for house in houses], config, threads, overlap)
         self.count = len(houses)
         self.specs = specs(self.batch)

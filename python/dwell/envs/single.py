@@ -18,7 +18,7 @@ from dwell.camera import Camera, camera_settings
 from dwell.envs.config import KEPT, Houses, HouseShelf, Sensors, env_json
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.spaces import action_space, observation_space
-from dwell.settings import Laws
+from dwell.settings import Laws, with_head
 
 #: The image that ``render()`` gives.
 RENDER_CAMERA = Camera(width=320, height=240)
@@ -62,7 +62,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             parameters: Values by address; they go before those that calibration found.
             task_settings: The task's own settings.
             stride: How far movement actions go: ``forward_m``, ``turn_deg``, ``look_deg``.
-            world: Further fields of the native WorldConfig.
+            world: Further fields of the native WorldConfig; ``sound_head`` may be a
+                :class:`dwell.Head` or the path of its SOFA file.
             threads: How many threads to use; results do not depend on it.
             render_mode: ``rgb_array`` or ``None``.
         """
@@ -83,6 +84,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             modes = self.metadata["render_modes"]
             raise ConfigError(f"render_mode: found {render_mode!r}, allowed are None and {modes}")
         self.render_mode = render_mode
+        world, self._heads = with_head(world)
         self._config = env_json(
             task,
             sensors=sensors,
@@ -110,7 +112,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return self._runner_of(self._house)
 
     def _run(self, house: int) -> Runner:
-        return Runner([self._shelf[house]], self._config, self._threads)
+        return Runner([self._shelf[house]], self._config, self._threads, heads=self._heads)
 
     def _observation(self) -> dict[str, Any]:
         self._runner.observe(self._alone)

@@ -16,7 +16,7 @@ from dwell.arguments import whole
 from dwell.envs.config import Houses, HouseShelf, Sensors, env_json
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.spaces import action_space, observation_space
-from dwell.settings import Laws
+from dwell.settings import Laws, with_head
 
 
 class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]], EzPickle):
@@ -91,6 +91,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self.render_mode = render_mode
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {"autoreset_mode": self.autoreset_mode, "render_modes": []}
+        world, heads = with_head(world)
         config = env_json(
             task,
             sensors=sensors,
@@ -105,7 +106,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if not isinstance(overlap, bool):
             raise ConfigError(f"overlap: found {overlap!r}, allowed are True and False")
         rows = [shelf[k] for k in range(num_envs)]
-        self._runner = Runner(rows, config, threads, overlap=overlap)
+        self._runner = Runner(rows, config, threads, overlap=overlap, heads=heads)
         self._limit = max_episode_steps if max_episode_steps and max_episode_steps > 0 else None
         self._copy = copy
         self._streams: list[np.random.Generator | None] = [None] * num_envs

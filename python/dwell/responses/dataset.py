@@ -26,7 +26,8 @@ class Dataset:
         parts: For each source a NumPy file of shape (receiver, channel, sample), Pa re an impulse
             of 1 Pa at 1 m; the first sample is the moment of the impulse. Two channels are ears,
             left first. Their numbers of samples may differ.
-        head_radius_m: Radius of the head that ears are on.
+        head_radius_m: Radius of the head that ears are on; of a measured one, of the sphere that it
+            resembles.
         corners: The box around the house (2, 3), m.
         air: ``temperature_c``, ``humidity_pct``, ``pressure_kpa``.
         settings: What else the responses depend on: rays, order of images, seed, laws.

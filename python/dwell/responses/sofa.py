@@ -110,9 +110,15 @@ def _attributes(data: Dataset) -> dict[str, str]:
         "History": json.dumps({**data.settings, "air": data.air}),
         "Origin": f"simulated; house {data.house}, contents {data.fingerprint}",
         "RoomShortName": data.house,
-        "ListenerShortName": "spherical head" if data.shape[2] == 2 else "microphone",
+        "ListenerShortName": _listener(data),
         "SourceShortName": "omnidirectional",
     }
+
+
+def _listener(data: Dataset) -> str:
+    if data.shape[2] != 2:
+        return "microphone"
+    return "measured head" if "head" in data.settings else "spherical head"
 
 
 def _turned(places: NDArray[np.float64]) -> NDArray[np.float64]:

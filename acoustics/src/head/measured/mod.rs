@@ -24,9 +24,9 @@ use serde::Serialize;
 use std::sync::Arc;
 
 /// How long a head rings after its onset, s; what is later is the room's.
-const RINGING_S: f64 = 0.010;
+const RINGING_S: f64 = 0.011;
 /// The end of the ringing over which it fades, s.
-const FADE_S: f64 = 0.002;
+const FADE_S: f64 = 0.001;
 /// Farther than this from every measured direction, a sphere takes over: the cosine of 25 degrees.
 const GAP_COSINE: f64 = 0.906_307_787;
 /// Directions that are looked at for gaps.

@@ -5,14 +5,17 @@ use super::fit::{Weighed, cosine, response_of, undelayed};
 use super::hull::Triangulation;
 use super::spectra::{Waves, modulus};
 use crate::bands::{self, BAND_COUNT, Banded};
+use crate::fft::RealFft;
 use crate::head::Ear;
 use glam::{DVec3, Vec3};
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// From the first to the second, the measured response takes over from that of no head, Hz.
+/// From the first to the second, what the loudspeaker did to the bass takes over from its correction, Hz.
 const BASS_HZ: (f64, f64) = (80.0, 160.0);
+/// Largest correction of the bass, as a logarithm of amplitude: 26 dB.
+const MOST_BASS: f64 = 3.0;
 /// Highest frequency that is taken from a measurement, over its sample rate.
 const HIGHEST: f64 = 0.46;
 
@@ -59,20 +62,28 @@ impl Responses {
             }
         };
         let measured = self.pressure.len();
-        let mut rows: Vec<[Row; 2]> = Vec::with_capacity(self.directions.len());
-        for (k, pair) in self.pressure.iter().enumerate() {
-            rows.push([0, 1].map(|ear| {
-                let delay_s = self.delay_s[k][ear];
-                let early_s = self.begin_s[k][ear];
+        let mut rests: Vec<[Vec<Complex<f32>>; 2]> = Vec::with_capacity(measured);
+        for (pair, begin_s) in self.pressure.iter().zip(&self.begin_s) {
+            rests.push([0, 1].map(|ear| {
                 let mut rest = waves.of(&pair[ear]);
                 for (value, frequency_hz) in rest.iter_mut().zip(&heard) {
-                    let turns = frequency_hz * early_s;
+                    let turns = frequency_hz * begin_s[ear];
                     let (s, c) = libm::sincos(TAU * (turns - turns.floor()));
                     *value *= Complex::new(c as f32, s as f32);
                 }
-                without_bass(&mut rest, &frequencies);
-                finish(delay_s, rest)
+                rest
             }));
+        }
+        let bass = bass(&rests, &frequencies);
+        let mut rows: Vec<[Row; 2]> = Vec::with_capacity(self.directions.len());
+        for ([left, right], delay_s) in rests.into_iter().zip(&self.delay_s) {
+            let whole = |delay_s: f64, mut rest: Vec<Complex<f32>>| {
+                for (value, bass) in rest.iter_mut().zip(&bass) {
+                    *value *= bass;
+                }
+                finish(delay_s, rest)
+            };
+            rows.push([whole(delay_s[0], left), whole(delay_s[1], right)]);
         }
         let radius_m = self.about.radius_m;
         for (k, direction) in self.directions.iter().enumerate().skip(measured) {
@@ -133,24 +144,37 @@ fn filled<'a>(
         .collect()
 }
 
-/// Takes the level to nothing below [`BASS_HZ`], and lets the phase go on as a delay.
-fn without_bass(rest: &mut [Complex<f32>], frequencies: &[f64]) {
+/// The filter of minimum phase that makes the mean energy of all responses 1 below [`BASS_HZ`] and leaves all as it is above.
+/// Shape (bin,).
+fn bass(rests: &[[Vec<Complex<f32>>; 2]], frequencies: &[f64]) -> Vec<Complex<f32>> {
+    let mut fft = RealFft::new(2 * (frequencies.len() - 1));
+    let mut logs: Vec<Complex<f32>> = (0..fft.bins()).map(|_| Complex::default()).collect();
     let (low, high) = BASS_HZ;
-    let angle = |value: &Complex<f32>| libm::atan2f(value.im, value.re);
-    let first = frequencies.partition_point(|f| *f < high);
-    let Some(value) = rest.get(first) else {
-        return;
-    };
-    let per_hz = angle(value) / frequencies[first] as f32;
-    for (value, frequency_hz) in rest[..first].iter_mut().zip(frequencies) {
+    for (bin, (log, frequency_hz)) in logs.iter_mut().zip(frequencies).enumerate() {
+        if *frequency_hz >= high {
+            break;
+        }
         let octaves = libm::log2(frequency_hz.max(1.0) / low) / libm::log2(high / low);
-        let sine = libm::sin(std::f64::consts::FRAC_PI_2 * octaves.clamp(0.0, 1.0));
-        let own = (sine * sine) as f32;
-        let level = libm::expf(own * libm::logf(modulus(*value).max(1e-6)));
-        let (s, c) =
-            libm::sincosf(own * angle(value) + (1.0 - own) * per_hz * *frequency_hz as f32);
-        *value = Complex::new(level * c, level * s);
+        let cosine = libm::cos(std::f64::consts::FRAC_PI_2 * octaves.clamp(0.0, 1.0));
+        let all = rests.iter().flatten();
+        let energy: f64 = all.map(|rest| f64::from(rest[bin].norm_sqr())).sum();
+        let mean = energy / (2 * rests.len()).max(1) as f64;
+        let missing = -0.5 * libm::log(mean.max(1e-12));
+        log.re = (cosine * cosine * missing.clamp(-MOST_BASS, MOST_BASS)) as f32;
     }
+    // The causal half of the cepstrum, doubled: see `PathFilters`.
+    let mut cepstrum = fft.inverse(&mut logs);
+    let half = fft.len() / 2;
+    for x in &mut cepstrum[1..half] {
+        *x *= 2.0;
+    }
+    cepstrum[half + 1..].fill(0.0);
+    let logs = fft.forward(&cepstrum).into_iter();
+    logs.map(|log| {
+        let (s, c) = libm::sincosf(log.im);
+        Complex::new(c, s) * libm::expf(log.re)
+    })
+    .collect()
 }
 
 /// The root of the mean energy in each band.

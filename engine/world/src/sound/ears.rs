@@ -2,7 +2,7 @@
 
 use super::Sounding;
 use crate::error::WorldError;
-use dwell_acoustics::{ActiveSource, Receiver, Stream};
+use dwell_acoustics::{ActiveSource, HeadId, Receiver, Stream};
 use dwell_scene::rays::RayScene;
 use dwell_scene::units::db_spl_from_pa;
 use dwell_scene::{AgentId, House, State};
@@ -18,6 +18,8 @@ const INAUDIBLE_DB: f32 = 15.0;
 pub(super) struct Ears {
     pub(super) agent: AgentId,
     pub(super) stream: Stream,
+    /// On which they are; `None`: the built-in sphere.
+    pub(super) head: Option<HeadId>,
     /// The newest samples. Shape (2, length), oldest first.
     pub(super) window: Vec<f32>,
     pub(super) length: usize,
@@ -35,7 +37,11 @@ impl Ears {
         let Some(agent) = state.agents.get(self.agent) else {
             return Ok(());
         };
-        let receiver = Receiver::binaural(agent.world_from_head());
+        let pose = agent.world_from_head();
+        let receiver = match self.head {
+            Some(head) => Receiver::wearing(head, pose),
+            None => Receiver::binaural(pose),
+        };
         let active = loudest_first(house, sources, agent.eye_position());
         let size = self.stream.config().block_samples;
         let mut heard = vec![0.0; 2 * size];

@@ -100,6 +100,7 @@ impl Sound {
             let mut ears = Ears {
                 agent,
                 stream: sound.stream(engines, agent, key)?,
+                head: sound.head,
                 window,
                 length,
             };

@@ -20,7 +20,7 @@ pub use playing::{PlayRequest, SoundName, SoundPlace, usual_level_db};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use dwell_acoustics::{Stream, StreamConfig, signals};
+use dwell_acoustics::{HeadId, Stream, StreamConfig, signals};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
@@ -41,6 +41,8 @@ pub(crate) struct Sound {
     rate_hz: u32,
     block: usize,
     preset: String,
+    /// On which all ears are; `None`: the built-in sphere.
+    head: Option<HeadId>,
     /// Blocks that are over. The first is the one before the world's start, so that there is something to hear at once.
     blocks: u64,
     touches: Vec<Touch>,
@@ -68,6 +70,7 @@ impl Sound {
             rate_hz: config.sound_rate_hz,
             block: config.samples_per_step(),
             preset: config.sound_preset.clone(),
+            head: config.sound_head,
             blocks: 1,
             touches: Vec::new(),
             next_blow: 0,
@@ -137,6 +140,7 @@ impl Sound {
             let mut ears = Ears {
                 agent: *agent,
                 stream: self.stream(engines, *agent, key)?,
+                head: self.head,
                 window: vec![0.0; 2 * length],
                 length,
             };
@@ -150,7 +154,10 @@ impl Sound {
     }
 
     fn stream(&self, engines: &Engines, agent: AgentId, key: Key) -> Result<Stream, WorldError> {
-        let scene = engines.acoustics(&self.preset, self.rate_hz)?;
+        let mut scene = engines.acoustics(&self.preset, self.rate_hz)?;
+        if let Some(head) = self.head {
+            scene.add_head(&engines.head(head)?);
+        }
         let Some(config) = StreamConfig::preset(&self.preset) else {
             let allowed = "\"rl\" or \"full\"".to_owned();
             return Err(WorldError::Config {

@@ -1,0 +1,219 @@
+"""Measured heads from SOFA files: ``SimpleFreeFieldHRIR`` of AES69, netCDF-4 read by h5py."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dwell import MeasuredDataError
+from dwell.responses.dataset import hdf5_module
+
+CONVENTION = "SimpleFreeFieldHRIR"
+#: Numbers of all responses together: 2 GiB as they stand in the file.
+_MOST_NUMBERS = 2**28
+_LENGTHS = {"metre", "metres", "meter", "meters", "m"}
+_ANGLES = {"degree": 1.0, "degrees": 1.0, "radian": 180.0 / np.pi, "radians": 180.0 / np.pi}
+
+
+@dataclass(frozen=True)
+class HeadFile:
+    """What stands in a file, in the head's axes (x right, y up, z back).
+
+    Attributes:
+        sources: Shape (direction, 3), m from the head's centre.
+        responses: Shape (direction, 2, sample): left, right.
+        delays_samples: Shape (direction, 2).
+        rate_hz: Samples a second.
+    """
+
+    sources: NDArray[np.float64]
+    responses: NDArray[np.float32]
+    delays_samples: NDArray[np.float64]
+    rate_hz: float
+
+
+def read_head(path: str) -> HeadFile:
+    """Reads a head.
+
+    SOFA's axes are x to the front, y to the left, z up; ``ListenerView`` and ``ListenerUp`` turn
+    them. The left ear is the receiver with the larger y, whichever stands first.
+
+    Raises:
+        MeasuredDataError: The message names file and variable.
+        ModuleNotFoundError: ``h5py`` is missing.
+    """
+    h5py = hdf5_module("SOFA")
+    if not Path(path).is_file():
+        raise MeasuredDataError(f"{path}: there is no such file")
+    try:
+        file = h5py.File(path, "r")
+    except OSError as error:
+        raise MeasuredDataError(f"{path}: no HDF5, which SOFA files are: {error}") from error
+    with file:
+        return _Reader(path, file).head()
+
+
+class _Reader:
+    """One open file."""
+
+    def __init__(self, path: str, file: Any) -> None:  # noqa: ANN401 - h5py has no types
+        self.path = path
+        self.file = file
+
+    def fault(self, variable: str, why: str) -> MeasuredDataError:
+        return MeasuredDataError(f"{self.path}: {variable}: {why}")
+
+    def head(self) -> HeadFile:
+        """All of it, checked."""
+        self.check_convention()
+        variable = self.variable("Data.IR")
+        if len(variable.shape) != 3:
+            raise self.fault("Data.IR", f"expected axes (M, R, N), found shape {variable.shape}")
+        count, receivers, samples = variable.shape
+        if receivers != 2:
+            raise self.fault("Data.IR", f"{receivers} receivers; a head has 2 ears")
+        if not 0 < count * samples <= _MOST_NUMBERS // 2:
+            raise self.fault("Data.IR", f"{count} directions of {samples} samples are too many")
+        responses = self.numbers("Data.IR")
+        rates = self.numbers("Data.SamplingRate").ravel()
+        units = self.text(self.variable("Data.SamplingRate"), "Units") or "hertz"
+        if units.lower() not in ("hertz", "hz"):
+            raise self.fault("Data.SamplingRate", f"Units is {units!r}; allowed is 'hertz'")
+        if rates.size == 0 or rates[0] <= 0.0 or (rates != rates[0]).any():
+            raise self.fault("Data.SamplingRate", f"{rates}; allowed is one rate above 0 Hz")
+        delays = self.rows("Data.Delay", count, 2) if "Data.Delay" in self.file else None
+        late = np.zeros((count, 2)) if delays is None else delays
+        if self.left_is_second():
+            responses, late = responses[:, ::-1], late[:, ::-1]
+        return HeadFile(
+            self.sources(count),
+            np.ascontiguousarray(responses, np.float32),
+            np.ascontiguousarray(late, np.float64),
+            float(rates[0]),
+        )
+
+    def check_convention(self) -> None:
+        found = self.text(self.file, "SOFAConventions")
+        if found is None:
+            raise self.fault("SOFAConventions", "missing; this is no SOFA file")
+        if found != CONVENTION:
+            spectra = " (spectra)" if found.endswith("HRTF") else ""
+            raise self.fault(
+                "SOFAConventions", f"{found!r}{spectra}; heads are read from {CONVENTION!r}"
+            )
+        if (data := self.text(self.file, "DataType") or "FIR") != "FIR":
+            raise self.fault("DataType", f"{data!r}; allowed is 'FIR'")
+
+    def left_is_second(self) -> bool:
+        """Whether the second receiver is the left ear."""
+        ears = self.numbers("ReceiverPosition")
+        if ears.ndim not in (2, 3) or ears.shape[:2] != (2, 3):
+            raise self.fault(
+                "ReceiverPosition", f"expected shape (2, 3, I or M), found {ears.shape}"
+            )
+        places = np.moveaxis(ears.reshape(2, 3, -1), 1, 2)
+        sideways = self.cartesian("ReceiverPosition", places)[..., 1]
+        left = sideways[0] - sideways[1]
+        if not ((left > 1e-6).all() or (left < -1e-6).all()):
+            raise self.fault(
+                "ReceiverPosition", "no receiver is left (+y) of the other in every measurement"
+            )
+        return bool((left < 0.0).all())
+
+    def sources(self, count: int) -> NDArray[np.float64]:
+        """Where the sources are, in the head's axes. Shape (M, 3)."""
+
+        def place(name: str, like: str | None = None) -> NDArray[np.float64]:
+            return self.cartesian(name, self.rows(name, count, 3), like)
+
+        sources = place("SourcePosition")
+        if "ListenerPosition" in self.file:
+            sources = sources - place("ListenerPosition")
+        front, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+        front, up = np.tile(front, (count, 1)), np.tile(up, (count, 1))
+        if "ListenerView" in self.file:
+            front = self.unit("ListenerView", place("ListenerView"))
+        if "ListenerUp" in self.file:
+            up = place("ListenerUp", "ListenerView")
+        upright = up - front * (front * up).sum(axis=1, keepdims=True)
+        up = self.unit("ListenerUp", upright)
+        left = np.cross(up, front)
+        x, y, z = ((sources * axis).sum(axis=1) for axis in (front, left, up))
+        return np.stack([-y, z, -x], axis=1)
+
+    def unit(self, name: str, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        length = np.linalg.norm(rows, axis=1, keepdims=True)
+        if (length < 1e-6).any():
+            raise self.fault(name, "points nowhere")
+        unit: NDArray[np.float64] = rows / length
+        return unit
+
+    def cartesian(
+        self, name: str, rows: NDArray[np.float64], like: str | None = None
+    ) -> NDArray[np.float64]:
+        """Coordinates as x, y, z by the variable's Type and Units, or those of ``like``."""
+        variable = self.variable(name)
+        kind = self.text(variable, "Type")
+        if kind is None and like is not None and like in self.file:
+            variable = self.variable(like)
+            kind = self.text(variable, "Type")
+        kind = (kind or "cartesian").lower()
+        units = [part.strip().lower() for part in (self.text(variable, "Units") or "").split(",")]
+        if kind == "cartesian":
+            if units != [""] and not set(units) <= _LENGTHS:
+                raise self.fault(name, f"Units is {', '.join(units)!r}; allowed is 'metre'")
+            return rows
+        if kind != "spherical":
+            raise self.fault(name, f"Type is {kind!r}; allowed are 'cartesian' and 'spherical'")
+        angles = units[0] if units != [""] else "degree"
+        known = angles in _ANGLES and units[1:2] in ([], [angles]) and set(units[2:]) <= _LENGTHS
+        if not known:
+            raise self.fault(
+                name, f"Units is {', '.join(units)!r}; allowed is 'degree, degree, metre'"
+            )
+        azimuth, elevation = np.radians(_ANGLES[angles] * np.moveaxis(rows[..., :2], -1, 0))
+        across = rows[..., 2] * np.cos(elevation)
+        return np.stack(
+            [
+                across * np.cos(azimuth),
+                across * np.sin(azimuth),
+                rows[..., 2] * np.sin(elevation),
+            ],
+            axis=-1,
+        )
+
+    def rows(self, name: str, count: int, columns: int) -> NDArray[np.float64]:
+        """A variable with axes (I or M, columns), for each measurement."""
+        values = self.numbers(name)
+        if values.ndim != 2 or values.shape[0] not in (1, count) or values.shape[1] != columns:
+            raise self.fault(
+                name, f"expected shape (1 or {count}, {columns}), found {values.shape}"
+            )
+        return np.broadcast_to(values, (count, columns))
+
+    def numbers(self, name: str) -> NDArray[np.float64]:
+        variable = self.variable(name)
+        try:
+            values = np.asarray(variable[()], np.float64)
+        except (TypeError, ValueError, OSError) as error:
+            raise self.fault(name, f"cannot be read as numbers: {error}") from error
+        if not np.isfinite(values).all():
+            raise self.fault(name, "holds values that are not finite")
+        return values
+
+    def variable(self, name: str) -> Any:  # noqa: ANN401 - h5py has no types
+        if name not in self.file or not hasattr(self.file[name], "shape"):
+            raise self.fault(name, "missing")
+        return self.file[name]
+
+    def text(self, holder: Any, name: str) -> str | None:  # noqa: ANN401 - h5py has no types
+        value = holder.attrs.get(name)
+        if isinstance(value, np.ndarray) and value.size == 1:
+            value = value.ravel()[0]
+        if isinstance(value, bytes):
+            return value.decode("utf-8", "replace").strip("\0 ")
+        return value.strip() if isinstance(value, str) else None

@@ -1,0 +1,81 @@
+//! Heads for Python.
+
+use crate::doorway::Doorway;
+use crate::errors::Fault;
+use dwell_acoustics::Head;
+use dwell_acoustics::head::Measurement;
+use glam::DVec3;
+use numpy::{PyReadonlyArray2, PyReadonlyArray3};
+use pyo3::prelude::*;
+
+/// A head that receivers and agents can wear.
+#[pyclass(name = "Head", module = "dwell._native", frozen)]
+pub(crate) struct PyHead {
+    pub(crate) head: Head,
+}
+
+fn shape(name: &str, expected: &str, found: &[usize]) -> PyErr {
+    let message = format!("{name}: expected shape {expected}, found {found:?}");
+    crate::errors::to_python(Fault::Config(message))
+}
+
+#[pymethods]
+impl PyHead {
+    #[staticmethod]
+    fn sphere(py: Python<'_>, radius_m: f64) -> PyResult<Self> {
+        py.engine(|| -> Result<_, Fault> {
+            let head = Head::sphere(radius_m)?;
+            Ok(Self { head })
+        })
+    }
+
+    /// `sources`: shape (direction, 3), m in head space; `responses`: shape (direction, 2, sample); `delays`: shape
+    /// (direction, 2), samples.
+    #[staticmethod]
+    fn measured(
+        py: Python<'_>,
+        sources: PyReadonlyArray2<'_, f64>,
+        responses: PyReadonlyArray3<'_, f32>,
+        rate_hz: f64,
+        delays: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Self> {
+        let (sources, responses, delays) =
+            (sources.as_array(), responses.as_array(), delays.as_array());
+        let count = sources.nrows();
+        if sources.ncols() != 3 {
+            return Err(shape("sources", "(direction, 3)", sources.shape()));
+        }
+        if responses.shape()[..2] != [count, 2] {
+            let expected = format!("({count}, 2, sample)");
+            return Err(shape("responses", &expected, responses.shape()));
+        }
+        if delays.shape() != [count, 2] {
+            return Err(shape("delays", &format!("({count}, 2)"), delays.shape()));
+        }
+        let measurement = Measurement {
+            sources: sources
+                .rows()
+                .into_iter()
+                .map(|row| DVec3::new(row[0], row[1], row[2]))
+                .collect(),
+            responses: responses.iter().copied().collect(),
+            delays_samples: delays.iter().copied().collect(),
+            rate_hz,
+        };
+        py.engine(|| -> Result<_, Fault> {
+            let head = Head::measured(&measurement)?;
+            Ok(Self { head })
+        })
+    }
+
+    /// Its number: that of an equal head is equal.
+    #[getter]
+    fn id(&self) -> u64 {
+        self.head.id().0
+    }
+
+    /// What was found in the measurement, as a JSON object; `null` for a sphere.
+    fn about_json(&self, py: Python<'_>) -> PyResult<String> {
+        py.engine(|| Ok::<_, Fault>(serde_json::to_string(&self.head.about())?))
+    }
+}
