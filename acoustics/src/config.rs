@@ -38,6 +38,8 @@ pub struct AcousticConfig {
     pub air_absorption: bool,
     /// Whether sound passes through walls and doors by their materials' transmission loss.
     pub transmission: bool,
+    /// Whether sound that is not in sight bends around edges.
+    pub diffraction: bool,
     /// Radius of the spherical head, m; 0.03 to 0.2.
     pub head_radius_m: f64,
 }
@@ -67,6 +69,7 @@ impl AcousticConfig {
             air: Air::default(),
             air_absorption: true,
             transmission: true,
+            diffraction: true,
             head_radius_m: 0.0875,
         }
     }

@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct Path {
     /// The planes it is reflected by, from the source on. Shape (order,).
     pub planes: Vec<u32>,
+    /// Where it bends around edges, from the source on, m; a path that bends is not reflected. Shape (0 to 2,).
+    pub bends: Vec<Vec3>,
     /// Its length, m.
     pub length_m: f64,
     /// Energy at the receiver re 1/d² of a free path, air included. Shape (band,).
@@ -25,7 +27,12 @@ pub struct Path {
 }
 
 impl Path {
-    /// The number of reflections; 0 is the direct sound.
+    /// Whether it is the straight one, in sight or through walls.
+    pub fn is_direct(&self) -> bool {
+        self.planes.is_empty() && self.bends.is_empty()
+    }
+
+    /// The number of reflections.
     pub fn order(&self) -> usize {
         self.planes.len()
     }
@@ -90,7 +97,7 @@ pub struct TraceStatistics {
 /// All energies between one source and one receiver, without any noise realisation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Echogram {
-    /// Direct sound and low-order reflections, by length.
+    /// Direct sound, low-order reflections and what bends around edges, by length.
     pub paths: Vec<Path>,
     /// Everything else.
     pub tail: Histogram,
@@ -105,7 +112,7 @@ pub struct Echogram {
 impl Echogram {
     /// The direct path, if sound gets through.
     pub fn direct(&self) -> Option<&Path> {
-        self.paths.iter().find(|path| path.planes.is_empty())
+        self.paths.iter().find(|path| path.is_direct())
     }
 
     /// When a path arrives, s.

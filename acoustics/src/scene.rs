@@ -8,7 +8,7 @@ use crate::explain::Explanation;
 use crate::head::{Head, Heads};
 use crate::laws::{self, Effects, stage::Listener};
 use crate::microphones::Microphones;
-use crate::planes::{Plane, PlaneTable};
+use crate::planes::{Edge, Plane, PlaneTable};
 use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
 use crate::synthesis::Synthesizer;
@@ -93,6 +93,8 @@ pub struct AcousticScene {
     heads: Arc<Heads>,
     /// Where all planes are now.
     planes: Vec<Plane>,
+    /// Where the edges of moving parts are now.
+    moving_edges: Vec<Edge>,
     /// Where the moving parts are now. Shape (moving part,).
     poses: Vec<Pose>,
     /// Shape (material,).
@@ -111,6 +113,7 @@ impl AcousticScene {
         tracing::debug!(planes = table.len(), "acoustic planes built");
         Ok(Self {
             planes: table.at_start.clone(),
+            moving_edges: table.edges().at_start(&house),
             poses: table.poses_at_start(&house),
             surfaces: house
                 .materials
@@ -142,7 +145,9 @@ impl AcousticScene {
                 .map(|id| Surface::new(&self.house, Some(state), id))
                 .collect();
         }
-        self.table.update(&mut self.planes, &mut self.poses, state);
+        if self.table.update(&mut self.planes, &mut self.poses, state) {
+            self.moving_edges = self.table.edges().in_state(&self.house, state);
+        }
     }
 
     fn obey(&mut self, effects: Effects) {
@@ -180,6 +185,12 @@ impl AcousticScene {
     /// All planes where they are now, largest of the static ones first.
     pub fn planes(&self) -> &[Plane] {
         &self.planes
+    }
+
+    /// All edges that sound bends around, where they are now.
+    pub fn edges(&self) -> impl Iterator<Item = &Edge> {
+        let fixed = self.table.edges().fixed.iter();
+        fixed.chain(&self.moving_edges)
     }
 
     pub(crate) fn table(&self) -> &PlaneTable {

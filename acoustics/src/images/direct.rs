@@ -33,6 +33,7 @@ pub(super) fn direct(
     let departure = (receiver - source).normalize_or_zero();
     Some(Path {
         planes: Vec::new(),
+        bends: Vec::new(),
         length_m,
         energy: energy.map(|e| e as f32),
         arrival: -departure,

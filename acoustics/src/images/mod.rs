@@ -1,4 +1,5 @@
-//! Early sound: the direct path and mirror images up to a low order, each checked against the geometry.
+//! Early sound: the direct path or the ways around what hides it, and mirror images up to a low order, each checked against the
+//! geometry.
 
 mod direct;
 mod sequences;
@@ -6,6 +7,7 @@ mod track;
 mod validate;
 
 use crate::bands::BAND_COUNT;
+use crate::diffraction;
 use crate::echogram::Path;
 use crate::receiver::Source;
 use crate::scene::AcousticScene;
@@ -46,9 +48,24 @@ pub(crate) fn find(
 fn find_equal(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Vec3) -> Vec<Path> {
     let validator = Validator::new(scene, rays, source, receiver);
     let mut paths: Vec<(Path, DVec3)> = Vec::new();
-    paths.extend(
-        direct::direct(scene, rays, source, receiver).map(|path| (path, source.as_dvec3())),
-    );
+    let mut direct = direct::direct(scene, rays, source, receiver);
+    if scene.config().diffraction {
+        match &mut direct {
+            Some(path) if path.walls == 0 => {
+                let kept = diffraction::beside_edges(scene, rays, source, receiver);
+                for (e, kept) in path.energy.iter_mut().zip(kept) {
+                    *e *= kept as f32;
+                }
+            }
+            _ => {
+                for path in diffraction::around_edges(scene, rays, source, receiver) {
+                    let bend = path.bends.first().copied().unwrap_or(source);
+                    paths.push((path, bend.as_dvec3()));
+                }
+            }
+        }
+    }
+    paths.extend(direct.map(|path| (path, source.as_dvec3())));
     sequences::for_each(scene, rays, source, receiver, |planes, images| {
         if let Some(path) = validator.path(planes, images) {
             paths.push((path, *images.last().unwrap_or(&DVec3::ZERO)));
@@ -74,7 +91,7 @@ fn find_equal(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Ve
 }
 
 /// Energy of a free path: 1/d² and what air leaves of it.
-fn spread(scene: &AcousticScene, length_m: f64) -> [f64; BAND_COUNT] {
+pub(crate) fn spread(scene: &AcousticScene, length_m: f64) -> [f64; BAND_COUNT] {
     let distance = length_m.max(NEAREST_M);
     scene
         .air_decay_per_m()

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// An early path with the points it passes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EarlyPath {
-    /// The source, its reflections in order, the receiver, m. Shape (order + 2,).
+    /// The source, its reflections or bends in order, the receiver, m. Shape (2 to 6,).
     pub points: Vec<Vec3>,
     /// What arrives over it.
     pub path: Path,
@@ -40,6 +40,13 @@ impl AcousticScene {
     }
 
     fn corners(&self, path: &Path, source: Vec3, receiver: Vec3) -> Vec<Vec3> {
+        if !path.bends.is_empty() {
+            let bends = path.bends.iter().copied();
+            return std::iter::once(source)
+                .chain(bends)
+                .chain([receiver])
+                .collect();
+        }
         let mut images = Vec::new();
         let found = mirror(self.planes(), source.as_dvec3(), &path.planes, &mut images);
         let mut points = vec![receiver];

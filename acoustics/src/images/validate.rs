@@ -88,6 +88,7 @@ impl<'a> Validator<'a> {
         let towards = |from: DVec3, to: DVec3| (to - from).normalize_or_zero().as_vec3();
         Some(Path {
             planes: planes.to_vec(),
+            bends: Vec::new(),
             length_m,
             energy: energy.map(|e| e as f32),
             arrival: towards(self.receiver, points[order - 1]),

@@ -112,6 +112,7 @@ mod tests {
     fn path(length_m: f64, energy: f32, arrival: Vec3) -> Path {
         Path {
             planes: Vec::new(),
+            bends: Vec::new(),
             length_m,
             energy: [energy; BAND_COUNT],
             arrival,

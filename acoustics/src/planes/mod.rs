@@ -1,9 +1,14 @@
-//! The planes of a house: side tables over its triangles, made once and shared by all worlds.
+//! The planes and edges of a house: side tables over its triangles, made once and shared by all worlds.
 
 mod cluster;
+mod edges;
 mod panels;
+mod sets;
+mod sharp;
 
 pub use cluster::Plane;
+pub use edges::Edge;
+pub(crate) use edges::EdgeTable;
 
 use dwell_scene::bvh::Hit;
 use dwell_scene::{Aabb, House, Id, PartId, Pose, State};
@@ -37,6 +42,7 @@ pub struct PlaneTable {
     moving: Vec<Moving>,
     /// Planes of everything that never moves, the largest first.
     largest: Vec<u32>,
+    edges: EdgeTable,
 }
 
 impl PlaneTable {
@@ -63,6 +69,7 @@ impl PlaneTable {
         let mut of_triangle = vec![NO_PLANE; total];
         let mut panel_m2 = vec![0.0; total];
         let areas = panels::areas(&fixed, &planes);
+        let mut edges = EdgeTable::new(sharp::find(&fixed, &planes));
         for ((source, plane), area) in geometry.static_triangles.iter().zip(planes).zip(areas) {
             let place = (first_triangle[source.placed as usize] + source.triangle) as usize;
             of_triangle[place] = plane;
@@ -91,6 +98,7 @@ impl PlaneTable {
             let base = first_triangle[structures + part.index()] as usize;
             let areas = panels::areas(&corners, &of_part);
             panel_m2[base..base + areas.len()].copy_from_slice(&areas);
+            edges.add_moving(part, sharp::find(&corners, &of_part));
             for (k, plane) in of_part.into_iter().enumerate() {
                 if plane != NO_PLANE {
                     of_triangle[base + k] = at_start.len() as u32 + plane;
@@ -114,6 +122,7 @@ impl PlaneTable {
             panel_m2,
             moving,
             largest,
+            edges,
         }
     }
 
@@ -130,6 +139,10 @@ impl PlaneTable {
     /// The largest planes of what never moves, largest first, at most 200.
     pub(crate) fn largest(&self) -> &[u32] {
         &self.largest
+    }
+
+    pub(crate) fn edges(&self) -> &EdgeTable {
+        &self.edges
     }
 
     /// The plane that a hit lies in; [`NO_PLANE`] where it has none.
@@ -166,18 +179,22 @@ impl PlaneTable {
             .collect()
     }
 
-    /// Moves the planes of the parts that `state` has elsewhere than `poses`, and notes where they are now.
-    pub(crate) fn update(&self, planes: &mut [Plane], poses: &mut [Pose], state: &State) {
+    /// Moves the planes of the parts that `state` has elsewhere than `poses`, and notes where they are now. Returns whether any
+    /// has moved.
+    pub(crate) fn update(&self, planes: &mut [Plane], poses: &mut [Pose], state: &State) -> bool {
+        let mut any = false;
         for (moving, pose) in self.moving.iter().zip(poses) {
             let Some(now) = state.part_pose.get(moving.part).filter(|now| *now != pose) else {
                 continue;
             };
             *pose = *now;
+            any = true;
             let places = planes[moving.first..].iter_mut();
             for (plane, in_part) in places.zip(&moving.planes) {
                 *plane = moved(in_part, now);
             }
         }
+        any
     }
 
     /// The moving parts whose box measures at least `size_m` from corner to corner: those that change what is heard.

@@ -1,6 +1,7 @@
 //! How large the pieces of a plane are: triangles that touch make one panel.
 
 use super::NO_PLANE;
+use super::sets::Sets;
 use dwell_scene::Aabb;
 use glam::Vec3;
 
@@ -52,32 +53,6 @@ pub(super) fn areas(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<f32> {
             }
         })
         .collect()
-}
-
-/// Disjoint sets.
-struct Sets {
-    parent: Vec<usize>,
-}
-
-impl Sets {
-    fn new(count: usize) -> Self {
-        Self {
-            parent: (0..count).collect(),
-        }
-    }
-
-    fn root(&mut self, mut k: usize) -> usize {
-        while self.parent[k] != k {
-            self.parent[k] = self.parent[self.parent[k]];
-            k = self.parent[k];
-        }
-        k
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b);
-    }
 }
 
 #[cfg(test)]

@@ -44,12 +44,13 @@ pub(crate) fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
     }
 }
 
-/// Settings without air or transmission, with walls that mirror all waves alike, at 343.2 m/s.
+/// Settings without air, transmission or diffraction, with walls that mirror all waves alike, at 343.2 m/s.
 pub(crate) fn dry(rays: usize) -> AcousticConfig {
     AcousticConfig {
         rays,
         air_absorption: false,
         transmission: false,
+        diffraction: false,
         panel_size: false,
         ..AcousticConfig::full()
     }

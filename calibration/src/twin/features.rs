@@ -198,6 +198,7 @@ mod tests {
         let speed = 343.2;
         let path = |delay_s: f64, energy: f32| Path {
             planes: vec![],
+            bends: Vec::new(),
             length_m: delay_s * speed,
             energy: [energy; BAND_COUNT],
             arrival: Vec3::X,

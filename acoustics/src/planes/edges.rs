@@ -1,0 +1,83 @@
+//! The edges of a house that sound bends around: made once and shared by all worlds.
+
+use dwell_scene::{House, PartId, Pose, State};
+use glam::Vec3;
+
+/// A straight edge with more air than matter around it: the rim of a sheet, or a convex corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// Its ends, m.
+    pub ends: [Vec3; 2],
+    /// Away from what it belongs to, in the middle of the air around it, unit length, square to the edge.
+    pub outward: Vec3,
+    /// The angle of the air around it, rad; from 210 degrees up to a full turn, which is a sheet's.
+    pub open_rad: f32,
+}
+
+impl Edge {
+    fn moved(&self, pose: &Pose) -> Self {
+        Self {
+            ends: self.ends.map(|end| pose.transform_point(end)),
+            outward: (pose.rotation * self.outward).normalize_or_zero(),
+            open_rad: self.open_rad,
+        }
+    }
+}
+
+/// The edges of one moving part.
+#[derive(Clone, Debug)]
+struct Moving {
+    part: PartId,
+    /// In part space.
+    edges: Vec<Edge>,
+}
+
+/// All edges of a house.
+#[derive(Clone, Debug)]
+pub(crate) struct EdgeTable {
+    /// Of everything that never moves.
+    pub(crate) fixed: Vec<Edge>,
+    /// Of the parts that have edges.
+    moving: Vec<Moving>,
+}
+
+impl EdgeTable {
+    pub(super) fn new(fixed: Vec<Edge>) -> Self {
+        Self {
+            fixed,
+            moving: Vec::new(),
+        }
+    }
+
+    pub(super) fn add_moving(&mut self, part: PartId, edges: Vec<Edge>) {
+        if !edges.is_empty() {
+            self.moving.push(Moving { part, edges });
+        }
+    }
+
+    /// The edges of the moving parts where they stand at the start.
+    pub(crate) fn at_start(&self, house: &House) -> Vec<Edge> {
+        self.moved(|part| house.parts[part].world_from_part)
+    }
+
+    /// The same in a state.
+    pub(crate) fn in_state(&self, house: &House, state: &State) -> Vec<Edge> {
+        let start = |part| house.parts[part].world_from_part;
+        self.moved(|part| {
+            state
+                .part_pose
+                .get(part)
+                .copied()
+                .unwrap_or_else(|| start(part))
+        })
+    }
+
+    fn moved(&self, pose: impl Fn(PartId) -> Pose) -> Vec<Edge> {
+        let mut edges = Vec::new();
+        for moving in &self.moving {
+            let pose = pose(moving.part);
+            edges.extend(moving.edges.iter().map(|edge| edge.moved(&pose)));
+        }
+        edges
+    }
+}
