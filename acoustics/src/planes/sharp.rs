@@ -37,11 +37,11 @@ fn weld(point: Vec3) -> [i32; 3] {
     (point / WELD_M).round().to_array().map(|x| x as i32)
 }
 
-/// A straight line at which faces end.
+/// A straight line at which one face ends.
 struct Rim {
     ends: [Vec3; 2],
-    /// From the line into each face that ends there, unit length, square to the line.
-    into: Vec<Vec3>,
+    /// From the line into the face, unit length, square to the line.
+    into: Vec3,
 }
 
 /// The sharp edges of triangles that lie in planes.
@@ -55,7 +55,7 @@ struct Rim {
 pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Edge> {
     let sides = sides(corners, of_triangle);
     let cover = Cover::new(corners, of_triangle);
-    let mut rims = Vec::new();
+    let (mut rims, mut edges) = (Vec::new(), Vec::new());
     for group in sides.chunk_by(|a, b| a.key == b.key) {
         let folds = |side: &Side| {
             let mut others = group.iter();
@@ -65,14 +65,16 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Edge> {
             .iter()
             .filter(|side| folds(side) && !cover.goes_on(side));
         let into: Vec<Vec3> = open.map(|side| side.into).collect();
-        if !into.is_empty() {
-            rims.push(Rim {
-                ends: group[0].ends,
-                into,
-            });
+        let ends = group[0].ends;
+        match into[..] {
+            [] => {}
+            // Its other faces may be cut elsewhere.
+            [into] => rims.push(Rim { ends, into }),
+            _ => edges.extend(widest_gap(&ends, &into)),
         }
     }
-    merge(&join(&rims))
+    edges.extend(join(&rims));
+    merge(&edges)
 }
 
 /// The edges that rims make together.
@@ -112,7 +114,7 @@ fn join(rims: &[Rim]) -> Vec<Edge> {
         for (_, other) in near {
             let there = &rims[*other];
             if there.passes(middle) && there.is_parallel(rim) {
-                into.extend_from_slice(&there.into);
+                into.push(there.into);
                 // Of rims that lie on one another the longest stays, of equal ones the first.
                 let longer = there.length_m().total_cmp(&rim.length_m());
                 within |= longer.is_gt() || (longer.is_eq() && *other < k);
