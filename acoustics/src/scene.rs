@@ -11,7 +11,8 @@ use crate::microphones::Microphones;
 use crate::planes::{Edge, Plane, PlaneTable};
 use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
-use crate::synthesis::Synthesizer;
+use crate::stream::Memory;
+use crate::synthesis::{Synthesizer, Wavelet};
 use crate::{images, tail};
 use dwell_scene::bvh::Hit;
 use dwell_scene::parallel::Threads;
@@ -167,6 +168,13 @@ impl AcousticScene {
         }
     }
 
+    /// The same scene as laws with some effects have it.
+    pub(crate) fn as_heard(&self, effects: Effects) -> Self {
+        let mut scene = self.clone();
+        scene.obey(effects);
+        scene
+    }
+
     /// What laws do to air and sources.
     pub(crate) fn effects(&self) -> &Effects {
         &self.effects
@@ -319,25 +327,45 @@ impl AcousticScene {
         threads: Threads,
     ) -> Result<Vec<Echogram>, AcousticsError> {
         self.check(rays, source, receivers)?;
+        Ok(self.echograms_of(rays, source, receivers, self.config.rays, key, threads))
+    }
+
+    /// As [`Self::echograms`] with so many rays.
+    fn echograms_of(
+        &self,
+        rays: &RayScene,
+        source: &Source,
+        receivers: &[Vec3],
+        count: usize,
+        key: Key,
+        threads: Threads,
+    ) -> Vec<Echogram> {
         let position = source.position();
         let early = threads.map(receivers.len(), |k| {
             images::find(self, rays, source, receivers[k])
         });
-        let late = tail::trace(self, rays, source, receivers, key.child("tail"), threads);
+        let late = tail::trace(
+            self,
+            rays,
+            source,
+            receivers,
+            count,
+            key.child("tail"),
+            threads,
+        );
         let both = early.into_iter().zip(late).zip(receivers);
-        Ok(both
-            .map(|((paths, late), receiver)| {
-                let mut echogram = Echogram {
-                    paths,
-                    tail: late.histogram,
-                    trace: late.statistics,
-                    direct_length_m: position.as_dvec3().distance(receiver.as_dvec3()),
-                    speed_m_s: self.config.air.speed_of_sound_m_s(),
-                };
-                self.effects.at_source(&mut echogram);
-                echogram
-            })
-            .collect())
+        both.map(|((paths, late), receiver)| {
+            let mut echogram = Echogram {
+                paths,
+                tail: late.histogram,
+                trace: late.statistics,
+                direct_length_m: position.as_dvec3().distance(receiver.as_dvec3()),
+                speed_m_s: self.config.air.speed_of_sound_m_s(),
+            };
+            self.effects.at_source(&mut echogram);
+            echogram
+        })
+        .collect()
     }
 
     /// What `receiver` hears when `source` makes an impulse, as the laws of the state that was last given to [`Self::update`]
@@ -444,16 +472,91 @@ impl AcousticScene {
         let centres: Vec<Vec3> = receivers.iter().map(Receiver::position).collect();
         let echograms = self.echograms(rays, source, &centres, key, threads)?;
         Ok(threads.map(receivers.len(), |k| {
-            // The microphones of an array have early paths of their own.
-            let positions = receivers[k].microphone_positions();
-            let early: Option<Vec<Vec<Path>>> = positions.map(|positions| {
-                let found = positions.iter();
-                found
-                    .map(|position| images::find(self, rays, source, *position))
-                    .collect()
-            });
+            let early = self.early_of_microphones(rays, source, &receivers[k]);
             self.arrive(echograms[k].clone(), &receivers[k], early.as_deref(), key)
         }))
+    }
+
+    /// A new response for a listener who heard `before` not far from here: fewer rays, and the rest of the tail from memory.
+    ///
+    /// # Errors
+    /// As [`Self::arrivals`].
+    pub(crate) fn arrive_again(
+        &self,
+        rays: &RayScene,
+        source: &Source,
+        receiver: &Receiver,
+        memory: &Memory<'_>,
+        key: Key,
+        threads: Threads,
+    ) -> Result<ImpulseResponse, AcousticsError> {
+        let centre = [receiver.position()];
+        self.check(rays, source, &centre)?;
+        self.check_receiver(receiver)?;
+        let count = (self.config.rays as f64 * memory.share).ceil() as usize;
+        let again = key.child("again").child(memory.update);
+        let echograms = self.echograms_of(rays, source, &centre, count, again, threads);
+        let mut echogram = echograms.into_iter().next().unwrap_or_default();
+        memory.recall(&mut echogram);
+        let early = self.early_of_microphones(rays, source, receiver);
+        Ok(self.arrive(echogram, receiver, early.as_deref(), key))
+    }
+
+    /// The early paths of each microphone of an array; `None` where the centre's serve.
+    fn early_of_microphones(
+        &self,
+        rays: &RayScene,
+        source: &Source,
+        receiver: &Receiver,
+    ) -> Option<Vec<Vec<Path>>> {
+        let positions = receiver.microphone_positions()?;
+        let found = positions.iter();
+        Some(
+            found
+                .map(|position| images::find(self, rays, source, *position))
+                .collect(),
+        )
+    }
+
+    /// Early paths that a listener knew, where source and receiver are now: the straight way or those around what hides it, and
+    /// `known` reflections that are still there.
+    pub(crate) fn follow(
+        &self,
+        rays: &RayScene,
+        source: Vec3,
+        receiver: Vec3,
+        known: &[Path],
+    ) -> Vec<Path> {
+        let mut echogram = Echogram {
+            paths: images::follow(self, rays, source, receiver, known),
+            ..Echogram::default()
+        };
+        self.effects.at_source(&mut echogram);
+        echogram.paths
+    }
+
+    /// Paths as each channel of a receiver hears them. Shape (path, channel).
+    pub(crate) fn wavelets(
+        &self,
+        speed_m_s: f64,
+        paths: &[Path],
+        receiver: &Receiver,
+    ) -> Vec<Vec<Wavelet>> {
+        let heads = &self.heads;
+        self.synthesizer.wavelets(speed_m_s, paths, receiver, heads)
+    }
+
+    /// A response without some of its echogram's `paths`, as they are followed. Shape (channel, sample), flat.
+    pub(crate) fn without(
+        &self,
+        response: &ImpulseResponse,
+        paths: &[Path],
+        receiver: &Receiver,
+    ) -> Vec<f32> {
+        let mut samples = response.samples.clone();
+        let wavelets = self.wavelets(response.echogram.speed_m_s, paths, receiver);
+        self.synthesizer.take_out(&wavelets, &mut samples);
+        samples
     }
 
     /// The impulse response that belongs to an echogram, up to the microphones. `early`: the paths of each channel where they are

@@ -48,24 +48,10 @@ pub(crate) fn find(
 fn find_equal(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Vec3) -> Vec<Path> {
     let validator = Validator::new(scene, rays, source, receiver);
     let mut paths: Vec<(Path, DVec3)> = Vec::new();
-    let mut direct = direct::direct(scene, rays, source, receiver);
-    if scene.config().diffraction {
-        match &mut direct {
-            Some(path) if path.walls == 0 => {
-                let kept = diffraction::beside_edges(scene, rays, source, receiver);
-                for (e, kept) in path.energy.iter_mut().zip(kept) {
-                    *e *= kept as f32;
-                }
-            }
-            _ => {
-                for path in diffraction::around_edges(scene, rays, source, receiver) {
-                    let bend = path.bends.first().copied().unwrap_or(source);
-                    paths.push((path, bend.as_dvec3()));
-                }
-            }
-        }
+    for path in straight(scene, rays, source, receiver) {
+        let from = path.bends.first().copied().unwrap_or(source);
+        paths.push((path, from.as_dvec3()));
     }
-    paths.extend(direct.map(|path| (path, source.as_dvec3())));
     sequences::for_each(scene, rays, source, receiver, |planes, images| {
         if let Some(path) = validator.path(planes, images) {
             paths.push((path, *images.last().unwrap_or(&DVec3::ZERO)));
@@ -88,6 +74,45 @@ fn find_equal(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Ve
         }
     }
     kept.into_iter().map(|(path, _)| path).collect()
+}
+
+/// The straight way, in sight or through walls, and where it is not in sight, those around what hides it.
+fn straight(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Vec3) -> Vec<Path> {
+    let mut direct = direct::direct(scene, rays, source, receiver);
+    let mut paths = Vec::new();
+    if scene.config().diffraction {
+        match &mut direct {
+            Some(path) if path.walls == 0 => {
+                let kept = diffraction::beside_edges(scene, rays, source, receiver);
+                for (e, kept) in path.energy.iter_mut().zip(kept) {
+                    *e *= kept as f32;
+                }
+            }
+            _ => paths = diffraction::around_edges(scene, rays, source, receiver),
+        }
+    }
+    paths.extend(direct);
+    paths
+}
+
+/// What becomes of `known` paths between points that have moved, for a source that radiates equally: the straight ways, and the
+/// reflections that are still there.
+pub(crate) fn follow(
+    scene: &AcousticScene,
+    rays: &RayScene,
+    source: Vec3,
+    receiver: Vec3,
+    known: &[Path],
+) -> Vec<Path> {
+    let validator = Validator::new(scene, rays, source, receiver);
+    let mut paths = straight(scene, rays, source, receiver);
+    let mut images = Vec::new();
+    for path in known.iter().filter(|path| !path.planes.is_empty()) {
+        if sequences::mirror(scene.planes(), source.as_dvec3(), &path.planes, &mut images) {
+            paths.extend(validator.path(&path.planes, &images));
+        }
+    }
+    paths
 }
 
 /// Energy of a free path: 1/d² and what air leaves of it.

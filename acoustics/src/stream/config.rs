@@ -15,6 +15,12 @@ pub struct StreamConfig {
     pub update_angle_rad: f32,
     /// A door or another large part must have moved this far, m (or turned as many rad); 0 to 10.
     pub update_part_m: f32,
+    /// Early paths of a source whose delays glide while it or the listener moves, the straight ones first; the others change with
+    /// the impulse response. 0 (none) to 64. Microphone arrays have none.
+    pub moving_paths: usize,
+    /// The share of all rays that an update of the tail traces where only source or listener have moved; the rest is remembered.
+    /// 0.001 to 1.
+    pub update_share: f64,
     /// Sources that are followed at once; the first in the list win. 1 to 1,000.
     pub max_sources: usize,
 }
@@ -27,23 +33,27 @@ impl Default for StreamConfig {
 }
 
 impl StreamConfig {
-    /// For listening: follows movements of 5 cm and 2 degrees.
+    /// For listening: 16 early paths glide, the rest follows movements of 25 cm and 2 degrees.
     pub fn full() -> Self {
         Self {
             block_samples: 800,
-            update_distance_m: 0.05,
+            update_distance_m: 0.25,
             update_angle_rad: 0.035,
             update_part_m: 0.03,
+            moving_paths: 16,
+            update_share: 0.125,
             max_sources: 64,
         }
     }
 
-    /// For agents that learn: follows movements of 25 cm and 10 degrees.
+    /// For agents that learn: 6 early paths glide, the rest follows movements of 50 cm and 10 degrees.
     pub fn rl() -> Self {
         Self {
-            update_distance_m: 0.25,
+            update_distance_m: 0.5,
             update_angle_rad: 0.175,
             update_part_m: 0.15,
+            moving_paths: 6,
+            update_share: 0.25,
             max_sources: 4,
             ..Self::full()
         }
@@ -77,6 +87,20 @@ impl StreamConfig {
         number("update_distance_m", self.update_distance_m, 10.0, "0 to 10")?;
         number("update_angle_rad", self.update_angle_rad, 3.2, "0 to 3.2")?;
         number("update_part_m", self.update_part_m, 10.0, "0 to 10")?;
+        range(
+            AT,
+            "moving_paths",
+            self.moving_paths as f64,
+            (0.0, 64.0),
+            "0 to 64",
+        )?;
+        range(
+            AT,
+            "update_share",
+            self.update_share,
+            (1e-3, 1.0),
+            "0.001 to 1",
+        )?;
         range(
             AT,
             "max_sources",

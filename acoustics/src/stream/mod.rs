@@ -2,26 +2,34 @@
 
 mod config;
 mod convolver;
+mod early;
+mod memory;
 mod voice;
 
 pub use config::StreamConfig;
+pub(crate) use memory::Memory;
 
+use crate::echogram::Path;
 use crate::error::{AcousticsError, finite};
 use crate::fft::RealFft;
 use crate::microphones::{self, Microphones};
 use crate::receiver::{Receiver, Source};
+use crate::response::ImpulseResponse;
 use crate::scene::AcousticScene;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{PartId, State};
+use dwell_scene::{PartId, Pose, State};
+use early::{Followed, Glide};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
-use voice::{Change, Memory, Situation, Threshold, Voice};
+use voice::{Change, Situation, Threshold, Voice};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Parts whose box is smaller than this from corner to corner do not change what is heard, m.
 const LARGE_PART_M: f32 = 0.7;
+/// What does not glide is computed anew after movements so many times smaller.
+const STIFF: f32 = 5.0;
 const VERSION: u32 = 3;
 
 /// A source that sounds during a block.
@@ -42,6 +50,8 @@ pub struct BlockReport {
     pub traced: usize,
     /// Impulse responses that were only turned.
     pub turned: usize,
+    /// Early paths that were followed.
+    pub followed: usize,
     /// Sources that sounded or still rang.
     pub heard: usize,
     /// Sources that were left out because there are more than [`StreamConfig::max_sources`].
@@ -51,7 +61,9 @@ pub struct BlockReport {
 /// What one receiver hears, block after block.
 ///
 /// Each source is convolved with its impulse response; when that changes, the old and the new one are crossfaded over one
-/// block, so that nothing clicks, and successive delays give the Doppler shift. A source that is no longer named rings out.
+/// block, so that nothing clicks. While source or listener move, the straight way and the strongest reflections are traced anew in
+/// every block and heard by delays that glide, which gives the Doppler shift; the response holds the rest. A source that is no longer
+/// named rings out.
 #[derive(Debug)]
 pub struct Stream {
     scene: AcousticScene,
@@ -75,8 +87,12 @@ struct Planned {
     id: u64,
     /// Whether its source is heard; else it only rings out.
     named: bool,
-    /// The impulse response from now on; `None`: as before.
-    news: Option<(Situation, crate::ImpulseResponse)>,
+    /// Where source and receiver are.
+    place: (Vec3, Pose),
+    /// The impulse response from now on, and the situation it belongs to; `None`: as before.
+    news: Option<(Situation, ImpulseResponse)>,
+    /// Early paths that are heard apart from the impulse response, where they are now; `None`: none are.
+    followed: Option<Vec<Path>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -85,7 +101,7 @@ struct Snapshot {
     block_samples: u64,
     partitions: u64,
     block: u64,
-    voices: Vec<Memory>,
+    voices: Vec<voice::Memory>,
     microphones: microphones::Memory,
 }
 
@@ -182,14 +198,21 @@ impl Stream {
         out.fill(0.0);
         let (mut old, mut new) = (vec![0.0; out.len()], vec![0.0; out.len()]);
         let mut signal = vec![0.0; size];
-        for Planned { id, named, news } in planned {
-            let place = self.voices.binary_search_by_key(&id, |voice| voice.id);
-            let place = place.unwrap_or_else(|place| {
+        for Planned {
+            id,
+            named,
+            place,
+            news,
+            followed,
+        } in planned
+        {
+            let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
+            let at = at.unwrap_or_else(|at| {
                 let voice = Voice::new(id, size, self.partitions);
-                self.voices.insert(place, voice);
-                place
+                self.voices.insert(at, voice);
+                at
             });
-            let voice = &mut self.voices[place];
+            let voice = &mut self.voices[at];
             signal.fill(0.0);
             // What was left out or is no longer named rings out, and gets no more to ring with.
             let fed = sources.iter().filter(|source| named && source.id == id);
@@ -200,16 +223,25 @@ impl Stream {
             }
             let fresh = voice.input.is_silent() || voice.heard.is_none();
             voice.input.push(&mut self.fft, &signal);
-            if let Some((situation, response)) = news {
-                let same_channels = voice
-                    .heard
-                    .as_ref()
-                    .is_some_and(|(_, old)| old.channels == response.channels);
+            let channels = |heard: &Option<(Situation, ImpulseResponse)>| {
+                heard.as_ref().map(|(_, response)| response.channels)
+            };
+            let channels_before = channels(&voice.heard);
+            let before = voice.moved.followed.take();
+            let other = news.is_some() || before.is_some() != followed.is_some();
+            if let Some(news) = news {
+                voice.heard = Some(news);
+            }
+            let same_channels = channels(&voice.heard) == channels_before;
+            if other && let Some((situation, response)) = &voice.heard {
                 old.fill(0.0);
                 if !fresh && same_channels {
                     voice.input.convolve(&mut self.fft, &voice.filter, &mut old);
                 }
-                voice.hear(&mut self.fft, situation, response, self.partitions);
+                let most = followed.as_ref().map(|_| self.config.moving_paths);
+                let samples = without_followed(&self.scene, situation, response, most);
+                let channels = response.channels;
+                voice.filter_with(&mut self.fft, &samples, channels, self.partitions);
                 voice.input.convolve(&mut self.fft, &voice.filter, &mut new);
                 if fresh {
                     add(out, &new);
@@ -220,6 +252,24 @@ impl Stream {
                 voice.input.convolve(&mut self.fft, &voice.filter, &mut new);
                 add(out, &new);
             }
+            if let Some(paths) = followed {
+                report.followed += paths.len();
+                let speed_m_s = self.scene.config().air.speed_of_sound_m_s();
+                let wavelets = self.scene.wavelets(speed_m_s, &paths, receiver);
+                let pairs = paths.into_iter().zip(wavelets);
+                let now: Vec<Followed> = pairs
+                    .map(|(path, wavelets)| Followed { path, wavelets })
+                    .collect();
+                let before = before.filter(|_| same_channels).unwrap_or_default();
+                let glide = Glide {
+                    history: voice.input.history(),
+                    rate_hz: f64::from(self.scene.config().rate_hz),
+                    fade: &self.fade,
+                };
+                glide.add(if fresh { &now } else { &before }, &now, out);
+                voice.moved.followed = Some(now);
+            }
+            voice.moved.last = Some(place);
         }
         self.voices.retain(|voice| {
             !voice.input.is_silent() || sources.iter().any(|source| source.id == voice.id)
@@ -270,17 +320,23 @@ impl Stream {
         }
         ids.sort_by_key(|(id, _)| *id);
         report.heard = ids.len();
+        // The microphones of an array hear early paths of their own.
+        let glides = self.config.moving_paths > 0 && receiver.microphone_positions().is_none();
+        let distance_m = self.config.update_distance_m;
         let threshold = Threshold {
-            distance_m: self.config.update_distance_m,
+            distance_m: if glides {
+                distance_m
+            } else {
+                distance_m / STIFF
+            },
             angle_rad: self.config.update_angle_rad,
             part_m: self.config.update_part_m,
         };
         let mut planned = Vec::with_capacity(ids.len());
         for (id, position) in ids {
-            let place = self.voices.binary_search_by_key(&id, |voice| voice.id);
-            let heard = place
-                .ok()
-                .and_then(|place| self.voices[place].heard.as_ref());
+            let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
+            let at = at.ok().map(|at| &self.voices[at]);
+            let heard = at.and_then(|voice| voice.heard.as_ref());
             let named = position.is_some();
             // What is no longer named rings out where it was last.
             let Some(position) = position.or_else(|| heard.map(|(situation, _)| situation.source))
@@ -305,28 +361,63 @@ impl Stream {
             let known = || {
                 let others = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
                 let mut close = others.filter(|(then, _)| changed(then) == Change::None);
-                close.next().map(|(_, response)| response.clone())
+                close.next().cloned()
             };
-            let response = match (change, heard) {
+            let (scene, threads) = (&self.scene, self.threads);
+            let news = match (change, heard) {
                 (Change::None, _) => None,
-                (Change::Turned, Some((_, response))) => {
+                (Change::Turned, Some((then, response))) => {
                     report.turned += 1;
                     let echogram = response.echogram.clone();
-                    Some(self.scene.arrive(echogram, receiver, None, key))
+                    // The echogram stays that of the place where it was traced.
+                    let mut turned = then.clone();
+                    turned.receiver.pose.rotation = receiver.pose.rotation;
+                    let response = scene.arrive(echogram, &turned.receiver, None, key);
+                    Some((turned, response))
                 }
-                _ => Some(if let Some(response) = known() {
-                    response
+                _ => Some(if let Some(known) = known() {
+                    known
                 } else {
                     report.traced += 1;
                     let source = Source::at(position);
-                    let (scene, threads) = (&self.scene, self.threads);
-                    let receivers = std::slice::from_ref(receiver);
-                    let arrived = scene.arrivals(rays, &source, receivers, key, threads)?;
-                    arrived.into_iter().next().unwrap_or_default()
+                    let again =
+                        heard.filter(|(then, _)| then.differs_by_places_only(&now, &threshold));
+                    let response = if let Some((then, response)) = again {
+                        let memory = Memory {
+                            before: &response.echogram,
+                            moved_m: then.moved_m(&now),
+                            share: self.config.update_share,
+                            update: self.block,
+                        };
+                        scene.arrive_again(rays, &source, receiver, &memory, key, threads)?
+                    } else {
+                        let receivers = std::slice::from_ref(receiver);
+                        let arrived = scene.arrivals(rays, &source, receivers, key, threads)?;
+                        arrived.into_iter().next().unwrap_or_default()
+                    };
+                    (now.clone(), response)
                 }),
             };
-            let news = response.map(|response| (now, response));
-            planned.push(Planned { id, named, news });
+            let place = (position, receiver.pose);
+            let moved = at.is_some_and(|voice| {
+                voice.moved.followed.is_some() || voice.moved.last.is_some_and(|last| last != place)
+            });
+            let known = news.as_ref().or(heard);
+            let elsewhere =
+                known.is_some_and(|(then, _)| (then.source, then.receiver.pose) != place);
+            let followed = known
+                .filter(|_| glides && (moved || elsewhere))
+                .map(|(_, response)| {
+                    let chosen = early::choose(&response.echogram.paths, self.config.moving_paths);
+                    scene.follow(rays, position, receiver.position(), &chosen)
+                });
+            planned.push(Planned {
+                id,
+                named,
+                place,
+                news,
+                followed,
+            });
         }
         Ok(planned)
     }
@@ -385,7 +476,18 @@ impl Stream {
         self.microphones = Microphones::restore(rate_hz, snapshot.microphones)?;
         let voices = snapshot.voices.into_iter();
         self.voices = voices
-            .map(|memory| Voice::restore(&mut self.fft, memory, self.partitions))
+            .map(|memory| {
+                let mut voice = Voice::restore(&mut self.fft, memory, self.partitions);
+                if let Some((situation, response)) = &voice.heard {
+                    let most = voice.moved.followed.as_ref();
+                    let most = most.map(|_| self.config.moving_paths);
+                    let scene = self.scene.as_heard(situation.effects);
+                    let samples = without_followed(&scene, situation, response, most);
+                    let channels = response.channels;
+                    voice.filter_with(&mut self.fft, &samples, channels, self.partitions);
+                }
+                voice
+            })
             .collect();
         self.block = snapshot.block;
         Ok(())
@@ -395,6 +497,20 @@ impl Stream {
     pub fn hash(&self) -> u64 {
         xxh3_64(&self.bytes())
     }
+}
+
+/// The samples of a response, without the paths that are followed when at `most` so many are.
+fn without_followed(
+    scene: &AcousticScene,
+    situation: &Situation,
+    response: &ImpulseResponse,
+    most: Option<usize>,
+) -> Vec<f32> {
+    let Some(most) = most else {
+        return response.samples.clone();
+    };
+    let chosen = early::choose(&response.echogram.paths, most);
+    scene.without(response, &chosen, &situation.receiver)
 }
 
 fn check_length(at: &'static str, expected: usize, found: usize) -> Result<(), AcousticsError> {

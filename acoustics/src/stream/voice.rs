@@ -1,6 +1,7 @@
 //! One source in a stream: what it has played, and how it was last heard.
 
 use super::convolver::{Filter, Input};
+use super::early::Followed;
 use crate::fft::RealFft;
 use crate::laws::Effects;
 use crate::receiver::Receiver;
@@ -45,6 +46,22 @@ fn angle(a: glam::Quat, b: glam::Quat) -> f32 {
 }
 
 impl Situation {
+    /// How far source and receiver are from where they are `now`, m.
+    pub(super) fn moved_m(&self, now: &Self) -> f64 {
+        let receivers = self.receiver.position().distance(now.receiver.position());
+        f64::from(self.source.distance(now.source) + receivers)
+    }
+
+    /// Whether only source and receiver moved.
+    pub(super) fn differs_by_places_only(&self, now: &Self, threshold: &Threshold) -> bool {
+        let there = Self {
+            source: now.source,
+            receiver: now.receiver.clone(),
+            ..self.clone()
+        };
+        self.receiver.kind == now.receiver.kind && there.change(now, threshold) == Change::None
+    }
+
     pub(super) fn change(&self, now: &Self, threshold: &Threshold) -> Change {
         let far = |a: Vec3, b: Vec3, limit: f32| {
             // Not "farther than", so that a limit of 0 asks for any movement at all.
@@ -85,6 +102,16 @@ pub(super) struct Memory {
     pub(super) id: u64,
     pub(super) heard: Option<(Situation, ImpulseResponse)>,
     pub(super) history: Vec<f32>,
+    pub(super) moved: Moved,
+}
+
+/// How the early paths of a source are heard while something moves.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Moved {
+    /// Where source and receiver were at the end of the last block.
+    pub(super) last: Option<(Vec3, Pose)>,
+    /// Early paths outside the filter, once anything has moved.
+    pub(super) followed: Option<Vec<Followed>>,
 }
 
 /// One source.
@@ -94,6 +121,7 @@ pub(super) struct Voice {
     pub(super) heard: Option<(Situation, ImpulseResponse)>,
     pub(super) input: Input,
     pub(super) filter: Filter,
+    pub(super) moved: Moved,
 }
 
 impl Voice {
@@ -103,6 +131,7 @@ impl Voice {
             heard: None,
             input: Input::new(block, partitions),
             filter: Filter::default(),
+            moved: Moved::default(),
         }
     }
 
@@ -111,31 +140,28 @@ impl Voice {
             id: self.id,
             heard: self.heard.clone(),
             history: self.input.history().to_vec(),
+            moved: self.moved.clone(),
         }
     }
 
     pub(super) fn restore(fft: &mut RealFft, memory: Memory, partitions: usize) -> Self {
-        let mut voice = Self {
+        Self {
             id: memory.id,
-            heard: None,
+            heard: memory.heard,
             input: Input::restore(fft, &memory.history, partitions),
             filter: Filter::default(),
-        };
-        if let Some((situation, response)) = memory.heard {
-            voice.hear(fft, situation, response, partitions);
+            moved: memory.moved,
         }
-        voice
     }
 
-    /// From now on the source is heard like this.
-    pub(super) fn hear(
+    /// Convolves from now on with `samples`, shape (channel, sample), flat.
+    pub(super) fn filter_with(
         &mut self,
         fft: &mut RealFft,
-        situation: Situation,
-        response: ImpulseResponse,
+        samples: &[f32],
+        channels: usize,
         partitions: usize,
     ) {
-        self.filter = Filter::new(fft, &response.samples, response.channels, partitions);
-        self.heard = Some((situation, response));
+        self.filter = Filter::new(fft, samples, channels, partitions);
     }
 }

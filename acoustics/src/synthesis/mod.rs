@@ -10,11 +10,13 @@ use crate::bands::{Banded, FilterBank};
 use crate::channel::Channel;
 use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, Path};
+use crate::fft::RealFft;
 use crate::head::Heads;
 use crate::receiver::Receiver;
 use dwell_scene::random::Key;
 use fractional::Taps;
 use minimum_phase::PathFilters;
+use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
 /// Paths whose filters are computed, the strongest first; fainter ones beyond these are left out.
@@ -23,6 +25,8 @@ const MOST_PATHS: usize = 200;
 const END: f64 = 1e-7;
 /// How wide the tail's bands cross, octaves: as little as rings no longer than a window of their energy.
 const OVERLAP: f64 = 0.5;
+/// Length of the filters of paths that move, s.
+const SHORT_S: f64 = 0.004;
 /// How early the filters of ears begin before the delay, s: room for their ringing.
 const EAR_LEAD_S: f64 = 0.001;
 
@@ -145,27 +149,105 @@ impl Synthesizer {
             strongest.truncate(MOST_PATHS);
         }
         let mut fft = self.filters.fft();
+        for path in strongest {
+            let wavelet = self.wavelet(&mut fft, echogram.speed_m_s, path, channel, there);
+            let taps = Taps::new(wavelet.delay_s * self.rate_hz);
+            taps.add(out, &wavelet.response, wavelet.lead, wavelet.amplitude);
+        }
+    }
+
+    /// A path as a channel hears it; `there`: whether it ends at the channel itself rather than at the centre.
+    fn wavelet(
+        &self,
+        fft: &mut RealFft,
+        speed_m_s: f64,
+        path: &Path,
+        channel: &Channel,
+        there: bool,
+    ) -> Wavelet {
+        let gain = channel.path_gain(path.arrival);
+        let energy: Banded = std::array::from_fn(|b| path.energy[b] * gain[b] * gain[b]);
+        let (mut spectrum, mut amplitude) = self.filters.spectrum(&energy);
+        if path.inverted != (gain.iter().sum::<f32>() < 0.0) {
+            amplitude = -amplitude;
+        }
+        let mut delay_s = channel.shade(speed_m_s, path.arrival, &mut spectrum);
+        if there {
+            delay_s = 0.0;
+        }
         let lead = if channel.rings_early() {
             (EAR_LEAD_S * self.rate_hz) as usize
         } else {
             0
         };
-        for path in strongest {
-            let gain = channel.path_gain(path.arrival);
-            let energy: Banded = std::array::from_fn(|b| path.energy[b] * gain[b] * gain[b]);
-            let (mut spectrum, mut amplitude) = self.filters.spectrum(&energy);
-            if path.inverted != (gain.iter().sum::<f32>() < 0.0) {
-                amplitude = -amplitude;
+        Wavelet {
+            response: PathFilters::impulse_response(fft, &mut spectrum, lead),
+            lead,
+            amplitude,
+            delay_s: delay_s + path.length_m.max(crate::images::NEAREST_M) / speed_m_s,
+        }
+    }
+
+    /// Paths as each channel of a receiver hears them, with filters of [`SHORT_S`]. Shape (path, channel).
+    pub(crate) fn wavelets(
+        &self,
+        speed_m_s: f64,
+        paths: &[Path],
+        receiver: &Receiver,
+        heads: &Heads,
+    ) -> Vec<Vec<Wavelet>> {
+        let channels = Channel::of(receiver, heads, speed_m_s);
+        let mut fft = self.filters.fft();
+        let mut hear = |path: &Path, channel: &Channel| {
+            let mut wavelet = self.wavelet(&mut fft, speed_m_s, path, channel, false);
+            wavelet.shorten((SHORT_S * self.rate_hz) as usize + wavelet.lead);
+            wavelet
+        };
+        let all = paths.iter();
+        all.map(|path| {
+            let channels = channels.iter();
+            channels.map(|channel| hear(path, channel)).collect()
+        })
+        .collect()
+    }
+
+    /// Takes wavelets out of a response again. Shapes: (path, channel) and (channel, sample), flat.
+    pub(crate) fn take_out(&self, wavelets: &[Vec<Wavelet>], samples: &mut [f32]) {
+        let Some(channels) = wavelets.first().map(Vec::len) else {
+            return;
+        };
+        let length = samples.len() / channels.max(1);
+        for path in wavelets {
+            for (wavelet, out) in path.iter().zip(samples.chunks_exact_mut(length.max(1))) {
+                let taps = Taps::new(wavelet.delay_s * self.rate_hz);
+                taps.add(out, &wavelet.response, wavelet.lead, -wavelet.amplitude);
             }
-            let speed = echogram.speed_m_s;
-            let mut delay_s = channel.shade(speed, path.arrival, &mut spectrum);
-            if there {
-                delay_s = 0.0;
-            }
-            delay_s += path.length_m.max(crate::images::NEAREST_M) / speed;
-            let response = PathFilters::impulse_response(&mut fft, &mut spectrum, lead);
-            let taps = Taps::new(delay_s * self.rate_hz);
-            taps.add(out, &response, lead, amplitude);
+        }
+    }
+}
+
+/// One path as one channel hears it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Wavelet {
+    /// A short filter. Shape (tap,).
+    pub(crate) response: Vec<f32>,
+    /// Samples of it that lie before the delay.
+    pub(crate) lead: usize,
+    pub(crate) amplitude: f32,
+    pub(crate) delay_s: f64,
+}
+
+impl Wavelet {
+    /// Keeps the first `taps`, the last quarter of them faded out.
+    fn shorten(&mut self, taps: usize) {
+        if self.response.len() <= taps {
+            return;
+        }
+        self.response.truncate(taps);
+        let fade = (taps / 4).max(1);
+        for (k, x) in self.response[taps - fade..].iter_mut().enumerate() {
+            let half_turn = std::f32::consts::FRAC_PI_2 * k as f32 / fade as f32;
+            *x *= libm::cosf(half_turn) * libm::cosf(half_turn);
         }
     }
 }

@@ -128,7 +128,7 @@ impl Sums {
     }
 }
 
-/// Traces the tails from `source` to `receivers`, all by the same rays.
+/// Traces the tails from `source` to `receivers`, all by the same `count` rays.
 ///
 /// # Source
 /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
@@ -138,6 +138,7 @@ pub(crate) fn trace(
     rays: &RayScene,
     source: &Source,
     receivers: &[Vec3],
+    count: usize,
     key: Key,
     threads: Threads,
 ) -> Vec<Late> {
@@ -182,7 +183,7 @@ pub(crate) fn trace(
         };
         receivers.len()
     ];
-    let chunks = config.rays.div_ceil(RAYS_PER_CHUNK);
+    let chunks = count.div_ceil(RAYS_PER_CHUNK);
     let bytes = receivers.len() * (bin_count + times * CELL_COUNT) * size_of::<Banded>();
     let at_once = (MOST_BYTES / bytes.max(1)).clamp(1, CHUNKS_PER_WAVE);
     let (mut segments, mut escaped, mut length_m) = (0, 0, 0.0);
@@ -190,10 +191,10 @@ pub(crate) fn trace(
     while first < chunks {
         // Pieces of a wave differ with memory, what is done with them does not.
         let wave_end = (first / CHUNKS_PER_WAVE + 1) * CHUNKS_PER_WAVE;
-        let count = at_once.min(chunks.min(wave_end) - first);
-        let done = threads.map(count, |k| {
+        let pieces = at_once.min(chunks.min(wave_end) - first);
+        let done = threads.map(pieces, |k| {
             let start = (first + k) * RAYS_PER_CHUNK;
-            let end = (start + RAYS_PER_CHUNK).min(config.rays);
+            let end = (start + RAYS_PER_CHUNK).min(count);
             walk.chunk(start..end, key.child("chunk").child((first + k) as u64))
         });
         for chunk in &done {
@@ -204,7 +205,7 @@ pub(crate) fn trace(
                 sums.add(chunk, receiver, bin_count, times);
             }
         }
-        first += count;
+        first += pieces;
         if config.max_error > 0.0 && first == wave_end {
             let worst = sums
                 .iter()
@@ -215,7 +216,7 @@ pub(crate) fn trace(
             }
         }
     }
-    let traced = (first * RAYS_PER_CHUNK).min(config.rays);
+    let traced = (first * RAYS_PER_CHUNK).min(count);
     let statistics = TraceStatistics {
         rays: traced as u64,
         segments,

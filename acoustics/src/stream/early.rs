@@ -1,0 +1,285 @@
+//! Early paths that are followed while source or listener move: delays that glide, so that pitch shifts as it should.
+
+use crate::echogram::Path;
+use crate::synthesis::Wavelet;
+use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
+
+/// Taps on either side of a place between samples, at most.
+const HALF: usize = 16;
+/// Places between two samples in the tables; between them weights are interpolated.
+const PHASES: usize = 128;
+/// Two paths bend around one edge when their bends are this close, m: a bend slides along its edge as the listener walks.
+const SAME_EDGE_M: f32 = 0.4;
+
+/// A path at the end of a block.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Followed {
+    pub(super) path: Path,
+    /// As each channel hears it. Shape (channel,).
+    pub(super) wavelets: Vec<Wavelet>,
+}
+
+/// Whether two paths are one, before and after a movement.
+pub(super) fn is_same(a: &Path, b: &Path) -> bool {
+    let mut bends = a.bends.iter().zip(&b.bends);
+    a.planes == b.planes
+        && a.bends.len() == b.bends.len()
+        && bends.all(|(a, b)| a.distance(*b) < SAME_EDGE_M)
+}
+
+/// The paths of a response that are followed: the straight ways, then the strongest reflections up to `most` in all.
+pub(super) fn choose(paths: &[Path], most: usize) -> Vec<Path> {
+    let (mut chosen, mut others): (Vec<Path>, Vec<Path>) = paths
+        .iter()
+        .cloned()
+        .partition(|path| path.planes.is_empty());
+    let power = |path: &Path| path.energy.iter().sum::<f32>();
+    others.sort_by(|a, b| power(b).total_cmp(&power(a)));
+    chosen.extend(others);
+    chosen.truncate(most);
+    chosen
+}
+
+/// Moves the paths of a source for one block.
+pub(super) struct Glide<'a> {
+    /// What the source has played; the last samples are the block's.
+    pub(super) history: &'a [f32],
+    pub(super) rate_hz: f64,
+    /// The weight of the new. Shape (sample,).
+    pub(super) fade: &'a [f32],
+}
+
+impl Glide<'_> {
+    /// Adds to `out` what is heard over `old` paths as they become `new` ones. `out`: shape (channel, sample), flat.
+    ///
+    /// A path's delay goes from one block's end to the next's in a straight line, its filter is crossfaded; a path that is only
+    /// in one of the two fades.
+    pub(super) fn add(&self, old: &[Followed], new: &[Followed], out: &mut [f32]) {
+        for path in new {
+            let before = old.iter().find(|one| is_same(&one.path, &path.path));
+            for (channel, out) in out.chunks_exact_mut(self.fade.len()).enumerate() {
+                let from = before.and_then(|one| one.wavelets.get(channel));
+                self.channel(from, path.wavelets.get(channel), out);
+            }
+        }
+        for path in old {
+            if !new.iter().any(|one| is_same(&one.path, &path.path)) {
+                for (wavelet, out) in path
+                    .wavelets
+                    .iter()
+                    .zip(out.chunks_exact_mut(self.fade.len()))
+                {
+                    self.channel(Some(wavelet), None, out);
+                }
+            }
+        }
+    }
+
+    fn channel(&self, old: Option<&Wavelet>, new: Option<&Wavelet>, out: &mut [f32]) {
+        let late = |wavelet: &Wavelet| {
+            // Nothing of the future is known: what would ring before it comes with it.
+            (wavelet.delay_s * self.rate_hz - wavelet.lead as f64).max(1.0)
+        };
+        let (from, to) = match (old, new) {
+            (Some(a), Some(b)) => (late(a), late(b)),
+            (Some(a), None) => (late(a), late(a)),
+            (None, Some(b)) => (late(b), late(b)),
+            (None, None) => return,
+        };
+        let size = out.len();
+        // Places in the history that the block hears.
+        let place = |k: usize| {
+            let way = (k + 1) as f64 / size as f64;
+            (self.history.len() - size + k) as f64 - (from + (to - from) * way)
+        };
+        let (start, end) = (place(0).min(place(size - 1)), place(0).max(place(size - 1)));
+        let first = start.floor() as i64 - HALF as i64;
+        let count = (end.floor() as i64 + HALF as i64 + 1 - first) as usize;
+        let old = old.map(|wavelet| self.filtered(wavelet, first, count));
+        let new = new.map(|wavelet| self.filtered(wavelet, first, count));
+        for (k, y) in out.iter_mut().enumerate() {
+            let place = place(k);
+            // The sample after the newest does not exist yet.
+            let ahead = (self.history.len() as i64 - 1 - place.floor() as i64).max(1) as usize;
+            let taps = Taps::new(place, ahead);
+            let read = |samples: &Option<Vec<f32>>| {
+                samples
+                    .as_deref()
+                    .map_or(0.0, |samples| taps.read(samples, first))
+            };
+            let (a, b) = (read(&old), read(&new));
+            *y += a + (b - a) * self.fade[k];
+        }
+    }
+
+    /// `count` samples, from place `first` of the history on, as a wavelet's filter makes them.
+    fn filtered(&self, wavelet: &Wavelet, first: i64, count: usize) -> Vec<f32> {
+        let mut samples = vec![0.0; count];
+        let length = self.history.len() as i64;
+        for (k, weight) in wavelet.response.iter().enumerate() {
+            let scaled = weight * wavelet.amplitude;
+            // y[first + n] += h[k] x[first + n - k]
+            let shift = first - k as i64;
+            let from = (-shift).clamp(0, count as i64);
+            let to = (length - shift).clamp(from, count as i64);
+            let here = &self.history[(from + shift).max(0) as usize..(to + shift).max(0) as usize];
+            for (y, x) in samples[from as usize..to as usize].iter_mut().zip(here) {
+                *y += scaled * x;
+            }
+        }
+        samples
+    }
+}
+
+/// Weights of a windowed sinc at places between samples, for every half length 1, 2, 4, 8, 16. Shape (half, phase, tap).
+static TABLES: LazyLock<Vec<Vec<Vec<f32>>>> = LazyLock::new(|| {
+    let halves = (0..=HALF.trailing_zeros()).map(|power| 1_usize << power);
+    halves
+        .map(|half| {
+            (0..=PHASES)
+                .map(|phase| weights(half, phase as f64 / PHASES as f64))
+                .collect()
+        })
+        .collect()
+});
+
+fn weights(half: usize, fraction: f64) -> Vec<f32> {
+    let values: Vec<f64> = (0..2 * half)
+        .map(|k| {
+            let x = k as f64 + 1.0 - half as f64 - fraction;
+            let sinc = if x.abs() < 1e-9 {
+                1.0
+            } else {
+                libm::sin(std::f64::consts::PI * x) / (std::f64::consts::PI * x)
+            };
+            let window = libm::cos(0.5 * std::f64::consts::PI * x / (half as f64 + 0.5));
+            sinc * window * window
+        })
+        .collect();
+    let sum: f64 = values.iter().sum();
+    values.iter().map(|value| (value / sum) as f32).collect()
+}
+
+/// The weights for one place.
+struct Taps {
+    whole: i64,
+    half: usize,
+    below: &'static [f32],
+    above: &'static [f32],
+    way: f32,
+}
+
+impl Taps {
+    /// `ahead`: samples after the one below the place that there are, at least 1.
+    fn new(place: f64, ahead: usize) -> Self {
+        let power = ahead.min(HALF).ilog2() as usize;
+        let whole = place.floor();
+        let phase = (place - whole) * PHASES as f64;
+        let below = (phase as usize).min(PHASES - 1);
+        let table = &TABLES[power];
+        Self {
+            whole: whole as i64,
+            half: 1 << power,
+            below: &table[below],
+            above: &table[below + 1],
+            way: (phase - below as f64) as f32,
+        }
+    }
+
+    /// The value between samples, of which the first stands at place `first`.
+    fn read(&self, samples: &[f32], first: i64) -> f32 {
+        let start = self.whole + 1 - self.half as i64 - first;
+        let here = usize::try_from(start)
+            .ok()
+            .and_then(|start| samples.get(start..start + 2 * self.half));
+        let Some(here) = here else { return 0.0 };
+        let (mut a, mut b) = (0.0, 0.0);
+        for ((x, below), above) in here.iter().zip(self.below).zip(self.above) {
+            a += x * below;
+            b += x * above;
+        }
+        a + (b - a) * self.way
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn followed(delay_s: f64) -> Followed {
+        Followed {
+            path: Path {
+                planes: Vec::new(),
+                bends: Vec::new(),
+                length_m: 1.0,
+                energy: [1.0; 8],
+                arrival: glam::Vec3::X,
+                departure: glam::Vec3::X,
+                walls: 0,
+                inverted: false,
+            },
+            wavelets: vec![Wavelet {
+                response: vec![1.0],
+                lead: 0,
+                amplitude: 0.5,
+                delay_s,
+            }],
+        }
+    }
+
+    /// A gliding delay resamples: a tone comes out as the tone at the moment it was played, within -70 dB.
+    #[test]
+    fn a_gliding_delay_resamples() {
+        let (rate_hz, size) = (16_000.0, 800);
+        let fade: Vec<f32> = (1..=size).map(|k| k as f32 / size as f32).collect();
+        for frequency_hz in [200.0, 1000.0, 5000.0] {
+            let omega = std::f64::consts::TAU * frequency_hz / rate_hz;
+            let history: Vec<f32> = (0..4 * size)
+                .map(|k| (omega * k as f64).sin() as f32)
+                .collect();
+            let glide = Glide {
+                history: &history,
+                rate_hz,
+                fade: &fade,
+            };
+            let (from, to) = (100.3, 97.9);
+            let mut out = vec![0.0; size];
+            glide.add(
+                &[followed(from / rate_hz)],
+                &[followed(to / rate_hz)],
+                &mut out,
+            );
+            for (k, y) in out.iter().enumerate() {
+                let delay = from + (to - from) * (k + 1) as f64 / size as f64;
+                let wanted = 0.5 * (omega * ((3 * size + k) as f64 - delay)).sin();
+                assert!(
+                    (f64::from(*y) - wanted).abs() < 3e-4 * 0.5,
+                    "{frequency_hz} {k}"
+                );
+            }
+        }
+    }
+
+    /// So close that the filter would reach into the future, it still plays, and nothing is out of bounds.
+    #[test]
+    fn the_shortest_delays_play() {
+        let history: Vec<f32> = (0..300).map(|k| (0.05 * k as f32).sin()).collect();
+        let fade = vec![1.0; 100];
+        let glide = Glide {
+            history: &history,
+            rate_hz: 16_000.0,
+            fade: &fade,
+        };
+        for delay in [0.0, 1.0, 2.5, 7.0, 40.0, 1e4] {
+            let mut out = vec![0.0; 100];
+            let path = [followed(delay / 16_000.0)];
+            glide.add(&path, &path, &mut out);
+            let wanted = |k: usize| 0.5 * (0.05 * ((200 + k) as f64 - delay.max(1.0))).sin();
+            for (k, y) in out.iter().enumerate() {
+                let wanted = if delay > 1000.0 { 0.0 } else { wanted(k) };
+                assert!((f64::from(*y) - wanted).abs() < 1e-3, "{delay} {k}");
+            }
+        }
+    }
+}
