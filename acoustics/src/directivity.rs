@@ -128,6 +128,13 @@ impl Pattern {
         }
     }
 
+    /// Tabulated with other gains; `change` gets the cosine of the angle to the axis and the gain there.
+    pub(crate) fn reshaped(&self, change: impl Fn(f32, Banded) -> Banded) -> Self {
+        let cosine = |k: usize| libm::cos(PI * k as f64 / (ANGLES - 1) as f64) as f32;
+        let cosines = (0..ANGLES).map(cosine);
+        Self::Table(cosines.map(|c| change(c, self.gain(c))).collect())
+    }
+
     /// Whether it is equal on all sides.
     pub(crate) fn is_omni(&self) -> bool {
         matches!(self, Self::Omni)

@@ -408,8 +408,9 @@ impl AcousticScene {
         key: Key,
         threads: Threads,
     ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
-        let arrived = self.arrivals(rays, source, receivers, key, threads)?;
-        let both = arrived.into_iter().zip(receivers);
+        let placed: Vec<Receiver> = receivers.iter().map(|r| self.effects.placed(r)).collect();
+        let arrived = self.arrivals(rays, source, &placed, key, threads)?;
+        let both = arrived.into_iter().zip(&placed);
         Ok(both
             .map(|(response, receiver)| self.record(response, receiver, key))
             .collect())
@@ -421,6 +422,7 @@ impl AcousticScene {
     /// The microphones of an array hear the centre's early paths as plane waves here. A head that the scene does not know is
     /// heard as the built-in one.
     pub fn respond(&self, echogram: Echogram, receiver: &Receiver, key: Key) -> ImpulseResponse {
+        let receiver = &self.effects.placed(receiver);
         self.record(self.arrive(echogram, receiver, None, key), receiver, key)
     }
 

@@ -1,8 +1,9 @@
 //! Each law is hidden in recordings made by the engine, and found among its rivals by the experiment that separates them.
 //!
-//! One set of recordings serves for all: impulse responses at two distances, a tone at two levels, and silence at two microphones
-//! close to each other in known background noise. All bounds are at least 5 standard errors of what they bound, so that one of
-//! the 42 verdicts is wrong by chance with a probability below 3e-5; seeds are fixed.
+//! One set of recordings serves for all: impulse responses at two distances, from opposite sides, to a microphone array's
+//! directions and from a source that is turned, a tone at two levels, and silence at two microphones close to each other in known
+//! background noise. All bounds are at least 5 standard errors of what they bound, so that one of the 51 verdicts is wrong by
+//! chance with a probability below 4e-5; seeds are fixed.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 
@@ -11,11 +12,12 @@ mod common;
 use common::{Hall, dry, law, material};
 use dwell_acoustics::bands::FilterBank;
 use dwell_acoustics::{
-    AcousticConfig, ActiveSource, Air, Receiver, Source, Stream, StreamConfig, laws,
+    AcousticConfig, ActiveSource, Air, Directivity, ImpulseResponse, Receiver, Source, Stream,
+    StreamConfig, laws,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::{Key, Stream as Random};
-use dwell_scene::{LawSpec, State};
+use dwell_scene::{LawSpec, Pose, State};
 use glam::Vec3;
 
 const BLOCK: usize = 800;
@@ -54,14 +56,16 @@ fn state(hall: &Hall, laws: Vec<LawSpec>) -> State {
 }
 
 fn response(hall: &Hall, hidden: &[LawSpec], receiver: Vec3) -> Vec<f32> {
+    let heard = heard(hall, hidden, &Source::at(SOURCE), &Receiver::omni(receiver));
+    heard.samples
+}
+
+fn heard(hall: &Hall, hidden: &[LawSpec], source: &Source, receiver: &Receiver) -> ImpulseResponse {
     let mut scene = hall.scene.clone();
     scene.update(&state(hall, hidden.to_vec()));
-    let (source, receiver) = (Source::at(SOURCE), Receiver::omni(receiver));
     let threads = Threads::exactly(2);
-    let response = scene
-        .impulse_response(&hall.rays, &source, &receiver, Key::root(1), threads)
-        .unwrap();
-    response.samples
+    let response = scene.impulse_response(&hall.rays, source, receiver, Key::root(1), threads);
+    response.unwrap()
 }
 
 /// What a microphone records of a signal in known noise.
@@ -160,6 +164,58 @@ fn lateness(stated: &[f32], measured: &[f32]) -> f64 {
     peak_of(measured) as f64 - peak_of(stated) as f64 + between
 }
 
+/// A16: where the microphone at [`NEAR`] is against what is said, m: from opposite sides, what comes later from one comes earlier
+/// from the other. A delay and warmth are equal on both.
+fn displacement(hall: &Hall, hidden: &[LawSpec]) -> Vec3 {
+    let side = |offset: Vec3| {
+        let late = |side: Vec3| {
+            let (source, receiver) = (Source::at(NEAR + side), Receiver::omni(NEAR));
+            let of = |laws: &[LawSpec]| heard(hall, laws, &source, &receiver).samples;
+            lateness(&of(&[]), &of(hidden))
+        };
+        let samples = 0.5 * (late(-offset) - late(offset));
+        (samples / RATE_HZ * 343.2) as f32
+    };
+    Vec3::new(side(2.0 * Vec3::X), side(Vec3::Y), side(2.0 * Vec3::Z))
+}
+
+/// Whether first-order ambisonics at [`NEAR`] hear known sources from elsewhere than they are, by the largest angle, degrees.
+fn turned_deg(hall: &Hall, hidden: &[LawSpec]) -> f64 {
+    let from = |laws: &[LawSpec], side: Vec3| {
+        let receiver = Receiver::ambisonics(Pose::from_position(NEAR), 1);
+        let response = heard(hall, laws, &Source::at(NEAR + side), &receiver);
+        let pressure = response.channel(0);
+        let peak = peak_of(pressure);
+        let product = |channel: usize| {
+            let both = pressure.iter().zip(response.channel(channel));
+            let direct = both.skip(peak - 24).take(48);
+            direct.map(|(w, x)| w * x).sum::<f32>()
+        };
+        // Ambisonics' front, left, up.
+        let towards = Vec3::new(-product(1), product(2), -product(3));
+        towards / towards.length()
+    };
+    let angle = |side: Vec3| {
+        let (a, b) = (from(&[], side), from(hidden, side));
+        f64::from(a.cross(b).length().atan2(a.dot(b))).to_degrees()
+    };
+    angle(-2.0 * Vec3::X).max(angle(-2.0 * Vec3::Z))
+}
+
+/// A12: by how many decibels more the direct sound of a talker at [`NEAR`] differs from what is stated for one turn than for
+/// another.
+fn uneven_db(hall: &Hall, hidden: &[LawSpec]) -> f64 {
+    let ear = Receiver::omni(NEAR + Vec3::X);
+    let change = [-0.5, 0.0, 0.5].map(|turns: f32| {
+        let pose = Pose::from_position_yaw(NEAR, (turns - 0.5) * std::f32::consts::PI);
+        let source = Source::facing(pose, Directivity::TALKER);
+        let of = |laws: &[LawSpec]| levels(&direct(&heard(hall, laws, &source, &ear).samples));
+        let change = difference(&of(hidden), &of(&[]));
+        change.iter().sum::<f64>() / change.len() as f64
+    });
+    spread(&change)
+}
+
 /// The law that the recordings speak of.
 fn verdict(hall: &Hall, hidden: &[LawSpec], seed: u64) -> Option<&'static str> {
     // A15: does it depend on the level? 40 dB more at the source are 40 dB more in the recording.
@@ -194,6 +250,17 @@ fn verdict(hall: &Hall, hidden: &[LawSpec], seed: u64) -> Option<&'static str> {
     let drift_ppm = -1e6 * turned / (std::f64::consts::TAU * 1000.0 * 2.5);
     if drift_ppm.abs() > 5.0 {
         return Some("clock_drift");
+    }
+    // A16: times of arrival are right within a tenth of a sample, 2 mm.
+    if displacement(hall, hidden).length() > 0.02 {
+        return Some("microphone_position_error");
+    }
+    // Noise at a thousandth of the direct sound turns directions by less than half a degree.
+    if turned_deg(hall, hidden) > 3.0 {
+        return Some("microphone_orientation_error");
+    }
+    if uneven_db(hall, hidden) > 1.5 {
+        return Some("source_directivity_error");
     }
     // A3, A5: do arrivals come later at all, and the later the farther?
     let stated = [NEAR, FAR].map(|at| response(hall, &[], at));
@@ -282,6 +349,20 @@ fn hide(id: &str, random: &mut Random) -> LawSpec {
             law(id, &[("gain_db", either_sign(random, 2.0, 12.0))])
         }
         "source_response" | "microphone_response" => response(random),
+        "source_directivity_error" => match random.bits() % 3 {
+            0 => law(id, &[("yaw_deg", either_sign(random, 40.0, 80.0))]),
+            1 => law(id, &[("sharpness", uniform(random, 0.6, 1.5))]),
+            _ => law(id, &[("beam_db", uniform(random, 5.0, 12.0))]),
+        },
+        "microphone_position_error" => {
+            let names = ["right_m", "up_m", "back_m"];
+            let values = names.map(|name| (name, either_sign(random, 0.02, 0.15)));
+            law(id, &values)
+        }
+        "microphone_orientation_error" => {
+            let yaw = ("yaw_deg", either_sign(random, 5.0, 40.0));
+            law(id, &[yaw, ("roll_deg", either_sign(random, 0.0, 10.0))])
+        }
         "background_noise" | "microphone_noise" => {
             let name = if id == "microphone_noise" {
                 "sigma_pa"

@@ -24,6 +24,12 @@ fn each() -> Vec<LawSpec> {
         law("no_air_absorption", &[("missing", 1.0)]),
         law("source_gain", &[("gain_db", -3.0)]),
         law("source_response", &response),
+        law(
+            "source_directivity_error",
+            &[("yaw_deg", 40.0), ("beam_db", 9.0)],
+        ),
+        law("microphone_position_error", &[("right_m", 0.12)]),
+        law("microphone_orientation_error", &[("yaw_deg", -25.0)]),
         law("background_noise", &[("level_pa", 0.01), ("hum_pa", 0.003)]),
         law("microphone_gain", &[("gain_db", 5.0)]),
         law("microphone_response", &response),

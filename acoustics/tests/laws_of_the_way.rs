@@ -7,12 +7,13 @@ mod common;
 use common::{Hall, dry, law, material};
 use dwell_acoustics::bands::BAND_COUNT;
 use dwell_acoustics::{
-    AcousticConfig, ActiveSource, Air, Echogram, Receiver, Source, Stream, StreamConfig,
+    AcousticConfig, ActiveSource, Air, Directivity, Echogram, Receiver, Source, Stream,
+    StreamConfig,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
-use dwell_scene::{LawSpec, State};
-use glam::Vec3;
+use dwell_scene::{LawSpec, Pose, State};
+use glam::{Quat, Vec3};
 
 const SOURCE: Vec3 = Vec3::new(1.2, 1.5, 1.4);
 const EAR: Vec3 = Vec3::new(7.0, 1.2, 4.0);
@@ -145,6 +146,133 @@ fn sources_change_direct_and_late_sound_alike() {
             }
         }
     }
+}
+
+/// A12: all paths change by the pattern's gain towards where they leave, the level in front stays, and sources that face
+/// elsewhere are those that are said to.
+#[test]
+fn sources_turn_and_narrow() {
+    let hall = hall();
+    let stated = echogram(&hall, Vec::new());
+    let beam = law(
+        "source_directivity_error",
+        &[("beam_db", 8.0), ("yaw_deg", 70.0), ("pitch_deg", 20.0)],
+    );
+    let now = echogram(&hall, vec![beam.clone()]);
+    let (sy, cy) = 70.0_f64.to_radians().sin_cos();
+    let (sp, cp) = 20.0_f64.to_radians().sin_cos();
+    let axis = [-sy * cp, sp, -cy * cp];
+    for (a, b) in stated.paths.iter().zip(&now.paths) {
+        let u = a.departure.as_dvec3().to_array();
+        let cosine: f64 = axis.iter().zip(u).map(|(x, y)| x * y).sum();
+        for band in 0..BAND_COUNT {
+            let ratio = dwell_acoustics::bands::exact_centre_hz(band) / 1000.0;
+            let behind_db = 8.0 * 2.0 * ratio / (1.0 + ratio);
+            let wanted_db = -0.5 * (1.0 - cosine) * behind_db;
+            let found_db = 10.0 * (f64::from(b.energy[band]) / f64::from(a.energy[band])).log10();
+            assert!(
+                (found_db - wanted_db).abs() < 0.02,
+                "{found_db} {wanted_db}"
+            );
+        }
+    }
+    // Less goes into the room: late sound has the mean of the pattern's energy over all directions.
+    let sum = |e: &Echogram, band: usize| {
+        let first = (0.06 / e.tail.bin_s) as usize;
+        let late = e.tail.bins.iter().skip(first);
+        late.map(|bin| bin[band]).sum::<f64>()
+    };
+    let x = 16.0 * (std::f64::consts::LN_10 / 10.0) * 0.8;
+    let mean_db = 10.0 * ((1.0 - (-x).exp()) / x).log10();
+    let found_db = 10.0 * (sum(&now, 6) / sum(&stated, 6)).log10();
+    assert!((found_db - mean_db).abs() < 1.0, "{found_db} {mean_db}");
+    // A cardioid that is said to face the wall and does not, and one whose pattern is squared.
+    let facing = |yaw_rad: f32, laws: Vec<LawSpec>| {
+        let mut state = State::new(&hall.house);
+        state.laws = laws;
+        let mut scene = hall.scene.clone();
+        scene.update(&state);
+        let pose = Pose::from_position_yaw(SOURCE, yaw_rad);
+        let source = Source::facing(pose, Directivity::CARDIOID);
+        let (key, threads) = (Key::root(3), Threads::ONE);
+        scene
+            .echogram(&hall.rays, &source, EAR, key, threads)
+            .unwrap()
+    };
+    let turned = law("source_directivity_error", &[("yaw_deg", 50.0)]);
+    let (a, b) = (
+        facing(0.4, vec![turned]),
+        facing(0.4 + 50.0_f32.to_radians(), Vec::new()),
+    );
+    for (a, b) in a.paths.iter().zip(&b.paths) {
+        assert!((a.energy[3] / b.energy[3] - 1.0).abs() < 1e-3);
+    }
+    let sharp = law("source_directivity_error", &[("sharpness", 1.0)]);
+    let (a, b) = (facing(0.4, vec![sharp]), facing(0.4, Vec::new()));
+    for (a, b) in a.paths.iter().zip(&b.paths) {
+        let plain = stated.paths.iter().find(|p| p.planes == a.planes).unwrap();
+        let gain = f64::from(b.energy[3] / plain.energy[3]);
+        let found = f64::from(a.energy[3] / plain.energy[3]);
+        assert!((found - gain * gain).abs() < 1e-3, "{found} {gain}");
+    }
+}
+
+/// A16: a microphone that is elsewhere hears what one there hears, and a head that faces elsewhere what one does that faces there.
+#[test]
+fn receivers_are_where_laws_put_them() {
+    let hall = hall();
+    let hear = |receiver: &Receiver, laws: Vec<LawSpec>| {
+        let mut state = State::new(&hall.house);
+        state.laws = laws;
+        let mut scene = hall.scene.clone();
+        scene.update(&state);
+        let (source, key) = (Source::at(SOURCE), Key::root(3));
+        let threads = Threads::ONE;
+        let heard = scene.impulse_response(&hall.rays, &source, receiver, key, threads);
+        heard.unwrap().samples
+    };
+    let off = law(
+        "microphone_position_error",
+        &[("right_m", 0.25), ("up_m", -0.125), ("back_m", 0.5)],
+    );
+    let there = EAR + Vec3::new(0.25, -0.125, 0.5);
+    let found = hear(&Receiver::omni(EAR), vec![off.clone()]);
+    assert_eq!(found, hear(&Receiver::omni(there), Vec::new()));
+    assert_ne!(found, hear(&Receiver::omni(EAR), Vec::new()));
+    // In the head's axes: with a quarter turn to the left, its right is -Z and its back +X.
+    let quarter = Pose {
+        position: EAR,
+        rotation: Quat::from_xyzw(0.0, 0.5_f32.sqrt(), 0.0, 0.5_f32.sqrt()),
+    };
+    let moved = Pose {
+        position: EAR + Vec3::new(0.5, -0.125, -0.25),
+        ..quarter
+    };
+    let (found, wanted) = (
+        hear(&Receiver::binaural(quarter), vec![off]),
+        hear(&Receiver::binaural(moved), Vec::new()),
+    );
+    let most = wanted.iter().fold(0.0_f32, |m, x| m.max(x.abs()));
+    assert_eq!(found.len(), wanted.len());
+    let close = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 2e-3 * most);
+    assert!(close(&found, &wanted));
+    let turned = law("microphone_orientation_error", &[("yaw_deg", 90.0)]);
+    let (found, wanted) = (
+        hear(
+            &Receiver::binaural(Pose::from_position(EAR)),
+            vec![turned.clone()],
+        ),
+        hear(&Receiver::binaural(quarter), Vec::new()),
+    );
+    assert_eq!(found.len(), wanted.len());
+    assert!(close(&found, &wanted));
+    assert!(!close(
+        &found,
+        &hear(&Receiver::binaural(Pose::from_position(EAR)), Vec::new())
+    ));
+    // Nothing turns a microphone.
+    let omni = Receiver::omni(EAR);
+    assert_eq!(hear(&omni, vec![turned]), hear(&omni, Vec::new()));
 }
 
 /// A stream asks for new rays when air or sources change, and not when microphones do.

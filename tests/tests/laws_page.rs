@@ -33,7 +33,8 @@ What sleeps: laws that come, go or change wake everything once. After that laws 
 asleep what sleeps; only wind wakes what it pushes by more than a thousandth of its weight, and keeps it awake as long as it does.
 
 Laws of sound take no targets and act alike in streams and in impulse responses. Those of air and sources change the energies
-between a source and a microphone, and so echograms and room measures, too. `background_noise` acts on the pressure at microphones,
+between a source and a microphone, and so echograms and room measures, too. Those of where microphones are and how they face change
+what receivers hear; echograms and measures stay those of the place that is asked for. `background_noise` acts on the pressure at microphones,
 laws of microphones on what they give out of it, in the order in which they were installed. A law of microphones that has no impulse
 response (clipping, automatic gain, noise, a clock) does to a response what it does to a recording of the impulse of 1 Pa at 1 m. What
 comes, changes or goes while a stream runs is crossfaded over one block.

@@ -26,12 +26,10 @@ pub(crate) fn find(
     source: &Source,
     receiver: Vec3,
 ) -> Vec<Path> {
-    let pattern = source
-        .directivity
-        .pattern(scene.config().air.speed_of_sound_m_s());
+    let speed_m_s = scene.config().air.speed_of_sound_m_s();
+    let (axis, pattern) = scene.effects().radiation(source, speed_m_s);
     let mut paths = find_equal(scene, rays, source.position(), receiver);
     if !pattern.is_omni() {
-        let axis = source.axis();
         for path in &mut paths {
             let gain = pattern.gain(axis.dot(path.departure));
             path.inverted = gain.iter().sum::<f32>() < 0.0;

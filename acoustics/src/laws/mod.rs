@@ -1,6 +1,6 @@
 //! Effects on sound that the basic model lacks: one file and one line each.
 //!
-//! Laws of air and sources change the energies between a source and a microphone (`Effects`); laws of microphones change
+//! Laws of air, of sources and of where microphones are change the energies between the two (`Effects`); other laws of microphones change
 //! pressure, block by block in a stream and at once in an impulse response (`Stage`). A law at its default is not installed, so
 //! that no bit changes.
 
@@ -12,9 +12,12 @@ mod fir;
 mod microphone_clipping;
 mod microphone_gain;
 mod microphone_noise;
+mod microphone_orientation_error;
+mod microphone_position_error;
 mod microphone_response;
 mod no_air_absorption;
 mod recording_delay;
+mod source_directivity_error;
 mod source_gain;
 mod source_response;
 pub(crate) mod stage;
@@ -38,7 +41,7 @@ struct Law {
 
 /// Where a law acts.
 enum Acts {
-    /// On air and sources.
+    /// On air, on sources, and on where receivers are.
     Way(fn(Values<'_>, &mut Effects)),
     /// On the pressure at microphones, before all laws of microphones, at so many samples a second.
     Field(fn(Values<'_>, f64) -> Box<dyn Stage>),
@@ -52,6 +55,9 @@ static LAWS: &[Law] = &[
     no_air_absorption::LAW,
     source_gain::LAW,
     source_response::LAW,
+    source_directivity_error::LAW,
+    microphone_position_error::LAW,
+    microphone_orientation_error::LAW,
     background_noise::LAW,
     microphone_gain::LAW,
     microphone_response::LAW,
@@ -88,6 +94,18 @@ impl Values<'_> {
     /// The values of [`BAND_DB`].
     fn bands(&self) -> Banded {
         std::array::from_fn(|band| self.get(BAND_DB[band].name) as f32)
+    }
+}
+
+/// An angle of up to `most` degrees to either side.
+const fn angle(name: &'static str, most: f64, plausible: f64) -> ParamInfo {
+    ParamInfo {
+        name,
+        unit: "degree",
+        default: 0.0,
+        low: -most,
+        high: most,
+        plausible: [-plausible, plausible],
     }
 }
 

@@ -27,7 +27,11 @@ pub(super) const LAW: Law = Law {
             high: 1.0,
             plausible: [0.0, 0.1],
         }],
-        rivals: &["temperature_error", "clock_drift", "position_error"],
+        rivals: &[
+            "temperature_error",
+            "clock_drift",
+            "microphone_position_error",
+        ],
         separating_experiment: "record at two or more distances: a delay shifts all arrivals by the same time at all places, warmth and \
                                 clocks in proportion to the time, a wrong position each path by another",
     },

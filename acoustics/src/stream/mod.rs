@@ -30,7 +30,7 @@ use xxhash_rust::xxh3::xxh3_64;
 const LARGE_PART_M: f32 = 0.7;
 /// What does not glide is computed anew after movements so many times smaller.
 const STIFF: f32 = 5.0;
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// A source that sounds during a block.
 #[derive(Clone, Copy, Debug)]
@@ -192,6 +192,7 @@ impl Stream {
             finite("a source", source.position)?;
         }
         self.scene.update(state);
+        let receiver = &self.scene.effects().placed(receiver);
         let mut report = BlockReport::default();
         // What can fail comes first, so that an error leaves the stream as it was.
         let planned = self.plan(rays, state, sources, receiver, &mut report)?;

@@ -154,12 +154,13 @@ pub(crate) fn trace(
     });
     let hidden = listeners.iter().any(|listener| listener.hidden);
     let mut start = key.child("turn").stream();
+    let (axis, pattern) = scene.effects().radiation(source, speed);
     let walk = Walk {
         scene,
         rays,
         source: source.position(),
-        axis: source.axis(),
-        pattern: source.directivity.pattern(speed),
+        axis,
+        pattern,
         listeners: &listeners,
         turn: random_rotation(&mut start),
         place: (start.uniform(), start.uniform()),

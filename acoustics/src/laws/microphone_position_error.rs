@@ -1,0 +1,43 @@
+//! Microphones that are elsewhere than they are said to be.
+
+use super::{Acts, Effects, Law, Values};
+use dwell_scene::LawInfo;
+use dwell_scene::law::{Engine, ParamInfo};
+
+/// How far a microphone is off along one axis.
+const fn offset(name: &'static str) -> ParamInfo {
+    ParamInfo {
+        name,
+        unit: "m",
+        default: 0.0,
+        low: -2.0,
+        high: 2.0,
+        plausible: [-0.2, 0.2],
+    }
+}
+
+pub(super) const LAW: Law = Law {
+    info: LawInfo {
+        id: "microphone_position_error",
+        version: 1,
+        name: "error of the microphones' position",
+        equation: "x = x_stated + Q (right_m, up_m, back_m) (m), Q from the receiver's axes to the house's (1 for a single microphone); \
+                   heads and arrays move as a whole",
+        source: "ISO 3382-1:2009, 4.3 (positions of microphones)",
+        engine: Engine::Acoustics,
+        acts_on: "sensor",
+        params: &[offset("right_m"), offset("up_m"), offset("back_m")],
+        rivals: &["recording_delay", "temperature_error", "room_scale"],
+        separating_experiment: "play from opposite sides of the microphone: what comes later from one side comes earlier from the other, \
+                                and all reflections agree with one displacement; a delay is the same from all sides, warmth \
+                                proportional to the way",
+    },
+    acts: Acts::Way(move_away),
+};
+
+fn move_away(values: Values<'_>, effects: &mut Effects) {
+    let names = ["right_m", "up_m", "back_m"];
+    for (sum, name) in effects.receiver_offset_m.iter_mut().zip(names) {
+        *sum += values.get(name) as f32;
+    }
+}
