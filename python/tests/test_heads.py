@@ -15,6 +15,7 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 
 import dwell
+from dwell import measures
 from dwell.cli import main
 from dwell.sofa import HeadFile, read_head
 
@@ -418,3 +419,20 @@ def test_kemar_between_its_directions() -> None:
     print("dB by octave", mean.round(2), "us", np.max(late_us))
     assert (mean < [0.1, 0.1, 0.1, 0.2, 0.3, 0.5]).all()
     assert np.max(late_us) < 20.0
+
+
+@needs_kemar
+def test_kemar_in_a_reverberant_room(shoebox: dwell.House) -> None:
+    """Late sound: long waves are alike at both ears, short ones are not."""
+    scene = dwell.AcousticScene(shoebox, rays=1000, max_duration_s=1.0)
+    head = dwell.Head.from_sofa(KEMAR)
+    late = []
+    for seed in range(4):
+        pair = scene.impulse_response((1.2, 1.5, 1.4), (4.6, 1.2, 3.3), head=head, seed=seed)
+        bands = measures.of_ears(pair, scene.rate_hz)["bands"]
+        late.append([band["iacc_late"] for band in bands])
+    coherence = np.mean(late, axis=0)
+    print("IACC of late sound by octave", coherence.round(2))
+    assert (coherence[:2] > 0.85).all()
+    assert 0.5 < coherence[2] < 0.95
+    assert (coherence[4:] < 0.4).all()
