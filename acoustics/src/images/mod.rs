@@ -26,11 +26,17 @@ pub(crate) fn find(
     source: &Source,
     receiver: Vec3,
 ) -> Vec<Path> {
+    let mut paths = find_equal(scene, rays, source.position(), receiver);
+    radiate(scene, source, &mut paths);
+    paths
+}
+
+/// Gives paths of a source that radiates equally in all directions what it radiates into each.
+fn radiate(scene: &AcousticScene, source: &Source, paths: &mut Vec<Path>) {
     let speed_m_s = scene.config().air.speed_of_sound_m_s();
     let (axis, pattern) = scene.effects().radiation(source, speed_m_s);
-    let mut paths = find_equal(scene, rays, source.position(), receiver);
     if !pattern.is_omni() {
-        for path in &mut paths {
+        for path in paths.iter_mut() {
             let gain = pattern.gain(axis.dot(path.departure));
             path.inverted = gain.iter().sum::<f32>() < 0.0;
             for (e, g) in path.energy.iter_mut().zip(gain) {
@@ -39,7 +45,6 @@ pub(crate) fn find(
         }
         paths.retain(|path| path.energy.iter().any(|e| *e > 0.0));
     }
-    paths
 }
 
 /// The same for a source that radiates equally in all directions.
@@ -110,6 +115,7 @@ pub(crate) fn follow(
             paths.extend(validator.path(&path.planes, &images));
         }
     }
+    radiate(scene, &Source::at(source), &mut paths);
     paths
 }
 

@@ -25,7 +25,8 @@ pub(super) const SAME: f64 = 8.7e-4;
 ///   all directions is that at a sphere. So a source of 1 Pa at 1 m gives at an ear what it gives at the head's centre without the
 ///   head, times what the head does; the gain of the measurement's loudspeaker and microphones drops out. Their response remains,
 ///   except below 160 Hz, where such loudspeakers fail and a head does nothing: one filter of minimum phase for both ears and all
-///   directions makes the mean level there, down to 80 Hz and below, that at 200 to 500 Hz (by at most 26 dB).
+///   directions makes the mean level there that at 200 to 500 Hz (by at most 26 dB); what then differs from it is noise, and goes until 80 Hz,
+///   from where on the head only delays, as it does from 160 to 320 Hz.
 /// - **Time**: one delay for both ears and all directions is taken off, such that what remains is that of a sphere around the
 ///   head's centre; the sphere's radius is fitted.
 /// - **Between directions**: each response is split into its delay and a rest, both are interpolated over the triangle around

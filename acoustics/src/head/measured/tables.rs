@@ -12,8 +12,10 @@ use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// From the first to the second, what the loudspeaker did to the bass takes over from its correction, Hz.
+/// From the first to the second, what was measured takes over from what a head does to the bass, Hz.
 const BASS_HZ: (f64, f64) = (80.0, 160.0);
+/// Up to this frequency from [`BASS_HZ`] on, the phase tells the delay of the bass, Hz.
+const DELAY_HZ: f64 = 320.0;
 /// Largest correction of the bass, as a logarithm of amplitude: 26 dB.
 const MOST_BASS: f64 = 3.0;
 /// Highest frequency that is taken from a measurement, over its sample rate.
@@ -51,9 +53,9 @@ impl Responses {
             .iter()
             .map(|f| bands::power_shares(*f, 1.0))
             .collect();
-        let finish = |delay_s: f64, rest: Vec<Complex<f32>>| {
+        let finish = |delay_s: f64, rest: Vec<Complex<f32>>, per_hz: f64| {
             let gain = band_gains(&rest, &shares);
-            let late_s = band_delays(&rest, step_hz, delay_s);
+            let late_s = band_delays(&rest, step_hz, delay_s, per_hz);
             Row {
                 delay_s,
                 rest,
@@ -75,17 +77,21 @@ impl Responses {
             }));
         }
         let bass = bass(&rests, &frequencies);
+        let common = common_phase(&rests, &bass);
         let mut rows: Vec<[Row; 2]> = Vec::with_capacity(self.directions.len());
         for ([left, right], delay_s) in rests.into_iter().zip(&self.delay_s) {
             let whole = |delay_s: f64, mut rest: Vec<Complex<f32>>| {
                 for (value, bass) in rest.iter_mut().zip(&bass) {
                     *value *= bass;
                 }
-                finish(delay_s, rest)
+                let per_hz = slope(&rest, &common, &frequencies);
+                without_noise(&mut rest, &common, &frequencies, per_hz);
+                finish(delay_s, rest, per_hz)
             };
             rows.push([whole(delay_s[0], left), whole(delay_s[1], right)]);
         }
         let radius_m = self.about.radius_m;
+        let none = vec![0.0; bins];
         for (k, direction) in self.directions.iter().enumerate().skip(measured) {
             let near = Weighed::near(&self.directions[..measured], *direction);
             let pair = [0, 1].map(|ear| {
@@ -99,7 +105,8 @@ impl Responses {
                     radius_m,
                     &frequencies,
                 );
-                finish(self.delay_s[k][ear], rest)
+                let per_hz = slope(&rest, &none, &frequencies);
+                finish(self.delay_s[k][ear], rest, per_hz)
             });
             rows.push(pair);
         }
@@ -177,6 +184,56 @@ fn bass(rests: &[[Vec<Complex<f32>>; 2]], frequencies: &[f64]) -> Vec<Complex<f3
     .collect()
 }
 
+/// The phase that all responses have in common, the loudspeaker's. Shape (bin,).
+fn common_phase(rests: &[[Vec<Complex<f32>>; 2]], bass: &[Complex<f32>]) -> Vec<f32> {
+    let both = bass.iter().enumerate().map(|(bin, bass)| {
+        let mut sum = Complex::new(0.0_f32, 0.0);
+        for rest in rests.iter().flatten() {
+            sum += rest[bin];
+        }
+        angle(&(sum * bass))
+    });
+    both.collect()
+}
+
+fn angle(value: &Complex<f32>) -> f32 {
+    libm::atan2f(value.im, value.re)
+}
+
+/// How fast the phase against the common one turns from [`BASS_HZ`] to [`DELAY_HZ`], rad/Hz: the least squares of a line through 0.
+fn slope(rest: &[Complex<f32>], common: &[f32], frequencies: &[f64]) -> f64 {
+    let (mut sum, mut all) = (0.0, 0.0);
+    for ((value, common), frequency_hz) in rest.iter().zip(common).zip(frequencies) {
+        if (BASS_HZ.1..DELAY_HZ).contains(frequency_hz) {
+            let (s, c) = libm::sincosf(*common);
+            let own = angle(&(value * Complex::new(c, -s)));
+            sum += f64::from(own) * frequency_hz;
+            all += frequency_hz * frequency_hz;
+        }
+    }
+    if all > 0.0 { sum / all } else { 0.0 }
+}
+
+/// Below [`BASS_HZ`] what differs from response to response is noise, and a head does nothing but delay: the level goes to 1, and
+/// the phase to the common one and the delay of the frequencies above.
+fn without_noise(rest: &mut [Complex<f32>], common: &[f32], frequencies: &[f64], per_hz: f64) {
+    let (low, high) = BASS_HZ;
+    for ((value, common), frequency_hz) in rest.iter_mut().zip(common).zip(frequencies) {
+        if *frequency_hz >= high {
+            break;
+        }
+        let octaves = libm::log2(frequency_hz.max(1.0) / low) / libm::log2(high / low);
+        let sine = libm::sin(std::f64::consts::FRAC_PI_2 * octaves.clamp(0.0, 1.0));
+        let own = (sine * sine) as f32;
+        let level = libm::expf(own * libm::logf(modulus(*value).max(1e-6)));
+        let (s, c) = libm::sincosf(*common);
+        let differs = angle(&(*value * Complex::new(c, -s)));
+        let delayed = (per_hz * frequency_hz) as f32;
+        let (s, c) = libm::sincosf(common + own * differs + (1.0 - own) * delayed);
+        *value = Complex::new(level * c, level * s);
+    }
+}
+
 /// The root of the mean energy in each band.
 fn band_gains(rest: &[Complex<f32>], shares: &[[f64; BAND_COUNT]]) -> Banded {
     std::array::from_fn(|band| {
@@ -193,18 +250,24 @@ fn band_gains(rest: &[Complex<f32>], shares: &[[f64; BAND_COUNT]]) -> Banded {
     })
 }
 
-/// The delay of a wave at each band's centre, s: that of the whole, and that of the phase of the rest.
-fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64) -> Banded {
-    // The phase without jumps, from 0 Hz on.
-    let mut phase = Vec::with_capacity(rest.len());
+/// The delay of a wave at each band's centre, s: that of the whole, and that of the phase of the rest; in the bass, where the phase
+/// is the loudspeaker's, by its slope against that (rad/Hz).
+fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64, per_hz: f64) -> Banded {
+    // The phase without jumps, from where it is a head's on.
+    let first = (BASS_HZ.1 / step_hz).ceil() as usize;
+    let mut phase = vec![0.0; first.min(rest.len())];
     let mut last = 0.0_f64;
-    for value in rest {
-        let principal = f64::from(libm::atan2f(value.im, value.re));
+    for value in rest.iter().skip(first) {
+        let principal = f64::from(angle(value));
         last = principal - TAU * ((principal - last) / TAU).round();
         phase.push(last);
     }
     std::array::from_fn(|band| {
-        let place = bands::exact_centre_hz(band) / step_hz;
+        let centre_hz = bands::exact_centre_hz(band);
+        if centre_hz < BASS_HZ.1 {
+            return (delay_s - per_hz / TAU) as f32;
+        }
+        let place = centre_hz / step_hz;
         let below = (place as usize).min(phase.len().saturating_sub(2));
         let way = place - below as f64;
         if below + 1 >= phase.len() || way > 1.0 {
@@ -212,7 +275,7 @@ fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64) -> Banded {
             return delay_s as f32;
         }
         let there = phase[below] + (phase[below + 1] - phase[below]) * way;
-        (delay_s - there / (TAU * bands::exact_centre_hz(band))) as f32
+        (delay_s - there / (TAU * centre_hz)) as f32
     })
 }
 
