@@ -260,17 +260,12 @@ fn either_side_of_a_surface_is_lit_as_it_faces() {
         (Vec3::new(3.0, 0.5, 3.0), false),
     ] {
         let mut builder = Builder::from(&grey_room());
-        let sheet = Mesh {
-            positions: vec![
-                Vec3::new(-1., 0., 1.),
-                Vec3::new(1., 0., 1.),
-                Vec3::new(1., 0., -1.),
-                Vec3::new(-1., 0., -1.),
-            ],
-            normals: vec![Vec3::Y; 4],
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-            ..Mesh::default()
-        };
+        let sheet = Mesh::rectangle([
+            Vec3::new(-1., 0., 1.),
+            Vec3::new(1., 0., 1.),
+            Vec3::new(1., 0., -1.),
+            Vec3::new(-1., 0., -1.),
+        ]);
         let bulb = Mesh::cuboid(Vec3::splat(-1e-4), Vec3::splat(1e-4));
         builder.add(
             "lamp",
@@ -432,4 +427,63 @@ fn a_mirror_shows_what_stands_behind_the_camera() {
     );
     // Depth and ids tell of the mirror itself.
     assert!((frame.depth[10 * 21 + 10] - 1.98).abs() < 1e-3);
+}
+
+/// The light of a world is kept between calls; what it shows is that of a renderer that has seen nothing before.
+#[test]
+fn kept_light_follows_lamps_and_wardrobes() {
+    let mut builder = Builder::from(&grey_room());
+    let bulb = Mesh::cuboid(Vec3::splat(-1e-4), Vec3::splat(1e-4));
+    let at = |x: f32, y: f32, z: f32| Pose::from_position(Vec3::new(x, y, z));
+    let lamp = builder.add(
+        "lamp",
+        bulb,
+        Builder::plaster("bulb"),
+        true,
+        at(3.0, 2.4, 1.0),
+    );
+    builder.data.objects[lamp].switch = Some(true);
+    builder.data.lights.push(Light {
+        object: lamp,
+        part: dwell_scene::PartId(0),
+        position: Vec3::ZERO,
+        shape: LightShape::Point,
+        color: [1.0; 3],
+        power_w: 20.0,
+        attenuation: [0.0, 0.0, 1.0],
+    });
+    let wardrobe = Mesh::cuboid(Vec3::new(-0.6, 0.0, -0.3), Vec3::new(0.6, 2.0, 0.3));
+    let wood = Builder::plaster("wood");
+    builder.add("wardrobe", wardrobe, wood, true, at(1.0, 0.0, 3.0));
+    let mut world = builder.build();
+    let camera = Camera::from_fov(40, 30, 90.0).unwrap();
+    let mut view = look(camera, Vec3::new(3.0, 1.5, 5.5), Vec3::new(3.0, 1.0, 0.0));
+    view.preset = Preset::Lit;
+    let mut seen = Vec::new();
+    let wardrobe = dwell_scene::PartId(1);
+    let changes: [&dyn Fn(&mut dwell_scene::State); 4] = [
+        &|_| {},
+        &|state| state.part_pose[wardrobe].position = Vec3::new(3.0, 0.0, 1.8),
+        &|state| state.switched_on[lamp] = false,
+        &|state| {
+            state.switched_on[lamp] = true;
+            state.part_pose[wardrobe].position = Vec3::new(1.0, 0.0, 3.0);
+        },
+    ];
+    for change in changes {
+        change(&mut world.state);
+        world.scene.update(&world.state);
+        let fresh = dwell_render::CpuRenderer::new(&world.house);
+        let renderer = std::mem::replace(&mut world.renderer, fresh);
+        let expected = world.shot(&view);
+        world.renderer = renderer;
+        for _ in 0..2 {
+            assert!(world.shot(&view) == expected);
+        }
+        seen.push(expected);
+    }
+    assert!(seen[0] == seen[3]);
+    for [a, b] in [[0, 1], [1, 2], [0, 2]] {
+        assert!(seen[a].rgb != seen[b].rgb, "{a} and {b}");
+    }
 }

@@ -170,6 +170,26 @@ impl Mesh {
         moved
     }
 
+    /// A flat rectangle of two triangles, counter-clockwise seen from where it faces, with texture coordinates in metres from the first corner;
+    /// slot 0. `corners`: in that order, the second along the texture's width.
+    pub fn rectangle(corners: [Vec3; 4]) -> Self {
+        let [a, b, _, d] = corners;
+        let (along, up) = (b - a, d - a);
+        let (width, height) = (along.length(), up.length());
+        Self {
+            positions: corners.to_vec(),
+            normals: vec![along.cross(up) / (width * height); 4],
+            uvs: vec![
+                Vec2::ZERO,
+                Vec2::new(width, 0.0),
+                Vec2::new(width, height),
+                Vec2::new(0.0, height),
+            ],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            slots: Vec::new(),
+        }
+    }
+
     /// An axis-aligned box with outward faces, flat normals and texture coordinates in metres; every face shows slot 0.
     pub fn cuboid(min: Vec3, max: Vec3) -> Self {
         let mut mesh = Self::default();

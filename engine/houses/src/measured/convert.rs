@@ -9,7 +9,7 @@ use dwell_scene::material::{Bands, library};
 use dwell_scene::{
     Aabb, HouseData, Level, LevelId, Material, MaterialId, Mesh, Structure, StructureKind,
 };
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -161,21 +161,7 @@ impl Room<'_> {
             let wall = self.file.walls.get(name).map(String::as_str);
             let material = self.material_of(&at, wall)?;
             let positions = corners.map(|corner| upright(Vec3::from_array(corner) * size));
-            let [a, b, _, d] = positions;
-            let normal = (b - a).cross(d - a).normalize();
-            let (width, height) = ((b - a).length(), (d - a).length());
-            let mesh = Mesh {
-                positions: positions.to_vec(),
-                normals: vec![normal; 4],
-                uvs: vec![
-                    Vec2::ZERO,
-                    Vec2::new(width, 0.0),
-                    Vec2::new(width, height),
-                    Vec2::new(0.0, height),
-                ],
-                triangles: vec![[0, 1, 2], [0, 2, 3]],
-                slots: Vec::new(),
-            };
+            let mesh = Mesh::rectangle(positions);
             self.add(name, kind, mesh, material);
         }
         Ok(())

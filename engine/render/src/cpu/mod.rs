@@ -12,7 +12,7 @@ mod shadow;
 
 use crate::error::RenderError;
 use crate::frame::{Before, FrameMut, Preset, View};
-use crate::light::{HouseLight, Lighting};
+use crate::light::{HouseLight, Inputs, Lighting};
 use crate::look::Look;
 use crate::semantic::{Classes, EntityClasses};
 use crate::surfaces::Surfaces;
@@ -23,7 +23,8 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, State};
 pub(crate) use rays::SEEN;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Rows of an image that one thread takes at a time; a multiple of a packet's edge.
 const BAND_ROWS: usize = 8;
@@ -62,8 +63,8 @@ pub struct CpuRenderer {
     part_bounds: OnceLock<Vec<Aabb>>,
     /// Made when the first lit view is asked for.
     light: OnceLock<HouseLight>,
-    /// Memory of earlier calls.
-    lightings: Mutex<Vec<Lighting>>,
+    /// The light of worlds in earlier calls, that of the latest last.
+    lightings: Mutex<VecDeque<Lighting>>,
     /// The trees of meshes, made when they are looked at alone. Shape (mesh,).
     trees: Vec<OnceLock<Arc<TriangleBvh>>>,
 }
@@ -128,7 +129,7 @@ impl CpuRenderer {
             looks,
             surfaces,
             light: OnceLock::new(),
-            lightings: Mutex::new(Vec::new()),
+            lightings: Mutex::default(),
             trees: house.meshes.iter().map(|_| OnceLock::new()).collect(),
         }
     }
@@ -200,10 +201,7 @@ impl CpuRenderer {
         }
         threads.for_each(&mut bands, |_, band| band.render(self));
         drop(bands);
-        self.lightings
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .append(&mut lightings);
+        self.lightings().extend(lightings);
         Ok(())
     }
 
@@ -228,32 +226,40 @@ impl CpuRenderer {
             .get_or_init(|| HouseLight::new(&self.house, &self.looks, &self.textures))
     }
 
-    /// The light of a world as it stands; see [`Self::keep_lighting`].
+    /// The light of a world as it stands: kept where all that it depends on is as it was, else made in the memory that was used
+    /// longest ago; see [`Self::keep_lighting`].
     pub(crate) fn lighting(&self, scene: &RayScene, state: &State) -> Lighting {
-        let used = self
-            .lightings
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .pop();
-        let mut lighting = used.unwrap_or_default();
+        let inputs = Inputs {
+            house: &self.house,
+            fixed: self.house_light(),
+            scene,
+            state,
+        };
+        let hash = inputs.hash();
+        let mut lighting = {
+            let mut all = self.lightings();
+            let kept = all.iter().position(|lighting| lighting.has(hash));
+            all.remove(kept.unwrap_or(0)).unwrap_or_default()
+        };
         let bvh = scene.bvh();
         lighting.update(
-            &self.house,
-            self.house_light(),
-            state,
+            &inputs,
+            hash,
             |point| self.sun_reaches(bvh, point),
             |from, to, hidden| self.passes(bvh, &Ray::segment(from, to, 0.0), hidden),
         );
         lighting
     }
 
-    /// Takes back the memory of [`Self::lighting`].
+    /// Takes back [`Self::lighting`].
     pub(crate) fn keep_lighting(&self, lighting: Lighting) {
-        let mut kept = self
-            .lightings
+        self.lightings().push_back(lighting);
+    }
+
+    fn lightings(&self) -> MutexGuard<'_, VecDeque<Lighting>> {
+        self.lightings
             .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        kept.push(lighting);
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The class of every entity, by a table.

@@ -5,6 +5,7 @@ mod casters;
 mod flat;
 mod grid;
 mod incoming;
+mod kept;
 mod lamps;
 mod openings;
 mod rooms;
@@ -12,11 +13,12 @@ mod tone;
 
 pub(crate) use casters::Caster;
 pub(crate) use incoming::{Incoming, Source};
+pub(crate) use kept::Inputs;
 pub(crate) use rooms::HouseLight;
 pub(crate) use tone::display;
 
-use dwell_scene::{House, State};
 use glam::Vec3;
+use kept::Kept;
 use lamps::{Lamp, add_lamps};
 use openings::Window;
 use rooms::{PANE_TRANSMITTANCE, RoomLight, TO_SUN};
@@ -53,6 +55,10 @@ pub(crate) struct Lighting {
     flux_lm: Vec<Vec3>,
     /// How much of each window the sun reaches. Shape (window,), or empty.
     sunlit: Vec<f32>,
+    /// What all of this was made from.
+    kept: Kept,
+    /// What the light of rooms was made from, of this time and the last.
+    given: [Vec<u32>; 2],
 }
 
 /// The brightness to which an eye in a room adapts.
@@ -63,16 +69,29 @@ pub(crate) struct Exposure {
 }
 
 impl Lighting {
-    /// Reads the switches and places of lamps from `state`, in the memory of an earlier state. `sun_reaches`: whether
-    /// nothing stands between a point and the sun. `passes`: as for [`casters::assign`].
+    /// Whether it may have been made from inputs of this hash.
+    pub(crate) fn has(&self, hash: u64) -> bool {
+        self.kept.has(hash)
+    }
+
+    /// Reads the switches and places of lamps, in the memory of an earlier state; nothing where all is as it was then. `hash`: of
+    /// the inputs. `sun_reaches`: whether nothing stands between a point and the sun. `passes`: as for [`casters::assign`].
     pub(crate) fn update(
         &mut self,
-        house: &House,
-        fixed: &HouseLight,
-        state: &State,
+        inputs: &Inputs<'_>,
+        hash: u64,
         sun_reaches: impl Fn(Vec3) -> bool,
         passes: impl Fn(Vec3, Vec3, i32) -> bool,
     ) {
+        if self.kept.renew(inputs, hash) {
+            return;
+        }
+        let &Inputs {
+            house,
+            fixed,
+            state,
+            ..
+        } = inputs;
         self.sunlit.clear();
         if fixed.air.is_some() {
             let windows = fixed.windows.iter();
@@ -98,6 +117,17 @@ impl Lighting {
                 self.flux_lm[room] += lamp.flux_lm;
             }
         }
+        // Agents that walk change what stands before lamps, and rarely what rooms throw back.
+        let [now, last] = &mut self.given;
+        now.clear();
+        let flux = self.flux_lm.iter().flat_map(Vec3::to_array);
+        let numbers = flux.chain(self.sunlit.iter().copied());
+        let numbers = numbers.chain(fixed.openness(house, state));
+        now.extend(numbers.map(f32::to_bits));
+        if now == last {
+            return;
+        }
+        std::mem::swap(now, last);
         fixed.rooms(
             house,
             state,

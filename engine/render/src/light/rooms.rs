@@ -111,6 +111,12 @@ impl HouseLight {
         &self.windows[self.window_starts[room]..self.window_starts[room + 1]]
     }
 
+    /// How far what closes each passage between rooms is open, 0 to 1.
+    pub(super) fn openness(&self, house: &House, state: &State) -> impl Iterator<Item = f32> {
+        let passages = self.passages.iter();
+        passages.map(|passage| state.openness(house, passage.door).unwrap_or(1.0))
+    }
+
     /// The light in every room when lamps send `flux_lm` into each. `sunlit`: how much of each window the sun reaches.
     ///
     /// # Source
@@ -146,10 +152,8 @@ impl HouseLight {
         let areas: Vec<f32> = self
             .passages
             .iter()
-            .map(|passage| {
-                let open = state.openness(house, passage.door).unwrap_or(1.0);
-                passage.area_m2 * (CLOSED_DOOR + (1.0 - CLOSED_DOOR) * open)
-            })
+            .zip(self.openness(house, state))
+            .map(|(passage, open)| passage.area_m2 * (CLOSED_DOOR + (1.0 - CLOSED_DOOR) * open))
             .collect();
         let all = exchanged(
             flux_lm,

@@ -143,16 +143,13 @@ impl World {
 /// A rectangle across Z at `z`, facing +Z, with texture coordinates 0 to 1.
 pub(crate) fn quad(min: Vec2, max: Vec2, z: f32) -> Mesh {
     Mesh {
-        positions: vec![
+        uvs: vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y],
+        ..Mesh::rectangle([
             Vec3::new(min.x, min.y, z),
             Vec3::new(max.x, min.y, z),
             Vec3::new(max.x, max.y, z),
             Vec3::new(min.x, max.y, z),
-        ],
-        normals: vec![Vec3::Z; 4],
-        uvs: vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        slots: Vec::new(),
+        ])
     }
 }
 

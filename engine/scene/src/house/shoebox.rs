@@ -143,24 +143,7 @@ impl House {
             bounds,
         });
         for (name, kind, material, corners) in sides {
-            let (width, height) = (
-                (corners[1] - corners[0]).length(),
-                (corners[3] - corners[0]).length(),
-            );
-            let normal =
-                (corners[1] - corners[0]).cross(corners[3] - corners[0]) / (width * height);
-            let mesh = data.meshes.push(Arc::new(Mesh {
-                positions: corners.to_vec(),
-                normals: vec![normal; 4],
-                uvs: vec![
-                    Vec2::ZERO,
-                    Vec2::new(width, 0.0),
-                    Vec2::new(width, height),
-                    Vec2::new(0.0, height),
-                ],
-                triangles: vec![[0, 1, 2], [0, 2, 3]],
-                slots: Vec::new(),
-            }));
+            let mesh = data.meshes.push(Arc::new(Mesh::rectangle(corners)));
             let material = data.materials.push(Material {
                 name: name.into(),
                 ..material.clone()

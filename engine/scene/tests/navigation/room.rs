@@ -119,16 +119,12 @@ fn ramps_are_walkable_up_to_the_steepest_slope() {
         add_mesh(
             &mut data,
             StructureKind::Other,
-            Mesh {
-                positions: vec![
-                    corner(foot, 0.0, 1.0),
-                    corner(foot, 0.0, 3.0),
-                    corner(top, 0.8, 3.0),
-                    corner(top, 0.8, 1.0),
-                ],
-                triangles: vec![[0, 1, 2], [0, 2, 3]],
-                ..Mesh::default()
-            },
+            Mesh::rectangle([
+                corner(foot, 0.0, 1.0),
+                corner(foot, 0.0, 3.0),
+                corner(top, 0.8, 3.0),
+                corner(top, 0.8, 1.0),
+            ]),
         );
         let platform = Mesh::cuboid(corner(0.5, 0.0, 1.0), corner(top, 0.8, 3.0));
         add_mesh(&mut data, StructureKind::Other, platform);
