@@ -88,14 +88,32 @@ impl AcousticConfig {
         }
     }
 
-    /// The settings called `name`: `"full"` or `"rl"`.
+    /// For comparing others with: 50,000 rays, images to order 3, four seconds in bins of 2 ms. Its measures scatter by less than a
+    /// just noticeable difference.
+    pub fn reference() -> Self {
+        Self {
+            rays: 50_000,
+            max_duration_s: 4.0,
+            bin_s: 0.002,
+            image_planes: 80,
+            discovery_rays: 10_000,
+            roulette_db: 60.0,
+            ..Self::full()
+        }
+    }
+
+    /// The settings called `name`: one of [`Self::PRESETS`].
     pub fn preset(name: &str) -> Option<Self> {
         match name {
-            "full" => Some(Self::full()),
             "rl" => Some(Self::rl()),
+            "full" => Some(Self::full()),
+            "reference" => Some(Self::reference()),
             _ => None,
         }
     }
+
+    /// The names of all settings, the quickest first.
+    pub const PRESETS: [&'static str; 3] = ["rl", "full", "reference"];
 
     /// Checks every range.
     ///
@@ -157,7 +175,7 @@ mod tests {
 
     #[test]
     fn presets_are_in_range_and_bad_numbers_are_named() {
-        for name in ["full", "rl"] {
+        for name in AcousticConfig::PRESETS {
             AcousticConfig::preset(name).unwrap().check().unwrap();
         }
         let bad = AcousticConfig {

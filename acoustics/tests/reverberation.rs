@@ -160,28 +160,6 @@ fn the_reverberant_level_is_that_of_a_diffuse_field() {
     assert!(error_db.abs() < 0.5, "{error_db}");
 }
 
-/// V16: scattering moves energy, it does not absorb it: images and tail together keep their sum.
-#[test]
-fn scattering_does_not_absorb() {
-    let total = |scattering: f32| {
-        let hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.15, scattering), dry(3000));
-        hall.echogram(
-            Vec3::new(1.2, 1.5, 1.4),
-            Vec3::new(4.6, 1.2, 3.3),
-            Key::root(16),
-        )
-        .total()[4]
-    };
-    let reference = total(1.0);
-    for scattering in [0.1, 0.3, 0.6] {
-        let difference_db = 10.0 * (total(scattering) / reference).log10();
-        assert!(
-            difference_db.abs() < 0.3,
-            "s = {scattering}: {difference_db} dB"
-        );
-    }
-}
-
 /// Where the border between images and tail lies changes nothing: each path is counted once.
 #[test]
 fn the_order_of_the_images_does_not_change_the_energy() {

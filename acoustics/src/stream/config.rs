@@ -59,11 +59,22 @@ impl StreamConfig {
         }
     }
 
-    /// The settings called `name`: `"full"` or `"rl"`.
+    /// For comparing others with: every early path glides, and everything follows movements of 5 cm and 2 degrees with all its rays.
+    pub fn reference() -> Self {
+        Self {
+            update_distance_m: 0.05,
+            moving_paths: 64,
+            update_share: 1.0,
+            ..Self::full()
+        }
+    }
+
+    /// The settings called `name`: one of [`AcousticConfig::PRESETS`](crate::AcousticConfig::PRESETS).
     pub fn preset(name: &str) -> Option<Self> {
         match name {
             "full" => Some(Self::full()),
             "rl" => Some(Self::rl()),
+            "reference" => Some(Self::reference()),
             _ => None,
         }
     }

@@ -9,7 +9,7 @@ mod voice;
 pub use config::StreamConfig;
 pub(crate) use memory::Memory;
 
-use crate::echogram::Path;
+use crate::echogram::{Echogram, Path};
 use crate::error::{AcousticsError, finite};
 use crate::fft::RealFft;
 use crate::microphones::{self, Microphones};
@@ -156,6 +156,24 @@ impl Stream {
     /// Blocks so far.
     pub fn blocks(&self) -> u64 {
         self.block
+    }
+
+    /// How each source is heard now, as energies, by its id: what an agent that needs no waveform observes. Early paths that are
+    /// followed stand where they are now, the others and the tail where they were last traced.
+    pub fn echograms(&self) -> impl Iterator<Item = (u64, Echogram)> {
+        let voices = self.voices.iter();
+        voices.filter_map(|voice| {
+            let mut echogram = voice.heard.as_ref()?.1.echogram.clone();
+            if let Some(followed) = &voice.moved.followed {
+                let chosen = early::choose(&echogram.paths, self.config.moving_paths);
+                let mut paths = echogram.paths;
+                paths.retain(|path| !chosen.contains(path));
+                paths.extend(followed.iter().map(|one| one.path.clone()));
+                paths.sort_by(|a, b| a.length_m.total_cmp(&b.length_m));
+                echogram.paths = paths;
+            }
+            Some((voice.id, echogram))
+        })
     }
 
     /// Silence, and block 0 again.

@@ -17,7 +17,7 @@ pub struct WorldConfig {
     pub physics_rate_hz: f64,
     /// Sound samples per second; 8,000 to 192,000, default 16,000; a whole number of samples must fit a control step.
     pub sound_rate_hz: u32,
-    /// How carefully sound is traced: `"rl"` (fast, default) or `"full"`.
+    /// How carefully sound is traced: `"rl"` (fast, default), `"full"` or `"reference"` (slow).
     pub sound_preset: String,
     /// The head on which all agents' ears are, of those that [`Engines::add_head`](crate::Engines::add_head) got; without one a
     /// sphere.

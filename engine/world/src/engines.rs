@@ -115,7 +115,7 @@ impl Engines {
             return Ok(scene.clone());
         }
         let Some(config) = AcousticConfig::preset(preset) else {
-            let allowed = "\"rl\" or \"full\"".to_owned();
+            let allowed = AcousticConfig::PRESETS.join(", ");
             return Err(WorldError::Config {
                 field: "sound_preset",
                 found: format!("{preset:?}"),

@@ -1,15 +1,18 @@
-//! Impulse responses a second.
+//! Impulse responses a second; streams against real time and against the reference.
 
 use super::{BenchOptions, median, open, timed};
+use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::info::viewpoints;
-use dwell_acoustics::{Receiver, Source};
-use dwell_scene::Pose;
+use dwell_acoustics::metrics::{self, BandMetrics, Metrics};
+use dwell_acoustics::{ActiveSource, Receiver, Source, Stream, StreamConfig, signals};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
+use dwell_scene::{Pose, State};
 use glam::Vec3;
 use serde_json::{Value, json};
+use std::time::Instant;
 
 pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
     let engines = open(house)?;
@@ -44,6 +47,115 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
             json!(f64::from(pairs) / median(&seconds)),
         );
     }
+    let rooms = &spots[..spots.len().min(ROOMS)];
+    let wanted: Vec<Metrics> = rooms
+        .iter()
+        .map(|spot| wanted(&engines, &rays, *spot, threads))
+        .collect::<Result<_, _>>()?;
+    for preset in &options.presets {
+        let walks = rooms.iter().zip(&wanted);
+        let walks: Vec<Walk> = walks
+            .map(|(spot, wanted)| walk(&engines, &rays, preset, *spot, wanted))
+            .collect::<Result<_, _>>()?;
+        let middle = |of: fn(&Walk) -> f64| median(&walks.iter().map(of).collect::<Vec<_>>());
+        let figures = [
+            (
+                "stream_times_real_time",
+                middle(|walk| walk.times_real_time),
+            ),
+            (
+                "stream_t30_off_percent",
+                middle(|walk| walk.t30_off_percent),
+            ),
+            ("stream_c80_off_db", middle(|walk| walk.c80_off_db)),
+        ];
+        for (name, value) in figures {
+            rates.insert(format!("{name}_{preset}"), json!(value));
+        }
+    }
     rates.insert("threads".to_owned(), json!(threads.count()));
     Ok(Value::Object(rates))
+}
+
+/// Rooms in which a stream is measured.
+const ROOMS: usize = 4;
+/// Samples of a block: 50 ms at 16 kHz.
+const BLOCK: usize = 800;
+/// Blocks of a walk: 10 s.
+const BLOCKS: usize = 200;
+
+/// A walk with a radio.
+struct Walk {
+    times_real_time: f64,
+    /// Mean over the octaves from 250 Hz to 4 kHz of what its end's measures are off the reference.
+    t30_off_percent: f64,
+    c80_off_db: f64,
+}
+
+/// Where a listener is at the end of block `k`, who walks to and fro around `spot` at 1 m/s and turns, and a radio that is carried
+/// about as fast.
+fn place(spot: Vec3, k: usize) -> (Vec3, Pose) {
+    // Half a metre to either side.
+    let way = (0.05 * k as f32 + 0.5).rem_euclid(2.0);
+    let off = if way < 1.0 { way - 0.5 } else { 1.5 - way };
+    let head = Pose::from_position_yaw(spot + Vec3::X * off, 0.031 * k as f32);
+    (
+        spot + Vec3::new(0.3 - 0.7 * off, -0.4, 0.8 + 0.5 * off),
+        head,
+    )
+}
+
+/// What the reference has for the end of the walk.
+fn wanted(
+    engines: &Engines,
+    rays: &RayScene,
+    spot: Vec3,
+    threads: Threads,
+) -> Result<Metrics, WorldError> {
+    let (position, head) = place(spot, BLOCKS - 1);
+    let scene = engines.acoustics("reference", 16_000)?;
+    let source = Source::at(position);
+    let echogram = scene.echogram(rays, &source, head.position, Key::root(1), threads)?;
+    Ok(metrics::of_echogram(&echogram))
+}
+
+/// Walks on one thread.
+fn walk(
+    engines: &Engines,
+    rays: &RayScene,
+    preset: &str,
+    spot: Vec3,
+    wanted: &Metrics,
+) -> Result<Walk, WorldError> {
+    let scene = engines.acoustics(preset, 16_000)?;
+    let config = StreamConfig::preset(preset).unwrap_or_default();
+    let mut stream = Stream::new(scene, config, Key::root(0), Threads::ONE)?;
+    let state = State::new(engines.house());
+    let mut signal = vec![0.0; BLOCK];
+    signals::synthesize("radio", 16_000, 0, &mut signal)?;
+    let mut out = vec![0.0; 2 * BLOCK];
+    let start = Instant::now();
+    for k in 0..BLOCKS {
+        let (position, head) = place(spot, k);
+        let source = ActiveSource {
+            id: 0,
+            position,
+            signal: &signal,
+        };
+        stream.block(rays, &state, &[source], &Receiver::binaural(head), &mut out)?;
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    let mut heard = stream.echograms();
+    let found = heard.next().map(|(_, e)| metrics::of_echogram(&e));
+    let found = found.unwrap_or_default();
+    let mean = |off: fn(&BandMetrics, &BandMetrics) -> Option<f64>| {
+        let bands = found.iter().zip(wanted).skip(2).take(5);
+        let off: Vec<f64> = bands.filter_map(|(a, b)| off(a, b)).collect();
+        off.iter().sum::<f64>() / off.len().max(1) as f64
+    };
+    Ok(Walk {
+        times_real_time: 0.05 * BLOCKS as f64 / seconds,
+        t30_off_percent: mean(|a, b| Some(100.0 * (a.t30_s? / b.t30_s? - 1.0).abs())),
+        c80_off_db: mean(|a, b| Some((a.c80_db? - b.c80_db?).abs())),
+    })
 }
