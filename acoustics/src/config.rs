@@ -30,6 +30,8 @@ pub struct AcousticConfig {
     pub receiver_radius_m: f64,
     /// Relative standard error of the tail's energy, in every band, below which no more rays are traced; 0 (all rays) to 1.
     pub max_error: f64,
+    /// Random arrivals that make up a second of the tail's pressure; 500 to 100,000. Denser ones cannot be told apart.
+    pub arrivals_per_s: f64,
     /// Whether panels below 4 m² mirror only short waves and scatter long ones.
     pub panel_size: bool,
     /// Temperature, humidity, pressure.
@@ -65,6 +67,7 @@ impl AcousticConfig {
             roulette_db: 40.0,
             receiver_radius_m: 0.5,
             max_error: 0.0,
+            arrivals_per_s: 10_000.0,
             panel_size: true,
             air: Air::default(),
             air_absorption: true,
@@ -74,10 +77,11 @@ impl AcousticConfig {
         }
     }
 
-    /// For agents that learn: 150 rays, images to order 2, 0.6 seconds.
+    /// For agents that learn: 300 rays, images to order 2, 0.6 seconds.
     pub fn rl() -> Self {
         Self {
-            rays: 150,
+            rays: 300,
+            arrivals_per_s: 4_000.0,
             max_duration_s: 0.6,
             bin_s: 0.008,
             image_order: 2,
@@ -156,6 +160,13 @@ impl AcousticConfig {
             self.receiver_radius_m,
             (0.05, 2.0),
             "0.05 to 2",
+        )?;
+        range(
+            AT,
+            "arrivals_per_s",
+            self.arrivals_per_s,
+            (500.0, 100_000.0),
+            "500 to 100000",
         )?;
         range(AT, "max_error", self.max_error, (0.0, 1.0), "0 to 1")?;
         range(

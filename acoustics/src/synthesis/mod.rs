@@ -34,6 +34,7 @@ const EAR_LEAD_S: f64 = 0.001;
 #[derive(Debug)]
 pub(crate) struct Synthesizer {
     rate_hz: f64,
+    arrivals_per_s: f64,
     filters: PathFilters,
     longest: usize,
     /// Filter banks for a quarter, half and all of the longest response, made when first needed.
@@ -49,6 +50,7 @@ impl Synthesizer {
             banks: [const { OnceLock::new() }; 3],
             filters,
             rate_hz,
+            arrivals_per_s: config.arrivals_per_s,
         }
     }
 
@@ -115,6 +117,7 @@ impl Synthesizer {
         let noise = noise::Noise {
             echogram,
             rate_hz: self.rate_hz,
+            arrivals_per_s: self.arrivals_per_s,
             length,
             quiet,
             bank: self.bank(length),

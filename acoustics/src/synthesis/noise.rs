@@ -9,9 +9,6 @@ use dwell_scene::random::{Key, Stream};
 use glam::Vec3;
 use std::sync::LazyLock;
 
-/// Arrivals a second. Denser ones cannot be told apart, and what is scattered is spread out from the start: the sparse early
-/// reflections are paths.
-const ARRIVALS_PER_S: f64 = 1e4;
 /// Taps on either side of an arrival that falls between samples.
 const HALF: i32 = 4;
 const TAPS: usize = 2 * HALF as usize;
@@ -22,6 +19,7 @@ const PHASES: usize = 64;
 pub(super) struct Noise<'a> {
     pub(super) echogram: &'a Echogram,
     pub(super) rate_hz: f64,
+    pub(super) arrivals_per_s: f64,
     pub(super) length: usize,
     /// Samples at the start in which nothing may be heard.
     pub(super) quiet: usize,
@@ -100,7 +98,7 @@ impl Noise<'_> {
                 sampler.get_or_insert_with(|| tail.directions_at(k).unwrap_or(&nowhere).sampler());
             // Keyed by the bin, so that what is drawn in one bin does not depend on the others.
             let mut stream = key.child(k as u64).stream();
-            let count = poisson(ARRIVALS_PER_S * tail.bin_s, &mut stream).max(1);
+            let count = poisson(self.arrivals_per_s * tail.bin_s, &mut stream).max(1);
             let amplitude: Banded = std::array::from_fn(|b| (bin[b] / count as f64).sqrt() as f32);
             for _ in 0..count {
                 let time_s = start_s + tail.bin_s * stream.uniform();
