@@ -7,6 +7,10 @@ use serde::{Deserialize, Serialize};
 /// Settings of an [`AcousticScene`](crate::AcousticScene).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each turns one effect off, independently of the others"
+)]
 pub struct AcousticConfig {
     /// Sample rate of impulse responses, Hz; 8,000 to 192,000.
     pub rate_hz: u32,

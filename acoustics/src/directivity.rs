@@ -92,9 +92,12 @@ impl Directivity {
                 for band in 0..BAND_COUNT {
                     let omega = TAU * bands::exact_centre_hz(band);
                     let found = sphere_response(omega * f64::from(radius_m) / speed_m_s, &cosines);
-                    let front = found[0].norm();
+                    let size = |value: &realfft::num_complex::Complex<f64>| {
+                        libm::hypot(value.re, value.im)
+                    };
+                    let front = size(&found[0]);
                     for (row, value) in table.iter_mut().zip(found) {
-                        row[band] = (value.norm() / front) as f32;
+                        row[band] = (size(&value) / front) as f32;
                     }
                 }
                 Pattern::Table(table)

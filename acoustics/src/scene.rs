@@ -512,12 +512,12 @@ impl AcousticScene {
         receiver: &Receiver,
     ) -> Option<Vec<Vec<Path>>> {
         let positions = receiver.microphone_positions()?;
-        let found = positions.iter();
-        Some(
-            found
-                .map(|position| images::find(self, rays, source, *position))
-                .collect(),
-        )
+        let found = positions.iter().map(|position| {
+            let mut paths = images::find(self, rays, source, *position);
+            self.effects.on_paths(&mut paths);
+            paths
+        });
+        Some(found.collect())
     }
 
     /// Early paths that a listener knew, where source and receiver are now: the straight way or those around what hides it, and
@@ -529,12 +529,9 @@ impl AcousticScene {
         receiver: Vec3,
         known: &[Path],
     ) -> Vec<Path> {
-        let mut echogram = Echogram {
-            paths: images::follow(self, rays, source, receiver, known),
-            ..Echogram::default()
-        };
-        self.effects.at_source(&mut echogram);
-        echogram.paths
+        let mut paths = images::follow(self, rays, source, receiver, known);
+        self.effects.on_paths(&mut paths);
+        paths
     }
 
     /// Paths as each channel of a receiver hears them. Shape (path, channel).

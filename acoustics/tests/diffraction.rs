@@ -146,11 +146,18 @@ fn nothing_jumps_at_the_border_of_the_shadow() {
 #[test]
 fn ways_around_edges_are_reciprocal() {
     let hall = doorway();
-    let (a, b) = (Vec3::new(1.0, 1.2, 1.0), Vec3::new(7.0, 1.5, 3.3));
-    let there = level(&hall, a, b);
-    let back = level(&hall, b, a);
-    for (there, back) in there.iter().zip(back) {
-        assert!(*there > 0.0 && (there / back - 1.0).abs() < 1e-4);
+    let source = Vec3::new(1.0, 1.2, 1.0);
+    for ear in [
+        Vec3::new(7.0, 1.5, 3.3),
+        Vec3::new(5.0, 1.2, 0.6),
+        Vec3::new(4.4, 0.5, 3.5),
+        Vec3::new(4.2, 1.9, 1.0),
+    ] {
+        let there = level(&hall, source, ear);
+        let back = level(&hall, ear, source);
+        for (there, back) in there.iter().zip(back) {
+            assert!(*there > 0.0 && (there / back - 1.0).abs() < 1e-3, "{ear}");
+        }
     }
 }
 
@@ -216,7 +223,7 @@ fn sound_goes_around_a_door_frame() {
             let off = f64::from(legs.sum::<f32>()) - one.path.length_m;
             assert!(off.abs() < 2e-3, "{one:?}");
             let e = one.path.energy;
-            assert!(e.windows(2).all(|pair| pair[1] <= pair[0] * 1.001), "{e:?}");
+            assert!(e[7] < 0.5 * e[3], "{e:?}");
         }
         paths[0].path.bends.len()
     };
@@ -247,6 +254,43 @@ fn small_things_shadow_short_waves_only() {
         .unwrap();
     let peak = response.samples.iter().fold(0.0_f32, |m, x| m.max(x.abs()));
     assert!(peak > 0.05 && response.samples.iter().all(|x| x.is_finite()));
+}
+
+/// A post 0.1 m wide and 2 m tall: long waves go around both of its sides and meet again behind it.
+#[test]
+fn a_post_is_nothing_to_long_waves() {
+    let post = rectangle(Vec3::new(0.0, -1.0, -0.05), Vec3::Y * 2.0, Vec3::Z * 0.1, 1);
+    let hall = Hall::new(pieces(vec![(post, material(0.0, 0.0))]), bending());
+    let found = level(&hall, Vec3::new(-2.0, 0.02, 0.01), Vec3::new(2.0, 0.1, 0.0));
+    for (band, level) in found.iter().enumerate().take(3) {
+        assert!(*level > 0.5 && *level <= 1.0 + 1e-6, "{band}: {found:?}");
+    }
+}
+
+/// Through a doorway out of sight: no band rises or falls by more than 1.5 dB in a step of 1 cm, in the doorway and past its jamb.
+#[test]
+fn walking_out_of_sight_is_smooth() {
+    let hall = doorway();
+    let source = Vec3::new(2.0, 1.2, 2.1);
+    let mut before: Option<[f64; BAND_COUNT]> = None;
+    let mut kinds = std::collections::BTreeSet::new();
+    for k in 0..=140 {
+        let receiver = Vec3::new(5.5, 1.3, 2.0 + 0.01 * k as f32);
+        let paths = hall
+            .scene
+            .early_paths(&hall.rays, &Source::at(source), receiver)
+            .unwrap();
+        kinds.extend(paths.iter().map(|one| one.path.bends.len()));
+        let now = level(&hall, source, receiver);
+        if let Some(before) = before {
+            for (band, (now, before)) in now.iter().zip(before).enumerate() {
+                let step_db = 10.0 * (now / before).log10();
+                assert!(step_db.abs() < 1.5, "{receiver} {band}: {step_db} dB");
+            }
+        }
+        before = Some(now);
+    }
+    assert!(kinds.contains(&0) && kinds.contains(&1), "{kinds:?}");
 }
 
 /// A source on an edge, a receiver in its line, points in one place: no panic, no number that is none.

@@ -3,7 +3,7 @@
 use super::loss;
 use crate::bands::BAND_COUNT;
 use crate::planes::Edge;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// Two edges whose directions differ by less bend sound like parallel ones: the cosine of 11 degrees.
 const PARALLEL: f64 = 0.98;
@@ -59,7 +59,7 @@ pub(super) struct DoubleBend {
 
 impl Frame {
     pub(super) fn new(edge: &Edge) -> Self {
-        let [a, b] = edge.ends.map(|end| end.as_dvec3());
+        let [a, b] = edge.ends.map(Vec3::as_dvec3);
         let along = (b - a).normalize_or_zero();
         let outward = edge.outward.as_dvec3();
         Self {

@@ -1,7 +1,7 @@
 //! Sound that bends around edges: door frames, the ends of walls, tables, doors ajar.
 //!
-//! Where the source is out of sight, a path leads around each edge that hides it, or around two in turn; where it is in sight, edges
-//! close to the straight line take some of it, so that nothing jumps at the border of the shadow. Waves that go around two sides of
+//! Where the source is out of sight, a path leads around each edge that hides it, or around two in turn. Edges that do not hide it but
+//! are close to the straight line take some of the sound, in sight or not, so that nothing jumps at the border of the shadow. Waves that go around two sides of
 //! an obstacle and come within a quarter of their length are one wave.
 
 mod bend;
@@ -35,11 +35,39 @@ const FAINTEST: f64 = 1e-6;
 
 /// One way around what hides the source.
 struct Way {
-    at: Vec<DVec3>,
-    along: DVec3,
+    /// From the source on.
+    touches: Vec<Touch>,
     detour_m: f64,
     /// Amplitude against a free path of its length. Shape (band,).
     amplitude: [f64; BAND_COUNT],
+}
+
+/// Where a way touches an edge.
+#[derive(Clone, Copy)]
+struct Touch {
+    at: DVec3,
+    along: DVec3,
+    /// From the straight line to it.
+    aside: DVec3,
+}
+
+impl Touch {
+    fn new(frame: &Frame, at: DVec3, from: DVec3, to: DVec3) -> Self {
+        let line = (to - from).normalize_or_zero();
+        let there = at - from;
+        Self {
+            at,
+            along: frame.along(),
+            aside: there - line * line.dot(there),
+        }
+    }
+
+    /// Whether both belong to one profile: parallel, close together, and on one side of the straight line.
+    fn is_near(&self, other: &Self) -> bool {
+        self.at.distance(other.at) < PROFILE_M
+            && self.along.dot(other.along).abs() > 0.9
+            && self.aside.dot(other.aside) > 0.0
+    }
 }
 
 /// The paths from `source` around edges to `receiver`, which does not see it.
@@ -57,7 +85,8 @@ pub(crate) fn around_edges(
     let mut ways = Vec::new();
     let mut seen: Vec<(&Frame, &Bend, [bool; 2])> = Vec::new();
     let near = near_edges(scene, from, to, LONGEST_DETOUR_M, |bend| {
-        bend.hidden && (bend.open[0] || bend.open[1])
+        // What lies within the matter of an edge may be reached over a second one.
+        bend.open[0] != bend.open[1] || (bend.hidden && bend.open == [true; 2])
     });
     for (frame, bend) in &near {
         let at = bend.at + frame.outward() * STAND_OFF_M;
@@ -65,10 +94,9 @@ pub(crate) fn around_edges(
             bend.open[0] && sight(from, at),
             bend.open[1] && sight(at, to),
         ];
-        if sees == [true; 2] {
+        if sees == [true; 2] && bend.hidden {
             ways.push(Way {
-                at: vec![bend.at],
-                along: frame.along(),
+                touches: vec![Touch::new(frame, bend.at, from, to)],
                 detour_m: bend.detour_m,
                 amplitude: bend.passed(&n_per_m).map(f64::sqrt),
             });
@@ -94,14 +122,26 @@ pub(crate) fn around_edges(
         if sight(from, first) && sight(first, second) && sight(second, to) {
             ways.push(Way {
                 amplitude: bend.passed(&n_per_m).map(f64::sqrt),
-                at: bend.at.to_vec(),
-                along: a.along(),
+                touches: vec![
+                    Touch::new(a, bend.at[0], from, to),
+                    Touch::new(b, bend.at[1], from, to),
+                ],
                 detour_m: bend.detour_m,
             });
         }
     }
     let mut ways = strongest(ways);
+    if ways.is_empty() {
+        return Vec::new();
+    }
+    let touched: Vec<Touch> = ways.iter().flat_map(|way| way.touches.clone()).collect();
+    let kept = beside_edges(scene, rays, source, receiver, &touched);
     unite(&mut ways, &n_per_m);
+    for way in &mut ways {
+        for (amplitude, kept) in way.amplitude.iter_mut().zip(kept) {
+            *amplitude *= kept.sqrt();
+        }
+    }
     ways.retain(|way| way.amplitude.iter().any(|a| a * a > FAINTEST));
     let straight_m = from.distance(to);
     let towards = |from: DVec3, to: DVec3| (to - from).normalize_or_zero().as_vec3();
@@ -115,9 +155,9 @@ pub(crate) fn around_edges(
             planes: Vec::new(),
             length_m,
             energy: energy.map(|e| e as f32),
-            arrival: towards(to, way.at[way.at.len() - 1]),
-            departure: towards(from, way.at[0]),
-            bends: way.at.iter().map(|at| at.as_vec3()).collect(),
+            arrival: towards(to, way.touches[way.touches.len() - 1].at),
+            departure: towards(from, way.touches[0].at),
+            bends: way.touches.iter().map(|touch| touch.at.as_vec3()).collect(),
             walls: 0,
             inverted: false,
         }
@@ -125,12 +165,24 @@ pub(crate) fn around_edges(
     paths.collect()
 }
 
-/// What the edges beside the straight line leave of the sound from a `source` in sight. Shape (band,).
-pub(crate) fn beside_edges(
+/// What edges beside the straight line leave of the sound from a `source` in sight. Shape (band,).
+pub(crate) fn in_sight(
     scene: &AcousticScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
+) -> [f64; BAND_COUNT] {
+    beside_edges(scene, rays, source, receiver, &[])
+}
+
+/// What edges that hide nothing but are close to the straight line leave of the sound, but for those of profiles that are `touched`
+/// anyway. Shape (band,).
+fn beside_edges(
+    scene: &AcousticScene,
+    rays: &RayScene,
+    source: Vec3,
+    receiver: Vec3,
+    touched: &[Touch],
 ) -> [f64; BAND_COUNT] {
     let n_per_m = loss::per_metre(scene.config().air.speed_of_sound_m_s());
     let (from, to) = (source.as_dvec3(), receiver.as_dvec3());
@@ -139,12 +191,11 @@ pub(crate) fn beside_edges(
         !bend.hidden && bend.facing > 0.0 && bend.open == [true; 2]
     });
     let mut kept = [1.0; BAND_COUNT];
-    let mut taken: Vec<(DVec3, DVec3)> = Vec::new();
+    let mut taken = touched.to_vec();
     for (frame, bend) in &near {
         // Of the edges of one profile the nearest acts.
-        if taken.iter().any(|(at, along)| {
-            at.distance(bend.at) < PROFILE_M && along.dot(frame.along()).abs() > 0.9
-        }) {
+        let touch = Touch::new(frame, bend.at, from, to);
+        if taken.iter().any(|other| other.is_near(&touch)) {
             continue;
         }
         let off = bend.at + frame.outward() * STAND_OFF_M;
@@ -154,7 +205,7 @@ pub(crate) fn beside_edges(
         if hidden {
             continue;
         }
-        taken.push((bend.at, frame.along()));
+        taken.push(touch);
         for (kept, n_per_m) in kept.iter_mut().zip(n_per_m) {
             let lost = 1.0 - loss::passed(-n_per_m * bend.detour_m);
             *kept *= 1.0 - lost * bend.reach(n_per_m) * bend.facing;
@@ -174,7 +225,7 @@ fn near_edges(
     let straight_m = from.distance(to);
     let mut near = Vec::new();
     for edge in scene.edges() {
-        let [a, b] = edge.ends.map(|end| end.as_dvec3());
+        let [a, b] = edge.ends.map(Vec3::as_dvec3);
         let middle = 0.5 * (a + b);
         let least_m = from.distance(middle) + middle.distance(to) - a.distance(b);
         if least_m - straight_m > longest_m {
@@ -201,8 +252,8 @@ fn strongest(mut ways: Vec<Way>) -> Vec<Way> {
     let mut kept: Vec<Way> = Vec::new();
     for way in ways {
         let same = |other: &Way| {
-            let close = |a: &DVec3| other.at.iter().any(|b| a.distance(*b) < PROFILE_M);
-            way.at.iter().any(close) && other.along.dot(way.along).abs() > 0.9
+            let near = |touch: &Touch| other.touches.iter().any(|there| there.is_near(touch));
+            way.touches.iter().any(near)
         };
         if !kept.iter().any(same) {
             kept.push(way);
@@ -234,6 +285,16 @@ fn unite(ways: &mut [Way], n_per_m: &[f64; BAND_COUNT]) {
             sum += share * amplitude(&ways[k]);
             ways[k].amplitude[band] *= (1.0 - share * share).sqrt();
         }
-        ways[main].amplitude[band] = sum.min(1.0);
+        ways[main].amplitude[band] = sum;
+        // Together they carry no more than a free path does.
+        let all = ways
+            .iter()
+            .map(|way| way.amplitude[band] * way.amplitude[band]);
+        let all = all.sum::<f64>();
+        if all > 1.0 {
+            for way in ways.iter_mut() {
+                way.amplitude[band] /= all.sqrt();
+            }
+        }
     }
 }

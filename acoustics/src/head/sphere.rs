@@ -72,8 +72,9 @@ impl SphericalHead {
         for band in 0..BAND_COUNT {
             let frequency_hz = bands::exact_centre_hz(band);
             for (k, value) in response(frequency_hz).into_iter().enumerate() {
-                gain[k][band] = value.norm() as f32;
-                delay_s[k][band] = (advance[k] - value.arg() / (TAU * frequency_hz)) as f32;
+                gain[k][band] = libm::hypot(value.re, value.im) as f32;
+                delay_s[k][band] =
+                    (advance[k] - libm::atan2(value.im, value.re) / (TAU * frequency_hz)) as f32;
             }
         }
         Self {

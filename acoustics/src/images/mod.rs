@@ -86,7 +86,7 @@ fn straight(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Vec3
     if scene.config().diffraction {
         match &mut direct {
             Some(path) if path.walls == 0 => {
-                let kept = diffraction::beside_edges(scene, rays, source, receiver);
+                let kept = diffraction::in_sight(scene, rays, source, receiver);
                 for (e, kept) in path.energy.iter_mut().zip(kept) {
                     *e *= kept as f32;
                 }

@@ -4,7 +4,7 @@ use crate::air::Air;
 use crate::bands::{self, BAND_COUNT, Banded};
 use crate::config::AcousticConfig;
 use crate::directivity::Pattern;
-use crate::echogram::Echogram;
+use crate::echogram::{Echogram, Path};
 use crate::receiver::{Receiver, Source};
 use dwell_scene::math::sin_cos;
 use glam::{Quat, Vec3};
@@ -122,16 +122,29 @@ impl Effects {
         if self.source_db == [0.0; BAND_COUNT] {
             return;
         }
-        let gain = self.source_db.map(|db| libm::powf(10.0, db / 10.0));
-        for path in &mut echogram.paths {
-            for (energy, gain) in path.energy.iter_mut().zip(gain) {
-                *energy *= gain;
-            }
-        }
+        self.on_paths(&mut echogram.paths);
+        let gain = self.source_gain();
         for bin in &mut echogram.tail.bins {
             for (energy, gain) in bin.iter_mut().zip(gain) {
                 *energy *= f64::from(gain);
             }
         }
+    }
+
+    /// The energies of early paths from sources as they are.
+    pub(crate) fn on_paths(&self, paths: &mut [Path]) {
+        if self.source_db == [0.0; BAND_COUNT] {
+            return;
+        }
+        let gain = self.source_gain();
+        for path in paths {
+            for (energy, gain) in path.energy.iter_mut().zip(gain) {
+                *energy *= gain;
+            }
+        }
+    }
+
+    fn source_gain(&self) -> Banded {
+        self.source_db.map(|db| libm::powf(10.0, db / 10.0))
     }
 }

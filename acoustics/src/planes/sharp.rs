@@ -6,7 +6,7 @@ use super::sets::Sets;
 use glam::{DVec3, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// Corners closer than this are one, m.
+/// Corners in one cell of a grid this fine are one, m.
 const WELD_M: f32 = 1e-4;
 /// Shorter edges bend too little sound, m.
 const SHORTEST_M: f32 = 0.2;

@@ -15,8 +15,8 @@ pub struct StreamConfig {
     pub update_angle_rad: f32,
     /// A door or another large part must have moved this far, m (or turned as many rad); 0 to 10.
     pub update_part_m: f32,
-    /// Early paths of a source whose delays glide while it or the listener moves, the straight ones first; the others change with
-    /// the impulse response. 0 (none) to 64. Microphone arrays have none.
+    /// Early paths of a source whose delays glide while it or the listener moves: all straight ones, and reflections up to so many;
+    /// the others change with the impulse response. 0 (none) to 64. Microphone arrays have none.
     pub moving_paths: usize,
     /// The share of all rays that an update of the tail traces where only source or listener have moved; the rest is remembered.
     /// 0.001 to 1.

@@ -1,7 +1,7 @@
 //! Early paths that are followed while source or listener move: delays that glide, so that pitch shifts as it should.
 
 use crate::echogram::Path;
-use crate::synthesis::Wavelet;
+use crate::synthesis::{Wavelet, strongest};
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
@@ -9,6 +9,8 @@ use std::sync::LazyLock;
 const HALF: usize = 16;
 /// Places between two samples in the tables; between them weights are interpolated.
 const PHASES: usize = 128;
+/// Delays that change by more than this fraction of the time do not glide: an eighth of the speed of sound.
+const FASTEST: f64 = 0.125;
 /// Two paths bend around one edge when their bends are this close, m: a bend slides along its edge as the listener walks.
 const SAME_EDGE_M: f32 = 0.4;
 
@@ -20,25 +22,26 @@ pub(super) struct Followed {
     pub(super) wavelets: Vec<Wavelet>,
 }
 
-/// Whether two paths are one, before and after a movement.
-pub(super) fn is_same(a: &Path, b: &Path) -> bool {
-    let mut bends = a.bends.iter().zip(&b.bends);
-    a.planes == b.planes
-        && a.bends.len() == b.bends.len()
-        && bends.all(|(a, b)| a.distance(*b) < SAME_EDGE_M)
+/// How unlike two paths are, before and after a movement: how far their bends have slid, m; nothing where they are not one.
+fn slid_m(a: &Path, b: &Path) -> Option<f32> {
+    if a.planes != b.planes || a.bends.len() != b.bends.len() {
+        return None;
+    }
+    let slid = a.bends.iter().zip(&b.bends).map(|(a, b)| a.distance(*b));
+    let slid_m = slid.fold(0.0, f32::max);
+    (slid_m < SAME_EDGE_M).then_some(slid_m)
 }
 
-/// The paths of a response that are followed: the straight ways, then the strongest reflections up to `most` in all.
+/// The paths of a response that are followed: all straight ways, then the strongest reflections up to `most` in all.
 pub(super) fn choose(paths: &[Path], most: usize) -> Vec<Path> {
-    let (mut chosen, mut others): (Vec<Path>, Vec<Path>) = paths
-        .iter()
-        .cloned()
+    let (mut chosen, mut others): (Vec<&Path>, Vec<&Path>) = strongest(paths)
+        .into_iter()
         .partition(|path| path.planes.is_empty());
     let power = |path: &Path| path.energy.iter().sum::<f32>();
     others.sort_by(|a, b| power(b).total_cmp(&power(a)));
-    chosen.extend(others);
-    chosen.truncate(most);
-    chosen
+    let left = most.saturating_sub(chosen.len());
+    chosen.extend(others.into_iter().take(left));
+    chosen.into_iter().cloned().collect()
 }
 
 /// Moves the paths of a source for one block.
@@ -56,30 +59,43 @@ impl Glide<'_> {
     /// A path's delay goes from one block's end to the next's in a straight line, its filter is crossfaded; a path that is only
     /// in one of the two fades.
     pub(super) fn add(&self, old: &[Followed], new: &[Followed], out: &mut [f32]) {
+        let size = self.fade.len();
+        let mut left: Vec<&Followed> = old.iter().collect();
         for path in new {
-            let before = old.iter().find(|one| is_same(&one.path, &path.path));
-            for (channel, out) in out.chunks_exact_mut(self.fade.len()).enumerate() {
+            let before = (0..left.len())
+                .filter_map(|k| Some((k, slid_m(&left[k].path, &path.path)?)))
+                .min_by(|a, b| a.1.total_cmp(&b.1))
+                .map(|(k, _)| left.remove(k));
+            for (channel, out) in out.chunks_exact_mut(size).enumerate() {
                 let from = before.and_then(|one| one.wavelets.get(channel));
                 self.channel(from, path.wavelets.get(channel), out);
             }
         }
-        for path in old {
-            if !new.iter().any(|one| is_same(&one.path, &path.path)) {
-                for (wavelet, out) in path
-                    .wavelets
-                    .iter()
-                    .zip(out.chunks_exact_mut(self.fade.len()))
-                {
-                    self.channel(Some(wavelet), None, out);
-                }
+        for path in left {
+            for (wavelet, out) in path.wavelets.iter().zip(out.chunks_exact_mut(size)) {
+                self.channel(Some(wavelet), None, out);
             }
         }
     }
 
     fn channel(&self, old: Option<&Wavelet>, new: Option<&Wavelet>, out: &mut [f32]) {
+        let size = out.len();
+        let delay = |wavelet: &Wavelet| wavelet.delay_s * self.rate_hz;
+        if let (Some(a), Some(b)) = (old, new)
+            && (delay(a) - delay(b)).abs() > FASTEST * size as f64
+        {
+            // Nobody walks so fast: whoever is elsewhere at once hears no glide.
+            self.channel(Some(a), None, out);
+            self.channel(None, Some(b), out);
+            return;
+        }
+        // Nothing of the future is known: what would ring before the newest sample is left out.
+        let early = |wavelet: &Wavelet| (wavelet.lead as f64 + 1.0 - delay(wavelet)).ceil();
+        let skip = [old, new].into_iter().flatten().map(early);
+        let skip = skip.fold(0.0, f64::max) as usize;
         let late = |wavelet: &Wavelet| {
-            // Nothing of the future is known: what would ring before it comes with it.
-            (wavelet.delay_s * self.rate_hz - wavelet.lead as f64).max(1.0)
+            let lead = wavelet.lead.saturating_sub(skip);
+            (delay(wavelet) - lead as f64).max(1.0)
         };
         let (from, to) = match (old, new) {
             (Some(a), Some(b)) => (late(a), late(b)),
@@ -87,7 +103,6 @@ impl Glide<'_> {
             (None, Some(b)) => (late(b), late(b)),
             (None, None) => return,
         };
-        let size = out.len();
         // Places in the history that the block hears.
         let place = |k: usize| {
             let way = (k + 1) as f64 / size as f64;
@@ -96,8 +111,11 @@ impl Glide<'_> {
         let (start, end) = (place(0).min(place(size - 1)), place(0).max(place(size - 1)));
         let first = start.floor() as i64 - HALF as i64;
         let count = (end.floor() as i64 + HALF as i64 + 1 - first) as usize;
-        let old = old.map(|wavelet| self.filtered(wavelet, first, count));
-        let new = new.map(|wavelet| self.filtered(wavelet, first, count));
+        let filtered = |wavelet: &Wavelet| {
+            let skip = skip.min(wavelet.lead);
+            self.filtered(&wavelet.response[skip..], wavelet.amplitude, first, count)
+        };
+        let (old, new) = (old.map(filtered), new.map(filtered));
         for (k, y) in out.iter_mut().enumerate() {
             let place = place(k);
             // The sample after the newest does not exist yet.
@@ -113,12 +131,12 @@ impl Glide<'_> {
         }
     }
 
-    /// `count` samples, from place `first` of the history on, as a wavelet's filter makes them.
-    fn filtered(&self, wavelet: &Wavelet, first: i64, count: usize) -> Vec<f32> {
+    /// `count` samples, from place `first` of the history on, as a filter makes them.
+    fn filtered(&self, response: &[f32], amplitude: f32, first: i64, count: usize) -> Vec<f32> {
         let mut samples = vec![0.0; count];
         let length = self.history.len() as i64;
-        for (k, weight) in wavelet.response.iter().enumerate() {
-            let scaled = weight * wavelet.amplitude;
+        for (k, weight) in response.iter().enumerate() {
+            let scaled = weight * amplitude;
             // y[first + n] += h[k] x[first + n - k]
             let shift = first - k as i64;
             let from = (-shift).clamp(0, count as i64);
@@ -258,6 +276,62 @@ mod tests {
                     "{frequency_hz} {k}"
                 );
             }
+        }
+    }
+
+    /// Ears ring before their delay. Closer than that there is no time to, and the pulse still comes when it should.
+    #[test]
+    fn what_rings_early_is_left_out_where_it_would_be_of_the_future() {
+        let mut history = vec![0.0; 300];
+        history[250] = 1.0;
+        let fade = vec![1.0; 100];
+        let glide = Glide {
+            history: &history,
+            rate_hz: 16_000.0,
+            fade: &fade,
+        };
+        for delay in [3.0, 9.0, 30.0] {
+            let mut path = followed(delay / 16_000.0);
+            let wavelet = &mut path.wavelets[0];
+            wavelet.lead = 16;
+            wavelet.response = vec![0.0; 20];
+            wavelet.response[16] = 1.0;
+            let mut out = vec![0.0; 100];
+            glide.add(&[path.clone()], &[path], &mut out);
+            let peak = (0..100).max_by(|a, b| out[*a].total_cmp(&out[*b]));
+            assert_eq!(peak, Some(50 + delay as usize), "{delay}");
+        }
+    }
+
+    /// Two ways around one corner, and then one: every old way is heard once and ends.
+    #[test]
+    fn each_path_goes_on_as_one() {
+        let history = vec![1.0; 300];
+        let fade = vec![0.5; 100];
+        let glide = Glide {
+            history: &history,
+            rate_hz: 16_000.0,
+            fade: &fade,
+        };
+        let around = |x: f32| {
+            let mut path = followed(0.002);
+            path.path.bends = vec![glam::Vec3::X * x];
+            path
+        };
+        for (old, new, wanted) in [
+            (vec![0.0, 0.2], vec![0.05, 0.25], 1.0),
+            (vec![0.0, 0.2], vec![0.05], 0.75),
+            (vec![0.0], vec![0.05, 0.25], 0.75),
+        ] {
+            let paths = |places: Vec<f32>| places.into_iter().map(around).collect::<Vec<_>>();
+            let mut out = vec![0.0; 100];
+            glide.add(&paths(old), &paths(new), &mut out);
+            // Each path has half of the pressure; the weight of the new is a half.
+            assert!(
+                out.iter().all(|y| (y - wanted).abs() < 1e-4),
+                "{wanted}: {}",
+                out[0]
+            );
         }
     }
 

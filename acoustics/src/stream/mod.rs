@@ -247,11 +247,17 @@ impl Stream {
             };
             let channels_before = channels(&voice.heard);
             let before = voice.moved.followed.take();
+            // Other air or another microphone does not glide.
+            let effects = |heard: &Option<(Situation, ImpulseResponse)>| {
+                heard.as_ref().map(|(situation, _)| situation.effects)
+            };
+            let effects_before = effects(&voice.heard);
             let other = news.is_some() || before.is_some() != followed.is_some();
             if let Some(news) = news {
                 voice.heard = Some(news);
             }
             let same_channels = channels(&voice.heard) == channels_before;
+            let jumps = effects(&voice.heard) != effects_before;
             if other && let Some((situation, response)) = &voice.heard {
                 old.fill(0.0);
                 if !fresh && same_channels {
@@ -280,13 +286,18 @@ impl Stream {
                     .map(|(path, wavelets)| Followed { path, wavelets })
                     .collect();
                 let before = before.filter(|_| same_channels).unwrap_or_default();
-                let glide = Glide {
-                    history: voice.input.history(),
-                    rate_hz: f64::from(self.scene.config().rate_hz),
-                    fade: &self.fade,
-                };
-                glide.add(if fresh { &now } else { &before }, &now, out);
+                let glide = glide(&self.scene, &self.fade, voice);
+                if fresh {
+                    glide.add(&now, &now, out);
+                } else if jumps {
+                    glide.add(&before, &[], out);
+                    glide.add(&[], &now, out);
+                } else {
+                    glide.add(&before, &now, out);
+                }
                 voice.moved.followed = Some(now);
+            } else if let Some(before) = before.filter(|_| same_channels && !fresh) {
+                glide(&self.scene, &self.fade, voice).add(&before, &[], out);
             }
             voice.moved.last = Some(place);
         }
@@ -358,8 +369,8 @@ impl Stream {
             let heard = at.and_then(|voice| voice.heard.as_ref());
             let named = position.is_some();
             // What is no longer named rings out where it was last.
-            let Some(position) = position.or_else(|| heard.map(|(situation, _)| situation.source))
-            else {
+            let last = at.and_then(|voice| voice.moved.last);
+            let Some(position) = position.or(last.map(|(source, _)| source)) else {
                 continue;
             };
             let now = Situation {
@@ -515,6 +526,15 @@ impl Stream {
     /// A number that changes with anything that will be heard of what was played so far.
     pub fn hash(&self) -> u64 {
         xxh3_64(&self.bytes())
+    }
+}
+
+/// What moves the early paths of a voice through its block.
+fn glide<'a>(scene: &AcousticScene, fade: &'a [f32], voice: &'a Voice) -> Glide<'a> {
+    Glide {
+        history: voice.input.history(),
+        rate_hz: f64::from(scene.config().rate_hz),
+        fade,
     }
 }
 

@@ -145,14 +145,8 @@ impl Synthesizer {
         there: bool,
         out: &mut [f32],
     ) {
-        let mut strongest: Vec<&Path> = paths.iter().collect();
-        if strongest.len() > MOST_PATHS {
-            let power = |path: &Path| path.energy.iter().sum::<f32>();
-            strongest.sort_by(|a, b| power(b).total_cmp(&power(a)));
-            strongest.truncate(MOST_PATHS);
-        }
         let mut fft = self.filters.fft();
-        for path in strongest {
+        for path in strongest(paths) {
             let wavelet = self.wavelet(&mut fft, echogram.speed_m_s, path, channel, there);
             let taps = Taps::new(wavelet.delay_s * self.rate_hz);
             taps.add(out, &wavelet.response, wavelet.lead, wavelet.amplitude);
@@ -227,6 +221,17 @@ impl Synthesizer {
             }
         }
     }
+}
+
+/// The paths that are heard one by one, the strongest first where there are too many.
+pub(crate) fn strongest(paths: &[Path]) -> Vec<&Path> {
+    let mut strongest: Vec<&Path> = paths.iter().collect();
+    if strongest.len() > MOST_PATHS {
+        let power = |path: &Path| path.energy.iter().sum::<f32>();
+        strongest.sort_by(|a, b| power(b).total_cmp(&power(a)));
+        strongest.truncate(MOST_PATHS);
+    }
+    strongest
 }
 
 /// One path as one channel hears it.

@@ -79,8 +79,12 @@ impl Measurement {
         for x in &self.responses {
             hash.update(&x.to_le_bytes());
         }
-        for x in &self.delays_samples {
-            hash.update(&x.to_le_bytes());
+        hash.update(&(self.samples() as u64).to_le_bytes());
+        // No delays are delays of nothing.
+        if self.delays_samples.iter().any(|x| *x != 0.0) {
+            for x in &self.delays_samples {
+                hash.update(&x.to_le_bytes());
+            }
         }
         hash.digest()
     }

@@ -116,7 +116,7 @@ impl Gpu {
         *bytes = most.buffer_bytes.min(*bytes);
         limits.max_buffer_size = most.buffer_bytes.min(limits.max_buffer_size);
         let groups = &mut limits.max_compute_workgroups_per_dimension;
-        *groups = most.groups.min(*groups);
+        *groups = most.groups.clamp(1, *groups);
         let needed = u64::from(Layouts::BUFFERS);
         let allowed = u64::from(limits.max_storage_buffers_per_shader_stage);
         if allowed < needed {

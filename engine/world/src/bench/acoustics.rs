@@ -57,11 +57,16 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         let walks: Vec<Walk> = walks
             .map(|(spot, wanted)| walk(&engines, &rays, preset, *spot, wanted))
             .collect::<Result<_, _>>()?;
-        let middle = |of: fn(&Walk) -> f64| median(&walks.iter().map(of).collect::<Vec<_>>());
+        let middle = |of: fn(&Walk) -> Option<f64>| {
+            let mut values: Vec<f64> = walks.iter().filter_map(of).collect();
+            values.sort_by(f64::total_cmp);
+            // Nothing where no walk has a figure.
+            (!values.is_empty()).then(|| median(&values))
+        };
         let figures = [
             (
                 "stream_times_real_time",
-                middle(|walk| walk.times_real_time),
+                middle(|walk| Some(walk.times_real_time)),
             ),
             (
                 "stream_t30_off_percent",
@@ -87,9 +92,9 @@ const BLOCKS: usize = 200;
 /// A walk with a radio.
 struct Walk {
     times_real_time: f64,
-    /// Mean over the octaves from 250 Hz to 4 kHz of what its end's measures are off the reference.
-    t30_off_percent: f64,
-    c80_off_db: f64,
+    /// Mean over the octaves from 250 Hz to 4 kHz of what its end's measures are off the reference; nothing where a band lacks one.
+    t30_off_percent: Option<f64>,
+    c80_off_db: Option<f64>,
 }
 
 /// Where a listener is at the end of block `k`, who walks to and fro around `spot` at 1 m/s and turns, and a radio that is carried
@@ -150,8 +155,8 @@ fn walk(
     let found = found.unwrap_or_default();
     let mean = |off: fn(&BandMetrics, &BandMetrics) -> Option<f64>| {
         let bands = found.iter().zip(wanted).skip(2).take(5);
-        let off: Vec<f64> = bands.filter_map(|(a, b)| off(a, b)).collect();
-        off.iter().sum::<f64>() / off.len().max(1) as f64
+        let off: Option<Vec<f64>> = bands.map(|(a, b)| off(a, b)).collect();
+        off.map(|off| off.iter().sum::<f64>() / off.len() as f64)
     };
     Ok(Walk {
         times_real_time: 0.05 * BLOCKS as f64 / seconds,

@@ -20,7 +20,7 @@ pub use playing::{PlayRequest, SoundName, SoundPlace, usual_level_db};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use dwell_acoustics::{HeadId, Stream, StreamConfig, signals};
+use dwell_acoustics::{AcousticConfig, HeadId, Stream, StreamConfig, signals};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
@@ -159,7 +159,7 @@ impl Sound {
             scene.add_head(&engines.head(head)?);
         }
         let Some(config) = StreamConfig::preset(&self.preset) else {
-            let allowed = "\"rl\" or \"full\"".to_owned();
+            let allowed = AcousticConfig::PRESETS.join(", ");
             return Err(WorldError::Config {
                 field: "sound_preset",
                 found: self.preset.clone(),
