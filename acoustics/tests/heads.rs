@@ -320,6 +320,13 @@ fn bad_measurements_are_refused_by_name() {
             message(&|m| m.responses[1400..2100].fill(0.0)),
             "Left ear's response from direction 1 is silent",
         ),
+        (
+            message(&|m| {
+                m.rate_hz = 8_000.0;
+                m.responses[..400].fill(0.0);
+            }),
+            "Left ear's response from direction 0 begins after 0.05",
+        ),
         (message(&|m| m.sources[4] = glam::DVec3::ZERO), "source 4"),
         (message(&|m| m.delays_samples = vec![0.0; 7]), "7 delays"),
         (

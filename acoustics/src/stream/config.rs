@@ -33,15 +33,15 @@ impl Default for StreamConfig {
 }
 
 impl StreamConfig {
-    /// For listening: 16 early paths glide, the rest follows movements of 25 cm and 2 degrees.
+    /// For listening: 12 early paths glide, the rest follows movements of 35 cm and 2 degrees.
     pub fn full() -> Self {
         Self {
             block_samples: 800,
-            update_distance_m: 0.25,
+            update_distance_m: 0.35,
             update_angle_rad: 0.035,
             update_part_m: 0.03,
-            moving_paths: 16,
-            update_share: 0.125,
+            moving_paths: 12,
+            update_share: 0.1,
             max_sources: 64,
         }
     }
@@ -53,7 +53,7 @@ impl StreamConfig {
             update_angle_rad: 0.175,
             update_part_m: 0.15,
             moving_paths: 6,
-            update_share: 0.25,
+            update_share: 0.2,
             max_sources: 4,
             ..Self::full()
         }

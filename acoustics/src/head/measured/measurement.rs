@@ -56,6 +56,10 @@ pub(super) struct Row<'a> {
     pub(super) delay_s: [f64; 2],
 }
 
+/// Samples below this fraction of the peak come before a response, and not this late, s: half of what its onset is looked for in.
+const QUIET: f32 = 1e-3;
+const LATEST_S: f64 = 0.02;
+
 fn refuse<T>(why: String) -> Result<T, AcousticsError> {
     Err(AcousticsError::Head(why))
 }
@@ -196,6 +200,14 @@ impl Measurement {
             }
             if response.iter().all(|x| x.abs() < 1e-12) {
                 return refuse(format!("{at} is silent"));
+            }
+            let peak = response.iter().fold(0.0_f32, |peak, x| peak.max(x.abs()));
+            let begins = response.iter().position(|x| x.abs() > QUIET * peak);
+            let begins_s = begins.unwrap_or(0) as f64 / self.rate_hz;
+            if begins_s > LATEST_S {
+                return refuse(format!(
+                    "{at} begins after {begins_s:.3} s; allowed are 0.02 s, and the rest as a delay"
+                ));
             }
         }
         Ok(())
