@@ -279,7 +279,7 @@ class AcousticScene:
     ) -> str:
         """``{paths, tail: {bin_s, bins, bins_per_direction, directions}, direct_length_m, speed_m_s, trace}``."""
     def early_paths_json(self, source_json: str, mic: tuple[float, float, float]) -> str:
-        """``[{points, path: {planes, length_m, energy, arrival, departure, walls}}, ...]``, by length."""
+        """``[{points, path: {planes, bends, length_m, energy, arrival, departure, walls}}, ...]``, by length."""
     def explain_json(self) -> str: ...
     def config_json(self) -> str:
         """The fields of ``AcousticConfig``, with the air as laws make it."""

@@ -5,7 +5,10 @@ use crate::echogram::Echogram;
 /// How far early sound stays alike, m.
 const NEAR_M: f64 = 0.3;
 /// Late sound stays alike over this fraction of its way: it has mixed.
-const OF_THE_WAY: f64 = 0.1;
+const OF_THE_WAY: f64 = 0.15;
+
+/// The least weight of the new, in shares of its rays: what is remembered comes from many updates.
+const LEAST: f64 = 0.5;
 
 /// The tail that was heard before, and what has changed since.
 pub(crate) struct Memory<'a> {
@@ -34,7 +37,7 @@ impl Memory<'_> {
         }
         let weight_at = |time_s: f64| {
             let reach_m = NEAR_M + OF_THE_WAY * now.speed_m_s * time_s;
-            1.0 - (1.0 - self.share) * libm::exp(-self.moved_m / reach_m)
+            1.0 - (1.0 - LEAST * self.share) * libm::exp(-self.moved_m / reach_m)
         };
         let (bin_s, per_direction) = (now.tail.bin_s, now.tail.bins_per_direction.max(1));
         for (k, (bin, old)) in now.tail.bins.iter_mut().zip(&before.bins).enumerate() {
