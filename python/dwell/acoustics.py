@@ -183,7 +183,8 @@ class AcousticScene:
         Returns:
             For each ``points`` (the source, where it is reflected, the microphone; m) and ``path``:
             ``length_m``, ``energy`` of each octave band from 62.5 Hz against a free path of 1 m,
-            ``arrival`` and ``departure`` (directions), ``walls`` that it passes through.
+            ``arrival`` and ``departure`` (directions), ``walls`` that it passes through, ``bends``
+            (where it goes around edges).
 
         Raises:
             DwellError: A point is not finite.
