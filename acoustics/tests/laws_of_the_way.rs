@@ -7,7 +7,7 @@ mod common;
 use common::{Hall, dry, law, material};
 use dwell_acoustics::bands::BAND_COUNT;
 use dwell_acoustics::{
-    AcousticConfig, ActiveSource, Air, Directivity, Echogram, Receiver, Source, Stream,
+    AcousticConfig, ActiveSource, Air, Directivity, Echogram, Microphone, Receiver, Source, Stream,
     StreamConfig,
 };
 use dwell_scene::parallel::Threads;
@@ -304,4 +304,30 @@ fn streams_follow_changes_of_air_and_sources() {
     assert_eq!(traced(vec![warm.clone()]), 0);
     assert_eq!(traced(vec![warm, gain]), 1);
     assert_eq!(traced(Vec::new()), 1);
+}
+
+/// The microphones of an array have early paths of their own: a source's gain reaches them as it reaches the tail.
+#[test]
+fn an_array_hears_the_gain_of_its_source_early_and_late() {
+    let hall = hall();
+    let hear = |laws: Vec<LawSpec>| {
+        let mut state = State::new(&hall.house);
+        state.laws = laws;
+        let mut scene = hall.scene.clone();
+        scene.update(&state);
+        let microphones = [Vec3::X * 0.05, Vec3::X * -0.05].map(Microphone::omni);
+        let array = Receiver::array(Pose::from_position(EAR), microphones.into());
+        let (key, threads) = (Key::root(3), Threads::ONE);
+        scene
+            .impulse_response(&hall.rays, &Source::at(SOURCE), &array, key, threads)
+            .unwrap()
+            .samples
+    };
+    let stated = hear(Vec::new());
+    let faint = hear(vec![law("source_gain", &[("gain_db", -20.0)])]);
+    assert_eq!(stated.len(), faint.len());
+    let peak = stated.iter().fold(0.0_f32, |peak, x| peak.max(x.abs()));
+    for (stated, faint) in stated.iter().zip(&faint) {
+        assert!((0.1 * stated - faint).abs() < 1e-4 * peak);
+    }
 }

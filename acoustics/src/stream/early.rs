@@ -171,8 +171,14 @@ fn weights(half: usize, fraction: f64) -> Vec<f32> {
             } else {
                 libm::sin(std::f64::consts::PI * x) / (std::f64::consts::PI * x)
             };
-            let window = libm::cos(0.5 * std::f64::consts::PI * x / (half as f64 + 0.5));
-            sinc * window * window
+            let way = std::f64::consts::PI * x / (half as f64 + 0.5);
+            // Blackman's window where there is room for it, von Hann's where there are few taps.
+            let window = if half == HALF {
+                0.42 + 0.5 * libm::cos(way) + 0.08 * libm::cos(2.0 * way)
+            } else {
+                0.5 + 0.5 * libm::cos(way)
+            };
+            sinc * window
         })
         .collect();
     let sum: f64 = values.iter().sum();
