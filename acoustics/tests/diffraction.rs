@@ -9,6 +9,7 @@ use dwell_acoustics::bands::{BAND_COUNT, NOMINAL_CENTRES_HZ};
 use dwell_acoustics::{AcousticConfig, Receiver, Source};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
+use dwell_scene::{Bands, Material};
 use glam::Vec3;
 use std::f64::consts::{PI, TAU};
 
@@ -291,6 +292,31 @@ fn walking_out_of_sight_is_smooth() {
         before = Some(now);
     }
     assert!(kinds.contains(&0) && kinds.contains(&1), "{kinds:?}");
+}
+
+/// A curtain that lets most sound through: what comes through and what goes around are together no more than a free path.
+#[test]
+fn what_comes_through_does_not_go_around_as_well() {
+    for loss_db in [0.5, 3.0, 20.0] {
+        let curtain = Material {
+            transmission_loss_db: Bands::constant(loss_db),
+            ..material(0.0, 0.0)
+        };
+        let sheet = rectangle(Vec3::new(0.0, -2.0, -1.0), Vec3::Y * 2.0, Vec3::Z * 2.0, 1);
+        let config = AcousticConfig {
+            transmission: true,
+            ..bending()
+        };
+        let hall = Hall::new(pieces(vec![(sheet, curtain)]), config);
+        let found = level(&hall, Vec3::new(-1.5, -0.3, 0.1), Vec3::new(1.5, -0.2, 0.0));
+        let through = f64::from(10.0_f32.powf(-0.1 * loss_db));
+        for (band, level) in found.iter().enumerate() {
+            assert!(
+                *level >= 0.999 * through && *level <= 1.0,
+                "{loss_db} {band}: {level}"
+            );
+        }
+    }
 }
 
 /// A source on an edge, a receiver in its line, points in one place: no panic, no number that is none.

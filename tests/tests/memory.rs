@@ -4,8 +4,12 @@
 #![expect(clippy::print_stdout, reason = "it tells its figures")]
 
 use dwell::{DiscreteAction, Engines, Stride, World, WorldConfig};
-use dwell_scene::AgentId;
+use dwell_acoustics::{ActiveSource, Receiver, Stream, StreamConfig, signals};
+use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{AgentId, Pose, State};
+use glam::Vec3;
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 use std::alloc::System;
 use std::sync::{Arc, Mutex};
@@ -112,4 +116,56 @@ fn resets_leave_nothing_behind() {
             most - first
         );
     }
+}
+
+/// A listener who walks for an hour past a radio that is carried (a minute and a half without `DWELL_TEST_ALL=1`), in a stream of its
+/// own: what it holds goes up and down with the paths that there are, and does not grow.
+#[test]
+fn an_hour_of_sound_keeps_memory_flat() {
+    const BLOCK: usize = 800;
+    let _alone = ALONE.lock().unwrap();
+    let blocks = if std::env::var_os("DWELL_TEST_ALL").is_some() {
+        72_000
+    } else {
+        1_800
+    };
+    let engines = Engines::new(Arc::new(dwell_houses::open("builtin:apartment").unwrap().0));
+    let rays = RayScene::new(engines.house().clone());
+    let state = State::new(engines.house());
+    let room = &engines.house().rooms[dwell_scene::RoomId(0)];
+    let [a, b, c] = room.footprint[0];
+    let middle = (a + b + c) / 3.0;
+    let spot = Vec3::new(middle.x, room.floor_y + 1.6, middle.y);
+    let scene = engines.acoustics("rl", 16_000).unwrap();
+    let mut stream = Stream::new(scene, StreamConfig::rl(), Key::root(2), Threads::ONE).unwrap();
+    let mut signal = vec![0.0; BLOCK];
+    signals::synthesize("radio", 16_000, 0, &mut signal).unwrap();
+    let mut out = vec![0.0; 2 * BLOCK];
+    // The most that is held in each tenth of the time.
+    let mut most = [0_i64; 10];
+    for k in 0..blocks {
+        let way = (0.05 * k as f32).rem_euclid(2.0);
+        let off = (way - 1.0).abs() - 0.5;
+        let head = Pose::from_position_yaw(spot + Vec3::X * off, 0.031 * (k % 203) as f32);
+        let source = ActiveSource {
+            id: 0,
+            position: spot + Vec3::new(0.3, -0.4, 0.8 + 0.5 * off),
+            signal: &signal,
+        };
+        stream
+            .block(
+                &rays,
+                &state,
+                &[source],
+                &Receiver::binaural(head),
+                &mut out,
+            )
+            .unwrap();
+        let tenth = &mut most[10 * k / blocks];
+        *tenth = (*tenth).max(in_use());
+    }
+    println!("  {} s of sound: {most:?} bytes", blocks / 20);
+    // The first tenth fills the tables.
+    let (early, late) = (most[1..4].iter().max(), most[7..].iter().max());
+    assert!(late.unwrap() - early.unwrap() < 64 * 1024, "{most:?}");
 }

@@ -91,7 +91,21 @@ fn straight(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Vec3
                     *e *= kept as f32;
                 }
             }
-            _ => paths = diffraction::around_edges(scene, rays, source, receiver),
+            _ => {
+                paths = diffraction::around_edges(scene, rays, source, receiver);
+                // What passes through a screen is not missing behind it (Babinet's principle).
+                if let Some(through) = &direct {
+                    let whole = spread(scene, through.length_m);
+                    for path in &mut paths {
+                        let passed = through.energy.iter().zip(whole);
+                        for (e, (through, whole)) in path.energy.iter_mut().zip(passed) {
+                            let kept = 1.0 - (f64::from(*through) / whole).clamp(0.0, 1.0).sqrt();
+                            *e *= (kept * kept) as f32;
+                        }
+                    }
+                    paths.retain(|path| path.energy.iter().any(|e| *e > 0.0));
+                }
+            }
         }
     }
     paths.extend(direct);
