@@ -44,7 +44,7 @@ pub struct AcousticConfig {
     pub air_absorption: bool,
     /// Whether sound passes through walls and doors by their materials' transmission loss.
     pub transmission: bool,
-    /// Whether sound that is not in sight bends around edges.
+    /// Whether sound bends around edges: ways around what hides the source, and what edges beside the straight line take.
     pub diffraction: bool,
     /// Radius of the spherical head, m; 0.03 to 0.2.
     pub head_radius_m: f64,
@@ -96,8 +96,7 @@ impl AcousticConfig {
         }
     }
 
-    /// For comparing others with: 50,000 rays, images to order 3, four seconds in bins of 2 ms. Its measures scatter by less than a
-    /// just noticeable difference.
+    /// For comparing others with: 50,000 rays, images to order 3, four seconds in bins of 2 ms.
     pub fn reference() -> Self {
         Self {
             rays: 50_000,

@@ -319,6 +319,28 @@ fn what_comes_through_does_not_go_around_as_well() {
     }
 }
 
+/// So far away that air leaves nothing of high notes: what is left is a number in every band.
+#[test]
+fn far_away_behind_a_thin_screen_every_energy_is_a_number() {
+    let curtain = Material {
+        transmission_loss_db: Bands::constant(3.0),
+        ..material(0.0, 0.0)
+    };
+    let sheet = rectangle(Vec3::new(0.0, -2.0, -1.0), Vec3::Y * 2.0, Vec3::Z * 2.0, 1);
+    let config = AcousticConfig {
+        transmission: true,
+        air_absorption: true,
+        ..bending()
+    };
+    let hall = Hall::new(pieces(vec![(sheet, curtain)]), config);
+    let found = level(&hall, Vec3::new(-1.5, -0.3, 0.1), Vec3::new(9e5, -0.2, 0.0));
+    assert!(
+        found.iter().all(|e| e.is_finite() && *e >= 0.0),
+        "{found:?}"
+    );
+    assert!(found[7] <= 0.0, "{found:?}");
+}
+
 /// A source on an edge, a receiver in its line, points in one place: no panic, no number that is none.
 #[test]
 fn points_on_edges_are_no_trouble() {

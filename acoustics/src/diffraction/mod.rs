@@ -79,9 +79,7 @@ pub(crate) fn around_edges(
 ) -> Vec<Path> {
     let n_per_m = loss::per_metre(scene.config().air.speed_of_sound_m_s());
     let (from, to) = (source.as_dvec3(), receiver.as_dvec3());
-    let sight = |a: DVec3, b: DVec3| {
-        !rays.occluded(&Ray::segment(a.as_vec3(), b.as_vec3(), 0.0), RayMask::EAR)
-    };
+    let sight = |a, b| is_free(rays, a, b);
     let mut ways = Vec::new();
     let mut seen: Vec<(&Frame, &Bend, [bool; 2])> = Vec::new();
     let near = near_edges(scene, from, to, LONGEST_DETOUR_M, |bend| {
@@ -199,10 +197,7 @@ fn beside_edges(
             continue;
         }
         let off = bend.at + frame.outward() * STAND_OFF_M;
-        let hidden = [(from, off), (off, to)].into_iter().any(|(a, b)| {
-            rays.occluded(&Ray::segment(a.as_vec3(), b.as_vec3(), 0.0), RayMask::EAR)
-        });
-        if hidden {
+        if !(is_free(rays, from, off) && is_free(rays, off, to)) {
             continue;
         }
         taken.push(touch);
@@ -212,6 +207,10 @@ fn beside_edges(
         }
     }
     kept
+}
+
+fn is_free(rays: &RayScene, a: DVec3, b: DVec3) -> bool {
+    !rays.occluded(&Ray::segment(a.as_vec3(), b.as_vec3(), 0.0), RayMask::EAR)
 }
 
 /// The edges over which the way is at most `longest_m` longer and that are `wanted`, by their detours.

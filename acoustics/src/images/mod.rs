@@ -93,23 +93,31 @@ fn straight(scene: &AcousticScene, rays: &RayScene, source: Vec3, receiver: Vec3
             }
             _ => {
                 paths = diffraction::around_edges(scene, rays, source, receiver);
-                // What passes through a screen is not missing behind it (Babinet's principle).
                 if let Some(through) = &direct {
-                    let whole = spread(scene, through.length_m);
-                    for path in &mut paths {
-                        let passed = through.energy.iter().zip(whole);
-                        for (e, (through, whole)) in path.energy.iter_mut().zip(passed) {
-                            let kept = 1.0 - (f64::from(*through) / whole).clamp(0.0, 1.0).sqrt();
-                            *e *= (kept * kept) as f32;
-                        }
-                    }
-                    paths.retain(|path| path.energy.iter().any(|e| *e > 0.0));
+                    take_off(scene, through, &mut paths);
                 }
             }
         }
     }
     paths.extend(direct);
     paths
+}
+
+/// Takes what comes `through` a screen off the paths around it: it is not missing behind it (Babinet's principle).
+fn take_off(scene: &AcousticScene, through: &Path, around: &mut Vec<Path>) {
+    let whole = spread(scene, through.length_m);
+    let kept: [f32; BAND_COUNT] = std::array::from_fn(|band| {
+        // Over a long way air leaves nothing at all of high notes.
+        let passed = f64::from(through.energy[band]) / whole[band].max(f64::MIN_POSITIVE);
+        let left = 1.0 - passed.min(1.0).sqrt();
+        (left * left) as f32
+    });
+    for path in around.iter_mut() {
+        for (e, kept) in path.energy.iter_mut().zip(kept) {
+            *e *= kept;
+        }
+    }
+    around.retain(|path| path.energy.iter().any(|e| *e > 0.0));
 }
 
 /// What becomes of `known` paths between points that have moved, for a source that radiates equally: the straight ways, and the
