@@ -82,6 +82,18 @@ def rows(boxes: list[Box]) -> list[dict[str, list[float]]]:
     ]
 
 
+def scene(
+    fixed: list[Box], moving: list[Box], density_kg_m3: float = 300.0, rate_hz: float = 100.0
+) -> dict[str, object]:
+    """What ``dwell bench physics --boxes`` reads."""
+    return {
+        "fixed": rows(fixed),
+        "dynamic": rows(moving),
+        "density_kg_m3": density_kg_m3,
+        "physics_rate_hz": rate_hz,
+    }
+
+
 def main() -> None:
     """Writes the file."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
@@ -104,13 +116,8 @@ def main() -> None:
         fixed, moving = of_house(args.house, args.toys, args.seed)
     else:
         fixed, moving = of_script(args.script, args.root, args.house, args.extra)
-    scene = {
-        "fixed": rows(fixed),
-        "dynamic": rows(moving),
-        "density_kg_m3": args.density,
-        "physics_rate_hz": args.rate,
-    }
-    args.out.write_text(json.dumps(scene), "utf-8")
+    made = scene(fixed, moving, args.density, args.rate)
+    args.out.write_text(json.dumps(made), "utf-8")
     print(f"{args.out}: {len(moving)} boxes that move, {len(fixed)} that stand")
 
 

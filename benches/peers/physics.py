@@ -1,9 +1,9 @@
 """Physics steps a second of MuJoCo, PyBullet and dwell on one scene of boxes, side by side.
 
-    python -m venv peers && peers/bin/pip install mujoco==4.0.0 pybullet==3.2.7 numpy
     .venv/bin/python benches/peers/boxes.py house builtin:apartment --out boxes.json
-    peers/bin/python benches/peers/physics.py boxes.json --dwell .venv/bin/dwell
+    out/peers/env/bin/python benches/peers/physics.py boxes.json --dwell .venv/bin/dwell
 
+``run.py``, which makes that environment, calls this too. A peer that is not installed is left out.
 The peers have a plane at the floor where dwell has the house's own walls and floors (MuJoCo has no
 concave meshes). Runs are interleaved, dwell's first, and the median counts; ratios are dwell's
 steps per second over the peer's, from the same start. Dwell lets things sleep, as it does by
@@ -13,7 +13,9 @@ default, and is told of without sleep and all asleep too.
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import json
+import shlex
 import statistics
 import subprocess
 import sys
@@ -97,7 +99,7 @@ def dwell_figures(command: str, house: str, boxes: Path, steps: int) -> dict[str
         "1",
     ]
     told = subprocess.run(
-        [command, "bench", "physics", house, *options, "--json"],
+        [*shlex.split(command), "bench", "physics", house, *options, "--json"],
         check=True,
         capture_output=True,
         text=True,
@@ -111,7 +113,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("boxes", type=Path)
     parser.add_argument("--house", default="builtin:apartment", help="whose walls dwell has")
-    parser.add_argument("--dwell", default="dwell", help="the command")
+    parser.add_argument("--dwell", default="dwell", help="the command, with its first words")
     parser.add_argument("--steps", type=int, default=1000)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--json", action="store_true")
@@ -121,6 +123,7 @@ def main() -> None:
         "mujoco": mujoco_rate,
         "pybullet": bullet_rate,
     }
+    peers = {name: run for name, run in peers.items() if importlib.util.find_spec(name)}
     rates: dict[str, list[float]] = {}
     for _ in range(args.repeats):
         figures = dwell_figures(args.dwell, args.house, args.boxes, args.steps)
@@ -137,6 +140,7 @@ def main() -> None:
         for peer in peers
     }
     kept = {key: figures[key] for key in ("bodies", "frozen_at_start", "fallen")}
+    kept["rate_hz"] = scene["physics_rate_hz"]
     if args.json:
         json.dump({"steps_per_s": medians, "ratios": ratios, **kept}, sys.stdout)
         return
