@@ -2,7 +2,7 @@
 
 SHELL := /bin/sh
 .DEFAULT_GOAL := help
-.PHONY: help deps need venv build demo test test-all check bench wheel
+.PHONY: help deps need venv build demo test test-all check bench wheel stranger
 
 HOUSE ?= builtin:apartment
 OUT ?= out/demo
@@ -52,5 +52,8 @@ bench: venv ## figures of every stage
 	for what in load render physics acoustics env; do $(bin)/dwell bench $$what $(HOUSE) || exit 1; done
 
 wheel: venv ## the wheel that strangers install, in dist/
-	@$(stage) 'wheel' env VIRTUAL_ENV=$(CURDIR)/.venv $(bin)/maturin build $(locked) --release --manifest-path python/Cargo.toml --out dist
+	@$(stage) 'wheel' sh xtask/sh/wheel.sh $(locked)
 	@cargo xtask sizes
+
+stranger: ## installs that wheel without Rust and without network, and measures what a stranger meets
+	@$(stage) 'stranger' sh xtask/sh/stranger.sh

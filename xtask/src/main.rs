@@ -7,6 +7,7 @@ mod features;
 mod layers;
 mod licences;
 mod manifests;
+mod notices;
 mod outcome;
 mod sizes;
 mod tree;
@@ -33,6 +34,11 @@ const COMMANDS: &[(&str, &str, Command)] = &[
         "licences",
         "licences, duplicates, git sources, one glam",
         licences::run,
+    ),
+    (
+        "notices",
+        "writes the licence texts of everything in the wheel to python/third-party",
+        notices::run,
     ),
     (
         "features",

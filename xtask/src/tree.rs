@@ -16,6 +16,8 @@ pub(crate) struct Package {
     pub features: BTreeSet<String>,
     /// Where a package comes from that is not from a registry: a folder or the address of a repository.
     pub source: Option<String>,
+    /// Runs in the compiler; nothing of it is linked.
+    pub proc_macro: bool,
 }
 
 /// Packages and who uses whom.
@@ -74,8 +76,9 @@ fn parse(text: &str) -> Result<Tree, String> {
             ));
         };
         let id = (name.to_owned(), version.trim_start_matches('v').to_owned());
-        let source = words
-            .next()
+        let rest = words.next().unwrap_or_default();
+        let proc_macro = rest.contains("(proc-macro)");
+        let source = Some(rest)
             .map(|rest| rest.replace("(proc-macro)", ""))
             .map(|rest| {
                 rest.trim()
@@ -92,10 +95,34 @@ fn parse(text: &str) -> Result<Tree, String> {
         entry
             .features
             .insert(features.trim_end_matches(" (*)").to_owned());
+        entry.proc_macro = proc_macro;
         entry.source = source.filter(|source| !source.is_empty());
         path.push(id);
     }
     Ok(tree)
+}
+
+impl Tree {
+    /// What becomes part of a library that is made of `package`: all it uses, but for derive macros and what only they use.
+    pub(crate) fn linked(&self, package: &str) -> BTreeSet<Id> {
+        let mut open: Vec<&Id> = self
+            .packages
+            .keys()
+            .filter(|(name, _)| name == package)
+            .collect();
+        let mut linked = BTreeSet::new();
+        while let Some(id) = open.pop() {
+            if !self.packages[id].proc_macro && linked.insert(id.clone()) {
+                open.extend(
+                    self.edges
+                        .iter()
+                        .filter(|(user, _)| user == id)
+                        .map(|(_, used)| used),
+                );
+            }
+        }
+        linked
+    }
 }
 
 #[cfg(test)]
@@ -120,7 +147,16 @@ mod tests {
         assert_eq!(tree.edges, edges.into());
         assert_eq!(tree.packages[&id("c")].features, ["x,y".to_owned()].into());
         assert_eq!(tree.packages[&id("c")].source, None);
+        assert!(tree.packages[&id("c")].proc_macro && !tree.packages[&id("b")].proc_macro);
         assert_eq!(tree.packages[&id("a")].source.as_deref(), Some("/r/a"));
+    }
+
+    #[test]
+    fn what_only_a_macro_uses_is_not_linked() {
+        let tree = made_up(
+            "0|a v1.0.0|MIT|\n1|m v1.0.0 (proc-macro)|MIT|\n2|q v1.0.0|MIT|\n2|s v1.0.0|MIT|\n1|b v1.0.0|MIT|\n2|s v1.0.0|MIT|\n",
+        );
+        assert_eq!(tree.linked("a"), [id("a"), id("b"), id("s")].into());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What we ship and under which terms: licences, versions that stand twice, sources outside the registry.
 
 mod duplicates;
-mod spdx;
+pub(crate) mod spdx;
 
 use crate::outcome::Outcome;
 use crate::tree::{self, Tree};
