@@ -16,9 +16,10 @@ pub use measuring::{Sweep, maximum_length_sequence};
 
 use crate::error::AcousticsError;
 use canvas::Canvas;
+use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// What is known about a signal.
 #[derive(Clone, Copy, Debug)]
@@ -59,6 +60,25 @@ pub(crate) fn check_rate(rate_hz: u32) -> Result<(), AcousticsError> {
     crate::error::range("signals", "rate_hz", rate, (1e3, 192e3), "1000 to 192000")
 }
 
+type Loop = Arc<OnceLock<Arc<[f32]>>>;
+
+/// Where a loop is, or will be.
+fn made(info: &SignalInfo, rate_hz: u32) -> Loop {
+    static LOOPS: Mutex<BTreeMap<(&'static str, u32), Loop>> = Mutex::new(BTreeMap::new());
+    let mut loops = LOOPS.lock().unwrap_or_else(PoisonError::into_inner);
+    loops.entry((info.name, rate_hz)).or_default().clone()
+}
+
+/// Whether a signal is known and has not been opened yet: opening it will take its time, up to a second.
+pub fn is_to_be_made(name: &str, rate_hz: u32) -> bool {
+    info(name).is_ok_and(|info| made(info, rate_hz).get().is_none())
+}
+
+/// Makes loops before somebody opens them, several at once; names that nobody knows are passed over.
+pub fn make(names: &[&str], rate_hz: u32, threads: Threads) {
+    threads.map(names.len(), |k| Signal::open(names[k], rate_hz).is_ok());
+}
+
 /// One loop of a signal, or a recording, prepared for one rate.
 #[derive(Clone, Debug)]
 pub struct Signal {
@@ -71,18 +91,13 @@ impl Signal {
     /// # Errors
     /// [`AcousticsError::UnknownSignal`], [`AcousticsError::Range`] for the rate.
     pub fn open(name: &str, rate_hz: u32) -> Result<Self, AcousticsError> {
-        type Loops = BTreeMap<(&'static str, u32), Arc<[f32]>>;
-        static LOOPS: Mutex<Loops> = Mutex::new(BTreeMap::new());
         let info = info(name)?;
         check_rate(rate_hz)?;
-        let rate = f64::from(rate_hz);
-        let mut loops = LOOPS.lock().unwrap_or_else(PoisonError::into_inner);
-        let samples = loops.entry((info.name, rate_hz)).or_insert_with(|| {
-            let mut canvas = Canvas::new(
-                rate,
-                info.loop_s,
-                Key::root(0).child("signals").child(info.name),
-            );
+        let made = made(info, rate_hz);
+        // Not under the lock, so that several are made at once.
+        let samples = made.get_or_init(|| {
+            let key = Key::root(0).child("signals").child(info.name);
+            let mut canvas = Canvas::new(f64::from(rate_hz), info.loop_s, key);
             (info.paint)(&mut canvas);
             canvas.normalized().into()
         });
@@ -187,6 +202,21 @@ mod tests {
             }
             assert_eq!(whole, pieces);
         }
+    }
+
+    #[test]
+    fn what_is_made_at_once_is_what_is_opened_alone() {
+        const RATE_HZ: u32 = 9_000;
+        let names = ["fan", "television", "gramophone", "clock"];
+        assert!(is_to_be_made("clock", RATE_HZ) && !is_to_be_made("gramophone", RATE_HZ));
+        make(&names, RATE_HZ, Threads::exactly(4));
+        assert!(!is_to_be_made("clock", RATE_HZ));
+        let opened = Signal::open("television", RATE_HZ).unwrap();
+        let info = info("television").unwrap();
+        let key = Key::root(0).child("signals").child("television");
+        let mut alone = Canvas::new(f64::from(RATE_HZ), info.loop_s, key);
+        (info.paint)(&mut alone);
+        assert_eq!(opened.samples(), alone.normalized());
     }
 
     /// Where a loop begins again, the step is no larger than steps inside of it are.

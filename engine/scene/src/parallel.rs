@@ -119,6 +119,20 @@ impl Threads {
         }
     }
 
+    /// Does both, at the same time where there are threads for it.
+    pub fn both<A: Send, B: Send>(
+        self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        if self.0 > 1
+            && let Some(pool) = self.pool()
+        {
+            return pool.install(|| rayon::join(first, second));
+        }
+        (first(), second())
+    }
+
     /// The results of `work(0)` to `work(count - 1)`, in order.
     pub fn map<R: Send>(self, count: usize, work: impl Fn(usize) -> R + Sync) -> Vec<R> {
         use rayon::prelude::*;

@@ -5,7 +5,9 @@ use crate::batch_pictures::{self, UnderWay};
 use crate::env::{Env, StepInfo};
 use crate::error::WorldError;
 use crate::sensors::{Dtype, Out, SensorSpec};
+use dwell_acoustics::signals;
 use dwell_scene::parallel::Threads;
+use std::collections::BTreeSet;
 
 /// Environments of one make. Shapes and types of their observations are the same.
 #[derive(Debug)]
@@ -236,11 +238,33 @@ impl Batch {
     pub fn reset(&mut self, seeds: &[Option<u64>]) -> Result<(), WorldError> {
         self.check_count("seeds", seeds.len())?;
         let active: Vec<bool> = seeds.iter().map(Option::is_some).collect();
-        self.change(&active, |k, env| {
+        let reset = |k: usize, env: &mut Env| {
             env.reset(seeds[k].unwrap_or_default())?;
             env.listen()
-        })?;
+        };
+        let (names, rate_hz) = self.signals_to_make(&active);
+        if names.is_empty() {
+            self.change(&active, reset)?;
+            return Ok(());
+        }
+        // The first time: loops of sound take longest, and need nothing of the world.
+        let threads = self.threads;
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let make = || signals::make(&names, rate_hz, threads);
+        threads.both(make, || self.change(&active, reset)).1?;
         Ok(())
+    }
+
+    /// What the environments that begin will sound like and nobody has made yet; all have one rate.
+    fn signals_to_make(&self, active: &[bool]) -> (Vec<String>, u32) {
+        let beginning = self.envs.iter().zip(active).filter(|(_, on)| **on);
+        let (mut all, mut rate_hz) = (BTreeSet::new(), 0);
+        for (names, rate) in beginning.map(|(env, _)| env.signals()) {
+            let unmade = names.into_iter();
+            all.extend(unmade.filter(|name| signals::is_to_be_made(name, rate)));
+            rate_hz = rate_hz.max(rate);
+        }
+        (all.into_iter().collect(), rate_hz)
     }
 
     /// Steps the environments for which `actions` has one.

@@ -344,6 +344,14 @@ impl Env {
         self.world.listen(&self.requests.ears)
     }
 
+    /// The signals that will be heard as soon as somebody listens, and their rate; none where no sensor listens.
+    pub(crate) fn signals(&self) -> (Vec<String>, u32) {
+        if self.requests.ears.is_empty() {
+            return (Vec::new(), 0);
+        }
+        self.world.signals()
+    }
+
     /// The world, and the buffers for its pictures, at the same time.
     pub(crate) fn picture_work(&mut self) -> (&World, &Requests, &mut Results) {
         self.results.prepare(&self.requests, &self.world);

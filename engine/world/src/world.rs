@@ -172,6 +172,11 @@ impl World {
         )
     }
 
+    /// The signals of what is switched on, each once, and the rate at which they are heard, Hz.
+    pub(crate) fn signals(&self) -> (Vec<String>, u32) {
+        self.sound.signals(self.engines.house(), &self.state)
+    }
+
     /// The object in the middle of an agent's view, within 10 m.
     pub fn gaze_target(&self, agent: AgentId) -> Option<ObjectId> {
         let eye = self.state.agents.get(agent)?.world_from_eye();

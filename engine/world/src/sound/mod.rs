@@ -31,6 +31,7 @@ use events::Touch;
 use gait::Gait;
 use glam::Vec3;
 use playing::Playing;
+use std::collections::BTreeSet;
 
 /// Handles of sounds that are played begin here, and so do their source ids; those of emitters are their numbers.
 const FIRST_PLAYED_ID: u64 = 1 << 48;
@@ -92,6 +93,14 @@ impl Sound {
         self.playing.clear();
         self.next_played = 0;
         self.ears.clear();
+    }
+
+    /// The signals of emitters that are on, each once, and the rate at which they are heard.
+    pub(crate) fn signals(&self, house: &House, state: &State) -> (Vec<String>, u32) {
+        let emitters = house.emitters.iter().enumerate();
+        let on = emitters.filter(|(k, _)| self.emitters.is_on(house, state, *k));
+        let names: BTreeSet<&String> = on.map(|(_, emitter)| &emitter.signal).collect();
+        (names.into_iter().cloned().collect(), self.rate_hz)
     }
 
     /// Ends a block: every ear hears what sounded in it.
