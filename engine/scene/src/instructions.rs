@@ -1,9 +1,12 @@
 //! The same code, compiled for wider registers and chosen when it runs. No level has instructions that round differently
 //! (nothing is fused), so all give the same bits.
 
-#![expect(
-    unsafe_code,
-    reason = "calling a function compiled for instructions that a check has found needs it"
+#![cfg_attr(
+    target_arch = "x86_64",
+    expect(
+        unsafe_code,
+        reason = "calling a function compiled for instructions that a check has found needs it"
+    )
 )]
 
 /// Work on many numbers side by side, in loops that become vector instructions.
