@@ -31,6 +31,8 @@ def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
     except TypeError:
         raise ConfigError(f"{name} is {value!r}; allowed are {allowed}") from None
     if isinstance(value, bool) or not low <= number <= high:
+        if number > _MOST:
+            allowed = f"whole numbers from {low} to {high}"
         raise ConfigError(f"{name} is {value!r}; allowed are {allowed}")
     return number
 

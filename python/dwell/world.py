@@ -565,7 +565,9 @@ def _controls(controls: object) -> NDArray[np.float32] | list[dict[str, Any]]:
         raise ConfigError(f"controls is {controls!r}; {expected}") from None
     if array.ndim != 2 or array.shape[1] != 4:
         raise ConfigError(f"controls has the shape {array.shape}; {expected}")
-    return np.ascontiguousarray(array, np.float32)
+    # What float32 does not hold becomes infinite, and is refused by its place.
+    with np.errstate(over="ignore"):
+        return np.ascontiguousarray(array, np.float32)
 
 
 #: The fields of a control, and what they may be.

@@ -2,6 +2,7 @@
 
 pub mod flip;
 pub mod golden;
+pub mod hostile;
 pub mod seen;
 pub mod validity;
 

@@ -30,7 +30,7 @@ pub fn formats() -> &'static [Format] {
             name: "builtin",
             spelling: "builtin:NAME",
             recognizes: |house| house.starts_with("builtin:"),
-            open: |house, _| open_builtin(house.trim_start_matches("builtin:")),
+            open: |house, _| open_builtin(house.strip_prefix("builtin:").unwrap_or(house)),
         },
         Format {
             name: "seed",

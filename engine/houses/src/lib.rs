@@ -23,6 +23,7 @@ mod root;
 pub mod suncg;
 pub mod urdf;
 mod writers;
+mod xml;
 
 pub use damage::{Damage, Unmapped};
 pub use error::HousesError;

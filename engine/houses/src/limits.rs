@@ -1,7 +1,8 @@
 //! Caps that hold before memory is taken. Real files stay far below; hostile ones end here.
 
-/// Largest JSON or CSV text, bytes. The largest SUNCG house is a few MiB; `ModelCategoryMapping.csv` is 150 KiB.
-pub(crate) const MAX_TEXT_BYTES: u64 = 256 << 20;
+/// Largest JSON, XML or CSV text, bytes; that of a GLB, too. The largest SUNCG house is a few MiB. As a tree of values a text
+/// takes up to 16 times its length.
+pub(crate) const MAX_TEXT_BYTES: u64 = 64 << 20;
 /// Largest OBJ or MTL file, bytes. The largest SUNCG model is a few MiB.
 pub(crate) const MAX_MESH_BYTES: u64 = 512 << 20;
 /// Largest image file, bytes.
@@ -10,14 +11,75 @@ pub(crate) const MAX_IMAGE_BYTES: u64 = 64 << 20;
 pub(crate) const MAX_IMAGE_SIDE: u32 = 16_384;
 /// Largest image after decoding, pixels (64 Mpx are 256 MiB as RGBA).
 pub(crate) const MAX_IMAGE_PIXELS: u64 = 64 << 20;
+/// Most pixels of all images that a file names, after decoding (2 GiB as RGBA). Those above it are left out.
+pub(crate) const MAX_ALL_PIXELS: u64 = 512 << 20;
+/// Most vertices and indices that the meshes of a glTF file have, that its nodes show, and that rooms of SUNCG show: all may name
+/// the same bytes any number of times.
+pub(crate) const MAX_CORNERS_SHOWN: u64 = 64 << 20;
+/// Most MTL files of one OBJ file.
+pub(crate) const MAX_LIBRARIES: usize = 1000;
+/// Most XML files that include or attach each other, and how deep they may.
+pub(crate) const MAX_XML_FILES: usize = 64;
+/// Most XML elements, those of included files counted each time.
+pub(crate) const MAX_XML_ELEMENTS: u64 = 1_000_000;
+/// Deepest nesting of XML elements.
+pub(crate) const MAX_XML_DEPTH: usize = 200;
+/// Deepest nesting of folders that a pattern of a data set names.
+pub(crate) const MAX_PATTERN_WORDS: usize = 12;
 /// Largest binary buffer of glTF and of the native form, bytes.
 pub(crate) const MAX_BUFFER_BYTES: u64 = 2 << 30;
 /// Most nodes in a house, all levels together: what rests on what is asked for every pair. The largest SUNCG houses have a
 /// few thousand.
 pub(crate) const MAX_NODES: usize = 50_000;
-/// Most corners of one polygon.
+/// Most corners of one face of an OBJ file.
 pub(crate) const MAX_CORNERS: usize = 100_000;
+/// Most corners of the outline of a room, which is cut into triangles.
+pub(crate) const MAX_OUTLINE: usize = 500;
 /// Largest voxel grid side of a binvox file (SUNCG has 128).
-pub(crate) const MAX_VOXEL_SIDE: u32 = 1024;
+pub(crate) const MAX_VOXEL_SIDE: u32 = 512;
 /// Most names of a folder. The largest of Habitat's data sets keeps some thousand objects in one.
 pub(crate) const MAX_FOLDER_ENTRIES: usize = 100_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The page's table states every cap of this file, as it is.
+    #[test]
+    fn the_page_states_the_caps() {
+        let page = include_str!("../../../docs/hostile-input.md");
+        let here = include_str!("limits.rs");
+        let caps = [
+            ("MAX_TEXT_BYTES", MAX_TEXT_BYTES),
+            ("MAX_MESH_BYTES", MAX_MESH_BYTES),
+            ("MAX_IMAGE_BYTES", MAX_IMAGE_BYTES),
+            ("MAX_IMAGE_SIDE", u64::from(MAX_IMAGE_SIDE)),
+            ("MAX_IMAGE_PIXELS", MAX_IMAGE_PIXELS),
+            ("MAX_ALL_PIXELS", MAX_ALL_PIXELS),
+            ("MAX_BUFFER_BYTES", MAX_BUFFER_BYTES),
+            ("MAX_CORNERS_SHOWN", MAX_CORNERS_SHOWN),
+            ("MAX_NODES", MAX_NODES as u64),
+            ("MAX_CORNERS", MAX_CORNERS as u64),
+            ("MAX_OUTLINE", MAX_OUTLINE as u64),
+            ("MAX_LIBRARIES", MAX_LIBRARIES as u64),
+            ("MAX_XML_FILES", MAX_XML_FILES as u64),
+            ("MAX_XML_ELEMENTS", MAX_XML_ELEMENTS),
+            ("MAX_XML_DEPTH", MAX_XML_DEPTH as u64),
+            ("MAX_PATTERN_WORDS", MAX_PATTERN_WORDS as u64),
+            ("MAX_VOXEL_SIDE", u64::from(MAX_VOXEL_SIDE)),
+            ("MAX_FOLDER_ENTRIES", MAX_FOLDER_ENTRIES as u64),
+        ];
+        for (name, value) in caps {
+            let row = format!("| `{name}` | {value} |");
+            assert!(page.contains(&row), "{row}");
+        }
+        let constants = here.matches("pub(crate) const MAX_").count();
+        // One match is this line's own.
+        assert_eq!(
+            constants - 1,
+            caps.len(),
+            "a cap that the page does not state"
+        );
+        assert_eq!(page.matches("\n| `MAX_").count(), caps.len());
+    }
+}

@@ -147,7 +147,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             options: ``house``: the number of the house to play in; else it is drawn.
                 ``episode_id``: that of an earlier ``info``, to play the same episode again.
         """
-        super().reset(seed=seed)
+        if self._closed:
+            raise UsageError("this environment is closed; make a new one")
+        super().reset(seed=None if seed is None else whole("seed", seed))
         options = {} if options is None else mapping("options", options)
         if unknown := sorted(set(options) - {"house", "episode_id"}):
             raise ConfigError(f"options: no {unknown[0]!r}; allowed are house and episode_id")
@@ -185,6 +187,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
     def render(self) -> NDArray[np.uint8] | None:
         """What the agent sees, (240, 320, 3) uint8; ``None`` without a render mode."""
+        if self._closed:
+            raise UsageError("this environment is closed; make a new one")
         if self.render_mode is None:
             return None
         view = {"camera": camera_settings("camera", RENDER_CAMERA)}
@@ -215,9 +219,18 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         Returns:
             Observation and info of that moment.
         """
+        if self._closed:
+            raise UsageError("this environment is closed; make a new one")
+        if not isinstance(snapshot, bytes):
+            raise ConfigError(f"snapshot is {snapshot!r}; expected the bytes of an environment's")
         episode_id, _, rest = snapshot.partition(b"\0")
-        self._house, self._seed = self._replayed(episode_id.decode(errors="replace"))
-        self._runner.batch.restore(0, rest)
+        try:
+            house, seed = self._replayed(episode_id.decode(errors="replace"))
+        except ConfigError as error:
+            raise ConfigError(f"snapshot refused: {error}") from None
+        # Nothing changes before it was accepted.
+        self._runner_of(house).batch.restore(0, rest)
+        self._house, self._seed = house, seed
         return self._observation(), self._info()
 
     def agents(self) -> list[dict[str, Any]]:

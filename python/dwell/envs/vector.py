@@ -12,7 +12,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import whole
+from dwell.arguments import mapping, whole
 from dwell.envs.config import Houses, HouseShelf, Sensors, env_json
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.spaces import action_space, observation_space
@@ -147,7 +147,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             options: ``reset_mask``: which environments to reset, shape (num_envs,) bool.
         """
         self._refuse_closed()
-        mask = (options or {}).get("reset_mask")
+        mask = ({} if options is None else mapping("options", options)).get("reset_mask")
         which = np.ones(self.num_envs, np.bool_) if mask is None else np.asarray(mask)
         if which.shape != (self.num_envs,) or which.dtype != np.bool_ or not which.any():
             raise ConfigError(
@@ -158,7 +158,12 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if isinstance(seed, int | np.integer):
             seeds = [whole("seed", seed) + k for k in range(self.num_envs)]
         elif seed is not None:
-            seeds = [None if one is None else whole("seed", one) for one in seed]
+            try:
+                given = list(seed)
+            except TypeError:
+                expected = "expected a whole number, or one for each environment"
+                raise ConfigError(f"seed is {seed!r}; {expected}") from None
+            seeds = [None if one is None else whole("seed", one) for one in given]
             if len(seeds) != self.num_envs:
                 raise ConfigError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
         for k in np.flatnonzero(which):
@@ -177,7 +182,12 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._refuse_closed()
         if any(stream is None for stream in self._streams):
             raise UsageError("step: no episode has begun; call reset first")
-        numbers = np.asarray(actions)
+        try:
+            numbers = np.asarray(actions)
+        except ValueError:
+            raise ConfigError(
+                f"actions are {actions!r}; expected whole numbers of shape ({self.num_envs},)"
+            ) from None
         if numbers.shape != (self.num_envs,) or numbers.dtype.kind not in "iu":
             raise ConfigError(
                 f"actions: expected whole numbers of shape ({self.num_envs},), "

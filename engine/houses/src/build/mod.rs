@@ -16,4 +16,4 @@ pub(crate) use looks::{Look, LookTable};
 pub(crate) use names::Names;
 pub(crate) use pieces::convex_pieces;
 pub(crate) use scene::{FileRoom, Role, Scene, Thing, category_of, structure_kind};
-pub(crate) use textures::{decode, encode_png, read_images, texture_name};
+pub(crate) use textures::{PixelBudget, decode, encode_png, pixels, read_images, texture_name};

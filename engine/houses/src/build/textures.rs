@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use dwell_scene::Texture;
 use dwell_scene::parallel::Threads;
-use image::ImageReader;
+use image::{DynamicImage, ImageDecoder, ImageReader};
 
 use crate::damage::Damage;
-use crate::limits::{MAX_IMAGE_BYTES, MAX_IMAGE_PIXELS, MAX_IMAGE_SIDE};
+use crate::limits::{MAX_ALL_PIXELS, MAX_IMAGE_BYTES, MAX_IMAGE_PIXELS, MAX_IMAGE_SIDE};
 use crate::report::{At, Report};
 use crate::root::DataRoot;
 
@@ -21,11 +21,17 @@ pub(crate) fn texture_name(path: &str) -> String {
         .to_owned()
 }
 
-/// Decodes a PNG or JPEG image, whatever its file's ending says.
+/// The pixels that an image says it has, by its header alone.
 ///
 /// # Errors
-/// A sentence when the bytes are no such image or the image is too large.
-pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
+/// A sentence when the bytes are no PNG or JPEG image, or it is too large to be read.
+pub(crate) fn pixels(bytes: &[u8]) -> Result<u64, String> {
+    header(bytes).map(|(_, pixels)| pixels)
+}
+
+/// A decoder that stands behind the image's header, and the pixels that this states.
+fn header(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, u64), String> {
+    let told = |error: image::ImageError| error.to_string();
     let mut reader = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
         .map_err(|error| error.to_string())?;
@@ -34,22 +40,57 @@ pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
     limits.max_image_height = Some(MAX_IMAGE_SIDE);
     limits.max_alloc = Some(MAX_IMAGE_PIXELS * 8);
     reader.limits(limits);
-    let image = reader
-        .decode()
-        .map_err(|error| error.to_string())?
-        .into_rgba8();
-    let (width, height) = image.dimensions();
-    if width == 0 || height == 0 || u64::from(width) * u64::from(height) > MAX_IMAGE_PIXELS {
+    let decoder = reader.into_decoder().map_err(told)?;
+    let (width, height) = decoder.dimensions();
+    let pixels = u64::from(width) * u64::from(height);
+    // Before anything is decoded: a few KiB can state, and fill, any number of pixels.
+    if pixels == 0 || pixels > MAX_IMAGE_PIXELS {
         return Err(format!(
             "{width} by {height} pixels; allowed are 1 to {MAX_IMAGE_PIXELS} in all"
         ));
     }
+    Ok((decoder, pixels))
+}
+
+/// Decodes a PNG or JPEG image, whatever its file's ending says.
+///
+/// # Errors
+/// A sentence when the bytes are no such image or the image is too large.
+pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
+    let (decoder, _) = header(bytes)?;
+    let image = DynamicImage::from_decoder(decoder)
+        .map_err(|error| error.to_string())?
+        .into_rgba8();
+    let (width, height) = image.dimensions();
     Ok(Texture::new(
         name.to_owned(),
         width,
         height,
         image.into_raw(),
     ))
+}
+
+/// The images of a house as far as [`MAX_ALL_PIXELS`] reach, in order; what is above it is left out.
+#[derive(Default)]
+pub(crate) struct PixelBudget {
+    used: u64,
+}
+
+impl PixelBudget {
+    /// Takes the pixels of one image.
+    ///
+    /// # Errors
+    /// A sentence when they are more than what is left.
+    pub(crate) fn take(&mut self, pixels: u64) -> Result<(), String> {
+        let used = self.used.saturating_add(pixels);
+        if used > MAX_ALL_PIXELS {
+            return Err(format!(
+                "with it the images have {used} pixels; allowed are {MAX_ALL_PIXELS} in all"
+            ));
+        }
+        self.used = used;
+        Ok(())
+    }
 }
 
 /// Reads and decodes images of `root`; those that do not exist or cannot be read are reported and absent.
@@ -60,7 +101,7 @@ pub(crate) fn read_images(
     report: &mut Report,
 ) -> BTreeMap<String, Arc<Texture>> {
     let wanted: Vec<String> = wanted.into_iter().collect();
-    let decoded = threads.map(wanted.len(), |k| {
+    let read = threads.map(wanted.len(), |k| {
         let path = &wanted[k];
         let unreadable = |reason| Damage::UnreadableTexture {
             path: path.clone(),
@@ -72,7 +113,29 @@ pub(crate) fn read_images(
         let bytes = root
             .read(path, MAX_IMAGE_BYTES)
             .map_err(|error| unreadable(error.reason()))?;
-        decode(&texture_name(path), &bytes).map_err(unreadable)
+        let pixels = pixels(&bytes).map_err(unreadable)?;
+        Ok((bytes, pixels))
+    });
+    let mut budget = PixelBudget::default();
+    let within: Vec<Result<Vec<u8>, Damage>> = read
+        .into_iter()
+        .zip(&wanted)
+        .map(|(read, path)| {
+            let (bytes, pixels) = read?;
+            let path = path.clone();
+            let unreadable = |reason| Damage::UnreadableTexture { path, reason };
+            budget.take(pixels).map_err(unreadable)?;
+            Ok(bytes)
+        })
+        .collect();
+    let decoded = threads.map(wanted.len(), |k| {
+        let path = &wanted[k];
+        let unreadable = |reason| Damage::UnreadableTexture {
+            path: path.clone(),
+            reason,
+        };
+        let bytes = within[k].as_ref().map_err(Clone::clone)?;
+        decode(&texture_name(path), bytes).map_err(unreadable)
     });
     let mut textures = BTreeMap::new();
     for (path, result) in wanted.into_iter().zip(decoded) {

@@ -167,7 +167,7 @@ fn furnished_paper(spec: &HouseSpec, style: &Style, key: Key) -> Result<Paper, H
 
 /// Opens `seed:N` and `seed:N?field=value&field=value`, the fields those of a [`HouseSpec`] and the values JSON or words.
 pub(crate) fn open(house: &str) -> Opened {
-    let wanted = house.trim_start_matches("seed:");
+    let wanted = house.strip_prefix("seed:").unwrap_or(house);
     let (number, fields) = wanted.split_once('?').unwrap_or((wanted, ""));
     let seed = number.parse().map_err(|_| HousesError::Spec {
         field: "seed".to_owned(),
@@ -179,7 +179,13 @@ pub(crate) fn open(house: &str) -> Opened {
     for field in fields.split('&').filter(|field| !field.is_empty()) {
         let (name, value) = field.split_once('=').unwrap_or((field, ""));
         let value = serde_json::from_str(value).unwrap_or_else(|_| value.into());
-        spec.insert(name.to_owned(), value);
+        if spec.insert(name.to_owned(), value).is_some() {
+            return Err(HousesError::Spec {
+                field: name.to_owned(),
+                found: "it twice".to_owned(),
+                possible: "each field once".to_owned(),
+            });
+        }
     }
     let spec = serde_json::from_value(spec.into()).map_err(|error| HousesError::Spec {
         field: "spec".to_owned(),

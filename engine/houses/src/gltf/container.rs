@@ -5,6 +5,8 @@
 use ::gltf::json::{Root, deserialize};
 use serde_json::Value;
 
+use crate::limits::MAX_TEXT_BYTES;
+
 /// The tables and the binary chunk, empty when there is none. Text without the GLB header is glTF.
 ///
 /// # Errors
@@ -15,6 +17,12 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
     } else {
         (bytes, &[][..])
     };
+    if text.len() as u64 > MAX_TEXT_BYTES {
+        return Err(format!(
+            "{} bytes of JSON; {MAX_TEXT_BYTES} are read",
+            text.len()
+        ));
+    }
     let invalid = |error: serde_json::Error| format!("no valid glTF 2.0: {error}");
     // Only files that need it are read as a tree: that is slower, and places in the text are lost.
     let mut json: Root = if contains(text, BASISU.as_bytes()) {
@@ -38,10 +46,13 @@ fn contains(text: &[u8], word: &[u8]) -> bool {
 /// Names the image of `KHR_texture_basisu` as the texture's own, which the extension lets a file leave out: the image is
 /// then found, and what cannot be decoded is reported like any other image.
 fn show_basisu_images(tree: &mut Value) {
-    for texture in tree["textures"].as_array_mut().into_iter().flatten() {
+    let textures = tree.get_mut("textures").and_then(Value::as_array_mut);
+    for texture in textures.into_iter().flatten() {
         let source = texture["extensions"][BASISU]["source"].clone();
-        if texture.get("source").is_none() && source.is_u64() {
-            texture["source"] = source;
+        if let Value::Object(fields) = texture
+            && source.is_u64()
+        {
+            fields.entry("source").or_insert(source);
         }
     }
 }
@@ -120,5 +131,9 @@ mod tests {
             "chunk at byte 12 reaches beyond the file"
         );
         assert!(message(b"{").starts_with("no valid glTF 2.0: EOF"));
+        // Other shapes than an object with a list of textures, on the way that reads a tree.
+        for text in ["[\"KHR_texture_basisu\"]", "\"KHR_texture_basisu\""] {
+            assert!(message(text.as_bytes()).starts_with("no valid glTF 2.0"));
+        }
     }
 }

@@ -16,7 +16,7 @@ use super::surface::{images, materials};
 use crate::build::{LookTable, Scene, Thing, texture_name};
 use crate::damage::Damage;
 use crate::error::HousesError;
-use crate::limits::MAX_NODES;
+use crate::limits::{MAX_CORNERS_SHOWN, MAX_NODES};
 use crate::report::{At, Report};
 use crate::root::DataRoot;
 
@@ -54,6 +54,7 @@ pub(super) fn convert(
     let images = images(json, buffers, root, &at, threads, report);
     let material_ids = materials(json, &images, &mut looks);
     let mut meshes: Vec<Option<(Arc<Mesh>, Vec<MaterialId>)>> = vec![None; json.meshes.len()];
+    let (mut read, mut shown) = (Corners::default(), Corners::default());
     let mut things = Vec::new();
     let tree = tree(json, &at, report);
     for instance in tree.instances {
@@ -67,6 +68,7 @@ pub(super) fn convert(
                 buffers,
                 &mesh.primitives,
                 &material_ids,
+                &mut read,
                 &mesh_at,
                 report,
             )
@@ -76,6 +78,16 @@ pub(super) fn convert(
                 at.clone(),
                 Damage::EmptyMesh {
                     path: instance.name,
+                },
+            );
+            continue;
+        }
+        if let Err(reason) = shown.take(shape.positions.len(), 3 * shape.triangles.len()) {
+            report.warn(
+                at.field("nodes"),
+                Damage::UnreadableMesh {
+                    path: instance.name,
+                    reason,
                 },
             );
             continue;
@@ -104,12 +116,55 @@ pub(super) fn convert(
     })
 }
 
+/// Vertices and indices so far.
+#[derive(Default)]
+struct Corners(u64);
+
+impl Corners {
+    /// Takes those of a mesh.
+    ///
+    /// # Errors
+    /// A sentence when they are more than what is left of [`MAX_CORNERS_SHOWN`].
+    fn take(&mut self, vertices: usize, indices: usize) -> Result<(), String> {
+        let all = self
+            .0
+            .saturating_add((vertices as u64).saturating_add(indices as u64));
+        if all > MAX_CORNERS_SHOWN {
+            return Err(format!(
+                "with it there are {all} vertices and indices; {MAX_CORNERS_SHOWN} are read"
+            ));
+        }
+        self.0 = all;
+        Ok(())
+    }
+
+    /// Takes those that a primitive names.
+    ///
+    /// # Errors
+    /// That of [`Self::take`].
+    fn of(&mut self, json: &Root, primitive: &Primitive) -> Result<(), String> {
+        let count = |index: ::gltf::json::Index<_>| {
+            let accessor: Option<&::gltf::json::Accessor> = json.accessors.get(index.value());
+            let count = accessor.map_or(0, |accessor| accessor.count.0);
+            usize::try_from(count).unwrap_or(usize::MAX)
+        };
+        let positions = primitive.attributes.values().map(|index| count(*index));
+        let vertices = positions.max().unwrap_or(0);
+        // A strip has nearly as many triangles as indices.
+        self.take(
+            vertices,
+            primitive.indices.map_or(vertices, count).saturating_mul(3),
+        )
+    }
+}
+
 /// The primitives of a mesh as one mesh with a slot each.
 fn merge(
     json: &Root,
     buffers: &Buffers<'_>,
     primitives: &[Primitive],
     material_ids: &[MaterialId],
+    corners: &mut Corners,
     at: &At,
     report: &mut Report,
 ) -> (Arc<Mesh>, Vec<MaterialId>) {
@@ -117,7 +172,10 @@ fn merge(
     let mut materials: Vec<MaterialId> = Vec::new();
     for (k, primitive) in primitives.iter().enumerate() {
         let at = at.field(format_args!("primitives[{k}]"));
-        let mut part = match read(json, buffers, primitive, &at, report) {
+        let part = corners
+            .of(json, primitive)
+            .and_then(|()| read(json, buffers, primitive, &at, report));
+        let mut part = match part {
             Ok(part) => part,
             Err(reason) => {
                 report.warn(at.clone(), Damage::BadFace { reason });

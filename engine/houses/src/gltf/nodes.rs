@@ -115,6 +115,11 @@ pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
         };
         // A file may claim a cycle; each node is visited once.
         if std::mem::replace(&mut seen[index], true) {
+            let damage = Damage::BadIndex {
+                found: index.to_string(),
+                reason: "a node that was reached already".to_owned(),
+            };
+            report.warn(at.field(format_args!("nodes[{index}]")), damage);
             continue;
         }
         let parent_from_node = if let Some(numbers) = node.matrix {

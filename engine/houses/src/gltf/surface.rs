@@ -1,5 +1,7 @@
 //! Materials and images.
 
+use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use ::gltf::json::{Root, material::AlphaMode, validation::Checked};
@@ -8,7 +10,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{MaterialId, Texture, TextureId, units};
 
 use super::buffers::{Buffers, read_uri};
-use crate::build::{Look, LookTable, decode, substance_of, texture_name};
+use crate::build::{Look, LookTable, PixelBudget, decode, pixels, substance_of, texture_name};
 use crate::damage::Damage;
 use crate::limits::MAX_IMAGE_BYTES;
 use crate::report::{At, Report};
@@ -29,10 +31,14 @@ pub(super) fn images(
     threads: Threads,
     report: &mut Report,
 ) -> Images {
-    let used: Vec<usize> = (0..json.images.len())
-        .filter(|k| json.materials.iter().any(|m| image_of(json, m) == Some(*k)))
+    let used: BTreeSet<usize> = json
+        .materials
+        .iter()
+        .filter_map(|material| image_of(json, material))
+        .filter(|image| *image < json.images.len())
         .collect();
-    let decoded = threads.map(used.len(), |k| {
+    let used: Vec<usize> = used.into_iter().collect();
+    let name_of = |k: usize| {
         let image = &json.images[used[k]];
         let own = image.name.clone().or_else(|| {
             image
@@ -41,33 +47,49 @@ pub(super) fn images(
                 .filter(|uri| !uri.starts_with("data:"))
                 .map(texture_name)
         });
-        let name = own
-            .filter(|name| !name.is_empty())
-            .unwrap_or_else(|| format!("image_{}", used[k]));
-        let unreadable = |reason: String| Damage::UnreadableTexture {
-            path: name.clone(),
+        own.filter(|name| !name.is_empty())
+            .unwrap_or_else(|| format!("image_{}", used[k]))
+    };
+    let unreadable = |k: usize| {
+        move |reason: String| Damage::UnreadableTexture {
+            path: name_of(k),
             reason,
-        };
+        }
+    };
+    let bytes_of = |k: usize| {
+        let image = &json.images[used[k]];
         let in_view = image
             .buffer_view
             .and_then(|view| json.buffer_views.get(view.value()));
-        let bytes = match (in_view, &image.uri) {
+        match (in_view, &image.uri) {
             (Some(view), _) => buffers
                 .view(view)
-                .map(<[u8]>::to_vec)
-                .ok_or_else(|| unreadable("no such bytes".to_owned()))?,
+                .map(Cow::Borrowed)
+                .ok_or_else(|| unreadable(k)("no such bytes".to_owned())),
             (None, Some(uri)) => {
-                read_uri(uri, root, MAX_IMAGE_BYTES).map_err(|damage| match damage {
+                let bytes = read_uri(uri, root, MAX_IMAGE_BYTES);
+                bytes.map(Cow::Owned).map_err(|damage| match damage {
                     Damage::MissingMesh { path } => Damage::MissingTexture { path },
                     Damage::UnreadableMesh { path, reason } => {
                         Damage::UnreadableTexture { path, reason }
                     }
                     other => other,
-                })?
+                })
             }
-            (None, None) => return Err(unreadable("neither bytes nor a path".to_owned())),
-        };
-        decode(&name, &bytes).map_err(unreadable)
+            (None, None) => Err(unreadable(k)("neither bytes nor a path".to_owned())),
+        }
+    };
+    // Sizes first: many images may name the same few bytes.
+    let sizes = threads.map(used.len(), |k| pixels(&bytes_of(k)?).map_err(unreadable(k)));
+    let mut budget = PixelBudget::default();
+    let within: Vec<Result<(), Damage>> = sizes
+        .into_iter()
+        .enumerate()
+        .map(|(k, size)| budget.take(size?).map_err(unreadable(k)))
+        .collect();
+    let decoded = threads.map(used.len(), |k| {
+        within[k].clone()?;
+        decode(&name_of(k), &bytes_of(k)?).map_err(unreadable(k))
     });
     let mut images = Images {
         textures: Vec::new(),

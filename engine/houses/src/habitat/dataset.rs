@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use super::file::{DatasetFile, Lexicon, Section, SemanticFile};
 use crate::damage::Damage;
 use crate::error::HousesError;
-use crate::limits::{MAX_NODES, MAX_TEXT_BYTES};
+use crate::limits::{MAX_NODES, MAX_PATTERN_WORDS, MAX_TEXT_BYTES};
 use crate::report::{At, Report};
 use crate::root::{DataRoot, folder_of};
 
@@ -148,6 +148,9 @@ impl Dataset {
         let Ok(clean) = DataRoot::resolve("", pattern) else {
             return Vec::new();
         };
+        if clean.split('/').count() > MAX_PATTERN_WORDS {
+            return Vec::new();
+        }
         let mut folders = vec![String::new()];
         for word in clean.split('/') {
             let mut next = Vec::new();

@@ -11,7 +11,7 @@ use super::assets::Piece;
 use super::file::{Region, SemanticFile};
 use crate::build::{Names, room_kind, structure_kind, submesh, triangulate};
 use crate::damage::{Damage, Unmapped};
-use crate::limits::MAX_CORNERS;
+use crate::limits::{MAX_NODES, MAX_OUTLINE};
 use crate::report::{At, Report};
 
 /// Floors further apart belong to different storeys, m.
@@ -30,7 +30,12 @@ const HEADROOM_M: f32 = 1.0;
 /// Rooms as the scene's semantic file has them; those that cannot be used are reported.
 pub(super) fn regions(file: SemanticFile, at: &At, report: &mut Report) -> Vec<Region> {
     let mut regions = Vec::new();
-    for (k, value) in file.region_annotations.into_iter().enumerate() {
+    for (k, value) in file
+        .region_annotations
+        .into_iter()
+        .enumerate()
+        .take(MAX_NODES)
+    {
         let at = at.field(format_args!("region_annotations[{k}]"));
         let region: Region = match serde_json::from_value(value) {
             Ok(region) => region,
@@ -43,7 +48,7 @@ pub(super) fn regions(file: SemanticFile, at: &At, report: &mut Report) -> Vec<R
         let corners = region.poly_loop.len();
         let finite = region.poly_loop.iter().flatten().all(|x| x.is_finite());
         let high = region.extrusion_height > 0.0 && region.extrusion_height < 1e3;
-        if (3..=MAX_CORNERS).contains(&corners) && finite && high && region.floor_height.is_finite()
+        if (3..=MAX_OUTLINE).contains(&corners) && finite && high && region.floor_height.is_finite()
         {
             regions.push(region);
         } else {
@@ -126,7 +131,7 @@ fn floor_heights<'a>(meshes: impl Iterator<Item = &'a Mesh> + Clone) -> Vec<f32>
     if bounds.is_empty() {
         return Vec::new();
     }
-    let bins = ((bounds.size().y / BIN_M) as usize + 1).min(1 << 16);
+    let bins = ((bounds.size().y / BIN_M) as usize).min(0xFFFF) + 1;
     let mut areas = vec![0.0_f64; bins];
     for mesh in meshes {
         for k in 0..mesh.triangles.len() {

@@ -18,7 +18,6 @@ use super::read::{Source, name_of, pose};
 use crate::build::{CategoryRow, Names, category_of, room_kind, structure_kind, substance_of};
 use crate::damage::{Damage, Unmapped};
 use crate::error::HousesError;
-use crate::limits::MAX_NODES;
 use crate::report::Report;
 use crate::robot;
 
@@ -45,19 +44,10 @@ pub(super) fn is_house(source: &Source) -> bool {
 /// Reads the house.
 ///
 /// # Errors
-/// [`HousesError::TooLarge`] for more bodies than are read, [`HousesError::Empty`] when no triangle is left,
+/// [`HousesError::Empty`] when no triangle is left,
 /// [`HousesError::Scene`] when the result breaks a rule of the scene.
 pub(super) fn read(mut source: Source, report: &mut Report) -> Result<House, HousesError> {
     let at = source.at.clone();
-    let count = source.model.bodies.len();
-    if count > MAX_NODES {
-        return Err(HousesError::TooLarge {
-            at: at.field("worldbody"),
-            what: "body count",
-            found: count as u64,
-            allowed: MAX_NODES as u64,
-        });
-    }
     let stem = source.name().rsplit('/').next().unwrap_or_default();
     let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
     let name = source.model.name.clone().unwrap_or_else(|| stem.to_owned());

@@ -1,50 +1,104 @@
-//! The files that a file includes: all inside the data root, or refused.
+//! The files that a file includes or attaches: all inside the data root, few, and not nested without end, or refused.
+//!
+//! `mjcf-rs` opens them itself, as large and as often as files say, so all of them are looked at beforehand.
 
-use roxmltree::Document;
+use roxmltree::Node;
 
 use crate::error::HousesError;
-use crate::limits::MAX_TEXT_BYTES;
+use crate::limits::{MAX_TEXT_BYTES, MAX_XML_ELEMENTS, MAX_XML_FILES};
 use crate::report::At;
 use crate::robot::Files;
 use crate::root::folder_of;
+use crate::xml;
 
-/// Most files that include each other.
-const MOST_FILES: usize = 64;
-
-/// Checks the text of `files` and everything it includes.
+/// Checks the text of `files` and everything it includes or attaches.
 ///
 /// # Errors
-/// [`HousesError::PathLeavesRoot`], [`HousesError::Syntax`] for what is no XML or includes itself without end.
+/// [`HousesError::PathLeavesRoot`], [`HousesError::Syntax`] for what is no XML or includes itself without end,
+/// [`HousesError::TooLarge`] for elements nested too deep, or too many.
 pub(super) fn check(files: &Files, text: &str) -> Result<(), HousesError> {
-    let mut waiting = vec![(files.file.clone(), text.to_owned())];
-    let mut seen = 0;
-    // MuJoCo takes included paths from the folder of the main file.
-    let folder = folder_of(&files.file).to_owned();
-    while let Some((name, text)) = waiting.pop() {
-        seen += 1;
-        let at = At::file(&name);
-        if seen > MOST_FILES {
-            let message = format!("more than {MOST_FILES} files are included");
-            return Err(HousesError::Syntax { at, message });
+    let mut walk = Walk {
+        files,
+        seen: 0,
+        open: Vec::new(),
+    };
+    walk.file(&files.file, text).map(|_| ())
+}
+
+struct Walk<'a> {
+    files: &'a Files,
+    /// Files looked at, those that are named again counted again.
+    seen: usize,
+    /// The file at hand and those that name it.
+    open: Vec<String>,
+}
+
+impl Walk<'_> {
+    /// How many elements a file stands for, with all that it includes and attaches.
+    fn file(&mut self, name: &str, text: &str) -> Result<u64, HousesError> {
+        self.seen += 1;
+        let at = At::file(name);
+        let refuse = |message: String| HousesError::Syntax {
+            at: at.clone(),
+            message,
+        };
+        if self.seen > MAX_XML_FILES {
+            return Err(refuse(format!(
+                "more than {MAX_XML_FILES} files are included"
+            )));
         }
-        let document = Document::parse(&text).map_err(|error| HousesError::Syntax {
-            at: at.line(error.pos().row),
+        if self.open.iter().any(|other| other == name) {
+            let chain = self.open.join(" > ");
+            return Err(refuse(format!("it includes itself: {chain} > {name}")));
+        }
+        let document = xml::parse(text, &at)?;
+        self.open.push(name.to_owned());
+        let too_many = |found: u64| HousesError::TooLarge {
+            at: at.clone(),
+            what: "count of elements, with those of included files,",
+            found,
+            allowed: MAX_XML_ELEMENTS,
+        };
+        let (mut elements, mut largest) = (0_u64, 0_u64);
+        for node in document.descendants().filter(Node::is_element) {
+            elements = elements.saturating_add(1);
+            match node.tag_name().name() {
+                "include" => elements = elements.saturating_add(self.named(node, name)?),
+                // Models of `<asset>` are copied by each `<attach>`.
+                "model" if node.has_attribute("file") => {
+                    largest = largest.max(self.named(node, name)?);
+                }
+                _ => {}
+            }
+            if elements > MAX_XML_ELEMENTS {
+                return Err(too_many(elements));
+            }
+        }
+        let attached = document
+            .descendants()
+            .filter(|node| node.tag_name().name() == "attach")
+            .count() as u64;
+        let all = elements.saturating_add(largest.saturating_mul(attached.max(1)));
+        if all > MAX_XML_ELEMENTS {
+            return Err(too_many(all));
+        }
+        self.open.pop();
+        Ok(all)
+    }
+
+    /// The elements of the file that `node` of the file `name` names.
+    fn named(&mut self, node: Node<'_, '_>, name: &str) -> Result<u64, HousesError> {
+        let row = node.document().text_pos_at(node.range().start).row;
+        let tag = node.tag_name().name();
+        let at = At::file(name).line(row).field(format_args!("{tag}.file"));
+        // The parser takes paths from the folder of the file that names them.
+        let stated = node.attribute("file").unwrap_or("");
+        let path = self.files.resolve(folder_of(name), stated, &at)?;
+        let bytes = self.files.root.read(&path, MAX_TEXT_BYTES)?;
+        let text = String::from_utf8(bytes).map_err(|error| HousesError::Syntax {
+            at,
             message: error.to_string(),
         })?;
-        let includes = document
-            .descendants()
-            .filter(|node| node.tag_name().name() == "include");
-        for node in includes {
-            let at = at.line(document.text_pos_at(node.range().start).row);
-            let at = at.field("include.file");
-            let path = files.resolve(&folder, node.attribute("file").unwrap_or(""), &at)?;
-            let bytes = files.root.read(&path, MAX_TEXT_BYTES)?;
-            let text = String::from_utf8(bytes).map_err(|error| HousesError::Syntax {
-                at,
-                message: error.to_string(),
-            })?;
-            waiting.push((path, text));
-        }
+        self.file(&path, &text)
     }
-    Ok(())
 }

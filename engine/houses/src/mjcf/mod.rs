@@ -30,7 +30,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
         .is_some_and(|ending| ending.eq_ignore_ascii_case("xml"));
     let mut head = Vec::new();
     let mut read = || std::fs::File::open(path)?.take(HEAD).read_to_end(&mut head);
-    xml && read().is_ok() && String::from_utf8_lossy(&head).contains("<mujoco")
+    // To open a named pipe is to wait for somebody who writes into it.
+    xml && path.is_file() && read().is_ok() && String::from_utf8_lossy(&head).contains("<mujoco")
 }
 
 /// Opens a house of several bodies (`docs/formats/mjcf.md`), or a robot on a ground of its own.

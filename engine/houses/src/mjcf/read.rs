@@ -12,6 +12,7 @@ use super::geoms::{self, Piece};
 use super::{actuators, includes};
 use crate::damage::Damage;
 use crate::error::HousesError;
+use crate::limits::MAX_NODES;
 use crate::report::{At, Report};
 use crate::robot::{Files, Joint, Link, Motion, Robot, Weight, check};
 use crate::root::folder_of;
@@ -38,6 +39,15 @@ impl Source {
             at: at.clone(),
             message: error.to_string(),
         })?;
+        let count = model.bodies.len();
+        if count > MAX_NODES {
+            return Err(HousesError::TooLarge {
+                at: at.field("worldbody"),
+                what: "body count",
+                found: count as u64,
+                allowed: MAX_NODES as u64,
+            });
+        }
         Ok(Self { model, files, at })
     }
 

@@ -9,6 +9,7 @@ use glam::{Vec2, Vec3};
 
 use super::file::{FORMAT, Head, NativeFile, VERSIONS};
 use super::{GEOMETRY, TABLES};
+use crate::build::PixelBudget;
 use crate::error::HousesError;
 use crate::gltf::{Geometry, MeshAccessors};
 use crate::limits::{MAX_BUFFER_BYTES, MAX_TEXT_BYTES};
@@ -63,6 +64,13 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         ));
     }
     let sizes = &file.texture_sizes;
+    let mut budget = PixelBudget::default();
+    for (k, [width, height]) in sizes.iter().enumerate() {
+        let at = At::file(TABLES).field(format_args!("texture_sizes[{k}]"));
+        budget
+            .take(u64::from(*width) * u64::from(*height))
+            .map_err(|message| HousesError::Syntax { at, message })?;
+    }
     let textures = threads.map(sizes.len(), |k| geometry.texture(k, sizes[k]));
     for (k, texture) in textures.into_iter().enumerate() {
         let at = At::file(GEOMETRY).field(format_args!("images[{k}]"));

@@ -15,6 +15,7 @@ use super::read_obj;
 use super::shape::{PartShape, Slots, shape_of};
 use crate::build::{Look, LookTable, Role, Scene, Thing, read_images, substance_of, texture_name};
 use crate::error::HousesError;
+use crate::limits::MAX_NODES;
 use crate::report::{At, Report};
 use crate::root::DataRoot;
 
@@ -53,6 +54,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         .collect();
     let name = texture_name(&inside);
     let mut things: Vec<(String, Vec<(u16, &Run)>)> = Vec::new();
+    let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for run in &files.obj.runs {
         let thing = if run.object.is_empty() {
             &name
@@ -60,10 +62,19 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
             &run.object
         };
         let run = (slots.of_run(run), run);
-        match things.iter_mut().find(|(known, _)| known == thing) {
+        let place = *places.entry(thing).or_insert(things.len());
+        match things.get_mut(place) {
             Some((_, runs)) => runs.push(run),
             None => things.push((thing.clone(), vec![run])),
         }
+    }
+    if things.len() > MAX_NODES {
+        return Err(HousesError::TooLarge {
+            at: at.field("o"),
+            what: "count of things",
+            found: things.len() as u64,
+            allowed: MAX_NODES as u64,
+        });
     }
     let box_mapping = !texture_ids.is_empty();
     let things = things

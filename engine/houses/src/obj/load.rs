@@ -1,9 +1,11 @@
 //! An OBJ file together with its materials.
 
+use std::collections::BTreeSet;
+
 use super::file::{MtlFile, ObjFile};
 use super::{read_mtl, read_obj};
 use crate::damage::Damage;
-use crate::limits::MAX_MESH_BYTES;
+use crate::limits::{MAX_LIBRARIES, MAX_MESH_BYTES};
 use crate::report::{At, Report};
 use crate::root::{DataRoot, folder_of};
 
@@ -36,7 +38,11 @@ pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut Report) -> Opt
         ..MeshFiles::default()
     };
     let folder = folder_of(path);
-    for library in &files.obj.material_libraries {
+    let mut known = BTreeSet::new();
+    let named = files.obj.material_libraries.iter();
+    // A library that is named again says nothing new.
+    let named = named.filter(|library| known.insert(library.as_str()));
+    for library in named.take(MAX_LIBRARIES) {
         let Ok(mtl_path) = DataRoot::resolve(folder, library) else {
             report.warn(
                 At::file(path),

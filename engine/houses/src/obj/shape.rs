@@ -1,5 +1,7 @@
 //! Faces of an OBJ file into triangle meshes.
 
+use std::collections::BTreeMap;
+
 use dwell_scene::Mesh;
 use glam::{Vec2, Vec3, Vec3Swizzles as _};
 
@@ -10,6 +12,9 @@ use crate::report::{At, Report};
 /// Most material slots of one mesh: slots are 16-bit numbers.
 const MAX_SLOTS: usize = u16::MAX as usize;
 
+/// Vertices at one position that are compared; more are made again.
+const MAX_CHAIN: usize = 256;
+
 /// The material slots of a model: those of its MTL files in file order, then names that only `usemtl` knows.
 ///
 /// SUNCG's overrides count these positions.
@@ -17,6 +22,8 @@ const MAX_SLOTS: usize = u16::MAX as usize;
 pub(crate) struct Slots {
     /// Name of each slot, and its position in the MTL file.
     pub(crate) entries: Vec<(String, Option<usize>)>,
+    /// The first slot of each name.
+    places: BTreeMap<String, u16>,
 }
 
 impl Slots {
@@ -32,7 +39,7 @@ impl Slots {
                     },
                 );
             }
-            slots.entries.push((material.name.clone(), Some(i)));
+            slots.push(&material.name, Some(i));
         }
         for run in &obj.runs {
             let name = run.material.as_deref().unwrap_or("");
@@ -45,17 +52,20 @@ impl Slots {
                         },
                     );
                 }
-                slots.entries.push((name.to_owned(), None));
+                slots.push(name, None);
             }
         }
         slots
     }
 
     fn find(&self, name: &str) -> Option<u16> {
-        self.entries
-            .iter()
-            .position(|(known, _)| known == name)
-            .map(|i| i as u16)
+        self.places.get(name).copied()
+    }
+
+    fn push(&mut self, name: &str, in_file: Option<usize>) {
+        let place = self.entries.len() as u16;
+        self.places.entry(name.to_owned()).or_insert(place);
+        self.entries.push((name.to_owned(), in_file));
     }
 
     /// The slot that a stretch of faces shows.
@@ -92,7 +102,7 @@ pub(crate) fn shape_of(shape: &PartShape<'_>, at: &At, report: &mut Report) -> M
     let mut builder = Builder {
         obj,
         mesh: Mesh::default(),
-        heads: vec![NONE; obj.positions.len()],
+        heads: Heads::of(obj.positions.len(), triangle_count),
         chain: Vec::new(),
         normals,
         uvs,
@@ -135,11 +145,42 @@ fn face_normal(obj: &ObjFile, face: &[Corner]) -> Vec3 {
     sum.try_normalize().unwrap_or(Vec3::Y)
 }
 
+/// The newest vertex of each position. A file may hold a few faces each of very many things and ten million positions.
+enum Heads {
+    Dense(Vec<u32>),
+    Sparse(BTreeMap<u32, u32>),
+}
+
+impl Heads {
+    fn of(positions: usize, triangles: usize) -> Self {
+        if positions / 64 > triangles {
+            return Self::Sparse(BTreeMap::new());
+        }
+        Self::Dense(vec![NONE; positions])
+    }
+
+    fn get(&self, position: u32) -> u32 {
+        match self {
+            Self::Dense(heads) => heads[position as usize],
+            Self::Sparse(heads) => heads.get(&position).copied().unwrap_or(NONE),
+        }
+    }
+
+    fn set(&mut self, position: u32, vertex: u32) {
+        match self {
+            Self::Dense(heads) => heads[position as usize] = vertex,
+            Self::Sparse(heads) => {
+                heads.insert(position, vertex);
+            }
+        }
+    }
+}
+
 struct Builder<'a> {
     obj: &'a ObjFile,
     mesh: Mesh,
     /// For each position of the file the newest vertex made of it.
-    heads: Vec<u32>,
+    heads: Heads,
     /// For each vertex its corner and the next vertex at the same position.
     chain: Vec<(Corner, u32)>,
     normals: bool,
@@ -152,9 +193,12 @@ impl Builder<'_> {
     fn vertex(&mut self, corner: Corner, flat: Vec3) -> u32 {
         let own = (self.normals && corner.normal == NONE)
             || (self.box_mapping && corner.texcoord == NONE);
-        let head = self.heads[corner.position as usize];
+        let head = self.heads.get(corner.position);
         let mut vertex = if own { NONE } else { head };
-        while vertex != NONE {
+        for _ in 0..MAX_CHAIN {
+            if vertex == NONE {
+                break;
+            }
             let (known, next) = self.chain[vertex as usize];
             if known == corner {
                 return vertex;
@@ -192,7 +236,7 @@ impl Builder<'_> {
         // A vertex with a normal of its own is found by nobody: it stays out of the chain.
         self.chain.push((corner, if own { NONE } else { head }));
         if !own {
-            self.heads[corner.position as usize] = vertex;
+            self.heads.set(corner.position, vertex);
         }
         vertex
     }

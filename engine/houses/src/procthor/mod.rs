@@ -56,11 +56,13 @@ fn convert(
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
         message: error.to_string(),
     })?;
-    let count = file.walls.len() + file.rooms.len() + count(&file.objects);
+    let openings = file.doors.len() + file.windows.len();
+    let lamps = file.procedural_parameters.lights.len();
+    let count = file.walls.len() + file.rooms.len() + openings + lamps + count(&file.objects);
     if count > MAX_NODES {
         return Err(HousesError::TooLarge {
             at: at.field("objects"),
-            what: "count of rooms, walls and objects",
+            what: "count of rooms, walls, openings, objects and lamps",
             found: count as u64,
             allowed: MAX_NODES as u64,
         });

@@ -14,6 +14,7 @@ use super::file::{HoleFile, HouseFile, RoomFile, Triple, WallFile};
 use super::{ReadRoom, Reader, is_place, point};
 use crate::build::{Names, room_kind, triangulate};
 use crate::damage::{Damage, Unmapped};
+use crate::limits::MAX_OUTLINE;
 
 /// Thickness of slabs, m; the file has none.
 const SLAB_M: f32 = 0.1;
@@ -189,8 +190,12 @@ impl Reader<'_> {
         let area: f64 = (0..outline.len())
             .map(|k| outline[k].perp_dot(outline[(k + 1) % outline.len()]))
             .sum();
-        if outline.len() < 3 || !corners.iter().all(|p| is_place(*p)) || area.abs() < 1e-3 {
-            let reason = "its floor is no polygon".to_owned();
+        if outline.len() < 3
+            || outline.len() > MAX_OUTLINE
+            || !corners.iter().all(|p| is_place(*p))
+            || area.abs() < 1e-3
+        {
+            let reason = format!("its floor is no polygon of 3 to {MAX_OUTLINE} corners");
             return self.warn(&at, Damage::BadFace { reason });
         }
         // Seen from above with z downwards: what turns clockwise there is counter-clockwise in (x, z).

@@ -8,7 +8,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Mesh, Texture};
 
 use super::stl;
-use crate::build::{decode, texture_name};
+use crate::build::{PixelBudget, decode, pixels, texture_name};
 use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::{MAX_IMAGE_BYTES, MAX_MESH_BYTES, MAX_TEXT_BYTES};
@@ -27,6 +27,7 @@ pub(crate) struct Files {
     meshes: BTreeMap<String, Arc<Mesh>>,
     /// `None` for those that cannot be read, which is reported once.
     images: BTreeMap<String, Option<Arc<Texture>>>,
+    pixels: PixelBudget,
 }
 
 impl Files {
@@ -52,6 +53,7 @@ impl Files {
             file: words.join("/"),
             meshes: BTreeMap::new(),
             images: BTreeMap::new(),
+            pixels: PixelBudget::default(),
         })
     }
 
@@ -104,7 +106,10 @@ impl Files {
         }
         let bytes = self.root.read(path, MAX_IMAGE_BYTES);
         let bytes = bytes.map_err(|error| error.reason());
-        let image = bytes.and_then(|bytes| decode(&texture_name(path), &bytes));
+        let image = bytes.and_then(|bytes| {
+            self.pixels.take(pixels(&bytes)?)?;
+            decode(&texture_name(path), &bytes)
+        });
         let image = match image {
             Ok(image) => Some(Arc::new(image)),
             Err(reason) => {

@@ -152,7 +152,7 @@ mod tests {
         );
         assert_eq!(
             message(b"#binvox 1\ndim 99999 9 9\ndata\n"),
-            "a.binvox: dim: voxels a side 99999 is more than the 1024 that are read"
+            "a.binvox: dim: voxels a side 99999 is more than the 512 that are read"
         );
         assert_eq!(
             message(b"#binvox 1\ndim 2 2 2\ndata\n\x01\x09"),

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use dwell_scene::{Pose, Servo};
 use glam::{DMat3, DVec3, EulerRot, Quat, Vec3};
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 
 use crate::damage::Damage;
 use crate::error::HousesError;
@@ -13,6 +13,7 @@ use crate::limits::MAX_NODES;
 use crate::report::{At, Report};
 use crate::robot::{Files, Joint, Link, Motion, Robot, Shape, Solid, Weight, check};
 use crate::root::folder_of;
+use crate::xml;
 
 /// How fast a position motor that states nothing follows, 1/s: URDF names no gains, so they come from the effort: full
 /// effort at this share of a radian or metre, and damping for the velocity it may have.
@@ -26,10 +27,7 @@ pub(crate) fn read(path: &Path, report: &mut Report) -> Result<Robot, HousesErro
     let files = Files::around(path)?;
     let text = files.text()?;
     let at = At::file(&files.file);
-    let document = Document::parse(&text).map_err(|error| HousesError::Syntax {
-        at: at.line(error.pos().row),
-        message: error.to_string(),
-    })?;
+    let document = xml::parse(&text, &at)?;
     let root = document.root_element();
     if root.tag_name().name() != "robot" {
         return Err(HousesError::Field {

@@ -1,10 +1,12 @@
 //! The real sample house, where it is there, and generated ones.
 #![allow(dead_code, reason = "each test file uses what it needs")]
 #![allow(clippy::print_stdout, reason = "a skipped test says so")]
+#![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 pub(crate) mod generate;
 pub(crate) mod habitat_set;
 pub(crate) mod procthor_set;
+pub(crate) mod samples;
 
 use std::path::PathBuf;
 use std::sync::OnceLock;

@@ -6,6 +6,7 @@ use crate::collider::Collider;
 use crate::error::{SceneError, range};
 use crate::fixtures::LightShape;
 use crate::ids::{Id, IdVec, JointId, MaterialId, MeshId};
+use glam::Vec3A;
 use std::collections::BTreeSet;
 
 /// Largest coordinate of anything, m: beyond it f32 positions are coarser than 4 mm.
@@ -143,9 +144,29 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
         )?;
     }
     objects(data)?;
+    boxes(data)?;
     joints(data)?;
     fixtures(data)?;
     data.sky.map_or(Ok(()), |sky| sky.check())
+}
+
+/// The boxes of storeys and rooms: grids over them are made.
+fn boxes(data: &HouseData) -> Result<(), SceneError> {
+    let levels = data.levels.iter_ids();
+    let levels = levels.map(|(id, level)| ("levels", id.0, &level.bounds));
+    let rooms = data.rooms.iter_ids();
+    let rooms = rooms.map(|(id, room)| ("rooms", id.0, &room.bounds));
+    for (table, id, bounds) in levels.chain(rooms) {
+        let far = bounds.min.abs().max(bounds.max.abs()).max_element();
+        range(
+            &format!("{table}[{id}]"),
+            "bounds",
+            bounds.is_empty() || far <= LARGEST_COORDINATE_M,
+            far,
+            "coordinates within 32768 m of the origin",
+        )?;
+    }
+    Ok(())
 }
 
 fn objects(data: &HouseData) -> Result<(), SceneError> {
@@ -211,6 +232,20 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                 "not finite",
                 "finite numbers",
             )?;
+            if part.mesh.index() < data.meshes.len() {
+                let bounds = data.meshes[part.mesh].bounds();
+                let reach = Vec3A::from(bounds.min.abs().max(bounds.max.abs()));
+                let map = &part.part_from_mesh;
+                let far = map.matrix3.abs() * reach + map.translation.abs();
+                let far = far.max_element();
+                range(
+                    &at,
+                    "mesh",
+                    bounds.is_empty() || far <= LARGEST_COORDINATE_M,
+                    far,
+                    "coordinates within 32768 m of the part's origin",
+                )?;
+            }
             range(
                 &at,
                 "density_kg_m3",

@@ -9,7 +9,7 @@ use crate::error::HousesError;
 use crate::report::{At, Report};
 
 /// Most corners of a slab; ear clipping takes their cube.
-const MAX_POINTS: usize = 500;
+const MAX_POINTS: usize = crate::limits::MAX_OUTLINE;
 /// Most holes of a wall; their edges cut it into squared many cells.
 const MAX_HOLES: usize = 64;
 /// Most elements of a house.

@@ -67,6 +67,7 @@ pub fn convert(
         structure_names: Names::default(),
         stands: Vec::new(),
         arch_used: Vec::new(),
+        corners_shown: 0,
     };
     {
         let _span = debug_span!("rooms").entered();
@@ -103,6 +104,8 @@ struct Converter<'a> {
     stands: Vec<(PartId, Aabb)>,
     /// Which elements of `arch.json` some room has.
     arch_used: Vec<bool>,
+    /// Corners of all rooms' meshes so far.
+    corners_shown: u64,
 }
 
 /// A node's place: level, position there.

@@ -10,6 +10,7 @@ use super::super::read::paths;
 use super::{Converter, NodeKey, place};
 use crate::build::room_kind;
 use crate::damage::{Damage, Unmapped};
+use crate::limits::MAX_CORNERS_SHOWN;
 use crate::obj::MeshFiles;
 use crate::obj::file::Run;
 use crate::obj::{PartShape, Slots, shape_of};
@@ -152,6 +153,18 @@ impl<'a> Converter<'a> {
                 .warn(mesh_at, Damage::EmptyMesh { path: path.clone() });
             return;
         }
+        // Any number of nodes may show the same file.
+        let all = self
+            .corners_shown
+            .saturating_add(files.obj.corners.len() as u64);
+        if all > MAX_CORNERS_SHOWN {
+            let reason = format!("with it rooms have {all} corners; {MAX_CORNERS_SHOWN} are read");
+            let path = path.clone();
+            self.report
+                .warn(at.clone(), Damage::UnreadableMesh { path, reason });
+            return;
+        }
+        self.corners_shown = all;
         let slots = Slots::of(&files.obj, &files.mtl, &mesh_at, self.report);
         // A group may be interrupted by others: pieces are gathered by name, in the order of their first faces.
         let mut groups: Vec<(&str, Vec<&Run>)> = Vec::new();

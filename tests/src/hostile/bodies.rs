@@ -1,0 +1,76 @@
+//! What is done with every input.
+
+use std::sync::Arc;
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+use dwell::{DiscreteAction, Engines, PictureRequest, Place, Stride, World, WorldConfig};
+use dwell_houses::{HousesError, Report};
+use dwell_render::{Camera, Channels, Preset};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::Key;
+use dwell_scene::{AgentId, House, Pose};
+
+use super::samples::{Sample, sample};
+
+/// How the reading of an input ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// In an error of [`HousesError`].
+    Refused,
+    /// In a house, with that many entries of the report.
+    Opened(usize),
+}
+
+/// Reads the sample with one of its files changed. The error's sentence, or the report's, is made too.
+///
+/// # Errors
+/// Those of [`dwell_houses::open`].
+pub fn read(sample: &Sample, file: usize, bytes: &[u8]) -> Result<(House, Report), HousesError> {
+    let opened = sample.open_with(file, bytes);
+    match &opened {
+        Ok((_, report)) => assert_eq!(report.to_string().is_empty(), report.is_empty()),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+    opened
+}
+
+/// Makes a world of a house, walks a step in it and takes a picture of 24 by 16 pixels. What a house does not allow ends in an
+/// error, as an agent without a floor to stand on.
+pub fn live_in(house: House) {
+    let engines = Engines::new(Arc::new(house));
+    let Ok(mut world) = World::new(engines, &WorldConfig::default()) else {
+        return;
+    };
+    if world.reset(Key::root(1)).is_err() {
+        return;
+    }
+    let step = DiscreteAction::ALL[1];
+    let _ = world.act_discrete(AgentId(0), step, &Stride::default());
+    let Ok(camera) = Camera::from_fov(24, 16, 90.0) else {
+        return;
+    };
+    let request = PictureRequest {
+        camera,
+        place: Place::Agent(AgentId(0), Pose::IDENTITY),
+        preset: Preset::Lit,
+    };
+    let channels = Channels {
+        rgb: true,
+        depth: true,
+        ..Channels::default()
+    };
+    let _ = world.picture(&request, channels, Threads::ONE);
+}
+
+/// The body of a cargo-fuzz target: the input stands for the first file of the sample of that name.
+///
+/// # Panics
+/// When something is wrong: that is what a fuzzer looks for.
+pub fn fuzz(name: &'static str, bytes: &[u8]) {
+    static SAMPLE: OnceLock<Mutex<Sample>> = OnceLock::new();
+    let sample = SAMPLE.get_or_init(|| Mutex::new(sample(name)));
+    let sample = sample.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Ok((house, _)) = read(&sample, 0, bytes) {
+        live_in(house);
+    }
+}
