@@ -77,8 +77,9 @@ impl<'a> Numbers<'a> {
         )
     }
 
+    /// With columns below 1, so that a mesh of 10 km stays within the 32 km that a house may have.
     fn affine(&mut self) -> Affine3A {
-        let columns = [self.vec3(), self.vec3(), self.vec3()].map(Vec3A::from);
+        let columns = [self.vec3(), self.vec3(), self.vec3()].map(|c| Vec3A::from(c) * 5e-5);
         Affine3A {
             matrix3: Mat3A::from_cols(columns[0], columns[1], columns[2]),
             translation: self.vec3().into(),
