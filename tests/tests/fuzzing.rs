@@ -1,8 +1,5 @@
 //! Mutated files of houses in every format: an error or a house, never a panic, and houses that one can live in.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-#![expect(clippy::print_stdout, reason = "it tells its figures")]
-
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use dwell_scene::random::Key;

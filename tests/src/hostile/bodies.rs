@@ -25,6 +25,9 @@ pub enum Ended {
 ///
 /// # Errors
 /// Those of [`dwell_houses::open`].
+///
+/// # Panics
+/// When the sentence is missing.
 pub fn read(sample: &Sample, file: usize, bytes: &[u8]) -> Result<(House, Report), HousesError> {
     let opened = sample.open_with(file, bytes);
     match &opened {

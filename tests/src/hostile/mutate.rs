@@ -40,14 +40,15 @@ const VALUES: [&str; 12] = [
 /// The bytes with one to four changes.
 pub fn mutated(bytes: &[u8], random: &mut Stream) -> Vec<u8> {
     // Inside of a GLB most changes to the text would end at its stated length.
-    if bytes.starts_with(b"glTF") && random.below(3) > 0 {
-        if let Some((text, blob)) = halves(bytes) {
-            return if random.below(3) > 0 {
-                joined(&changed(text, random), blob)
-            } else {
-                joined(text, &changed(blob, random))
-            };
-        }
+    if bytes.starts_with(b"glTF")
+        && random.below(3) > 0
+        && let Some((text, blob)) = halves(bytes)
+    {
+        return if random.below(3) > 0 {
+            joined(&changed(text, random), blob)
+        } else {
+            joined(text, &changed(blob, random))
+        };
     }
     changed(bytes, random)
 }

@@ -101,11 +101,11 @@ pub fn sample(name: &str) -> Sample {
             let ending = if name == "obj" { ".obj" } else { "house.json" };
             let mut files = files_below(root);
             files.retain(|path| path.to_string_lossy().ends_with(ending));
-            let objects = files
+            let mut objects = files
                 .iter()
                 .filter(|path| path.starts_with(root.join("object")));
             let first = objects
-                .last()
+                .next_back()
                 .or(files.last())
                 .expect("such a file was written");
             let inside = first.strip_prefix(folder.path()).unwrap_or(first);
