@@ -87,10 +87,33 @@ pub(crate) fn read_scene(
         message,
     };
     let (json, blob) = container::split(bytes).map_err(syntax)?;
+    check_positions(&json, &at)?;
     // The crate's document checks every index and required field.
     let document = ::gltf::Document::from_json(json)
         .map_err(|error| syntax(format!("no valid glTF 2.0: {error}")))?;
     let json = document.into_json();
     let buffers = buffers::Buffers::load(&json, blob, root, &at, report)?;
     convert::convert(&json, &buffers, root, name, threads, report)
+}
+
+/// Whether the positions of all primitives are accessors that exist: the `gltf` crate (1.4) looks them up before it checks them, which
+/// panics.
+fn check_positions(json: &::gltf::json::Root, at: &At) -> Result<(), HousesError> {
+    use ::gltf::json::mesh::Semantic;
+    use ::gltf::json::validation::Checked;
+    let positions = Checked::Valid(Semantic::Positions);
+    for (k, mesh) in json.meshes.iter().enumerate() {
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            let index = primitive.attributes.get(&positions);
+            if let Some(index) = index.filter(|index| index.value() >= json.accessors.len()) {
+                let field = format!("meshes[{k}].primitives[{p}].attributes.POSITION");
+                return Err(HousesError::Field {
+                    at: at.field(field),
+                    expected: "an accessor of the file",
+                    found: format!("{} of {}", index.value(), json.accessors.len()),
+                });
+            }
+        }
+    }
+    Ok(())
 }

@@ -85,6 +85,24 @@ pub(crate) const CASES: &[Case] = &[
         &["a.glb", "meshes[0].primitives[0].indices"],
     ),
     fails(
+        "positions out of range",
+        |d| {
+            put_glb(
+                d,
+                &with(
+                    triangle(),
+                    "/meshes/0/primitives/0/attributes",
+                    json!({"POSITION": 4_000_000_000_u32}),
+                ),
+            )
+        },
+        &[
+            "a.glb",
+            "meshes[0].primitives[0].attributes.POSITION",
+            "4000000000 of 2",
+        ],
+    ),
+    fails(
         "a node's child out of range",
         |d| put_glb(d, &with(triangle(), "/nodes/0/children", json!([9]))),
         &["a.glb", "nodes[0].children[0]"],
