@@ -2,7 +2,7 @@
 
 SHELL := /bin/sh
 .DEFAULT_GOAL := help
-.PHONY: help deps need venv build demo test test-all check bench wheel stranger
+.PHONY: help deps need venv build demo test test-all check docs bench wheel stranger
 
 HOUSE ?= builtin:apartment
 OUT ?= out/demo
@@ -46,6 +46,9 @@ test-all: test ## the same with the slow tests, and the benches once each
 
 check: venv ## formatting, lints, docs, layers, sizes, licences, types
 	@cargo xtask check
+
+docs: venv ## guide and reference as a site in out/site; every link is checked
+	@$(stage) 'site' sh xtask/sh/docs.sh
 
 bench: venv ## figures of every stage
 	@sh xtask/sh/benches.sh $(locked)

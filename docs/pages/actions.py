@@ -1,0 +1,144 @@
+"""Actions: the numbers of environments, the controls of a step, and what hands do."""
+
+from __future__ import annotations
+
+import re
+
+import dwell
+from dwell import _native
+from dwell.envs.spaces import action_space
+from pages import rust
+from pages.observations import settings_table
+from pages.tables import code, number, table
+
+_ACTION = "engine/world/src/action.rs"
+_REQUEST = "engine/world/src/request.rs"
+_HAND = "physics/src/actions/request.rs"
+_OUTCOME = "physics/src/actions/outcome.rs"
+_CONTROL = "physics/src/agents/control.rs"
+
+#: The ways of getting about whose limits the page lists.
+_BASES = ("walking", "differential_drive", "holonomic")
+
+_UNITS = {"rad_s": "rad/s", "m_s": "m/s"}
+
+
+def discrete() -> list[tuple[int, str, str]]:
+    """Number, name and text of an environment's actions.
+
+    Raises:
+        LookupError: The engine's list and its documentation disagree.
+    """
+    said = {one.name: one.about for one in rust.items(_ACTION, "DiscreteAction")}
+    names = _native.actions()
+    if list(said) != names:
+        raise LookupError(f"{_ACTION} documents {list(said)}; the engine has {names}")
+    return [(k, name, said[name]) for k, name in enumerate(names)]
+
+
+def controls() -> list[rust.Item]:
+    """The fields of a control; the first four are the columns of an array."""
+    return rust.items(_CONTROL, "AgentControl")
+
+
+def hand() -> list[rust.Item]:
+    """The kinds of action of the hand, with what each needs."""
+    return rust.items(_HAND, "Action")
+
+
+def _control_row(place: int, item: rust.Item) -> tuple[str, ...]:
+    unit = next((unit for end, unit in _UNITS.items() if item.name.endswith(end)), "")
+    kind = rust.plain_type(item.type or "")
+    column = str(place) if item.type == "f32" else ""
+    span = "any finite" if "number" in kind else "false, true"
+    return (code(item.name), column, kind, unit, span, item.about)
+
+
+def _limits(base: str) -> list[tuple[str, ...]]:
+    """The numbers of a body that gets about in one way, as a world tells them."""
+    room = dwell.House.shoebox((4.0, 2.5, 4.0), substance="plaster")
+    world = dwell.World(room, agents=[{"locomotion": {base: {}}}])
+    return [
+        (
+            code(address),
+            number(known["value"]),
+            str(known["unit"]),
+            number(known["low"]),
+            number(known["high"]),
+        )
+        for address, known in world.parameters().items()
+        if address.startswith("agent/0/base/")
+    ]
+
+
+def page() -> str:
+    """The page."""
+    space = action_space()
+    stride = settings_table(_ACTION, "Stride")
+    head = ("address", "default", "unit", "lowest", "highest")
+    bases = "\n".join(f"### {_words(base)}\n\n{table(head, _limits(base))}" for base in _BASES)
+    return f"""# Actions
+
+## Discrete
+
+The action space of every environment is `{space}`; `World.do` takes the same numbers and names.
+The hand acts on what the agent looks at.
+
+{table(("number", "name", "what it does"), ((k, code(n), a) for k, n, a in discrete()))}
+How far the movement actions go is the environment's `stride`:
+
+{stride}
+## Continuous
+
+`World.step(controls)` takes an array of shape (agent, 4), float32, whose columns are those below,
+or a mapping for each agent. The body's limits keep what it does within what it can.
+
+{
+        table(
+            ("field", "column", "type", "unit", "range", "what it is"),
+            [_control_row(k, one) for k, one in enumerate(controls())],
+        )
+    }
+## Limits of bodies
+
+Numbers that bound the controls, by their address for `parameters` and `World.set_parameter`; those
+of agent 0. The range of some depends on the others.
+
+{bases}
+## Hands
+
+`World.act(kind, object, ...)` lets an agent do something. It answers with success, a code and a
+sentence.
+
+{table(("kind", "what it does", "what it needs"), [_hand_row(one) for one in hand()])}
+The target is an object, a part of one, a pixel of a camera, a ray, or else what the agent looks
+at. The details:
+
+{settings_table(_REQUEST, "ActionRequest")}
+## Codes
+
+{
+        table(
+            ("code", "what it says"),
+            ((code(one.name), one.about) for one in rust.items(_OUTCOME, "ActionCode")),
+        )
+    }"""
+
+
+def _hand_row(item: rust.Item) -> tuple[str, ...]:
+    needs = [f"{_need(field)}: {_uncapped(field.about)}" for field in item.fields]
+    return (code(item.name), item.about, "; ".join(needs))
+
+
+def _need(field: rust.Item) -> str:
+    """A detail by its name; what is acted on can be said in several ways."""
+    return "target" if "Target" in (field.type or "") else code(field.name)
+
+
+def _uncapped(sentence: str) -> str:
+    """A sentence that goes on in a list: without its full stop, small where it began large."""
+    return re.sub(r"^[A-Z](?=[a-z])", lambda first: first[0].lower(), sentence).rstrip(".")
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ").capitalize()

@@ -1,0 +1,58 @@
+"""The environments: one section a task, with the observations of its own choice."""
+
+from __future__ import annotations
+
+import json
+
+from dwell import _native
+from dwell.envs.runner import INFO_KEYS
+from pages import rust
+from pages.observations import observation_table, settings_table, specifications
+from pages.tables import code
+
+_TASKS = "engine/world/src/tasks"
+_CONFIG = "engine/world/src/config.rs"
+
+
+def _section(task: dict[str, object]) -> str:
+    name = str(task["name"])
+    file = f"{_TASKS}/{rust.snake(name)}.rs"
+    sensors = [str(sensor) for sensor in json.loads(json.dumps(task["sensors"]))]
+    return f"""## dwell/{name}-v{task["version"]}
+
+{rust.module(file)}
+
+- An episode is cut off after {task["max_steps"]:,} steps (by `gymnasium.make`).
+- Actions: [those of all environments](actions.md#discrete).
+
+### Observations of {name}
+
+Without `sensors`; [all that can be asked for](observations.md).
+
+{observation_table(specifications(sensors, name))}
+### Settings of {name}
+
+`task_settings` is a mapping with these fields.
+
+{settings_table(file, "Settings")}"""
+
+
+def page() -> str:
+    """The page."""
+    tasks = json.loads(_native.tasks_json())
+    sections = "\n".join(_section(task) for task in tasks)
+    info = ", ".join(code(key) for key in (*INFO_KEYS, "action_error", "audio_clipped"))
+    return f"""# Environments
+
+`gymnasium.make(ID, houses=..., sensors=..., ...)` makes one, `gymnasium.make_vec` many that step
+together; [`DwellEnv`](api/envs.md) lists the arguments.
+
+Every step's `info` holds {info}, `scene_id` and `episode_id`.
+
+{sections}
+## Settings of worlds
+
+`world` of an environment, and the further arguments of `dwell.World`. In Python `sound_head` is a
+`dwell.Head` or the path of its SOFA file.
+
+{settings_table(_CONFIG, "WorldConfig")}"""

@@ -1,0 +1,203 @@
+"""The documentation: links lead somewhere, tables say what the engine says, and the site builds."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import json
+import os
+import posixpath
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import gymnasium
+import pytest
+
+import dwell
+import dwell.envs
+import dwell.world
+from dwell import _native
+
+ROOT = Path(__file__).resolve().parents[2]
+MARKDOWN = sorted(
+    path.relative_to(ROOT).as_posix()
+    for pattern in ("*.md", "docs/**/*.md", "examples/*.md", "assets/*.md", "benches/**/*.md")
+    for path in ROOT.glob(pattern)
+)
+
+
+@pytest.fixture
+def pages(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    return importlib.import_module("pages")
+
+
+def broken_links(pages: ModuleType, file: str, markdown: str) -> list[str]:
+    """Links of a file to files or headings that do not exist."""
+    broken = []
+    for target in pages.sources.local_links(markdown):
+        path, _, anchor = target.partition("#")
+        there = posixpath.normpath(posixpath.join(posixpath.dirname(file), path)) if path else file
+        if there != file and not (ROOT / there).exists():
+            broken.append(target)
+        elif anchor and there.endswith(".md"):
+            text = markdown if there == file else (ROOT / there).read_text("utf-8")
+            if anchor not in pages.sources.anchors(text):
+                broken.append(target)
+    return broken
+
+
+def rows_of(table: str, heading: str) -> list[list[str]]:
+    """The cells of the first table below a heading."""
+    below = table.split(f"{heading}\n", 1)[1]
+    lines = re.search(r"(?:^\|.*\n)+", below, re.MULTILINE)
+    assert lines is not None
+    cells = [re.split(r" (?<!\\)\| ", line[2:-2]) for line in lines[0].splitlines()]
+    return [[cell.strip().strip("`") for cell in row] for row in cells[2:]]
+
+
+@pytest.mark.parametrize("file", MARKDOWN)
+def test_links_of_a_file_lead_to_files_and_headings(pages: ModuleType, file: str) -> None:
+    assert broken_links(pages, file, (ROOT / file).read_text("utf-8")) == []
+
+
+def test_broken_links_and_headings_are_found(pages: ModuleType) -> None:
+    text = "# A b\n[x](no.md) [y](#a-b) [z](#c) [w](physics.md#none) `[v](gone.md)`\n"
+    text += "```text\n[u](gone.md)\n```\n[t](https://example.org/gone)\n"
+    assert broken_links(pages, "docs/page.md", text) == ["no.md", "#c", "physics.md#none"]
+
+
+def test_links_of_the_site_lead_to_its_pages(pages: ModuleType) -> None:
+    linked = pages.sources.linked
+    assert linked("index.md", "[a](docs/laws.md#physics)") == "[a](laws.md#physics)"
+    assert linked("index.md", "[a](examples/README.md)") == "[a](guide/index.md)"
+    assert linked("guide/index.md", "[a](03_act.py)") == "[a](03_act.md)"
+    assert linked("decisions/0004-rays.md", "[a](../physics.md)") == "[a](../physics.md)"
+    assert linked("peers.md", "[a](../../docs/laws.md)") == "[a](laws.md)"
+    assert linked("index.md", "![a](docs/images/demo.jpg)") == "![a](images/demo.jpg)"
+    # What the site does not show is named; what does not exist is left for mkdocs to refuse.
+    assert linked("index.md", "[the rules](clippy.toml)") == "the rules (`clippy.toml`)"
+    assert linked("index.md", "[a](docs/none.md)") == "[a](docs/none.md)"
+
+
+def test_every_sensor_stands_in_the_table_with_its_space(pages: ModuleType) -> None:
+    rows = {row[0]: row for row in rows_of(pages.observations.page(), "# Observations")}
+    sensors = {sensor["name"]: sensor["about"] for sensor in json.loads(_native.sensors_json())}
+    assert list(rows) == list(sensors)
+    env = gymnasium.make("dwell/InstructionFollowing-v0", sensors=list(sensors))
+    spaces = env.observation_space
+    assert isinstance(spaces, gymnasium.spaces.Dict)
+    for name, (_, kind, shape, dtype, _, low, high, about) in rows.items():
+        space = spaces[name]
+        assert (kind, about) == (type(space).__name__, sensors[name])
+        if isinstance(space, gymnasium.spaces.Text):
+            assert (dtype, high) == ("text", f"{space.max_length} characters")
+            continue
+        assert (shape, dtype) == (str(space.shape), str(space.dtype))
+        if isinstance(space, gymnasium.spaces.MultiDiscrete):
+            assert (float(low), float(high)) == (0, space.nvec.max() - 1)
+        else:
+            assert isinstance(space, gymnasium.spaces.Box)
+            bounds = (float(low.replace(",", "")), float(high.replace(",", "")))
+            assert bounds == pytest.approx((space.low.min(), space.high.max()), rel=1e-5)
+    env.close()
+
+
+def test_every_sensor_is_under_settings_once(pages: ModuleType) -> None:
+    settings = pages.observations.page().split("## Settings of cameras")[1]
+    named = re.findall(r"`(\w+)`", " ".join(re.findall(r"^(?:Of|The others) .*$", settings, re.M)))
+    assert sorted(named) == sorted(pages.observations.sensor_names())
+
+
+def test_every_action_stands_in_the_tables(pages: ModuleType, apartment: dwell.House) -> None:
+    page = pages.actions.page()
+    discrete = rows_of(page, "## Discrete")
+    assert [row[:2] for row in discrete] == [
+        [str(number), name] for number, name in enumerate(_native.actions())
+    ]
+    assert all(row[2] for row in discrete)
+    world = dwell.World(apartment)
+    with pytest.raises(dwell.ConfigError) as refused:
+        world.act("fly")
+    kinds = re.findall(r"\w+", str(refused.value).split("there are")[1])
+    assert [row[0] for row in rows_of(page, "## Hands")] == kinds
+    continuous = rows_of(page, "## Continuous")
+    assert [row[0] for row in continuous] == list(dwell.world._CONTROL)
+    assert [row[1] for row in continuous] == ["0", "1", "2", "3", "", ""]
+
+
+def test_the_tables_of_limits_are_those_of_a_world(pages: ModuleType) -> None:
+    page = pages.actions.page()
+    room = dwell.House.shoebox((4.0, 2.5, 4.0), substance="plaster")
+    world = dwell.World(room, agents=[{"locomotion": {"holonomic": {}}}])
+    told = {
+        name: one for name, one in world.parameters().items() if name.startswith("agent/0/base")
+    }
+    rows = {row[0]: row for row in rows_of(page, "### Holonomic")}
+    assert rows
+    assert set(rows) == set(told)
+    for name, (_, value, unit, low, high) in rows.items():
+        shown = [float(cell.replace(",", "")) for cell in (value, low, high)]
+        assert shown == pytest.approx([told[name][key] for key in ("value", "low", "high")])
+        assert unit == told[name]["unit"]
+
+
+def test_every_environment_has_its_section(pages: ModuleType) -> None:
+    page = pages.environments.page()
+    for task in json.loads(_native.tasks_json()):
+        assert f"## dwell/{task['name']}-v{task['version']}\n" in page
+        rows = rows_of(page, f"### Observations of {task['name']}")
+        assert [row[0] for row in rows] == task["sensors"]
+
+
+def test_every_command_says_its_help(pages: ModuleType) -> None:
+    page = pages.commands.page()
+    for name in dwell.cli.COMMANDS:
+        assert f"## dwell {name}\n\n```text\nusage: dwell {name}" in page
+    assert "--out" in page.split("## dwell measure import")[1].split("## ")[0]
+
+
+def test_every_public_name_is_in_the_reference(pages: ModuleType) -> None:
+    index = pages.pages()["api/index.md"]
+    for name in {*dwell.__all__, *dwell.envs.__all__} - {"__version__"}:
+        assert re.search(rf"\| \[`dwell\.(?:\w+\.)?{name}`\]", index), name
+    for module, names in pages.api.modules().items():
+        assert all(hasattr(importlib.import_module(module), name) for name in names)
+
+
+def test_every_example_is_in_the_guide(pages: ModuleType) -> None:
+    made = pages.pages()
+    for example in sorted((ROOT / "examples").glob("[0-9]*.py")):
+        program = example.read_text("utf-8").split('"""')[2].strip()
+        assert program in made[f"guide/{example.stem}.md"]
+
+
+def test_a_type_or_item_that_nobody_explained_is_refused(pages: ModuleType) -> None:
+    with pytest.raises(LookupError, match="no word for the type Thing"):
+        pages.rust.plain_type("Option<Thing>")
+    with pytest.raises(LookupError, match="no enum or struct Nothing"):
+        pages.rust.items("engine/world/src/action.rs", "Nothing")
+
+
+def test_the_site_builds_strictly(tmp_path: Path) -> None:
+    for needed in ("mkdocs", "material", "mkdocstrings", "mkdocstrings_handlers.python"):
+        top = needed.split(".")[0]
+        if importlib.util.find_spec(top) is None:
+            pytest.skip(f"{top} is not installed; `make docs` installs it")
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", tmp_path],
+        cwd=ROOT,
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    world = (tmp_path / "api" / "world.html").read_text("utf-8")
+    assert 'id="dwell.world.World.step"' in world
+    assert ":meth:" not in world
+    assert "InstructionFollowing" in (tmp_path / "index.html").read_text("utf-8")
