@@ -40,7 +40,7 @@ def _linked(name: str, obj: griffe.Object, loader: griffe.GriffeLoader) -> str:
 def _shown(path: str, loader: griffe.GriffeLoader) -> str | None:
     """Where the site shows an object, if it does."""
     try:
-        real = loader.modules_collection[path].canonical_path
+        real: str = loader.modules_collection[path].canonical_path
     except (KeyError, griffe.AliasResolutionError):
         return None
     for module, names in api.modules().items():

@@ -12,6 +12,7 @@ from pages.tables import code
 
 _TASKS = "engine/world/src/tasks"
 _CONFIG = "engine/world/src/config.rs"
+_BODY = "engine/scene/src/state/body.rs"
 
 
 def _section(task: dict[str, object]) -> str:
@@ -55,4 +56,10 @@ Every step's `info` holds {info}, `scene_id` and `episode_id`.
 `world` of an environment, and the further arguments of `dwell.World`. In Python `sound_head` is a
 `dwell.Head` or the path of its SOFA file.
 
-{settings_table(_CONFIG, "WorldConfig")}"""
+{settings_table(_CONFIG, "WorldConfig")}
+## Bodies of agents
+
+The mappings of `agents`; how fast a body moves is under
+[limits of bodies](actions.md#limits-of-bodies).
+
+{settings_table(_BODY, "AgentBody")}"""

@@ -85,6 +85,7 @@ _TYPES = {
     "Grasp": "text or mapping",
     "HeadId": "head",
     "LawSpec": "mapping",
+    "Locomotion": "mapping",
     "Named": "text or whole number",
     "PixelCamera": "mapping",
     "Projection": "mapping",

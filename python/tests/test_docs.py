@@ -153,6 +153,17 @@ def test_every_environment_has_its_section(pages: ModuleType) -> None:
         assert [row[0] for row in rows] == task["sensors"]
 
 
+def test_settings_of_worlds_and_bodies_are_those_that_worlds_take(pages: ModuleType) -> None:
+    page = pages.environments.page()
+    room = dwell.House.shoebox((4.0, 2.5, 4.0), substance="plaster")
+    body = dwell.World(room).agents()[0]["body"]
+    assert [row[0] for row in rows_of(page, "## Bodies of agents")] == list(body)
+    with pytest.raises(dwell.ConfigError) as refused:
+        dwell.World(room, no_such_setting=1)
+    taken = re.findall(r"`(\w+)`", str(refused.value).split("expected one of")[1])
+    assert [row[0] for row in rows_of(page, "## Settings of worlds")] == taken
+
+
 def test_every_command_says_its_help(pages: ModuleType) -> None:
     page = pages.commands.page()
     for name in dwell.cli.COMMANDS:
