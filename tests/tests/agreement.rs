@@ -51,12 +51,19 @@ fn stage(name: &str, most: usize) -> Stage {
     }
 }
 
+/// Views of the sample house and of each generated one: 16 and 10, or 200 and 100 with `DWELL_TEST_ALL=1`.
 fn stages() -> Vec<Stage> {
-    let mut all: Vec<Stage> = ["seed:3", "seed:12"].map(|seed| stage(seed, 10)).into();
+    let (of_sample, of_seed) = match std::env::var_os("DWELL_TEST_ALL") {
+        Some(_) => (200, 100),
+        None => (16, 10),
+    };
+    let mut all: Vec<Stage> = ["seed:3", "seed:12"]
+        .map(|seed| stage(seed, of_seed))
+        .into();
     let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
     let data = std::env::var_os("DWELL_SHARED_DATA").map_or_else(beside, PathBuf::from);
     match data.join("suncg").to_str() {
-        Some(sample) if data.join("suncg").is_dir() => all.push(stage(sample, 16)),
+        Some(sample) if data.join("suncg").is_dir() => all.push(stage(sample, of_sample)),
         _ => println!("skipped: no SUNCG data at {}", data.display()),
     }
     all

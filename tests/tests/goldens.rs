@@ -1,4 +1,4 @@
-//! Every sensor, every kind of camera and every preset, plans and doll's houses, against the pictures of `tests/golden`.
+//! Every sensor, every kind of camera by every preset, plans and doll's houses, against the pictures of `tests/golden`.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -50,6 +50,14 @@ fn pictures_are_the_golden_ones() {
             let seen = ["rgb", "depth", "instance"];
             for image in views::look(&world, viewpoint, camera, Preset::Lit, &seen).unwrap() {
                 golden.check(&format!("camera_{name}_{}", image.spec.name), &image);
+            }
+            for preset in Preset::ALL {
+                if preset == Preset::Lit {
+                    continue;
+                }
+                for rgb in views::look(&world, viewpoint, camera, preset, &["rgb"]).unwrap() {
+                    golden.check(&format!("camera_{name}_rgb_{}", preset.name()), &rgb);
+                }
             }
         }
     }

@@ -126,6 +126,40 @@ fn a_spot_lights_its_cone_only() {
     compare(&world, inside, &[0.0, 0.3, 0.6, 0.9, 1.2, 1.8]);
 }
 
+/// A tube of 2.4 m seen across and along: Lambert's law integrated over its length, every piece shining alike in all directions,
+/// E(x) = I/L integral of h / (h² + (x - s)²)^1.5 ds (across: x² + s² instead).
+#[test]
+fn a_tube_lights_as_the_integral_over_its_length() {
+    const HEIGHT_M: f32 = 1.0;
+    const LENGTH_M: f32 = 2.4;
+    let integral = |square: &dyn Fn(f32) -> f32| {
+        let pieces = 400;
+        let piece = |k: i32| {
+            let s = ((k as f32 + 0.5) / pieces as f32 - 0.5) * LENGTH_M;
+            HEIGHT_M / (HEIGHT_M * HEIGHT_M + square(s)).powf(1.5)
+        };
+        (0..pieces).map(piece).sum::<f32>() / pieces as f32
+    };
+    let places = [0.0, 0.4, 0.8, 1.2, 1.6, 1.9];
+    let tube = |way: Vec3| {
+        let shape = LightShape::Line {
+            end: way * LENGTH_M,
+        };
+        let begin = Vec3::new(3.0, HEIGHT_M, 3.0) - way * (0.5 * LENGTH_M);
+        with_lamp(shape, 20.0, begin, true)
+    };
+    compare(
+        &tube(Vec3::X),
+        |x| integral(&|s| (x - s) * (x - s)),
+        &places,
+    );
+    compare(&tube(Vec3::Z), |x| integral(&|s| x * x + s * s), &places);
+    // A single lamp in its middle is another light: the comparison tells them apart.
+    let single = |x: f32| HEIGHT_M / (HEIGHT_M * HEIGHT_M + x * x).powf(1.5);
+    let confused = std::panic::catch_unwind(|| compare(&tube(Vec3::X), single, &places));
+    assert!(confused.is_err());
+}
+
 #[test]
 fn a_lamp_that_is_off_or_in_another_room_gives_no_light() {
     let view = downwards(2.0);
