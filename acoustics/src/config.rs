@@ -30,7 +30,7 @@ pub struct AcousticConfig {
     /// fewer the fainter they are, and those that go on stand for the others.
     pub roulette_db: f64,
     /// Radius of the ball in which paths with specular last reflections are counted, m; 0.05 to 2. It is this large for paths up
-    /// to 8 m and grows with the root of their length, up to half the cube root of the volume in sight.
+    /// to 8 m and grows with their length, up to 0.35 of the cube root of the volume in sight.
     pub receiver_radius_m: f64,
     /// Relative standard error of the tail's energy, in every band, below which no more rays are traced; 0 (all rays) to 1.
     pub max_error: f64,

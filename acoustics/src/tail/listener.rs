@@ -8,10 +8,12 @@ use std::f64::consts::PI;
 
 /// Radii of the balls grow by this from one to the next.
 const STEP: f64 = 1.189_207_115_002_721;
-/// Paths up to this length are counted in the smallest ball; further ones in balls that grow with the root of the length, m.
+/// Paths up to this length are counted in the smallest ball; further ones in balls that grow with it, m: they seem as large from where
+/// the sound comes from.
 const FIRST_M: f64 = 8.0;
-/// No ball is larger than this fraction of the cube root of the volume in sight.
-const LARGEST: f64 = 0.5;
+/// No ball is larger than this fraction of the cube root of the volume in sight. With 0.35 energies between 20 and 500 ms are
+/// within 0.2 dB of those of the smallest balls (a studio, rooms of the apartment); 0.5 is half as far again.
+const LARGEST: f64 = 0.35;
 
 /// A ball around a receiver.
 #[derive(Clone, Copy, Debug)]
@@ -81,8 +83,7 @@ impl Listener {
 
     /// The ball for paths of `way_m`.
     fn ball(&self, way_m: f32) -> Ball {
-        // Radii go with the root of the length: two steps for a length longer by the square of a step.
-        let steps = 0.5 * libm::logf((way_m / FIRST_M as f32).max(1.0)) / libm::logf(STEP as f32);
+        let steps = libm::logf((way_m / FIRST_M as f32).max(1.0)) / libm::logf(STEP as f32);
         self.balls[(steps as usize).min(self.balls.len() - 1)]
     }
 
