@@ -81,12 +81,12 @@ impl AcousticConfig {
         }
     }
 
-    /// For agents that learn: 300 rays, images to order 2, 0.6 seconds.
+    /// For agents that learn: 300 rays, images to order 2, one second.
     pub fn rl() -> Self {
         Self {
             rays: 300,
             arrivals_per_s: 4_000.0,
-            max_duration_s: 0.6,
+            max_duration_s: 1.0,
             bin_s: 0.008,
             image_order: 2,
             image_planes: 16,
