@@ -3,7 +3,7 @@
 use crate::bands::BAND_COUNT;
 
 /// Shortest window over which a band's energy is set, s.
-const SHORTEST_S: f64 = 0.016;
+const SHORTEST_S: f64 = 0.01;
 /// A window holds at least this many periods of a band's lowest frequency.
 const PERIODS: f64 = 2.0;
 /// Gains stay between 1 / MOST and MOST.
