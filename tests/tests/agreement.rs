@@ -149,10 +149,6 @@ fn is_within(flips: &[f64]) -> bool {
     mean(flips) < MEAN_FLIP && beyond <= flips.len() / 100
 }
 
-fn rgb() -> [String; 1] {
-    ["rgb".to_owned()]
-}
-
 /// Where two pictures show different things at one depth, within 0.1 mm or a millionth, the first one's colour is put in the second.
 /// Returns the share of such pixels. The views hold colour, depth and ids.
 fn leave_coincident_out(views: &[Vec<Observation>], others: &mut [Vec<Observation>]) -> f64 {
