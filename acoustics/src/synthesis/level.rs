@@ -4,8 +4,11 @@ use crate::bands::BAND_COUNT;
 
 /// Shortest window over which a band's energy is set, s.
 const SHORTEST_S: f64 = 0.01;
-/// A window holds at least this many periods of a band's lowest frequency.
+/// A window holds at least this many periods of a band's lowest frequency, and up to [`LONG_S`] as many as [`GOOD_PERIODS`]: gains that
+/// change faster spread the band's noise over its neighbours, whose ears are more alike than its own.
 const PERIODS: f64 = 2.0;
+const GOOD_PERIODS: f64 = 3.0;
+const LONG_S: f64 = 0.016;
 /// Gains stay between 1 / MOST and MOST.
 const MOST: f64 = 4.0;
 
@@ -30,7 +33,10 @@ pub(super) struct Energy<'a> {
 /// Samples between two gains of a band.
 fn hop(band: usize, rate_hz: f64) -> usize {
     let lowest_hz = crate::bands::exact_centre_hz(band) * std::f64::consts::FRAC_1_SQRT_2;
-    let window_s = SHORTEST_S.max(PERIODS / lowest_hz);
+    let window_s = (GOOD_PERIODS / lowest_hz)
+        .min(LONG_S)
+        .max(PERIODS / lowest_hz)
+        .max(SHORTEST_S);
     ((0.5 * window_s * rate_hz) as usize).max(1)
 }
 
