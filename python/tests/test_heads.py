@@ -423,7 +423,11 @@ def test_kemar_between_its_directions() -> None:
 
 @needs_kemar
 def test_kemar_in_a_reverberant_room(shoebox: dwell.House) -> None:
-    """Late sound: long waves are alike at both ears, short ones are not."""
+    """Late sound: long waves are alike at both ears, short ones are not.
+
+    Ears 0.26 m apart for long waves (3/2 of a head's width, Kuhn 1977) share cos(k d) of what comes
+    along their axis, as late sound in this long room mostly does: 0.96 at 62.5, 0.83 at 125 Hz.
+    """
     scene = dwell.AcousticScene(shoebox, rays=1000, max_duration_s=1.0)
     head = dwell.Head.from_sofa(KEMAR)
     late = []
@@ -433,6 +437,7 @@ def test_kemar_in_a_reverberant_room(shoebox: dwell.House) -> None:
         late.append([band["iacc_late"] for band in bands])
     coherence = np.mean(late, axis=0)
     print("IACC of late sound by octave", coherence.round(2))
-    assert (coherence[:2] > 0.85).all()
+    assert coherence[0] > 0.95
+    assert coherence[1] > 0.82
     assert 0.5 < coherence[2] < 0.95
     assert (coherence[4:] < 0.4).all()
