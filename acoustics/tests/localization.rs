@@ -1,5 +1,7 @@
 //! Where an array hears a source from (V20), by a method of its own: SRP-PHAT, the steered response power with phase transform of
-//! J. H. DiBiase (PhD thesis, Brown University, 2000), equation 8.2.
+//! J. H. `DiBiase` (thesis, Brown University, 2000), equation 8.2.
+
+#![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 
 mod common;
 
