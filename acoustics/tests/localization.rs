@@ -163,7 +163,7 @@ fn an_array_hears_where_sources_are_in_a_reverberant_room() {
         rate_hz: RATE_HZ,
         ..AcousticConfig::full()
     };
-    // 125 Hz to 8 kHz: of a measured laboratory with two thirds of its panels reflecting.
+    // 125 Hz to 8 kHz, as in a room like a measured laboratory.
     let absorption = [0.25, 0.17, 0.165, 0.17, 0.18, 0.19, 0.19];
     let walls = Material {
         absorption: Bands::octaves(absorption),

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from run import environment, last_line
 
 HERE = Path(__file__).resolve().parent
 PEERS = {
@@ -49,23 +50,6 @@ SCENE: dict[str, Any] = {
 }
 
 
-def install(folder: Path, names: list[str]) -> tuple[Path, dict[str, str]]:
-    """The peers' interpreter, and why some of them are missing."""
-    python = folder / "env" / "bin" / "python"
-    if not python.exists():
-        subprocess.run([sys.executable, "-m", "venv", str(folder / "env")], check=True)
-    missing = {}
-    for name in names:
-        words = [str(python), "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
-        told = subprocess.run(
-            [*words, "numpy", PEERS[name]], capture_output=True, text=True, check=False
-        )
-        if told.returncode != 0:
-            lines = told.stderr.strip().splitlines() or ["pip says nothing"]
-            missing[name] = f"pip cannot install {PEERS[name]}: {lines[-1]}"
-    return python, missing
-
-
 def noise(responses: np.ndarray) -> list[float]:
     """Relative standard deviation of energies of 10 ms, the mean over each window."""
     step = SCENE["fs"] * STEP_MS // 1000
@@ -86,7 +70,7 @@ def heard(python: str, name: str, folder: Path, rays: int, times: int) -> dict[s
         check=False,
     )
     if told.returncode != 0:
-        return (told.stderr.strip().splitlines() or ["it says nothing"])[-1]
+        return last_line(told.stderr)
     with np.load(out) as file:
         return {
             "rays": rays,
@@ -117,7 +101,9 @@ def main() -> int:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "scene.json").write_text(json.dumps(SCENE), "utf-8")
     names = ["pyroomacoustics", *(["rlr"] if args.rlr else [])]
-    python, missing = install(args.out.resolve(), names)
+    wanted = {name: PEERS[name] for name in names}
+    # RLR has no wheel.
+    python, missing = environment(args.out.resolve(), wanted, compile_too=True)
     curves: dict[str, list[dict[str, Any]]] = {name: [] for name in ("dwell", *names)}
     for setting in range(len(RAYS["dwell"])):
         for name, curve in curves.items():
@@ -140,11 +126,11 @@ def main() -> int:
         if name not in missing:
             ratios = []
             for window in range(len(windows)):
-                wanted = [one["noise"][window] for one in curves[name]]
+                reached = [one["noise"][window] for one in curves[name]]
                 ratios.append(
                     [
                         one["s"] / seconds_at(curves["dwell"], window, spread)
-                        for one, spread in zip(curves[name], wanted, strict=True)
+                        for one, spread in zip(curves[name], reached, strict=True)
                     ]
                 )
             told = "; ".join(

@@ -38,19 +38,21 @@ class Absent(Exception):
     """A peer that is not to be had, with the reason."""
 
 
-def environment(folder: Path, compile_too: bool) -> tuple[Path, dict[str, str]]:
-    """The peers' interpreter, and why some of them are missing."""
+def environment(
+    folder: Path, peers: dict[str, str], compile_too: bool
+) -> tuple[Path, dict[str, str]]:
+    """The interpreter of peers by what pip calls them, and why some of them are missing."""
     python = folder / "env" / "bin" / "python"
     if not python.exists():
         subprocess.run([sys.executable, "-m", "venv", str(folder / "env")], check=True)
     pip = [str(python), "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
     subprocess.run([*pip, "numpy", "pillow"], check=True)
     missing = {}
-    for name, wanted in PEERS.items():
+    for name, wanted in peers.items():
         wheels = [] if compile_too else ["--only-binary", ":all:"]
         told = subprocess.run([*pip, *wheels, wanted], capture_output=True, text=True, check=False)
         if told.returncode != 0:
-            missing[name] = f"pip cannot install {wanted}: {_last_line(told.stderr)}"
+            missing[name] = f"pip cannot install {wanted}: {last_line(told.stderr)}"
     return python, missing
 
 
@@ -78,7 +80,7 @@ class Drawer:
                 answer: dict[str, Any] = json.loads(line)
                 return answer
         self.child.wait()
-        raise Absent(_last_line(self.errors.read_text("utf-8")))
+        raise Absent(last_line(self.errors.read_text("utf-8")))
 
     def views_per_s(self) -> float:
         """Draws all views once."""
@@ -188,7 +190,7 @@ def main() -> int:
     args = parser.parse_args()
     folder = args.out.resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    peer_python, missing = environment(folder, args.compile)
+    peer_python, missing = environment(folder, PEERS, args.compile)
     scene = folder / "scene"
     exporting = [sys.executable, str(HERE / "export.py"), args.house, str(scene)]
     subprocess.run([*exporting, "--views", str(args.views)], check=True)
@@ -224,7 +226,8 @@ def _processor() -> str:
     return platform.machine()
 
 
-def _last_line(text: str) -> str:
+def last_line(text: str) -> str:
+    """The last line that is not empty, where programs say why they failed."""
     lines = [line for line in text.splitlines() if line.strip()]
     return lines[-1].strip() if lines else "it says nothing"
 

@@ -5,7 +5,7 @@ use crate::bands::BAND_COUNT;
 /// Shortest window over which a band's energy is set, s.
 const SHORTEST_S: f64 = 0.01;
 /// A window holds at least this many periods of a band's lowest frequency, and up to [`LONG_S`] as many as [`GOOD_PERIODS`]: gains that
-/// change faster spread the band's noise over its neighbours, whose ears are more alike than its own.
+/// change faster spread the band's noise over its neighbours.
 const PERIODS: f64 = 2.0;
 const GOOD_PERIODS: f64 = 3.0;
 const LONG_S: f64 = 0.016;
