@@ -27,6 +27,7 @@ def navigation() -> list[dict[str, object]]:
     return [
         {"Home": "index.md"},
         {"Guide": guide.paths()},
+        {"Tutorials": sources.documents("docs/tutorials")},
         {
             "Reference": [
                 "environments.md",

@@ -8,6 +8,7 @@ from dwell import _native
 from dwell.envs.runner import INFO_KEYS
 from pages import rust
 from pages.observations import observation_table, settings_table, specifications
+from pages.sources import text
 from pages.tables import code
 
 _TASKS = "engine/world/src/tasks"
@@ -33,7 +34,13 @@ Without `sensors`; [all that can be asked for](observations.md).
 {observation_table(specifications(sensors, name))}
 ### Settings of {name}
 
-`task_settings` is a mapping with these fields.
+{_settings(file)}"""
+
+
+def _settings(file: str) -> str:
+    if "struct Settings {}" in text(file):
+        return "There are none.\n"
+    return f"""`task_settings` is a mapping with these fields.
 
 {settings_table(file, "Settings")}"""
 

@@ -6,7 +6,8 @@ import json
 
 import dwell
 from dwell import _native
-from dwell.envs.config import Sensors, env_json
+from dwell.envs.config import env_json
+from dwell.envs.custom import Native, NativeSensors
 from dwell.envs.spaces import Spec, specs
 from pages import rust
 from pages.tables import code, number, table
@@ -21,17 +22,9 @@ def sensor_names() -> list[str]:
     return [row["name"] for row in json.loads(_native.sensors_json())]
 
 
-def specifications(sensors: Sensors, task: str = "InstructionFollowing") -> list[Spec]:
+def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -> list[Spec]:
     """What sensors give; those that are only named with default settings."""
-    config = env_json(
-        task,
-        sensors=sensors,
-        laws=None,
-        parameters=None,
-        task_settings=None,
-        stride=None,
-        world=None,
-    )
+    config = env_json(Native(task, sensors=sensors))
     room = dwell.House.shoebox(_ROOM_M, substance="plaster")
     return specs(_native.Batch([room.native], config))
 

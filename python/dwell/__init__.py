@@ -32,16 +32,20 @@ if TYPE_CHECKING:
     from dwell.actions import Outcome, Pointed
     from dwell.calibration import calibrate
     from dwell.camera import Camera
-    from dwell.envs import register_envs
+    from dwell.envs import register_envs, register_task
     from dwell.heads import Head
     from dwell.house import House
     from dwell.listening import Microphone, Receiver, Source
     from dwell.navigation import Navigation, Walker
+    from dwell.rewards import Reward
+    from dwell.sensors import Sensor
+    from dwell.tasks import Ask, Task, Verdict
     from dwell.world import World
 
 # Imported at first use, so that the command line starts fast.
 _LAZY = {
     "AcousticScene": "dwell.acoustics",
+    "Ask": "dwell.tasks",
     "Camera": "dwell.camera",
     "Head": "dwell.heads",
     "House": "dwell.house",
@@ -50,15 +54,21 @@ _LAZY = {
     "Outcome": "dwell.actions",
     "Pointed": "dwell.actions",
     "Receiver": "dwell.listening",
+    "Reward": "dwell.rewards",
+    "Sensor": "dwell.sensors",
     "Source": "dwell.listening",
+    "Task": "dwell.tasks",
+    "Verdict": "dwell.tasks",
     "Walker": "dwell.navigation",
     "World": "dwell.world",
     "calibrate": "dwell.calibration",
     "register_envs": "dwell.envs",
+    "register_task": "dwell.envs",
 }
 
 __all__ = [
     "AcousticScene",
+    "Ask",
     "Camera",
     "ConfigError",
     "DwellError",
@@ -73,14 +83,19 @@ __all__ = [
     "Outcome",
     "Pointed",
     "Receiver",
+    "Reward",
     "SceneError",
+    "Sensor",
     "Source",
+    "Task",
     "UsageError",
+    "Verdict",
     "Walker",
     "World",
     "__version__",
     "calibrate",
     "register_envs",
+    "register_task",
 ]
 
 

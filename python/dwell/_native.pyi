@@ -155,6 +155,8 @@ class World:
         """``{"kind": "pick", "object": "mug_1"}`` and kin; answers ``{success, code, sentence, object, pointed}``."""
     def notices_json(self) -> str:
         """``[{agent, outcome}, ...]``: what became, in the last step, of actions that take time."""
+    def config_json(self) -> str:
+        """The settings, all of them, as the constructor reads them."""
     def place_agent(self, agent: int, place_json: str) -> None:
         """``{position, yaw_deg, pitch_deg, linear_m_s, yaw_rate_rad_s, crouched_by_m, wheel_rad_s}``."""
     def agents_json(self) -> str: ...
@@ -229,6 +231,12 @@ class Batch:
     def texts(self, sensor: int) -> list[str]: ...
     def render(self, env: int, view_json: str) -> NDArray[np.uint8]:
         """What environment ``env``'s agent sees, lit; ``view_json``: as :meth:`World.render`."""
+    def world(self, env: int) -> World:
+        """The world of environment ``env``, which both go on to use."""
+    def ask(self, env: int, instruction: str | None = ..., distance_m: float | None = ...) -> None:
+        """Asks something else (``None``: the same) of the episode that has just begun; the agent starts where it stands."""
+    def rule(self, env: int, ruling_json: str) -> str:
+        """Judges the latest step anew: ``{reward, terminated, success, distance_m}``; gives ``{distance_to_goal, spl, soft_spl}``."""
     def expert_actions(self) -> NDArray[np.int64]: ...
     def state_hash(self, env: int) -> int: ...
     def snapshot(self, env: int) -> bytes:

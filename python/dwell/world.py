@@ -27,6 +27,7 @@ from dwell.arguments import (
     whole,
 )
 from dwell.camera import Camera, Channel, camera_settings
+from dwell.guiding import Guiding
 from dwell.heads import Head
 from dwell.house import House
 from dwell.navigation import Navigation, Walker, walker_json
@@ -39,7 +40,7 @@ _MOST_IDS = 2**32 - 1
 JointCommand = Literal["off", "position", "velocity", "effort"]
 
 
-class World(Sounds):
+class World(Guiding, Sounds):
     """A running world with its own state over a shared house.
 
     A copy, or what comes out of a pickle, goes on from the moment it was made.
@@ -100,6 +101,14 @@ class World(Sounds):
             house.native.add_head(head.native)
         world._native = _native.World(house.native, config, seed)
         world.restore(snapshot)
+        return world
+
+    @classmethod
+    def of_env(cls, house: House, native: _native.World) -> World:
+        """The world of an environment, which goes on stepping it; tasks in Python are given it."""
+        world = cls.__new__(cls)
+        world.house, world._native, world._heads = house, native, ()
+        world._config, world._seed = native.config_json(), 0
         return world
 
     def __reduce__(self) -> tuple[Any, tuple[House, str, int, tuple[Head, ...], bytes]]:

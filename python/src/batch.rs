@@ -4,8 +4,9 @@ use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::PyHouse;
 use crate::picture;
+use crate::world::PyWorld;
 use dwell::sensors::{Dtype, Out};
-use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo};
+use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, Verdict};
 use dwell_scene::parallel::Threads;
 use numpy::{
     BorrowError, IntoPyArray, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1,
@@ -71,15 +72,25 @@ impl PyBatch {
         py: Python<'_>,
         work: impl FnOnce(&mut Batch) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
-        py.engine(|| {
-            let refuse = |_| {
-                Fault::Usage(
-                    "a bug of the engine stopped these environments; make new ones".to_owned(),
-                )
-            };
-            work(&mut *self.batch.lock().map_err(refuse)?)
+        py.engine(|| work(&mut *self.lock()?))
+    }
+
+    /// The batch for one call, without the GIL.
+    pub(crate) fn lock(&self) -> Result<std::sync::MutexGuard<'_, Batch>, Fault> {
+        self.batch.lock().map_err(|_| {
+            Fault::Usage("a bug of the engine stopped these environments; make new ones".to_owned())
         })
     }
+}
+
+/// What somebody else than the task says of a step.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Ruling {
+    reward: f64,
+    terminated: bool,
+    success: bool,
+    distance_m: Option<f64>,
 }
 
 #[pymethods]
@@ -200,6 +211,46 @@ impl PyBatch {
             });
         }
         self.with(py, |batch| Ok(batch.observe(&which, &mut slices)?))
+    }
+
+    /// The world of an environment, which both go on to use.
+    fn world(slf: Bound<'_, Self>, env: usize) -> PyResult<PyWorld> {
+        slf.get()
+            .with(slf.py(), |batch| Ok(batch.env(env).map(|_| ())?))?;
+        Ok(PyWorld::of_env(slf.unbind(), env))
+    }
+
+    #[pyo3(signature = (env, instruction=None, distance_m=None))]
+    fn ask(
+        &self,
+        py: Python<'_>,
+        env: usize,
+        instruction: Option<&str>,
+        distance_m: Option<f64>,
+    ) -> PyResult<()> {
+        self.with(py, |batch| {
+            let asked = instruction.map(|text| (text, distance_m));
+            Ok(batch.env_mut(env)?.ask(asked)?)
+        })
+    }
+
+    /// Gives back `{distance_to_goal, spl, soft_spl}`.
+    fn rule(&self, py: Python<'_>, env: usize, ruling_json: &str) -> PyResult<String> {
+        self.with(py, |batch| {
+            let ruling: Ruling = serde_json::from_str(ruling_json)?;
+            let verdict = Verdict {
+                reward: ruling.reward,
+                terminated: ruling.terminated,
+                success: ruling.success,
+            };
+            let progress = batch.env_mut(env)?.rule(verdict, ruling.distance_m)?;
+            Ok(serde_json::json!({
+                "distance_to_goal": progress.distance_m.unwrap_or(-1.0),
+                "spl": progress.spl(verdict.success),
+                "soft_spl": progress.soft_spl(),
+            })
+            .to_string())
+        })
     }
 
     fn texts(&self, py: Python<'_>, sensor: usize) -> PyResult<Vec<String>> {

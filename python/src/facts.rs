@@ -13,7 +13,7 @@ pub(crate) fn actions() -> Vec<&'static str> {
     DiscreteAction::ALL.map(DiscreteAction::name).to_vec()
 }
 
-/// The tasks: `[{name, version, about, max_steps, sensors}]`.
+/// The tasks: `[{name, version, about, asks, max_steps, sensors}]`.
 #[pyfunction]
 pub(crate) fn tasks_json() -> String {
     let tasks = dwell::tasks::all().iter().map(|kind| {
@@ -21,6 +21,7 @@ pub(crate) fn tasks_json() -> String {
             "name": kind.name,
             "version": kind.version,
             "about": kind.about,
+            "asks": kind.asks,
             "max_steps": kind.max_steps,
             "sensors": kind.sensors,
         })

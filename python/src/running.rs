@@ -1,19 +1,23 @@
 //! A running world, and how Python names what is in it.
 
 use crate::errors::Fault;
-use dwell::{Guide, World};
+use dwell::{Guide, Stride, World};
 use dwell_physics::ActionOutcome;
 use dwell_scene::{AgentId, Entity, Id, ObjectId, PartId};
 use serde_json::json;
 
-/// What a `World` of Python holds.
-pub(crate) struct Running {
-    pub(crate) world: World,
-    /// Size of the guide's walker and the guide.
-    pub(crate) guide: Option<([u32; 3], Guide)>,
+/// A guide, and the bits of the goal that it leads to.
+pub(crate) type GuideTo = Option<([u32; 3], Guide)>;
+
+/// What a `World` of Python works on: a world of its own, or that of an environment.
+pub(crate) struct Running<'a> {
+    pub(crate) world: &'a mut World,
+    pub(crate) guide: &'a mut GuideTo,
+    /// How far discrete actions go.
+    pub(crate) stride: Stride,
 }
 
-impl Running {
+impl Running<'_> {
     pub(crate) fn object(&self, named: &serde_json::Value) -> Result<ObjectId, Fault> {
         let house = self.world.house();
         let by_id = named

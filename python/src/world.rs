@@ -1,11 +1,12 @@
 //! Worlds for Python.
 
+use crate::batch::PyBatch;
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::{PyHouse, describe_level};
 use crate::navigation::PyNavigation;
 use crate::picture;
-use crate::running::Running;
+use crate::running::{GuideTo, Running};
 use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
 use dwell::{PlayRequest, SoundName, SoundPlace};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
@@ -21,16 +22,57 @@ use std::sync::{Mutex, TryLockError};
 /// A running world with its own state over a shared house.
 #[pyclass(name = "World", module = "dwell._native", frozen)]
 pub(crate) struct PyWorld {
-    world: Mutex<Running>,
+    source: Source,
+    guide: Mutex<GuideTo>,
+}
+
+/// Where a world lives.
+enum Source {
+    Own(Box<Mutex<World>>),
+    /// In an environment of a batch, which goes on stepping it.
+    Env {
+        batch: Py<PyBatch>,
+        env: usize,
+    },
 }
 
 impl PyWorld {
     pub(crate) fn with<T: Send>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&mut Running) -> Result<T, Fault> + Send,
+        work: impl FnOnce(&mut Running<'_>) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
-        py.engine(|| work(&mut *self.world.lock().map_err(|_| stopped())?))
+        py.engine(|| {
+            let mut guide = self.guide.lock().map_err(|_| stopped())?;
+            let work = |world: &mut World, stride| {
+                let guide = &mut *guide;
+                work(&mut Running {
+                    world,
+                    guide,
+                    stride,
+                })
+            };
+            match &self.source {
+                Source::Own(world) => {
+                    let mut world = world.lock().map_err(|_| stopped())?;
+                    work(&mut world, Stride::default())
+                }
+                Source::Env { batch, env } => {
+                    let mut batch = batch.get().lock()?;
+                    let env = batch.env_mut(*env)?;
+                    let stride = *env.stride();
+                    work(env.world_mut(), stride)
+                }
+            }
+        })
+    }
+
+    /// The world of environment `env`.
+    pub(crate) fn of_env(batch: Py<PyBatch>, env: usize) -> Self {
+        Self {
+            source: Source::Env { batch, env },
+            guide: Mutex::default(),
+        }
     }
 }
 
@@ -99,7 +141,8 @@ impl PyWorld {
             Ok(world)
         })?;
         Ok(Self {
-            world: Mutex::new(Running { world, guide: None }),
+            source: Source::Own(Box::new(Mutex::new(world))),
+            guide: Mutex::default(),
         })
     }
 
@@ -150,9 +193,7 @@ impl PyWorld {
             let action = known.ok_or_else(|| {
                 Fault::Config(format!("action {action}; allowed are 0 to {last}"))
             })?;
-            let outcome = running
-                .world
-                .act_discrete(agent, action, &Stride::default())?;
+            let outcome = running.world.act_discrete(agent, action, &running.stride)?;
             Ok(running.outcome_json(&outcome)?.to_string())
         })
     }
@@ -352,9 +393,9 @@ impl PyWorld {
                         "nobody can stand within 0.6 m of {goal:?}"
                     )));
                 };
-                running.guide = Some((bits, Guide::new(id, grid, &[cell], Stride::default())));
+                *running.guide = Some((bits, Guide::new(id, grid, &[cell], running.stride)));
             }
-            let Running { world, guide } = running;
+            let Running { world, guide, .. } = running;
             Ok(guide
                 .as_mut()
                 .and_then(|(_, guide)| guide.walk(world))
@@ -366,10 +407,8 @@ impl PyWorld {
         self.with(py, |running| {
             let agent = running.agent(agent)?;
             let object = running.object(&json!(object))?;
-            Ok(
-                dwell::face(&running.world, agent, object, &Stride::default())
-                    .map(|action| action as usize),
-            )
+            Ok(dwell::face(running.world, agent, object, &running.stride)
+                .map(|action| action as usize))
         })
     }
 
@@ -507,13 +546,21 @@ impl PyWorld {
     }
 
     fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
-        py.engine(|| match self.world.try_lock() {
-            Ok(mut running) => Ok(running.world.restore(snapshot)?),
-            Err(TryLockError::WouldBlock) => Err(Fault::Usage(
+        // Whoever waits for a step of another thread would undo it.
+        if let Source::Own(world) = &self.source
+            && let Err(TryLockError::WouldBlock) = world.try_lock()
+        {
+            return Err(crate::errors::to_python(Fault::Usage(
                 "restore: this world is busy in another thread; wait for its step to end"
                     .to_owned(),
-            )),
-            Err(TryLockError::Poisoned(_)) => Err(stopped()),
+            )));
+        }
+        self.with(py, |running| Ok(running.world.restore(snapshot)?))
+    }
+
+    fn config_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |running| {
+            Ok(serde_json::to_string(running.world.config())?)
         })
     }
 

@@ -29,6 +29,32 @@ MARKDOWN = sorted(
 )
 
 
+#: Pages whose Python needs an adapter for graphics.
+NEED_AN_ADAPTER = ("docs/rendering.md",)
+PROGRAMS = [
+    file
+    for file in MARKDOWN
+    if file.startswith("docs/")
+    and file not in NEED_AN_ADAPTER
+    and "```python" in (ROOT / file).read_text("utf-8")
+]
+
+
+@pytest.mark.parametrize("file", PROGRAMS)
+def test_the_python_of_a_page_runs_from_its_beginning_to_its_end(file: str, tmp_path: Path) -> None:
+    text = (ROOT / file).read_text("utf-8")
+    program = "\n".join(re.findall(r"```python\n(.*?)```", text, re.DOTALL))
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", program],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.fixture
 def pages(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     monkeypatch.syspath_prepend(str(ROOT / "docs"))

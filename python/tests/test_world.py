@@ -310,17 +310,10 @@ def test_a_forked_child_can_step_and_render(apartment: dwell.House) -> None:
 
 def test_observations_are_written_in_place() -> None:
     from dwell.envs.config import env_json
+    from dwell.envs.custom import Native
     from dwell.envs.runner import Runner
 
-    config = env_json(
-        "InstructionFollowing",
-        sensors={"rgb": {"width": 16, "height": 16}},
-        laws=None,
-        parameters=None,
-        task_settings=None,
-        stride=None,
-        world=None,
-    )
+    config = env_json(Native("InstructionFollowing", sensors={"rgb": {"width": 16, "height": 16}}))
     runner = Runner([dwell.House.open("builtin:apartment")], config, 1)
     runner.batch.reset([0])
     buffer = runner.buffers[0]

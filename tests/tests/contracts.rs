@@ -139,10 +139,10 @@ fn episodes_do_not_remember_earlier_ones() {
     assert!(play(&[1, 2]) == play(&[2]));
 }
 
-/// Every task's expert succeeds in all of twenty fixed seeds.
+/// The expert of every task that asks for something succeeds in all of twenty fixed seeds.
 #[test]
 fn every_task_can_be_solved_by_its_expert() {
-    for kind in tasks::all() {
+    for kind in tasks::all().iter().filter(|kind| kind.asks) {
         let mut env = dwell_tests::env_of(kind.name, &["instruction"]);
         let mut solved = 0;
         for seed in 0..20 {

@@ -78,11 +78,10 @@ class Walker:
 
     def walk_to(self, goal: list[float]) -> bool:
         """Walks to a point; doors on the way are opened."""
-        x, y, z = goal
         for _ in range(_LONGEST_WALK):
             if self.tired():
                 return False
-            step = self.world.native.guide(0, (x, y, z))
+            step = self.world.toward(goal)
             if step is None:
                 return True
             self.act(step)
@@ -91,11 +90,11 @@ class Walker:
     def face(self, thing: str) -> bool:
         """Turns to a thing; whether it is then in the middle of the view."""
         for _ in range(60):
-            step = self.world.native.face(0, thing)
+            step = self.world.facing(thing)
             if step is None:
                 break
             self.act(step)
-        return self.world.native.gaze_target(0) == thing
+        return self.world.gaze_target() == thing
 
 
 def _distance(a: list[float], b: list[float]) -> float:

@@ -1,9 +1,9 @@
 """Gymnasium environments, registered as ``dwell/<Task>-v<version>``."""
 
-from dwell.envs.registration import register_envs
+from dwell.envs.registration import register_envs, register_task
 from dwell.envs.single import DwellEnv
 from dwell.envs.vector import DwellVectorEnv
 
-__all__ = ["DwellEnv", "DwellVectorEnv", "register_envs"]
+__all__ = ["DwellEnv", "DwellVectorEnv", "register_envs", "register_task"]
 
 register_envs()

@@ -9,12 +9,11 @@ from typing import Any
 
 from dwell import ConfigError
 from dwell.arguments import fields, finite, mapping, text, texts, to_json
+from dwell.envs.custom import Native
 from dwell.house import House
 from dwell.settings import Laws, world_settings
 
 Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | House]
-Sensors = Sequence[str] | Mapping[str, Mapping[str, Any]] | None
-
 
 _STRIDE = {"forward_m": finite, "turn_deg": finite, "look_deg": finite}
 
@@ -65,26 +64,24 @@ def _expanded(row: object) -> list[object]:
 
 
 def env_json(
-    task: str,
+    native: Native,
     *,
-    sensors: Sensors,
-    laws: Laws,
-    parameters: Mapping[str, float] | None,
-    task_settings: Mapping[str, Any] | None,
-    stride: Mapping[str, float] | None,
-    world: Mapping[str, Any] | None,
+    laws: Laws = None,
+    parameters: Mapping[str, float] | None = None,
+    stride: Mapping[str, float] | None = None,
+    world: Mapping[str, Any] | None = None,
 ) -> str:
     """The native ``EnvConfig`` as JSON."""
     config: dict[str, Any] = {
-        "task": text("task", task),
+        "task": text("task", native.task),
         "world": world_settings(laws, parameters, world),
     }
-    if task_settings is not None:
-        config["task_settings"] = mapping("task_settings", task_settings)
+    if native.settings is not None:
+        config["task_settings"] = mapping("task_settings", native.settings)
     if stride is not None:
         config["stride"] = fields("stride", stride, _STRIDE)
-    if sensors is not None:
-        config["sensors"] = _sensors(sensors)
+    if native.sensors is not None:
+        config["sensors"] = _sensors(native.sensors)
     return to_json(config)
 
 

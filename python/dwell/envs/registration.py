@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import gymnasium
 
-from dwell import _native
+from dwell import ConfigError, _native
+from dwell.arguments import text
+from dwell.envs.custom import TaskChoice
+from dwell.parts import factory
+from dwell.tasks import Task
 
 
 def env_ids() -> list[str]:
@@ -27,3 +32,31 @@ def register_envs() -> None:
             max_episode_steps=task["max_steps"],
             kwargs={"task": task["name"]},
         )
+
+
+def register_task(env_id: str, task: TaskChoice, **kwargs: Any) -> None:  # noqa: ANN401 - DwellEnv's
+    """Registers a task of one's own with gymnasium.
+
+    Args:
+        env_id: What ``gymnasium.make`` and ``make_vec`` will know it by, such as ``"me/Fetch-v0"``.
+        task: A subclass of :class:`dwell.Task`, or its ``"module:Name"``, by which other processes
+            find it, too.
+        **kwargs: Further arguments of :class:`dwell.envs.DwellEnv`.
+
+    Raises:
+        ConfigError: The id is of no form that gymnasium knows, or taken.
+    """
+    settings = kwargs.get("task_settings")
+    steps = factory("task", task, Task, settings)().max_steps
+    if text("env_id", env_id) in gymnasium.registry:
+        raise ConfigError(f"env_id is {env_id!r}, which is registered already")
+    try:
+        gymnasium.register(
+            env_id,
+            entry_point="dwell.envs:DwellEnv",
+            vector_entry_point="dwell.envs:DwellVectorEnv",
+            max_episode_steps=steps,
+            kwargs={"task": task, **kwargs},
+        )
+    except gymnasium.error.Error as error:
+        raise ConfigError(f"env_id is {env_id!r}: {error}") from None

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from gymnasium import spaces
 from numpy.typing import NDArray
 
-from dwell import _native
+from dwell import ConfigError, _native
+from dwell.envs.custom import Custom, Play, checked_spaces
 from dwell.envs.spaces import specs
 from dwell.heads import Head
 from dwell.house import House
@@ -27,7 +29,7 @@ INFO_KEYS = (
 
 
 class Runner:
-    """Native environments and the arrays they write into."""
+    """Native environments with their Python parts, and the arrays they write into."""
 
     def __init__(
         self,
@@ -35,6 +37,7 @@ class Runner:
         config: str,
         threads: int | None,
         *,
+        custom: Custom | None = None,
         overlap: bool = False,
         heads: Sequence[Head] = (),
     ) -> None:
@@ -46,14 +49,74 @@ class Runner:
         self.count = len(houses)
         self.specs = specs(self.batch)
         self.buffers: list[NDArray[Any] | None] = [spec.buffer(self.count) for spec in self.specs]
+        self.plays = (
+            [Play(self.batch, k, house, custom) for k, house in enumerate(houses)]
+            if custom is not None and custom != Custom()
+            else []
+        )
+        native = {spec.name: spec.space() for spec in self.specs}
+        own = checked_spaces(self.plays[0].sensors, native) if self.plays else {}
+        #: The space of one environment's observation.
+        self.space = spaces.Dict({**native, **own})
+        self._own: dict[str, Any] = {
+            name: [""] * self.count
+            if isinstance(space, spaces.Text)
+            else np.zeros((self.count, *(space.shape or ())), space.dtype)
+            for name, space in own.items()
+        }
+
+    def reset(self, seeds: Sequence[int | None]) -> None:
+        """Begins the episodes of seeds, one for each environment; ``None``: goes on."""
+        self.batch.reset(seeds)
+        for play, seed in zip(self.plays, seeds, strict=False):
+            if seed is not None:
+                play.begin(seed)
+
+    def restore(self, snapshot: bytes, parts: bytes, seed: int) -> None:
+        """Goes to a snapshot of the only environment, of an episode of ``seed``."""
+        checked = [play.loaded(parts) for play in self.plays]
+        if parts and not self.plays:
+            raise ConfigError("snapshot refused: it is of an environment with parts in Python")
+        self.batch.restore(0, snapshot)
+        for play, states in zip(self.plays, checked, strict=True):
+            play.load(states, seed)
+
+    def step(self, numbers: NDArray[np.int64]) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
+        """One control step by the numbers of actions, -1 for none.
+
+        Returns:
+            The engine's answer, as changed by tasks in Python, and what these add to each info.
+        """
+        answer: dict[str, Any] = self.batch.step(numbers)
+        names = _native.actions()
+        further = [
+            play.judge(names[number], answer) if number >= 0 else {}
+            for play, number in zip(self.plays, numbers, strict=False)
+        ]
+        return answer, further
+
+    def expert_actions(self) -> NDArray[np.int64]:
+        """What the experts of the tasks would do now."""
+        own = [play.expert() for play in self.plays]
+        if own and None not in own:
+            return np.array(own, np.int64)
+        return self.batch.expert_actions()
 
     def observe(self, which: NDArray[np.bool_]) -> None:
         """Writes the observations of the environments in ``which`` into the buffers."""
         self.batch.observe(which, self.buffers)
+        for k in np.flatnonzero(which) if self._own else ():
+            for name, value in self.plays[k].observe().items():
+                self._own[name][k] = value
 
     def observation(self) -> dict[str, Any]:
         """The buffers by name: arrays (count, *shape), overwritten later; tuples of strings."""
-        return {
+        native = {
             spec.name: tuple(self.batch.texts(k)) if buffer is None else buffer
             for k, (spec, buffer) in enumerate(zip(self.specs, self.buffers, strict=True))
         }
+        own = {
+            name: tuple(values) if isinstance(values, list) else values
+            for name, values in self._own.items()
+        }
+        return {**native, **own}

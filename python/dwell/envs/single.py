@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import mapping, to_json, whole
 from dwell.camera import Camera, camera_settings
-from dwell.envs.config import KEPT, Houses, HouseShelf, Sensors, env_json
+from dwell.envs.config import KEPT, Houses, HouseShelf, env_json
+from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.runner import INFO_KEYS, Runner
-from dwell.envs.spaces import action_space, observation_space
+from dwell.envs.spaces import action_space
 from dwell.settings import Laws, with_head
 
 #: The image that ``render()`` gives.
@@ -39,10 +40,11 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
     def __init__(
         self,
-        task: str = "InstructionFollowing",
+        task: TaskChoice = "InstructionFollowing",
         *,
         houses: Houses = "builtin:apartment",
         sensors: Sensors = None,
+        reward: RewardChoice = None,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
         task_settings: Mapping[str, Any] | None = None,
@@ -54,13 +56,15 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """Makes the environment.
 
         Args:
-            task: The task's name.
+            task: The task's name, or a subclass of :class:`dwell.Task`, or its ``"module:Name"``.
             houses: A HOUSE string or a :class:`dwell.House`, or several.
-            sensors: Names of sensors, or settings by name; default the task's own choice.
+            sensors: Names of sensors, or settings by name; default the task's own choice. Among
+                names, or in place of settings, may be subclasses of :class:`dwell.Sensor`.
+            reward: A subclass of :class:`dwell.Reward`, in place of the task's own reward.
             laws: Laws to install; or what calibration found (laws and parameters), as a mapping or
                 as the path of its ``found.json``.
             parameters: Values by address; they go before those that calibration found.
-            task_settings: The task's own settings.
+            task_settings: The task's own settings; the arguments of a task in Python.
             stride: How far movement actions go: ``forward_m``, ``turn_deg``, ``look_deg``.
             world: Further fields of the native WorldConfig; ``sound_head`` may be a
                 :class:`dwell.Head` or the path of its SOFA file.
@@ -72,6 +76,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             task,
             houses=houses,
             sensors=sensors,
+            reward=reward,
             laws=laws,
             parameters=parameters,
             task_settings=task_settings,
@@ -85,14 +90,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             raise ConfigError(f"render_mode: found {render_mode!r}, allowed are None and {modes}")
         self.render_mode = render_mode
         world, self._heads = with_head(world)
+        native, self._custom = split(task, task_settings, reward, sensors)
         self._config = env_json(
-            task,
-            sensors=sensors,
-            laws=laws,
-            parameters=parameters,
-            task_settings=task_settings,
-            stride=stride,
-            world=world,
+            native, laws=laws, parameters=parameters, stride=stride, world=world
         )
         self._shelf = HouseShelf(houses)
         self._threads = None if threads is None else whole("threads", threads, low=1)
@@ -102,7 +102,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._episode = 0
         self._seed = 0
         self._alone = np.ones(1, np.bool_)
-        self.observation_space = observation_space(self._runner.specs)
+        self.observation_space = self._runner.space
         self.action_space = action_space()
 
     @property
@@ -112,12 +112,18 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return self._runner_of(self._house)
 
     def _run(self, house: int) -> Runner:
-        return Runner([self._shelf[house]], self._config, self._threads, heads=self._heads)
+        return Runner(
+            [self._shelf[house]],
+            self._config,
+            self._threads,
+            custom=self._custom,
+            heads=self._heads,
+        )
 
     def _observation(self) -> dict[str, Any]:
         self._runner.observe(self._alone)
         return {
-            name: value[0] if isinstance(value, tuple) else value[0].copy()
+            name: value[0] if isinstance(value, tuple) or value.ndim == 1 else value[0].copy()
             for name, value in self._runner.observation().items()
         }
 
@@ -160,7 +166,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         if "episode_id" in options:
             house, episode = self._replayed(options["episode_id"])
         self._house, self._seed = house, episode
-        self._runner.batch.reset([self._seed])
+        self._runner.reset([self._seed])
         return self._observation(), self._info()
 
     def step(
@@ -168,7 +174,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     ) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Makes one control step; ``action``: a number of :meth:`actions`."""
         number = whole("action", action, high=len(self.actions()) - 1)
-        answer = self._runner.batch.step(np.array([number], np.int64))
+        answer, further = self._runner.step(np.array([number], np.int64))
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
         info["action_error"] = answer["action_error"][0]
         terminated = bool(answer["terminated"][0])
@@ -182,6 +188,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             {
                 **info,
                 **self._info(),
+                **(further[0] if further else {}),
             },
         )
 
@@ -202,7 +209,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
     def expert_action(self) -> int:
         """What the task's scripted expert would do now."""
-        return int(self._runner.batch.expert_actions()[0])
+        return int(self._runner.expert_actions()[0])
 
     def state_hash(self) -> int:
         """A number that changes with any bit of state, physics, sound queues or random streams."""
@@ -211,7 +218,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def snapshot(self) -> bytes:
         """Episode and world as bytes."""
         episode_id = str(self._info()["episode_id"])
-        return episode_id.encode() + b"\0" + self._runner.batch.snapshot(0)
+        plays = self._runner.plays
+        parts = plays[0].save() if plays else b""
+        return b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0)))
 
     def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
         """Goes to where the snapshot was taken; the next steps give the same bits as they did then.
@@ -224,12 +233,14 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         if not isinstance(snapshot, bytes):
             raise ConfigError(f"snapshot is {snapshot!r}; expected the bytes of an environment's")
         episode_id, _, rest = snapshot.partition(b"\0")
+        parts, _, rest = rest.partition(b"\0")
         try:
             house, seed = self._replayed(episode_id.decode(errors="replace"))
         except ConfigError as error:
             raise ConfigError(f"snapshot refused: {error}") from None
         # Nothing changes before it was accepted.
-        self._runner_of(house).batch.restore(0, rest)
+        runner = self._runner_of(house)
+        runner.restore(rest, parts, seed)
         self._house, self._seed = house, seed
         return self._observation(), self._info()
 

@@ -58,11 +58,6 @@ def specs(batch: _native.Batch) -> list[Spec]:
     return [Spec(**{**row, "shape": tuple(row["shape"])}) for row in rows]
 
 
-def observation_space(sensors: list[Spec]) -> spaces.Dict:
-    """The space of one environment's observation."""
-    return spaces.Dict({spec.name: spec.space() for spec in sensors})
-
-
 def action_space() -> spaces.Discrete:
     """The space of one environment's action."""
     return spaces.Discrete(len(_native.actions()))

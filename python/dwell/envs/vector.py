@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import mapping, whole
-from dwell.envs.config import Houses, HouseShelf, Sensors, env_json
+from dwell.envs.config import Houses, HouseShelf, env_json
+from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.runner import INFO_KEYS, Runner
-from dwell.envs.spaces import action_space, observation_space
+from dwell.envs.spaces import action_space
 from dwell.settings import Laws, with_head
 
 
@@ -29,10 +30,11 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
     def __init__(
         self,
         num_envs: int = 1,
-        task: str = "InstructionFollowing",
+        task: TaskChoice = "InstructionFollowing",
         *,
         houses: Houses = "builtin:apartment",
         sensors: Sensors = None,
+        reward: RewardChoice = None,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
         task_settings: Mapping[str, Any] | None = None,
@@ -49,9 +51,10 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
 
         Args:
             num_envs: How many.
-            task: The task's name.
+            task: The task's name, or a subclass of :class:`dwell.Task`.
             houses: A HOUSE string or a :class:`dwell.House`, or several.
-            sensors: Names of sensors, or settings by name.
+            sensors: Names of sensors, or settings by name; subclasses of :class:`dwell.Sensor`.
+            reward: A subclass of :class:`dwell.Reward`.
             laws: Laws to install, or what calibration found.
             parameters: Values by address.
             task_settings: The task's own settings.
@@ -72,6 +75,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             task,
             houses=houses,
             sensors=sensors,
+            reward=reward,
             laws=laws,
             parameters=parameters,
             task_settings=task_settings,
@@ -92,27 +96,20 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {"autoreset_mode": self.autoreset_mode, "render_modes": []}
         world, heads = with_head(world)
-        config = env_json(
-            task,
-            sensors=sensors,
-            laws=laws,
-            parameters=parameters,
-            task_settings=task_settings,
-            stride=stride,
-            world=world,
-        )
+        native, custom = split(task, task_settings, reward, sensors)
+        config = env_json(native, laws=laws, parameters=parameters, stride=stride, world=world)
         shelf = HouseShelf(houses)
         threads = None if threads is None else whole("threads", threads, low=1)
         if not isinstance(overlap, bool):
             raise ConfigError(f"overlap: found {overlap!r}, allowed are True and False")
         rows = [shelf[k] for k in range(num_envs)]
-        self._runner = Runner(rows, config, threads, overlap=overlap, heads=heads)
+        self._runner = Runner(rows, config, threads, custom=custom, overlap=overlap, heads=heads)
         self._limit = max_episode_steps if max_episode_steps and max_episode_steps > 0 else None
         self._copy = copy
         self._streams: list[np.random.Generator | None] = [None] * num_envs
         self._steps = np.zeros(num_envs, np.int64)
         self._done = np.ones(num_envs, np.bool_)
-        self.single_observation_space = observation_space(self._runner.specs)
+        self.single_observation_space = self._runner.space
         self.single_action_space = action_space()
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
@@ -130,7 +127,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             int(stream.integers(2**63)) if start and stream is not None else None
             for stream, start in zip(self._streams, which, strict=True)
         ]
-        self._runner.batch.reset(seeds)
+        self._runner.reset(seeds)
         self._steps[which] = 0
         self._done[which] = False
 
@@ -202,7 +199,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             raise UsageError(f"environments {which} have ended; reset them with reset_mask first")
         if begins.any():
             self._start(begins)
-        answer = self._runner.batch.step(np.where(begins, -1, numbers.astype(np.int64)))
+        answer, further = self._runner.step(np.where(begins, -1, numbers.astype(np.int64)))
         self._steps[~begins] += 1
         rewards = np.asarray(answer["reward"], np.float64)
         terminated = np.asarray(answer["terminated"], np.bool_)
@@ -219,12 +216,15 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         infos["_action_error"] = stepped
         infos["audio_clipped"] = np.array(self._runner.batch.clipped(), np.int64)
         infos["_audio_clipped"] = np.ones(self.num_envs, np.bool_)
+        for k, row in enumerate(further):
+            infos = self._add_info(infos, dict(row), k)
         self._done = terminated | truncated
         if self._done.any() and self.autoreset_mode is AutoresetMode.SAME_STEP:
-            infos |= self._restart(infos)
+            own = [key for key in infos if key not in (*INFO_KEYS, "action_error", "audio_clipped")]
+            infos |= self._restart(infos, [key for key in own if not key.startswith("_")])
         return self._observation(), rewards, terminated, truncated, infos
 
-    def _restart(self, infos: dict[str, Any]) -> dict[str, Any]:
+    def _restart(self, infos: dict[str, Any], own: Sequence[str]) -> dict[str, Any]:
         """Starts ended environments anew within the step; what they ended with goes into infos."""
         ended = self._done.copy()
         last = self._runner.observation()
@@ -235,7 +235,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
                 for key, value in last.items()
             }
         final_info: dict[str, Any] = {}
-        for key in (*INFO_KEYS, "action_error"):
+        for key in (*INFO_KEYS, "action_error", *own):
             final_info |= {key: infos[key].copy(), f"_{key}": ended}
         self._start(ended)
         self._runner.observe(ended)
@@ -252,7 +252,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
 
     def expert_actions(self) -> NDArray[np.int64]:
         """What the task's scripted expert would do now, in every environment."""
-        return self._runner.batch.expert_actions()
+        return self._runner.expert_actions()
 
     def state_hashes(self) -> list[int]:
         """The state hash of every environment."""

@@ -3,6 +3,7 @@
 //! Reward: by how much the geodesic distance to the goal fell (m), minus 0.01 a step, plus 2.5 for stopping where the
 //! instruction is fulfilled. The episode ends with `stop`.
 
+use super::leaves::Leaves;
 use super::{Task, TaskKind};
 use crate::action::{DiscreteAction, Stride};
 use crate::env::{Episode, Verdict};
@@ -11,9 +12,9 @@ use crate::expert::{Guide, face};
 use crate::metrics::Progress;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::navigation::{Cell, Door, NavGrid};
+use dwell_scene::navigation::{Cell, NavGrid};
 use dwell_scene::random::Key;
-use dwell_scene::{Aabb, AgentId, Pose, State};
+use dwell_scene::{AgentId, Pose, State};
 use dwell_semantics::instruct::{self, Instruction, InstructionKind};
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
@@ -29,6 +30,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     name: NAME,
     version: 0,
     about: "Follow an instruction: go to a room or find a thing, then stop.",
+    asks: true,
     max_steps: 1000,
     sensors: &[
         "rgb",
@@ -199,32 +201,6 @@ fn goal_cells(world: &World, grid: &NavGrid, instruction: &Instruction) -> Vec<C
         .collect()
 }
 
-/// A door's leaf as it stands now: a box in its own frame.
-struct Leaf {
-    leaf_from_world: Pose,
-    bounds: Aabb,
-}
-
-impl Leaf {
-    fn of(world: &World, door: &Door) -> Self {
-        let house = world.house();
-        let child = house.joints[door.joint].child;
-        let part = &house.parts[child];
-        let corners = house.meshes[part.mesh].positions.iter();
-        Self {
-            leaf_from_world: world.state().part_pose[child].inverse(),
-            bounds: Aabb::from_points(corners.map(|p| part.part_from_mesh.transform_point3(*p))),
-        }
-    }
-
-    /// Distance from feet that stand at `at`, seen from above, m; leaves of other storeys are far.
-    fn apart_m(&self, at: Vec3) -> f32 {
-        // At half the height of a leaf, where handles stand out.
-        let point = self.leaf_from_world.transform_point(at + Vec3::Y);
-        (point.clamp(self.bounds.min, self.bounds.max) - point).length()
-    }
-}
-
 impl Task for InstructionFollowing {
     fn reset(&mut self, world: &mut World, key: Key) -> Result<Episode, WorldError> {
         let agent = AgentId(0);
@@ -242,17 +218,7 @@ impl Task for InstructionFollowing {
             house: world.house().name.clone(),
             why: why.to_owned(),
         };
-        let apart_m = grid.config().radius_m + 0.5 * grid.config().cell_m;
-        let leaves: Vec<Leaf> = grid
-            .doors()
-            .iter()
-            .map(|door| Leaf::of(world, door))
-            .collect();
-        // The grid has all doors open; an agent that starts must not stand in a leaf as it stands.
-        let in_a_leaf = |cell: Cell| {
-            let at = grid.position(cell);
-            leaves.iter().any(|leaf| leaf.apart_m(at) < apart_m)
-        };
+        let leaves = Leaves::of(world, &grid);
         let mut order: Vec<usize> = (0..self.offers.len()).collect();
         key.child("order").stream().shuffle(&mut order);
         let found = order.into_iter().find_map(|k| {
@@ -262,7 +228,7 @@ impl Task for InstructionFollowing {
             let allowed = |cell: Cell| {
                 grid.island(cell) == Some(0)
                     && guide.at(cell).is_some_and(|d| range.contains(&d))
-                    && !in_a_leaf(cell)
+                    && !leaves.block(&grid, cell)
             };
             let start = grid.sample(key.child("start"), allowed)?;
             Some((offer, guide, start))

@@ -1,6 +1,8 @@
 //! Tasks: what an episode asks for and how it is judged. One file each, and one line in [`all`].
 
+mod free;
 mod instruction_following;
+mod leaves;
 
 use crate::action::{DiscreteAction, Stride};
 use crate::env::{Episode, Verdict};
@@ -39,6 +41,8 @@ pub struct TaskKind {
     pub version: u32,
     /// One sentence about it.
     pub about: &'static str,
+    /// Whether something is asked, so that an episode can succeed.
+    pub asks: bool,
     /// Control steps after which an episode is cut off.
     pub max_steps: u64,
     /// The sensors that its environment has when nobody says otherwise.
@@ -49,7 +53,7 @@ pub struct TaskKind {
 
 /// All tasks.
 pub fn all() -> &'static [TaskKind] {
-    &[instruction_following::KIND]
+    &[instruction_following::KIND, free::KIND]
 }
 
 /// The kind called `name`.

@@ -1,0 +1,96 @@
+//! Nothing is asked: a place to explore, to collect data in, and to build tasks upon.
+//!
+//! The agent starts anywhere on the largest piece of floor that it can walk, looking anywhere. Every reward is 0, and an episode
+//! ends with `stop`, without success.
+
+use super::leaves::Leaves;
+use super::{Task, TaskKind};
+use crate::action::{DiscreteAction, Stride};
+use crate::env::{Episode, Verdict};
+use crate::error::WorldError;
+use crate::metrics::Progress;
+use crate::world::World;
+use dwell_scene::random::Key;
+use dwell_scene::{AgentId, Pose};
+use dwell_semantics::tokens;
+use serde::{Deserialize, Serialize};
+
+const NAME: &str = "Free";
+/// What the sensors of instructions give.
+const INSTRUCTION: &str = "Explore.";
+
+pub(super) const KIND: TaskKind = TaskKind {
+    name: NAME,
+    version: 0,
+    about: "Nothing is asked; explore, or build a task of your own upon it.",
+    asks: false,
+    max_steps: 1000,
+    sensors: &["rgb", "depth", "semantic", "audio"],
+    build,
+};
+
+/// The task's settings.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Settings {}
+
+fn build(value: &serde_json::Value, _: Stride) -> Result<Box<dyn Task>, WorldError> {
+    if !value.is_null() {
+        let refuse = |error| WorldError::Settings {
+            of: "task_settings",
+            found: value.to_string(),
+            error,
+        };
+        let Settings {} = serde_json::from_value(value.clone()).map_err(refuse)?;
+    }
+    Ok(Box::new(Free))
+}
+
+#[derive(Debug)]
+struct Free;
+
+impl Task for Free {
+    fn reset(&mut self, world: &mut World, key: Key) -> Result<Episode, WorldError> {
+        let agent = AgentId(0);
+        let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
+            return Err(WorldError::Usage(format!(
+                "{NAME} needs a world with one agent"
+            )));
+        };
+        let grid = world.engines().navigation(&body)?;
+        let leaves = Leaves::of(world, &grid);
+        let on_island = |cell| grid.island(cell) == Some(0) && !leaves.block(&grid, cell);
+        let start = grid.sample(key.child("start"), on_island);
+        let Some(position) = start.map(|cell| grid.position(cell)) else {
+            return Err(WorldError::Unplayable {
+                task: NAME,
+                house: world.house().name.clone(),
+                why: "nobody of the agent's size can stand anywhere".to_owned(),
+            });
+        };
+        let (low, high) = (-std::f32::consts::PI, std::f32::consts::PI);
+        let yaw_rad = key.child("yaw").stream().range(low, high);
+        world.place_agent(agent, position, yaw_rad)?;
+        Ok(Episode {
+            instruction: INSTRUCTION.to_owned(),
+            tokens: vec![tokens::PAD; tokens::LENGTH],
+            start: Pose::from_position_yaw(position, yaw_rad),
+            progress: Progress::new(position, None),
+        })
+    }
+
+    fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict {
+        if let Some(agent) = world.state().agents.get(AgentId(0)) {
+            let progress = &mut episode.progress;
+            progress.advance(agent.position, None, agent.collided);
+        }
+        Verdict {
+            terminated: action == DiscreteAction::Stop,
+            ..Verdict::default()
+        }
+    }
+
+    fn expert(&mut self, _: &mut World, _: &Episode) -> DiscreteAction {
+        DiscreteAction::Stop
+    }
+}

@@ -1,0 +1,56 @@
+//! Where the leaves of doors stand, which the grid of a walker has all open.
+
+use crate::world::World;
+use dwell_scene::navigation::{Cell, Door, NavGrid};
+use dwell_scene::{Aabb, Pose};
+use glam::Vec3;
+
+/// A door's leaf as it stands now: a box in its own frame.
+struct Leaf {
+    leaf_from_world: Pose,
+    bounds: Aabb,
+}
+
+impl Leaf {
+    fn of(world: &World, door: &Door) -> Self {
+        let house = world.house();
+        let child = house.joints[door.joint].child;
+        let part = &house.parts[child];
+        let corners = house.meshes[part.mesh].positions.iter();
+        Self {
+            leaf_from_world: world.state().part_pose[child].inverse(),
+            bounds: Aabb::from_points(corners.map(|p| part.part_from_mesh.transform_point3(*p))),
+        }
+    }
+
+    /// Distance from feet that stand at `at`, seen from above, m; leaves of other storeys are far.
+    fn apart_m(&self, at: Vec3) -> f32 {
+        // At half the height of a leaf, where handles stand out.
+        let point = self.leaf_from_world.transform_point(at + Vec3::Y);
+        (point.clamp(self.bounds.min, self.bounds.max) - point).length()
+    }
+}
+
+/// The leaves of all doors of a grid.
+pub(super) struct Leaves {
+    leaves: Vec<Leaf>,
+    apart_m: f32,
+}
+
+impl Leaves {
+    pub(super) fn of(world: &World, grid: &NavGrid) -> Self {
+        let doors = grid.doors();
+        Self {
+            leaves: doors.iter().map(|door| Leaf::of(world, door)).collect(),
+            apart_m: grid.config().radius_m + 0.5 * grid.config().cell_m,
+        }
+    }
+
+    /// Whether who stands on `cell` would stand in a leaf.
+    pub(super) fn block(&self, grid: &NavGrid, cell: Cell) -> bool {
+        let at = grid.position(cell);
+        self.leaves
+            .iter()
+            .any(|leaf| leaf.apart_m(at) < self.apart_m)
+    }
+}

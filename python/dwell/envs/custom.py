@@ -1,0 +1,300 @@
+"""Plays tasks, rewards and sensors that are written in Python upon native environments."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from dwell import ConfigError, _native
+from dwell.arguments import finite, flag, mapping, text, to_json
+from dwell.house import House
+from dwell.parts import factory
+from dwell.rewards import Reward
+from dwell.sensors import Sensor
+from dwell.tasks import Ask, Task, Verdict
+from dwell.world import World
+
+#: By name, or what makes a task of one's own: a class, a function or ``"module:Name"``.
+TaskChoice = str | Callable[..., Task]
+#: What makes a reward of one's own.
+RewardChoice = str | Callable[[], Reward] | None
+#: Names of sensors and what makes sensors of one's own; or settings or such a maker by name.
+Sensors = (
+    Sequence[str | Callable[[], Sensor]]
+    | Mapping[str, Mapping[str, Any] | Callable[[], Sensor]]
+    | None
+)
+
+#: Names of the engine's sensors, or their settings by name.
+NativeSensors = Sequence[str] | Mapping[str, Mapping[str, Any]] | None
+
+#: Streams of random numbers of an episode: the task's, and from the next number on the sensors'.
+_TASK_STREAM = 0
+#: The spaces that sensors can have, each with arrays or text as elements.
+_SPACES = (spaces.Box, spaces.Discrete, spaces.MultiDiscrete, spaces.MultiBinary, spaces.Text)
+
+
+@dataclasses.dataclass(frozen=True)
+class Custom:
+    """What makes the Python parts of an environment; empty for most."""
+
+    task: Callable[[], Task] | None = None
+    reward: Callable[[], Reward] | None = None
+    sensors: tuple[Callable[[], Sensor], ...] = ()
+
+
+@dataclasses.dataclass(frozen=True)
+class Native:
+    """What the engine is told of task and sensors."""
+
+    task: str
+    settings: Mapping[str, Any] | None = None
+    sensors: NativeSensors = None
+
+
+def split(
+    task: TaskChoice,
+    settings: Mapping[str, Any] | None,
+    reward: RewardChoice,
+    sensors: Sensors,
+) -> tuple[Native, Custom]:
+    """Parts what the engine does from what is played in Python."""
+    make_task = None
+    if not isinstance(task, str) or ":" in task:
+        make_task = factory("task", task, Task, settings)
+        one = make_task()
+        task, settings = text("task.base", one.base), one.base_settings
+        sensors = one.sensors if sensors is None else sensors
+    names, own = _sensors(sensors)
+    make_reward = None if reward is None else factory("reward", reward, Reward)
+    return Native(task, settings, names), Custom(make_task, make_reward, own)
+
+
+def _sensors(
+    sensors: Sensors,
+) -> tuple[NativeSensors, tuple[Callable[[], Sensor], ...]]:
+    if sensors is None:
+        return None, ()
+    own: list[Callable[[], Sensor]] = []
+    if isinstance(sensors, Mapping):
+        settings = {}
+        for name, row in mapping("sensors", sensors).items():
+            if callable(row) or isinstance(row, str):
+                own.append(_named(name, factory(f"sensors.{name}", row, Sensor)))
+            else:
+                settings[name] = row
+        return settings, tuple(own)
+    if isinstance(sensors, str):
+        return sensors, ()
+    try:
+        rows = list(sensors)
+    except TypeError:
+        raise ConfigError(f"sensors is {sensors!r}; expected names or classes") from None
+    names = []
+    for k, row in enumerate(rows):
+        if not isinstance(row, str) or ":" in row:
+            own.append(factory(f"sensors[{k}]", row, Sensor))
+        else:
+            names.append(row)
+    return names, tuple(own)
+
+
+def _named(name: str, make: Callable[[], Sensor]) -> Callable[[], Sensor]:
+    def made() -> Sensor:
+        sensor = make()
+        sensor.name = name
+        return sensor
+
+    return made
+
+
+class Play:
+    """The Python parts of one environment, and the world that they look at."""
+
+    def __init__(self, batch: _native.Batch, env: int, house: House, custom: Custom) -> None:
+        """Makes the parts of environment ``env``."""
+        self._batch = batch
+        self._env = env
+        self._world = World.of_env(house, batch.world(env))
+        self._task = None if custom.task is None else custom.task()
+        self._reward = None if custom.reward is None else custom.reward()
+        self.sensors = [make() for make in custom.sensors]
+        self._seed = 0
+
+    def _parts(self) -> dict[str, Task | Reward | Sensor]:
+        parts: dict[str, Task | Reward | Sensor] = {
+            f"sensor {sensor.name}": sensor for sensor in self.sensors
+        }
+        if self._task is not None:
+            parts["task"] = self._task
+        if self._reward is not None:
+            parts["reward"] = self._reward
+        return parts
+
+    def begin(self, seed: int) -> None:
+        """Begins the episode of a seed, after the engine has."""
+        self._seed = seed
+        for part in self._parts().values():
+            part.state = {}
+        if self._task is not None:
+            self._ask(self._task.reset(self._world, self._rng(_TASK_STREAM)))
+        if self._reward is not None:
+            self._reward.reset(self._world)
+        for sensor in self.sensors:
+            sensor.reset(self._world)
+
+    def _ask(self, asked: object) -> None:
+        if asked is None:
+            self._batch.ask(self._env)
+            return
+        if not isinstance(asked, Ask):
+            raise ConfigError(f"{self._name()}.reset gave {asked!r}; expected a dwell.Ask or None")
+        distance_m = asked.distance_m
+        if distance_m is not None:
+            distance_m = finite("distance_m", distance_m)
+        self._batch.ask(self._env, text("instruction", asked.instruction), distance_m)
+
+    def _name(self) -> str:
+        return type(self._task).__name__
+
+    def _rng(self, *stream: int) -> np.random.Generator:
+        return np.random.default_rng(np.random.SeedSequence(self._seed, spawn_key=stream))
+
+    def judge(self, action: str, answer: dict[str, Any]) -> Mapping[str, Any]:
+        """Judges a step in place of the engine, whose ``answer`` it changes; gives further info."""
+        k = self._env
+        if self._task is None and self._reward is None:
+            return {}
+        distance_m = float(answer["distance_to_goal"][k])
+        verdict = Verdict(
+            reward=float(answer["reward"][k]),
+            terminated=bool(answer["terminated"][k]),
+            success=bool(answer["success"][k]),
+            distance_m=None if distance_m < 0.0 else distance_m,
+        )
+        if self._task is not None:
+            verdict = _checked(self._name(), self._task.judge(self._world, action, verdict))
+        reward = verdict.reward
+        if self._reward is not None:
+            reward = finite("reward", self._reward.reward(self._world, action, verdict))
+        ruling = {
+            "reward": reward,
+            "terminated": verdict.terminated,
+            "success": verdict.success,
+            "distance_m": verdict.distance_m,
+        }
+        ruled = {**ruling, **json.loads(self._batch.rule(k, to_json(ruling)))}
+        for key, value in ruled.items():
+            if key in answer:
+                answer[key][k] = value
+        if taken := sorted(set(verdict.info) & {*answer, "scene_id", "episode_id"}):
+            raise ConfigError(f"{self._name()}.judge: info has {taken[0]!r}, which exists already")
+        return mapping("info", verdict.info)
+
+    def expert(self) -> int | None:
+        """The number of the expert's action; ``None`` where the task is the engine's."""
+        if self._task is None:
+            return None
+        name = text("the expert's action", self._task.expert(self._world))
+        names = _native.actions()
+        if name not in names:
+            raise ConfigError(f"the expert's action is {name!r}; allowed are {', '.join(names)}")
+        return names.index(name)
+
+    def observe(self) -> dict[str, Any]:
+        """What the sensors observe now, by name, each in its space."""
+        step = self._world.native.step_count
+        seen = {}
+        for stream, sensor in enumerate(self.sensors, _TASK_STREAM + 1):
+            value = sensor.observe(self._world, self._rng(stream, step))
+            if not isinstance(sensor.space, spaces.Text):
+                value = _array(sensor, value)
+            if not _contains(sensor.space, value):
+                raise ConfigError(
+                    f"sensor {sensor.name} observed {value!r:.200}; its space is {sensor.space}"
+                )
+            seen[sensor.name] = value
+        return seen
+
+    def save(self) -> bytes:
+        """What the parts remember."""
+        return to_json({name: part.state for name, part in self._parts().items()}).encode()
+
+    def loaded(self, saved: bytes) -> dict[str, dict[str, Any]]:
+        """What :meth:`save` wrote, by part.
+
+        Raises:
+            ConfigError: It is of other parts, or was cut.
+        """
+        at = "snapshot refused: its parts"
+        try:
+            states = mapping(at, json.loads(saved))
+        except ValueError as error:
+            raise ConfigError(f"{at} are no JSON: {error}") from None
+        names = [*self._parts()]
+        if set(states) != set(names):
+            raise ConfigError(f"{at} are {[*states]}; expected {names}")
+        return {name: mapping(f"{at}: {name}", state) for name, state in states.items()}
+
+    def load(self, states: Mapping[str, dict[str, Any]], seed: int) -> None:
+        """Goes to where :meth:`save` was called, in an episode of ``seed``."""
+        self._seed = seed
+        for name, part in self._parts().items():
+            part.state = states[name]
+
+
+def _checked(task: str, verdict: object) -> Verdict:
+    if not isinstance(verdict, Verdict):
+        raise ConfigError(f"{task}.judge gave {verdict!r}; expected a dwell.Verdict")
+    distance_m = verdict.distance_m
+    return dataclasses.replace(
+        verdict,
+        reward=finite("reward", verdict.reward),
+        terminated=flag("terminated", verdict.terminated),
+        success=flag("success", verdict.success),
+        distance_m=None if distance_m is None else finite("distance_m", distance_m),
+    )
+
+
+def _array(sensor: Sensor, value: object) -> NDArray[Any]:
+    space = sensor.space
+    try:
+        array = np.asarray(value)
+        return array.astype(space.dtype, casting="same_kind")
+    except (TypeError, ValueError):
+        raise ConfigError(
+            f"sensor {sensor.name} observed {value!r:.200}; its space is {space}"
+        ) from None
+
+
+def _contains(space: spaces.Space[Any], value: Any) -> bool:  # noqa: ANN401 - what a user gave
+    if isinstance(space, spaces.Discrete):
+        return value.shape == () and bool(space.contains(value[()]))
+    return bool(space.contains(value))
+
+
+def checked_spaces(
+    sensors: Sequence[Sensor], native: Mapping[str, spaces.Space[Any]]
+) -> dict[str, spaces.Space[Any]]:
+    """The spaces of Python sensors by name, beside those of the engine.
+
+    Raises:
+        ConfigError: A name or a space is missing, wrong, or there already.
+    """
+    found: dict[str, spaces.Space[Any]] = {}
+    for sensor in sensors:
+        name = text(f"{type(sensor).__name__}.name", getattr(sensor, "name", None))
+        if name in found or name in native:
+            raise ConfigError(f"sensors: found {name!r} twice; allowed is each sensor once")
+        space = getattr(sensor, "space", None)
+        if not isinstance(space, _SPACES):
+            known = ", ".join(kind.__name__ for kind in _SPACES)
+            raise ConfigError(f"sensor {name}: space is {space!r}; allowed are {known}")
+        found[name] = space
+    return found

@@ -1,0 +1,68 @@
+"""What environments are put together from in Python: what tasks, rewards and sensors share."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from dwell import ConfigError
+from dwell.arguments import mapping, text
+
+_Part = TypeVar("_Part", bound="Part")
+
+
+class Part:
+    """What an environment plays with in an episode. Every environment makes its own.
+
+    Attributes:
+        state: What the part remembers within an episode, by name; empty at each start. It goes into
+            the environment's snapshots, so it holds what JSON holds: numbers, text, lists,
+            mappings. Arrays come back as lists.
+    """
+
+    state: dict[str, Any]
+
+
+def factory(
+    at: str, given: object, kind: type[_Part], settings: Mapping[str, Any] | None = None
+) -> Callable[[], _Part]:
+    """What makes parts of a kind: a class, a function, or ``"module:Name"`` of one.
+
+    Args:
+        at: What the argument is called, for errors.
+        given: The argument.
+        kind: What shall come out.
+        settings: What it is called with.
+
+    Raises:
+        ConfigError: It is none of these, or there is no such module or name.
+    """
+    make = _imported(at, given) if isinstance(given, str) else given
+    if isinstance(make, kind):
+        name = type(make).__name__
+        raise ConfigError(
+            f"{at} is a {name} that exists already; expected the class {name} itself, of which "
+            "every environment makes its own"
+        )
+    if not callable(make) or (isinstance(make, type) and not issubclass(make, kind)):
+        expected = f"a subclass of dwell.{kind.__name__}, what makes one, or its 'module:Name'"
+        raise ConfigError(f"{at} is {given!r}; expected {expected}")
+    fields = {} if settings is None else mapping(f"settings of {at}", settings)
+
+    def made() -> _Part:
+        part = make(**fields)
+        if not isinstance(part, kind):
+            raise ConfigError(f"{at}: {make!r} made {part!r}; expected a dwell.{kind.__name__}")
+        part.state = {}
+        return part
+
+    return made
+
+
+def _imported(at: str, given: str) -> object:
+    module, _, name = given.partition(":")
+    try:
+        return getattr(importlib.import_module(text(at, module)), name)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise ConfigError(f"{at} is {given!r}; expected 'module:Name': {error}") from None

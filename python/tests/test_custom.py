@@ -1,0 +1,375 @@
+"""Tasks, rewards and sensors that are written in Python."""
+
+from __future__ import annotations
+
+import functools
+import pickle
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode
+
+import dwell
+from dwell import _native
+from dwell.envs import DwellEnv, DwellVectorEnv
+
+STEPS = 40
+
+
+class GoThere(dwell.Task):
+    """To a random place; ends there, or with stop."""
+
+    sensors = ("gps", "instruction")
+    max_steps = 60
+
+    def __init__(self, near_m: float = 0.4) -> None:
+        self.near_m = near_m
+
+    def left_m(self, world: dwell.World) -> float:
+        here, goal = world.agents()[0]["position"], self.state["goal"]
+        return float(np.hypot(here[0] - goal[0], here[2] - goal[2]))
+
+    def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.Ask:
+        places = world.house.navigation().points(world.agents()[0]["position"])
+        self.state["goal"] = places[rng.integers(len(places))].tolist()
+        self.state["steps"] = 0
+        return dwell.Ask("Go there.", self.left_m(world))
+
+    def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
+        self.state["steps"] += 1
+        left_m = self.left_m(world)
+        return dwell.Verdict(
+            reward=-left_m,
+            terminated=verdict.terminated or left_m < self.near_m,
+            success=left_m < self.near_m,
+            distance_m=left_m,
+            info={"judged": self.state["steps"], "last": action},
+        )
+
+    def expert(self, world: dwell.World) -> str:
+        return world.toward(self.state["goal"]) or "stop"
+
+
+class Doubled(dwell.Reward):
+    def reward(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> float:
+        return 2.0 * verdict.reward
+
+
+class Noisy(dwell.Sensor):
+    name = "noisy"
+    space = gymnasium.spaces.Box(-10.0, 10.0, (3,), np.float32)
+
+    def reset(self, world: dwell.World) -> None:
+        self.state["seen"] = 0
+
+    def observe(self, world: dwell.World, rng: np.random.Generator) -> object:
+        self.state["seen"] += 1
+        return rng.normal(size=3)
+
+
+class Number(dwell.Sensor):
+    name = "number"
+    space = gymnasium.spaces.Discrete(1000)
+
+    def observe(self, world: dwell.World, rng: np.random.Generator) -> object:
+        return world.native.step_count
+
+
+class Word(dwell.Sensor):
+    name = "word"
+    space = gymnasium.spaces.Text(10)
+
+    def observe(self, world: dwell.World, rng: np.random.Generator) -> object:
+        return "abc"
+
+
+ALL = ["gps", "instruction", Noisy, Number, Word]
+
+
+def test_check_env_has_nothing_to_say_of_python_parts() -> None:
+    dwell.register_task("tests/GoThere-v0", GoThere, reward=Doubled, sensors=ALL)
+    check_env(gymnasium.make("tests/GoThere-v0", disable_env_checker=True).unwrapped)
+    made = gymnasium.make("tests/GoThere-v0")
+    assert made.spec is not None
+    assert made.spec.max_episode_steps == 60
+    made.close()
+    with pytest.raises(dwell.ConfigError, match="registered already"):
+        dwell.register_task("tests/GoThere-v0", GoThere)
+    with pytest.raises(dwell.ConfigError, match="env_id"):
+        dwell.register_task("no good id/ /", GoThere)
+
+
+def test_check_env_has_nothing_to_say_of_free() -> None:
+    check_env(gymnasium.make("dwell/Free-v0", disable_env_checker=True).unwrapped)
+
+
+def play(env: DwellEnv, actions: list[int]) -> list[Any]:
+    seen = []
+    for action in actions:
+        observation, reward, terminated, _, info = env.step(action)
+        seen.append((observation, reward, terminated, info, env.state_hash()))
+        if terminated:
+            break
+    return seen
+
+
+def same(one: list[Any], other: list[Any]) -> bool:
+    return pickle.dumps(one) == pickle.dumps(other)
+
+
+def test_a_task_judges_rewards_double_and_infos_tell() -> None:
+    env = DwellEnv(GoThere, sensors=ALL, reward=Doubled, task_settings={"near_m": 0.3})
+    observation, _ = env.reset(seed=5)
+    assert observation["instruction"] == "Go there."
+    assert observation in env.observation_space
+    goal = env._runner.plays[0]._parts()["task"].state["goal"]
+    for number in range(1, 400):
+        action = env.expert_action()
+        observation, reward, terminated, _, info = env.step(action)
+        here = env.agents()[0]["position"]
+        left_m = float(np.hypot(here[0] - goal[0], here[2] - goal[2]))
+        assert reward == pytest.approx(-2.0 * left_m, rel=1e-6)
+        assert info["distance_to_goal"] == pytest.approx(left_m, rel=1e-6)
+        assert (info["judged"], info["last"]) == (number, env.actions()[action])
+        assert observation["number"] == number
+        if terminated:
+            break
+    assert info["success"]
+    assert 0.0 < info["spl"] <= 1.0
+    with pytest.raises(dwell.UsageError, match="ended"):
+        env.step(0)
+
+
+def test_seeds_and_snapshots_bring_the_same_episode_back() -> None:
+    # Without an expert the actions are the same whatever happens.
+    actions = [1, 1, 2, 1, 3, 1] * 4
+    first, second = (DwellEnv(GoThere, sensors=ALL) for _ in range(2))
+    first.reset(seed=8)
+    second.reset(seed=8)
+    before = play(first, actions[:7])
+    assert same(before, play(second, actions[:7]))
+    snapshot = first.snapshot()
+    after = play(first, actions[7:])
+    third = DwellEnv(GoThere, sensors=ALL)
+    observation, _ = third.restore(snapshot)
+    assert same([observation], [before[-1][0]])
+    assert same(after, play(third, actions[7:]))
+    assert third.reset(seed=9)[0]["noisy"].tolist() != observation["noisy"].tolist()
+
+
+@pytest.mark.parametrize("cut", ["none", "parts", "other"])
+def test_snapshots_of_other_parts_are_refused(cut: str) -> None:
+    env = DwellEnv(GoThere, sensors=["gps", Noisy])
+    env.reset(seed=1)
+    env.step(1)
+    hash_before = env.state_hash()
+    episode, parts, rest = env.snapshot().split(b"\0", 2)
+    wrong = {"none": b"", "parts": parts[: len(parts) // 2], "other": b'{"task":{}}'}[cut]
+    with pytest.raises(dwell.ConfigError, match="snapshot refused: its parts"):
+        env.restore(b"\0".join((episode, wrong, rest)))
+    assert env.state_hash() == hash_before
+    plain = DwellEnv("Free", sensors=["gps"])
+    plain.reset(seed=1)
+    with pytest.raises(dwell.ConfigError, match="parts in Python"):
+        plain.restore(b"\0".join((episode, parts, rest)))
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+def test_many_at_once_are_as_one_alone(mode: AutoresetMode) -> None:
+    many = DwellVectorEnv(
+        3,
+        functools.partial(GoThere, near_m=2.5),
+        sensors=ALL,
+        reward=Doubled,
+        autoreset_mode=mode,
+        copy=True,
+    )
+    one = DwellEnv(functools.partial(GoThere, near_m=2.5), sensors=ALL, reward=Doubled)
+    batch, _ = many.reset(seed=20)
+    alone, _ = one.reset(seed=22)
+    ended = 0
+    for _ in range(STEPS):
+        for name, value in alone.items():
+            assert np.array_equal(batch[name][2], value), name
+        actions = many.expert_actions()
+        assert actions[2] == one.expert_action()
+        batch, rewards, terminated, _, infos = many.step(actions)
+        alone, reward, is_over, _, info = one.step(int(actions[2]))
+        assert (rewards[2], terminated[2]) == (reward, is_over)
+        assert infos["judged"][2] == info["judged"]
+        assert infos["_judged"].all()
+        if terminated.any() and mode is AutoresetMode.SAME_STEP:
+            k = int(np.flatnonzero(terminated)[0])
+            assert infos["final_info"]["judged"][k] >= 1
+        if is_over:
+            ended += 1
+            break
+        if terminated.any() and mode is AutoresetMode.DISABLED:
+            batch, _ = many.reset(options={"reset_mask": terminated})
+        if terminated.any() and mode is AutoresetMode.NEXT_STEP:
+            break
+    assert batch["word"] == ("abc",) * 3
+    many.close()
+
+
+def test_the_world_of_an_environment_is_that_of_dwell() -> None:
+    seen = {}
+
+    class Looking(dwell.Task):
+        def reset(self, world: dwell.World, rng: np.random.Generator) -> None:
+            room = world.house.rooms()[0]
+            world.place_agent(room["stand"], 90.0)
+            seen["world"] = world
+
+    env = DwellEnv(Looking, sensors=["gps"])
+    env.reset(seed=1)
+    world = seen["world"]
+    stand = world.house.rooms()[0]["stand"]
+    assert env.agents()[0]["position"] == pytest.approx(stand, abs=0.05)
+    assert world.state_hash() == env.state_hash()
+    # A copy goes its own way from here.
+    copy = pickle.loads(pickle.dumps(world))
+    assert copy.state_hash() == world.state_hash()
+    copy.step()
+    assert copy.state_hash() != world.state_hash()
+    env.step(1)
+    assert world.time_s == pytest.approx(0.05)
+    # Where the agent starts counts from where the task has put it.
+    assert np.allclose(env.reset(seed=2)[0]["gps"], 0.0)
+
+
+def test_parts_are_found_by_name() -> None:
+    here = __name__
+    env = DwellEnv(f"{here}:GoThere", sensors=["gps", f"{here}:Noisy"], reward=f"{here}:Doubled")
+    assert set(env.reset(seed=1)[0]) == {"gps", "noisy"}
+    again = pickle.loads(pickle.dumps(env))
+    assert set(again.reset(seed=1)[0]) == {"gps", "noisy"}
+
+
+class Nameless(dwell.Sensor):
+    space = gymnasium.spaces.Discrete(2)
+
+
+class Spaceless(dwell.Sensor):
+    name = "spaceless"
+
+
+class Gps(Noisy):
+    name = "gps"
+
+
+def judging(verdict: object) -> type[dwell.Task]:
+    class Judging(dwell.Task):
+        sensors = ("gps",)
+
+        def judge(self, world: dwell.World, action: str, _: dwell.Verdict) -> Any:  # noqa: ANN401
+            return verdict
+
+    return Judging
+
+
+def asking(ask: object) -> type[dwell.Task]:
+    class Asking(dwell.Task):
+        sensors = ("gps", "instruction", "instruction_tokens")
+
+        def reset(self, world: dwell.World, rng: np.random.Generator) -> Any:  # noqa: ANN401
+            return ask
+
+    return Asking
+
+
+def observing(value: object, space: gymnasium.Space[Any]) -> type[dwell.Sensor]:
+    class Observing(dwell.Sensor):
+        name = "observing"
+
+        def observe(self, world: dwell.World, rng: np.random.Generator) -> object:
+            return value
+
+    Observing.space = space
+    return Observing
+
+
+BOX = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
+MAKING: list[tuple[dict[str, Any], str]] = [
+    ({"task": GoThere()}, "exists already"),
+    ({"task": 5}, "task is 5"),
+    ({"task": Noisy}, "expected a subclass of dwell.Task"),
+    ({"task": "no.such.module:Task"}, "no.such.module"),
+    ({"task": f"{__name__}:Missing"}, "Missing"),
+    ({"task": lambda: 3}, "made 3"),
+    ({"task": GoThere, "task_settings": 5}, "settings of task is 5"),
+    ({"reward": Doubled()}, "exists already"),
+    ({"reward": 3}, "reward is 3"),
+    ({"sensors": ["gps", Noisy()]}, "exists already"),
+    ({"sensors": ["gps", Noisy, Noisy]}, "'noisy' twice"),
+    ({"sensors": ["gps", Gps]}, "'gps' twice"),
+    ({"sensors": [Nameless]}, "Nameless.name is None"),
+    ({"sensors": [Spaceless]}, "space is None"),
+    ({"sensors": {"mine": 5}}, "mine"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "said"), MAKING)
+def test_what_is_no_part_is_refused(arguments: dict[str, Any], said: str) -> None:
+    with pytest.raises(dwell.ConfigError) as refused:
+        DwellEnv(**{"task": "Free", "sensors": ["gps"], **arguments})
+    assert said in str(refused.value)
+
+
+def play_a_step(env: DwellEnv) -> None:
+    env.reset(seed=1)
+    env.step(1)
+
+
+PLAYING: list[tuple[dict[str, Any], str]] = [
+    ({"task": judging(None)}, "judge gave None"),
+    ({"task": judging(dwell.Verdict(reward=float("nan")))}, "reward is nan"),
+    ({"task": judging(dwell.Verdict(terminated=1))}, "terminated is 1"),  # type: ignore[arg-type] # the fault
+    ({"task": judging(dwell.Verdict(distance_m=-1.0))}, "distance_m is -1"),
+    ({"task": judging(dwell.Verdict(info={"spl": 1.0}))}, "info has 'spl'"),
+    ({"task": asking("Go.")}, "reset gave 'Go.'"),
+    ({"task": asking(dwell.Ask("Gehen Sie zur Tür!"))}, "instruction is"),
+    ({"task": asking(dwell.Ask(""))}, "instruction is"),
+    ({"task": asking(dwell.Ask("Find the xylotheque."))}, "xylotheque"),
+    ({"task": asking(dwell.Ask(distance_m=float("inf")))}, "distance_m is inf"),
+    ({"sensors": [observing([0.0, 2.0], BOX)]}, "sensor observing observed"),
+    ({"sensors": [observing([0.0, float("nan")], BOX)]}, "sensor observing observed"),
+    ({"sensors": [observing([0.0] * 3, BOX)]}, "sensor observing observed"),
+    ({"sensors": [observing("text", BOX)]}, "sensor observing observed"),
+    ({"sensors": [observing(1.5, gymnasium.spaces.Discrete(3))]}, "sensor observing observed"),
+    ({"sensors": [observing(5, gymnasium.spaces.Discrete(3))]}, "sensor observing observed"),
+    ({"sensors": [observing(5, gymnasium.spaces.Text(5))]}, "sensor observing observed"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "said"), PLAYING)
+def test_what_a_part_gives_is_checked(arguments: dict[str, Any], said: str) -> None:
+    given: dict[str, Any] = {"task": "Free", **arguments}
+    env = DwellEnv(**given)
+    with pytest.raises(dwell.DwellError) as refused:
+        play_a_step(env)
+    assert said in str(refused.value)
+
+
+def test_a_task_without_an_expert_says_so() -> None:
+    env = DwellEnv(judging(dwell.Verdict()))
+    env.reset(seed=1)
+    with pytest.raises(dwell.UsageError, match="Judging has no expert"):
+        env.expert_action()
+
+
+def test_the_borders_of_batches_hold() -> None:
+    env = DwellEnv("Free", sensors=["gps"])
+    batch = env._runner.batch
+    with pytest.raises(dwell.UsageError, match="reset first"):
+        batch.ask(0, "Go.", None)
+    with pytest.raises(dwell.UsageError, match="reset first"):
+        batch.rule(0, '{"reward":0.0,"terminated":false,"success":false,"distance_m":null}')
+    with pytest.raises(dwell.UsageError, match="no environment 3"):
+        batch.world(3)
+    with pytest.raises(dwell.ConfigError):
+        batch.rule(0, "{}")
+    assert isinstance(batch.world(0), _native.World)
