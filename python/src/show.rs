@@ -67,7 +67,7 @@ pub(crate) fn floor_plan_json(
     level: u32,
 ) -> PyResult<String> {
     world.get().with(py, |running| {
-        let plan = dwell::floor_plan(&running.world, LevelId(level));
+        let plan = dwell::floor_plan(running.world, LevelId(level));
         Ok(serde_json::to_string(&plan)?)
     })
 }
@@ -76,7 +76,7 @@ pub(crate) fn floor_plan_json(
 #[pyfunction]
 pub(crate) fn fixtures_json(py: Python<'_>, world: &Bound<'_, PyWorld>) -> PyResult<String> {
     world.get().with(py, |running| {
-        Ok(serde_json::to_string(&dwell::fixtures(&running.world))?)
+        Ok(serde_json::to_string(&dwell::fixtures(running.world))?)
     })
 }
 

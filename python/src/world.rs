@@ -235,7 +235,7 @@ impl PyWorld {
 
     fn objects_json(&self, py: Python<'_>) -> PyResult<String> {
         self.with(py, |running| {
-            Ok(serde_json::to_string(&dwell::objects_now(&running.world))?)
+            Ok(serde_json::to_string(&dwell::objects_now(running.world))?)
         })
     }
 
@@ -258,7 +258,7 @@ impl PyWorld {
         channels: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let seen = self.with(py, |running| {
-            picture::render(&running.world, view_json, &channels)
+            picture::render(running.world, view_json, &channels)
         })?;
         let images = PyDict::new(py);
         for (channel, observation) in channels.iter().zip(seen) {
