@@ -3,6 +3,7 @@
 pub mod flip;
 pub mod golden;
 pub mod hostile;
+pub mod observed;
 pub mod seen;
 pub mod validity;
 
@@ -65,6 +66,14 @@ pub fn env_of(task: &str, sensors: &[&str]) -> Env {
 /// # Panics
 /// When the task, a law or a sensor does not exist.
 pub fn env_with(config: EnvConfig, sensors: &[&str]) -> Env {
+    env_in(apartment(), config, sensors)
+}
+
+/// An environment in any house with these sensors, all small.
+///
+/// # Panics
+/// When the task, a law or a sensor does not exist.
+pub fn env_in(engines: Arc<Engines>, config: EnvConfig, sensors: &[&str]) -> Env {
     let settings = |name: &str| match name {
         "rgb" | "depth" | "instance" | "semantic" | "semantic_fine" | "semantic_nyu40"
         | "normals" | "albedo" | "surfels" | "flow" | "visible_objects" | "boxes_2d"
@@ -81,5 +90,5 @@ pub fn env_with(config: EnvConfig, sensors: &[&str]) -> Env {
         sensors: Some(sensors.collect()),
         ..config
     };
-    Env::new(apartment(), &config).expect("task, laws and sensors exist")
+    Env::new(engines, &config).expect("task, laws and sensors exist")
 }

@@ -3,12 +3,15 @@
 //! are set to other velocities and joints to other places. Nothing may panic, leave the house, pass a wall, become no number,
 //! keep more memory than its state needs, or differ when it is played again; and a snapshot in the middle changes nothing.
 //!
+//! `houses` begins episodes in many houses over and over.
+//!
 //! 20,000 physics steps in a house; 1,000,000 with `DWELL_TEST_ALL=1`.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::print_stdout, reason = "a long test tells its figures")]
 
 mod checks;
+mod houses;
 mod inputs;
 mod memory;
 

@@ -50,6 +50,16 @@ impl Watch {
         [held, needed]
     }
 
+    /// What is held now counts no more.
+    pub(crate) fn begin(&mut self) {
+        self.empty = in_use();
+    }
+
+    /// Looks at all that is held, where no world keeps what was strewn for long.
+    pub(crate) fn look_at_all(&mut self) {
+        self.rest.push(in_use() - self.empty);
+    }
+
     /// The rest did not grow from the second tenth on. The least of ten looks counts, since a crowd that is awake takes room to
     /// work in for a while.
     pub(crate) fn check(&self) {

@@ -73,7 +73,7 @@ impl Task for Free {
         world.place_agent(agent, position, yaw_rad)?;
         Ok(Episode {
             instruction: INSTRUCTION.to_owned(),
-            tokens: vec![tokens::PAD; tokens::LENGTH],
+            tokens: tokens::tokenize(INSTRUCTION)?,
             start: Pose::from_position_yaw(position, yaw_rad),
             progress: Progress::new(position, None),
         })
