@@ -145,6 +145,13 @@ pub fn category<'a>(names: impl IntoIterator<Item = &'a str>) -> Option<&'static
         .find_map(|name| tables().categories.get(name))
 }
 
+/// The names of all categories, in order, without aliases.
+pub fn category_names() -> impl Iterator<Item = &'static str> {
+    let rows = tables().categories.iter();
+    rows.filter(|(name, row)| **name == row.name)
+        .map(|(name, _)| name.as_str())
+}
+
 /// A room type as `assets/rooms.csv` calls it, in plain words: `"living room"` of `"Living_Room"`.
 ///
 /// # Errors

@@ -39,6 +39,12 @@ pub fn formats() -> &'static [Format] {
             open: |house, _| crate::generate::open(house),
         },
         Format {
+            name: "plan",
+            spelling: "a path to a .plan.json",
+            recognizes: |house| crate::authoring::recognizes(Path::new(house)),
+            open: |house, threads| crate::authoring::open(Path::new(house), threads),
+        },
+        Format {
             name: "native",
             spelling: "a path to a .dwell",
             recognizes: |house| crate::native::recognizes(Path::new(house)),
@@ -109,7 +115,8 @@ fn open_builtin(name: &str) -> Opened {
     Ok((house, Report::new()))
 }
 
-/// Opens the house that `house` names, on as many threads as the machine gives.
+/// Opens the house that `house` names, on as many threads as the machine gives. `HOUSE?map=FILE` opens it with a map of its
+/// foreign names ([`crate::authoring::Map`]).
 ///
 /// # Errors
 /// [`HousesError::UnknownHouse`] lists what is allowed; otherwise what the format says.
@@ -160,6 +167,9 @@ pub fn expand(house: &str) -> Result<Vec<String>, HousesError> {
 /// Those of [`open`].
 pub fn open_with(house: &str, threads: Threads) -> Result<(House, Report), HousesError> {
     let _span = tracing::debug_span!("open", house).entered();
+    if let Some((foreign, map)) = house.rsplit_once("?map=") {
+        return crate::authoring::open_mapped(foreign, map, threads);
+    }
     let Some(format) = formats().iter().find(|format| (format.recognizes)(house)) else {
         let allowed = formats()
             .iter()

@@ -1,6 +1,7 @@
 //! Where houses come from: one folder a format, the built-in house, textures, [`open`].
 
 mod atomic;
+pub mod authoring;
 mod build;
 mod building;
 pub mod builtin;

@@ -141,6 +141,15 @@ impl Report {
         self.not_kept += other.not_kept;
     }
 
+    /// Takes out the warnings for which `keep` does not hold.
+    pub(crate) fn retain(&mut self, keep: impl Fn(&Warning) -> bool) {
+        let kept = std::mem::take(self);
+        self.not_kept = kept.not_kept;
+        for warning in kept.warnings.into_iter().filter(keep) {
+            self.warn_times(warning.at, warning.damage, warning.count);
+        }
+    }
+
     /// The warnings in order.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings

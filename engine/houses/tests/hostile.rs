@@ -79,7 +79,7 @@ fn every_format_that_reads_files_has_a_sample() {
 #[test]
 fn house_strings_that_mean_nothing_list_what_is_allowed() {
     let message = |house: &str| open(house).map(|_| ()).unwrap_err().to_string();
-    let allowed = "builtin:NAME; seed:N or seed:N?field=value&field=value; a path to a .dwell; \
+    let allowed = "builtin:NAME; seed:N or seed:N?field=value&field=value; a path to a .plan.json; a path to a .dwell; \
                    a path to a .scene_instance.json of Habitat; a path to a house's .json of ProcTHOR; a path to a measured room's .json; \
                    a path to a house.json, its folder, or a data root with one house; a path to a .glb or .gltf; a path to an .obj; a path to a .urdf; a path to a .xml of MuJoCo";
     for house in ["castle", "seeds:5", "", "house.blend"] {

@@ -10,9 +10,9 @@ use dwell_scene::parallel::Threads;
 use tempfile::TempDir;
 
 /// All samples.
-pub const NAMES: [&str; 11] = [
+pub const NAMES: [&str; 13] = [
     "dwell", "suncg", "glb", "obj", "mjcf", "robot", "urdf", "procthor", "habitat", "measured",
-    "images",
+    "images", "plan", "map",
 ];
 
 /// A house in a folder of its own.
@@ -187,11 +187,22 @@ pub fn sample(name: &str) -> Sample {
             }
             "a.png".to_owned()
         }
+        "plan" => {
+            put("home.plan.json", include_str!("samples/home.plan.json"));
+            put("a.obj", OBJ);
+            "home.plan.json".to_owned()
+        }
+        "map" => {
+            put("map.toml", include_str!("samples/map.toml"));
+            put("a.obj", OBJ);
+            "map.toml".to_owned()
+        }
         other => panic!("no sample {other:?}; there are {NAMES:?}"),
     };
     let house = match name {
         "dwell" => root.join("a.dwell"),
         "images" => root.join("a.obj"),
+        "map" => root.join(format!("a.obj?map={}", root.join("map.toml").display())),
         _ => root.join(&first),
     };
     let mut paths = files_below(root);

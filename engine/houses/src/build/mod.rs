@@ -1,6 +1,7 @@
 //! What several formats need to make a [`HouseData`](dwell_scene::HouseData) out of their files.
 
 mod components;
+mod joined;
 mod lamps;
 mod looks;
 mod names;
@@ -11,9 +12,12 @@ mod textures;
 pub(crate) use components::{Component, components, submesh};
 pub(crate) use dwell_furniture::shapes::triangulate;
 pub(crate) use dwell_furniture::tables::{CategoryRow, category, room_kind, substance_of};
+pub(crate) use joined::joined;
 pub(crate) use lamps::FileLamp;
 pub(crate) use looks::{Look, LookTable};
 pub(crate) use names::Names;
 pub(crate) use pieces::convex_pieces;
-pub(crate) use scene::{FileRoom, Role, Scene, Thing, category_of, structure_kind};
+pub(crate) use scene::{
+    FileRoom, Role, Scene, Thing, category_of, room_over_floors, structure_kind,
+};
 pub(crate) use textures::{PixelBudget, decode, encode_png, pixels, read_images, texture_name};

@@ -134,7 +134,7 @@ impl Scene {
             builder.structure(thing);
         }
         if !named {
-            builder.room();
+            room_over_floors(&mut builder.data);
         }
         for thing in objects {
             builder.object(thing, alone, at, report);
@@ -178,6 +178,47 @@ pub(crate) fn category_of(name: &str) -> Option<&'static CategoryRow> {
     tails
         .chain([joined])
         .find_map(|candidate| category([candidate.as_str()]))
+}
+
+/// One room over all floors of the first storey, to which all pieces of the building belong.
+pub(crate) fn room_over_floors(data: &mut HouseData) {
+    let of = |kind: StructureKind| {
+        let pieces = data.structure.iter();
+        let pieces = pieces.filter(move |piece| piece.kind == kind);
+        pieces.map(|piece| &data.meshes[piece.mesh])
+    };
+    let top = of(StructureKind::Floor)
+        .map(|mesh| mesh.bounds().max.y)
+        .reduce(f32::max);
+    let Some(floor_y) = top else { return };
+    let mut footprint = Vec::new();
+    for mesh in of(StructureKind::Floor) {
+        for k in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(k);
+            let up = (b - a).cross(c - a).normalize_or_zero().y > 0.7;
+            if up && [a, b, c].iter().all(|p| p.y > floor_y - 0.02) {
+                footprint.push([a, b, c].map(|p| Vec2::new(p.x, p.z)));
+            }
+        }
+    }
+    let bounds = data.levels[LEVEL].bounds;
+    let ceiling_y = of(StructureKind::Ceiling)
+        .map(|mesh| mesh.bounds().min.y)
+        .reduce(f32::min)
+        .unwrap_or(bounds.max.y);
+    let room = Room {
+        name: "room_1".to_owned(),
+        level: LEVEL,
+        kinds: Vec::new(),
+        footprint,
+        floor_y,
+        ceiling_y,
+        bounds,
+    };
+    let id = data.rooms.push(room);
+    data.structure
+        .iter_mut()
+        .for_each(|piece| piece.room = Some(id));
 }
 
 struct Builder {
@@ -239,51 +280,6 @@ impl Builder {
             mesh,
             materials: thing.materials,
         });
-    }
-
-    /// One room over all floors.
-    fn room(&mut self) {
-        let of = |kind: StructureKind| {
-            let pieces = self
-                .data
-                .structure
-                .iter()
-                .filter(move |piece| piece.kind == kind);
-            pieces.map(|piece| &self.data.meshes[piece.mesh])
-        };
-        let top = of(StructureKind::Floor)
-            .map(|mesh| mesh.bounds().max.y)
-            .reduce(f32::max);
-        let Some(floor_y) = top else { return };
-        let mut footprint = Vec::new();
-        for mesh in of(StructureKind::Floor) {
-            for k in 0..mesh.triangles.len() {
-                let [a, b, c] = mesh.corners(k);
-                let up = (b - a).cross(c - a).normalize_or_zero().y > 0.7;
-                if up && [a, b, c].iter().all(|p| p.y > floor_y - 0.02) {
-                    footprint.push([a, b, c].map(|p| Vec2::new(p.x, p.z)));
-                }
-            }
-        }
-        let bounds = self.data.levels[LEVEL].bounds;
-        let ceiling_y = of(StructureKind::Ceiling)
-            .map(|mesh| mesh.bounds().min.y)
-            .reduce(f32::min)
-            .unwrap_or(bounds.max.y);
-        let room = Room {
-            name: "room_1".to_owned(),
-            level: LEVEL,
-            kinds: Vec::new(),
-            footprint,
-            floor_y,
-            ceiling_y,
-            bounds,
-        };
-        let id = self.data.rooms.push(room);
-        self.data
-            .structure
-            .iter_mut()
-            .for_each(|piece| piece.room = Some(id));
     }
 
     fn object(&mut self, thing: Thing, alone: bool, at: &At, report: &mut Report) {

@@ -19,18 +19,31 @@ pub(crate) type Rect = [f32; 4];
 pub(crate) struct RoomPlan {
     pub(crate) name: String,
     /// What people call it, most fitting first.
-    pub(crate) kinds: Vec<&'static str>,
+    pub(crate) kinds: Vec<String>,
     /// The free floor, in rectangles that do not overlap; halves of doorways too.
     pub(crate) floor: Vec<Rect>,
     /// Height of the floor, m.
     pub(crate) floor_m: f32,
-    /// The corners of its floor and of its ceiling, (x, z) in m, clockwise seen from above; slabs reach to the middle of
-    /// walls.
-    pub(crate) slabs: [Vec<[f32; 2]>; 2],
-    /// Thickness of floor and ceiling, m.
-    pub(crate) slab_m: [f32; 2],
+    /// Height of the ceiling's lower face above the floor, m.
+    pub(crate) ceiling_m: f32,
+    /// Height of the slab's lower face above the floor, m: that of the storey's walls.
+    pub(crate) storey_m: f32,
+    /// Its floor and the slab above it; they reach to the middle of walls.
+    pub(crate) slabs: [Slab; 2],
+    /// The outlines of a ceiling that hangs below that slab.
+    pub(crate) hung: Vec<Outline>,
     pub(crate) floor_finish: Finish,
     pub(crate) ceiling_finish: Finish,
+}
+
+/// Corners, (x, z) in m, clockwise seen from above.
+pub(crate) type Outline = Vec<[f32; 2]>;
+
+/// A floor or a ceiling.
+#[derive(Clone, Debug)]
+pub(crate) struct Slab {
+    pub(crate) outlines: Vec<Outline>,
+    pub(crate) thick_m: f32,
 }
 
 impl RoomPlan {
@@ -46,22 +59,22 @@ impl RoomPlan {
         let mut bounds = Aabb::EMPTY;
         for [x0, z0, x1, z1] in &self.floor {
             bounds.add_point(Vec3::new(*x0, self.floor_m, *z0));
-            bounds.add_point(Vec3::new(*x1, self.floor_m + CEILING_M, *z1));
+            bounds.add_point(Vec3::new(*x1, self.floor_m + self.ceiling_m, *z1));
         }
         let wide = |[x0, z0, x1, z1]: &Rect| x1 - x0 > THIN_M && z1 - z0 > THIN_M;
         let floor = self.floor.iter().copied().filter(wide);
         let id = assembly.data.rooms.push(Room {
             name: self.name.clone(),
             level: assembly.level,
-            kinds: self.kinds.iter().map(|kind| (*kind).to_owned()).collect(),
+            kinds: self.kinds.clone(),
             footprint: floor.flat_map(triangles).collect(),
             floor_y: self.floor_m,
-            ceiling_y: self.floor_m + CEILING_M,
+            ceiling_y: self.floor_m + self.ceiling_m,
             bounds,
         });
-        let slab = |k: usize, top: f32, finish: &Finish| {
+        let piece = |outline: &Outline, thick_m: f32, top: f32, finish: &Finish| {
             // The prism's (x, y) plane becomes the world's (x, z), its depth runs down.
-            let mut mesh = extrude(&self.slabs[k], self.slab_m[k])
+            let mut mesh = extrude(outline, thick_m)
                 .about_x(std::f32::consts::FRAC_PI_2)
                 .at(0.0, top, 0.0)
                 .mesh;
@@ -72,26 +85,44 @@ impl RoomPlan {
             }
             mesh
         };
-        let above = self.floor_m + CEILING_M + self.slab_m[1];
+        let [below, above] = &self.slabs;
+        let top = self.floor_m + self.storey_m + above.thick_m;
+        let hung_m = self.storey_m - self.ceiling_m;
+        // What lies above a hung ceiling nobody sees.
+        let (kind, word) = if self.hung.is_empty() {
+            (StructureKind::Ceiling, "ceiling")
+        } else {
+            (StructureKind::Other, "slab")
+        };
+        let (floor, ceiling) = (&self.floor_finish, &self.ceiling_finish);
         let pieces = [
             (
                 StructureKind::Floor,
                 "floor",
+                &below.outlines,
+                below.thick_m,
                 self.floor_m,
-                &self.floor_finish,
+                floor,
             ),
+            (kind, word, &above.outlines, above.thick_m, top, ceiling),
             (
                 StructureKind::Ceiling,
                 "ceiling",
-                above,
-                &self.ceiling_finish,
+                &self.hung,
+                hung_m,
+                self.floor_m + self.storey_m,
+                ceiling,
             ),
         ];
-        for (k, (kind, word, top, finish)) in pieces.into_iter().enumerate() {
-            if !self.slabs[k].is_empty() {
-                let name = format!("{word}_{}", self.name);
-                let finishes = std::slice::from_ref(finish);
-                assembly.structure(&name, kind, Some(id), slab(k, top, finish), finishes);
+        for (kind, word, outlines, thick_m, top, finish) in pieces {
+            let outlines = outlines.iter().filter(|outline| !outline.is_empty());
+            for (k, outline) in outlines.enumerate() {
+                let name = match k {
+                    0 => format!("{word}_{}", self.name),
+                    _ => format!("{word}_{}_{}", self.name, k + 1),
+                };
+                let mesh = piece(outline, thick_m, top, finish);
+                assembly.structure(&name, kind, Some(id), mesh, std::slice::from_ref(finish));
             }
         }
         id

@@ -10,7 +10,7 @@ use dwell_scene::random::{Key, Stream};
 /// Height of skirting boards, m.
 const SKIRTING_M: f32 = 0.08;
 /// Everything below the ceiling.
-const TOP_M: f32 = 10.0;
+pub(crate) const TOP_M: f32 = 10.0;
 
 /// The coverings of a room.
 #[derive(Clone, Debug)]

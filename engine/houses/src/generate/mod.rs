@@ -6,9 +6,8 @@
 //! Tries are bounded everywhere; what was given up is in the [`GenerateReport`].
 
 mod furnish;
-mod looks;
+pub(crate) mod looks;
 mod openings;
-mod outline;
 mod plan;
 mod programme;
 mod reach;

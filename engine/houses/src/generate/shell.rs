@@ -3,26 +3,23 @@
 use super::furnish::Furnished;
 use super::looks::{RoomLook, facade, look, reveal};
 use super::openings::{Filling, Hole, INNER_M, OUTER_M, Zone, overlap};
-use super::outline::outline;
 use super::plan::{Cells, FloorPlan, PlanRoom, Run, Storey, metres};
 use super::rooms::RoomKind;
 use super::spec::DoorStates;
 use crate::build::Names;
 use crate::building::assembly::Assembly;
-use crate::building::plan::{CEILING_M, RoomPlan};
+use crate::building::openings::{put_door, put_window};
+use crate::building::outline::outline;
+use crate::building::plan::{CEILING_M, RoomPlan, Slab};
+use crate::building::stairs::{Flights, RAILING_INSET_M, put_railing, put_stairs, railing_of};
 use crate::building::wall::{Along, Bands, Opening, Wall};
 use crate::building::yaw::yaw;
 use dwell_furniture::finish::Finish;
-use dwell_furniture::model::Model;
 use dwell_furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
-use dwell_furniture::models::stairs::{Stairs, railing};
-use dwell_furniture::stock::made_to_measure;
 use dwell_furniture::style::Style;
 use dwell_scene::random::Key;
 use dwell_scene::{LevelId, Pose, RoomId};
 use glam::Vec3;
-use std::f32::consts::FRAC_PI_2;
-use std::sync::Arc;
 
 /// Thickness of the ceiling below another storey, m.
 const CEILING_SLAB_M: f32 = 0.1;
@@ -30,8 +27,6 @@ const CEILING_SLAB_M: f32 = 0.1;
 const FLOOR_SLAB_M: f32 = 0.2;
 /// From one storey's floor to the next one's, m.
 pub(crate) const STOREY_M: f32 = CEILING_M + CEILING_SLAB_M + FLOOR_SLAB_M;
-/// Half of the thickness of a railing with its distance from the edge, m.
-const RAILING_INSET_M: f32 = 0.05;
 
 /// The building's parts that later stages ask for.
 pub(crate) struct Shell {
@@ -196,14 +191,22 @@ impl Builder<'_> {
             };
             let built = RoomPlan {
                 name: names.unique(traits.name),
-                kinds: traits.words.to_vec(),
+                kinds: traits.words.iter().map(|word| (*word).to_owned()).collect(),
                 floor,
                 floor_m: Self::floor_m(level),
-                slabs: [slab(storey, cells, room, void), ceiling],
-                slab_m: [
-                    FLOOR_SLAB_M,
-                    if top { FLOOR_SLAB_M } else { CEILING_SLAB_M },
+                ceiling_m: CEILING_M,
+                storey_m: CEILING_M,
+                slabs: [
+                    Slab {
+                        outlines: vec![slab(storey, cells, room, void)],
+                        thick_m: FLOOR_SLAB_M,
+                    },
+                    Slab {
+                        outlines: vec![ceiling],
+                        thick_m: if top { FLOOR_SLAB_M } else { CEILING_SLAB_M },
+                    },
                 ],
+                hung: Vec::new(),
                 floor_finish: looks[room].floor.clone(),
                 ceiling_finish: looks[room].ceiling.clone(),
             };
@@ -344,17 +347,9 @@ impl Builder<'_> {
                     // Beside an outer wall, which is thicker, the leaf opens square.
                     let beside = hole.beside_hinges(wall_m);
                     let square = beside.is_some_and(|zone| !covers(&free, &zone));
-                    let settings = format!("{door:?} square {square}");
-                    let kind = assembly.kind(made_to_measure(settings, || {
-                        let mut model = door.build();
-                        for joint in model.joints.iter_mut().filter(|_| square) {
-                            joint.open = joint.open.min(FRAC_PI_2);
-                        }
-                        model
-                    }));
                     let openness = self.openness(hole, key.child(k as u64));
                     let pose = Pose::new(Vec3::new(x, floor, z), turn);
-                    assembly.place(&kind, pose, ids[hole.room], openness);
+                    put_door(assembly, &door, square, pose, ids[hole.room], openness);
                 }
                 Filling::Window { frosted } => {
                     let pane = if frosted {
@@ -370,15 +365,9 @@ impl Builder<'_> {
                         pane,
                         sill_m: 0.03,
                     };
-                    let kind =
-                        assembly.kind(made_to_measure(format!("{window:?}"), || window.build()));
                     let y = floor + 0.5 * (hole.low_m + hole.high_m);
-                    assembly.place(
-                        &kind,
-                        Pose::new(Vec3::new(x, y, z), turn),
-                        ids[hole.room],
-                        0.0,
-                    );
+                    let pose = Pose::new(Vec3::new(x, y, z), turn);
+                    put_window(assembly, &window, pose, ids[hole.room]);
                 }
             }
         }
@@ -426,45 +415,20 @@ impl Builder<'_> {
         let middle = Vec3::new(0.5 * (x0 + x1), 0.0, 0.5 * (z0 + z1));
         let front = middle - climb * (0.5 * size.dot(climb.abs()));
         // The model climbs towards -Z with its second flight at +X.
-        let mirrored = across.dot(Vec3::Y.cross(climb)) > 0.0;
-        let turn = match (stairs.climb[0], stairs.climb[1]) {
-            (0, -1) => 0.0,
-            (-1, _) => 90.0,
-            (0, _) => 180.0,
-            _ => -90.0,
-        };
-        let up = Vec3::Y * Self::floor_m(level);
-        if last {
-            // The first flight would start here: a railing instead.
-            let side = -across * 0.25 * width_m;
-            let kind = assembly.kind(self.railing(0.5 * width_m));
-            let back = climb * (RAILING_INSET_M - 0.1);
-            assembly.place(
-                &kind,
-                Pose::new(front + side + back + up, yaw(turn)),
-                room,
-                0.0,
-            );
-            return;
-        }
-        let model = Stairs {
+        let flights = Flights {
+            front: front + Vec3::Y * Self::floor_m(level),
+            climb: stairs.climb,
+            mirrored: across.dot(Vec3::Y.cross(climb)) > 0.0,
             width_m,
             depth_m,
-            rise_m: STOREY_M,
-            goes_on: level + 2 < self.plan.storeys.len(),
-            mirrored,
-            wood: self.style.wood.clone(),
-            paint: Finish::plain("stair_white", "wood", [238, 236, 230]),
         };
-        let kind = assembly.kind(made_to_measure(format!("{model:?}"), || model.build()));
-        assembly.place(&kind, Pose::new(front + up, yaw(turn)), room, 0.0);
-    }
-
-    fn railing(&self, length_m: f32) -> Arc<Model> {
-        let metal = &self.style.metal;
-        made_to_measure(format!("railing {length_m} {metal:?}"), || {
-            railing(length_m, metal)
-        })
+        if last {
+            // The first flight would start here: a railing instead.
+            put_railing(assembly, &flights, self.style, room);
+        } else {
+            let goes_on = level + 2 < self.plan.storeys.len();
+            put_stairs(assembly, &flights, STOREY_M, goes_on, self.style, room);
+        }
     }
 
     fn railings(&self, level: usize, cells: &Cells, ids: &[RoomId], assembly: &mut Assembly) {
@@ -505,7 +469,7 @@ impl Builder<'_> {
             } else {
                 (at, middle, 90.0)
             };
-            let kind = assembly.kind(self.railing(to - from));
+            let kind = assembly.kind(railing_of(to - from, self.style));
             let pose = Pose::new(Vec3::new(x, Self::floor_m(level), z), yaw(turn));
             assembly.place(&kind, pose, ids[*room], 0.0);
         }

@@ -7,7 +7,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{Aabb, HouseData, MaterialId, Mesh, MeshId, TextureId};
 
 use super::dataset::Found;
-use crate::build::{Names, Scene};
+use crate::build::{Names, Scene, joined};
 use crate::damage::Damage;
 use crate::gltf;
 use crate::limits::MAX_BUFFER_BYTES;
@@ -164,7 +164,10 @@ impl Assets {
         }
         let pieces = self.pieces(root, path, data, threads, report);
         let whole = pieces.map(|pieces| {
-            let (shape, materials) = joined(&pieces);
+            let pieces = pieces
+                .iter()
+                .map(|piece| (piece.mesh.clone(), piece.materials.clone()));
+            let (shape, materials) = joined(&pieces.collect::<Vec<_>>());
             let shape = Arc::new(shape);
             Whole {
                 mesh: data.meshes.push(shape.clone()),
@@ -197,43 +200,4 @@ fn read_scene(
     let folder = folder.map_err(|error| error.reason())?;
     let name = path.rsplit('/').next().unwrap_or(path);
     gltf::read_scene(&bytes, &folder, name, threads, report).map_err(|error| error.reason())
-}
-
-/// Pieces as one mesh with a slot for each of its materials.
-fn joined(pieces: &[Piece]) -> (Mesh, Vec<MaterialId>) {
-    let mut mesh = Mesh::default();
-    let mut materials: Vec<MaterialId> = Vec::new();
-    let flat = pieces.iter().any(|piece| piece.mesh.normals.is_empty());
-    let bare = pieces.iter().all(|piece| piece.mesh.uvs.is_empty());
-    for piece in pieces {
-        let mut part = Mesh::clone(&piece.mesh);
-        if flat {
-            part.normals.clear();
-        }
-        if !bare {
-            part.uvs.resize(part.positions.len(), glam::Vec2::ZERO);
-        }
-        let slots: Vec<u16> = piece
-            .materials
-            .iter()
-            .map(|id| {
-                let known = materials.iter().position(|other| other == id);
-                known.unwrap_or_else(|| {
-                    materials.push(*id);
-                    materials.len() - 1
-                }) as u16
-            })
-            .collect();
-        let last = slots.first().copied().unwrap_or(0);
-        part.slots = (0..part.triangles.len())
-            .map(|k| {
-                slots
-                    .get(usize::from(part.slot(k)))
-                    .copied()
-                    .unwrap_or(last)
-            })
-            .collect();
-        mesh.append(&part, 0);
-    }
-    (mesh, materials)
 }

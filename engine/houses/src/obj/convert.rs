@@ -33,14 +33,28 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Empty`] when it holds no triangle,
 /// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
 pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+    let mut report = Report::new();
+    let (scene, at) = read_scene(path, threads, &mut report)?;
+    let house = scene.into_house(&at, &mut report)?;
+    Ok((house, report))
+}
+
+/// The named meshes of a file with their materials and images, and the file's place in its root.
+///
+/// # Errors
+/// Those of [`open`] up to what the scene's own rules say.
+pub(crate) fn read_scene(
+    path: &Path,
+    threads: Threads,
+    report: &mut Report,
+) -> Result<(Scene, At), HousesError> {
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let (root, inside) = locate(path)?;
-    let mut report = Report::new();
     let at = At::file(&inside);
-    let files = read_mesh(&root, &inside, &mut report).unwrap_or_default();
+    let files = read_mesh(&root, &inside, report).unwrap_or_default();
     let wanted: BTreeSet<String> = files.textures.iter().flatten().cloned().collect();
-    let images = read_images(&root, wanted, threads, &mut report);
-    let slots = Slots::of(&files.obj, &files.mtl, &at, &mut report);
+    let images = read_images(&root, wanted, threads, report);
+    let slots = Slots::of(&files.obj, &files.mtl, &at, report);
     let texture_ids: BTreeMap<&str, TextureId> = images
         .keys()
         .enumerate()
@@ -87,7 +101,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
                     box_mapping,
                 },
                 &at,
-                &mut report,
+                report,
             );
             Thing {
                 name,
@@ -101,7 +115,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         })
         .collect();
     let textures = images.into_values().collect();
-    let house = Scene {
+    let scene = Scene {
         name,
         source: "obj",
         things,
@@ -111,9 +125,8 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         rooms: Vec::new(),
         sky: None,
         lamps: Vec::new(),
-    }
-    .into_house(&at, &mut report)?;
-    Ok((house, report))
+    };
+    Ok((scene, at))
 }
 
 /// All faces of an OBJ file as one mesh, without materials.

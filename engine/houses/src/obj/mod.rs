@@ -14,7 +14,7 @@ mod write;
 
 pub(crate) use convert::bare_mesh;
 pub use convert::open;
-pub(crate) use convert::recognizes;
+pub(crate) use convert::{read_scene, recognizes};
 pub use load::MeshFiles;
 pub(crate) use load::read_mesh;
 pub use read_mtl::read_mtl;

@@ -7,7 +7,8 @@ use dwell_houses::{HousesError, open};
 use dwell_scene::{House, ShoeboxMaterials};
 
 /// The formats that read files, and where each one's sample stands.
-pub(crate) const FILES: [(&str, &str); 10] = [
+pub(crate) const FILES: [(&str, &str); 11] = [
+    ("plan", "plan/a.plan.json"),
     ("native", "a.dwell"),
     ("habitat", "habitat/room.scene_instance.json"),
     ("procthor", "procthor/home.json"),
@@ -26,6 +27,11 @@ pub(crate) const MTL: &str =
 
 pub(crate) const MEASURED: &str = r#"{"bands_hz": [125, 1000], "mesh": "a.obj",
  "materials": {"red": {"absorption": 0.2}, "blue": {"absorption": [0.1, 0.3], "scattering": 0.5}}}"#;
+
+const PLAN: &str = r#"{"format": "dwell-plan", "version": 1, "name": "home", "building": {"storeys": [{"rooms": [
+ {"name": "a", "outline": [[0, 0], [4, 0], [4, 3], [0, 3]]}, {"name": "b", "outline": [[4.1, 0], [6, 0], [6, 3], [4.1, 3]]}],
+ "doors": [{"rooms": ["a", "b"]}], "windows": [{"room": "a"}]}]},
+ "edits": [{"add": {"what": {"file": {"path": "a.obj", "scale": 0.2}}, "place": {"at": [1, 0, 1]}}}]}"#;
 
 /// A tetrahedron as an STL file, mm.
 pub(crate) fn tetrahedron() -> String {
@@ -61,6 +67,8 @@ pub(crate) fn samples() -> &'static [Sample] {
         let home = super::procthor_set::file().to_string();
         let assets = super::procthor_set::database().to_string();
         for (file, text) in [
+            ("plan/a.plan.json", PLAN),
+            ("plan/a.obj", OBJ),
             ("urdf/palm.stl", tetrahedron().as_str()),
             ("mjcf/palm.stl", tetrahedron().as_str()),
             ("urdf/arm.urdf", include_str!("../robots/arm.urdf")),

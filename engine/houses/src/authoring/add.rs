@@ -1,0 +1,245 @@
+//! Objects from the catalogue, from files, from houses, and boxes.
+
+use std::sync::Arc;
+
+use dwell_furniture::catalogue::entries;
+use dwell_furniture::model::Model;
+use dwell_furniture::stock::stock;
+use dwell_furniture::style::{STYLES, Split, Style};
+use dwell_scene::material::library;
+use dwell_scene::random::Key;
+use dwell_scene::{
+    Category, Collider, House, HouseData, Id, Material, MaterialId, Mesh, Mobility, Object,
+    ObjectId, Part, PartId, Pose, RoomId,
+};
+use glam::{Affine3A, Vec3};
+
+use super::apply::Desk;
+use super::edits::{Add, Placing, Traits, Up, What};
+use super::faults::{fault, inside, unknown, within};
+use super::graft::graft;
+use super::{describe, fixtures, mesh_file, place, surfaces};
+use crate::build::{CategoryRow, category, convex_pieces};
+use crate::building::assembly::Assembly;
+use crate::error::HousesError;
+
+/// Longest edge and volume of what a hand can take, m and m³.
+const HANDY: (f32, f32) = (0.6, 0.05);
+/// Mean density of a thing of which nothing is known, over the box around it, kg/m³.
+const USUAL_DENSITY_KG_M3: f32 = 300.0;
+
+/// Adds an object; gives back its id.
+///
+/// # Errors
+/// [`HousesError::Spec`] for what does not exist or cannot be; what readers of files say.
+pub(super) fn add(desk: &mut Desk<'_>, wanted: &Add) -> Result<ObjectId, HousesError> {
+    if let Some(name) = &wanted.name {
+        desk.free_name("name", name)?;
+    }
+    if wanted.place.at.is_none() && wanted.place.on.is_none() {
+        return Err(fault("place", "no place", "`at`, `on`, or both"));
+    }
+    let id = match &wanted.what {
+        What::Catalogue { kind, style, seed } => {
+            let model = model(kind, style.as_deref(), *seed).map_err(inside("what.catalogue"))?;
+            from_model(&mut desk.data, model)
+        }
+        What::File { path, scale, up } => {
+            from_file(desk, path, *scale, *up, &wanted.traits).map_err(inside("what.file"))?
+        }
+        What::Copy { house, object } => {
+            copy(desk, house.as_deref(), object).map_err(inside("what.copy"))?
+        }
+        What::Box { size_m } => {
+            from_box(&mut desk.data, *size_m, &wanted.traits).map_err(inside("what.box"))?
+        }
+    };
+    describe::describe(&mut desk.data, id, &wanted.traits).map_err(inside("traits"))?;
+    if let Some(look) = &wanted.look {
+        surfaces::paint_object(&mut desk.data, id, None, look).map_err(inside("look"))?;
+    }
+    put(desk, id, wanted.name.as_deref(), &wanted.place)?;
+    if let Some(sound) = &wanted.sound {
+        fixtures::sound_of(desk, id, sound).map_err(inside("sound"))?;
+    }
+    Ok(id)
+}
+
+/// Names a new object and puts it into its place.
+pub(super) fn put(
+    desk: &mut Desk<'_>,
+    id: ObjectId,
+    name: Option<&str>,
+    placing: &Placing,
+) -> Result<(), HousesError> {
+    let object = &mut desk.data.objects[id];
+    // Not yet counted with the others.
+    let base = object.category.coarse.clone();
+    object.name = String::new();
+    let name = name.map_or_else(|| desk.counted_name(&base), str::to_owned);
+    let object = &mut desk.data.objects[id];
+    object.source_id.clone_from(&name);
+    object.name = name;
+    let change = place::movement(&desk.data, id, placing)?;
+    place::carry(&mut desk.data, &[id].into(), &change);
+    place::settle(&mut desk.data, id);
+    Ok(())
+}
+
+/// The style of a name; one for training, drawn by the seed, without a name.
+pub(super) fn style(name: Option<&str>, seed: u64) -> Result<&'static Style, HousesError> {
+    let train: Vec<&Style> = STYLES
+        .iter()
+        .filter(|style| style.split == Split::Train)
+        .collect();
+    let Some(name) = name else {
+        let drawn = Key::root(seed).child("style").stream().below(train.len());
+        return Ok(train[drawn]);
+    };
+    let found = STYLES.iter().find(|style| style.name == name);
+    found.ok_or_else(|| {
+        unknown(
+            "style",
+            name,
+            "styles",
+            STYLES.iter().map(|style| style.name),
+        )
+    })
+}
+
+/// A model of the catalogue.
+pub(super) fn model(
+    kind: &str,
+    style_name: Option<&str>,
+    seed: u64,
+) -> Result<Arc<Model>, HousesError> {
+    let style = style(style_name, seed)?;
+    let known = || entries().iter().map(|entry| entry.kind);
+    let made = stock(kind, style, Key::root(seed).child("authored").child(kind));
+    let made = made.ok_or_else(|| unknown("kind", kind, "kinds of the catalogue", known()))?;
+    Ok(made.model.clone())
+}
+
+/// An instance of a model, at the origin.
+pub(super) fn from_model(data: &mut HouseData, model: Arc<Model>) -> ObjectId {
+    let mut assembly = Assembly::new("", "");
+    assembly.storey();
+    let kind = assembly.kind(model);
+    assembly.place(&kind, Pose::IDENTITY, RoomId(0), 0.0);
+    let single = assembly.finish();
+    first(&graft(data, &single, &[ObjectId(0)]))
+}
+
+fn first(ids: &[ObjectId]) -> ObjectId {
+    ids.first().copied().expect("one object was grafted")
+}
+
+fn copy(desk: &mut Desk<'_>, house: Option<&str>, name: &str) -> Result<ObjectId, HousesError> {
+    let source: Arc<House> = match house {
+        None => {
+            let id = super::apply::object(&desk.data, "object", name)?;
+            let own = desk.data.clone();
+            return Ok(first(&graft(&mut desk.data, &own, &[id])));
+        }
+        Some(house) => {
+            let house = desk.files.house("house", house)?;
+            if let Some(known) = desk.houses.get(&house) {
+                known.clone()
+            } else {
+                let (opened, _) = crate::formats::open_with(&house, desk.threads)?;
+                let opened = Arc::new(opened);
+                desk.houses.insert(house, opened.clone());
+                opened
+            }
+        }
+    };
+    let id = super::apply::object(&source, "object", name)?;
+    Ok(first(&graft(&mut desk.data, &source, &[id])))
+}
+
+fn from_file(
+    desk: &mut Desk<'_>,
+    path: &str,
+    scale: f32,
+    up: Up,
+    traits: &Traits,
+) -> Result<ObjectId, HousesError> {
+    let loaded = mesh_file::load(desk, path, scale, up)?;
+    let stem = path.rsplit(['/', '\\']).next().unwrap_or(path);
+    let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
+    let colliders = convex_pieces(
+        &loaded.data.meshes[dwell_scene::MeshId(0)],
+        &Affine3A::IDENTITY,
+    );
+    let single = rigid(
+        loaded.data.clone(),
+        loaded.materials.clone(),
+        colliders,
+        stem,
+        traits,
+    );
+    Ok(first(&graft(&mut desk.data, &single, &[ObjectId(0)])))
+}
+
+fn from_box(
+    data: &mut HouseData,
+    size_m: [f32; 3],
+    traits: &Traits,
+) -> Result<ObjectId, HousesError> {
+    for edge in size_m {
+        within("size_m", edge, [0.001, 100.0], "m an edge")?;
+    }
+    let half = 0.5 * Vec3::from(size_m);
+    let mut own = HouseData::default();
+    own.meshes.push(Arc::new(Mesh::cuboid(-half, half)));
+    let wood = library().get_or_default("wood");
+    let material = own.materials.push(Material::of("box_wood", wood));
+    let colliders = vec![Collider::cuboid(-half, half)];
+    let single = rigid(own, vec![material], colliders, "box", traits);
+    Ok(first(&graft(data, &single, &[ObjectId(0)])))
+}
+
+/// The first mesh of `data` as a loose rigid thing; its mass is that of its category over the box around it.
+fn rigid(
+    mut data: HouseData,
+    materials: Vec<MaterialId>,
+    colliders: Vec<Collider>,
+    model: &str,
+    traits: &Traits,
+) -> HouseData {
+    let mesh = dwell_scene::MeshId(0);
+    let bounds = data.meshes[mesh].bounds();
+    let row = traits.category.as_deref().and_then(|name| category([name]));
+    let density = row.map_or(USUAL_DENSITY_KG_M3, CategoryRow::box_density_kg_m3);
+    let mass_kg = (bounds.volume() * density).clamp(0.001, 5_000.0);
+    let object = ObjectId::from_index(data.objects.len());
+    let first_part = PartId::from_index(data.parts.len());
+    data.parts.push(Part {
+        object,
+        name: "body".to_owned(),
+        fixed: false,
+        world_from_part: Pose::IDENTITY,
+        mesh,
+        part_from_mesh: Affine3A::IDENTITY,
+        materials,
+        colliders,
+        mass_kg: Some(mass_kg),
+        density_kg_m3: density.clamp(0.1, 30_000.0),
+        inertial: None,
+    });
+    let (longest, volume) = (bounds.size().max_element(), bounds.volume());
+    data.objects.push(Object {
+        name: model.to_owned(),
+        source_id: model.to_owned(),
+        model: model.to_owned(),
+        category: Category::default(),
+        level: dwell_scene::LevelId(0),
+        room: None,
+        mobility: Mobility::Movable,
+        pickable: longest <= HANDY.0 && volume <= HANDY.1,
+        switch: row.is_some_and(CategoryRow::is_switchable).then_some(false),
+        first_part,
+        part_count: 1,
+    });
+    data
+}

@@ -1,0 +1,265 @@
+//! Edits, one after another, into a new house.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use dwell_scene::parallel::Threads;
+use dwell_scene::{Aabb, House, HouseData, Level, ObjectId, Pose};
+use glam::{Quat, Vec3};
+
+use super::edits::{AddRobot, Edit, Move, Remove, Rename};
+use super::faults::{fault, inside, point, unknown, within};
+use super::files::Files;
+use super::mesh_file::Loaded;
+use super::{add, describe, doors, fixtures, place, prune, surfaces};
+use crate::build::room_kind;
+use crate::error::HousesError;
+use crate::report::{At, Report};
+
+/// The most edits that are made at once.
+const MAX_EDITS: usize = 10_000;
+
+/// A house with edits made in it, one after another. Meshes, textures and materials are shared with `house`. Adding never
+/// changes the number of anything that was there; taking out closes the gap, so that what stood behind moves up. Names stay
+/// in any case.
+///
+/// The report holds what was wrong with files that were read.
+///
+/// # Errors
+/// [`HousesError::Spec`] names the edit and the field, what was found and what is possible, with the nearest names for an
+/// unknown one; what the reader of a file says; [`HousesError::Scene`] when the result breaks a rule of the scene.
+///
+/// # Determinism
+/// The same house, edits and files give the same house for any number of threads.
+///
+/// ```
+/// use dwell_houses::authoring::{Edit, Files, edit};
+/// let house = dwell_houses::builtin::build("studio").ok_or("no studio")?;
+/// let edits: Vec<Edit> = serde_json::from_str(
+///     r#"[{"add": {"what": {"catalogue": {"kind": "mug"}}, "place": {"on": "dining_table_1"}}}]"#,
+/// )?;
+/// # let has = house.object_named("dining_table_1").is_some();
+/// # if !has { return Ok(()); }
+/// let (edited, _) = edit(&house, &edits, &Files::Anywhere)?;
+/// assert_eq!(edited.objects.len(), house.objects.len() + 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn edit(house: &House, edits: &[Edit], files: &Files) -> Result<(House, Report), HousesError> {
+    if edits.len() > MAX_EDITS {
+        return Err(HousesError::TooLarge {
+            at: At::file("edits"),
+            what: "edit count",
+            found: edits.len() as u64,
+            allowed: MAX_EDITS as u64,
+        });
+    }
+    let mut desk = Desk::new(house.data().clone(), files);
+    for (k, edit) in edits.iter().enumerate() {
+        let place = format!("edits[{k}].{}", edit.word());
+        desk.apply(edit).map_err(inside(place))?;
+    }
+    let house = House::new(desk.data).map_err(HousesError::scene(&At::file("edits")))?;
+    Ok((house, desk.report))
+}
+
+/// A house that is being edited, and what was read for it.
+pub(super) struct Desk<'a> {
+    pub(super) data: HouseData,
+    pub(super) files: &'a Files,
+    pub(super) threads: Threads,
+    pub(super) report: Report,
+    /// Mesh files by path, scale and axis.
+    pub(super) meshes: BTreeMap<String, Arc<Loaded>>,
+    /// Other houses by their HOUSE strings.
+    pub(super) houses: BTreeMap<String, Arc<House>>,
+}
+
+/// The object of a name.
+///
+/// # Errors
+/// [`HousesError::Spec`] with the nearest names.
+pub(super) fn object(data: &HouseData, field: &str, name: &str) -> Result<ObjectId, HousesError> {
+    let mut all = data.objects.iter_ids();
+    let found = all.find_map(|(id, object)| (object.name == name).then_some(id));
+    found.ok_or_else(|| {
+        let names = data.objects.iter().map(|object| object.name.as_str());
+        unknown(field, name, "objects", names)
+    })
+}
+
+impl<'a> Desk<'a> {
+    pub(super) fn new(mut data: HouseData, files: &'a Files) -> Self {
+        if data.levels.is_empty() {
+            let (name, bounds) = ("0".to_owned(), Aabb::EMPTY);
+            data.levels.push(Level { name, bounds });
+        }
+        Self {
+            data,
+            files,
+            threads: Threads::default(),
+            report: Report::new(),
+            meshes: BTreeMap::new(),
+            houses: BTreeMap::new(),
+        }
+    }
+
+    fn apply(&mut self, edit: &Edit) -> Result<(), HousesError> {
+        match edit {
+            Edit::Add(add) => add::add(self, add).map(drop),
+            Edit::Remove(remove) => self.remove(remove),
+            Edit::Move(change) => self.shift(change),
+            Edit::ReMaterial(change) => surfaces::re_material(&mut self.data, change),
+            Edit::AddEmitter(emitter) => fixtures::add_emitter(self, emitter),
+            Edit::AddLamp(lamp) => fixtures::add_lamp(self, lamp),
+            Edit::AddRobot(robot) => self.robot(robot),
+            Edit::SetDoor(door) => doors::set_door(&mut self.data, door),
+            Edit::Describe(change) => {
+                let id = object(&self.data, "object", &change.object)?;
+                describe::describe(&mut self.data, id, &change.traits).map_err(inside("traits"))
+            }
+            Edit::Rename(rename) => self.rename(rename),
+        }
+    }
+
+    /// The house as it is now.
+    fn checked(&self) -> Result<House, HousesError> {
+        House::new(self.data.clone()).map_err(HousesError::scene(&At::file("edits")))
+    }
+
+    fn remove(&mut self, change: &Remove) -> Result<(), HousesError> {
+        let id = object(&self.data, "object", &change.object)?;
+        let gone = if change.with_things {
+            place::with_things(&self.checked()?, id)
+        } else {
+            BTreeSet::from([id])
+        };
+        prune::remove(&mut self.data, &gone);
+        Ok(())
+    }
+
+    fn shift(&mut self, change: &Move) -> Result<(), HousesError> {
+        let id = object(&self.data, "object", &change.object)?;
+        let all = if change.with_things {
+            place::with_things(&self.checked()?, id)
+        } else {
+            BTreeSet::from([id])
+        };
+        let first = place::movement(&self.data, id, &change.place)?;
+        let by = point("by", change.by)?;
+        let turn_rad = within(
+            "turn_deg",
+            change.turn_deg,
+            [-36_000.0, 36_000.0],
+            "degrees",
+        )?
+        .to_radians();
+        place::carry(&mut self.data, &all, &first);
+        let pivot = place::anchor_in_world(&self.data, id, change.place.anchor);
+        let turn = if turn_rad == 0.0 {
+            Quat::IDENTITY
+        } else {
+            dwell_scene::space::rotation_from_yaw_pitch(turn_rad, 0.0)
+        };
+        place::carry(
+            &mut self.data,
+            &all,
+            &Pose::new(pivot + by - turn * pivot, turn),
+        );
+        for object in all {
+            place::settle(&mut self.data, object);
+        }
+        Ok(())
+    }
+
+    fn robot(&mut self, robot: &AddRobot) -> Result<(), HousesError> {
+        let at = point("at", robot.at)?;
+        let yaw = within("yaw_deg", robot.yaw_deg, [-36_000.0, 36_000.0], "degrees")?.to_radians();
+        self.free_name("name", &robot.name)?;
+        let path = self.files.path("path", &robot.path)?;
+        let (model, report) = crate::open_robot(&path)?;
+        self.report.append(report);
+        let fixed = robot.fixed_base.unwrap_or_else(|| model.has_fixed_base());
+        let base = Pose::from_position_yaw(at, yaw) * crate::robot::ours_from_robot();
+        crate::robot::add(&mut self.data, &model, &robot.name, base, fixed);
+        Ok(())
+    }
+
+    fn rename(&mut self, change: &Rename) -> Result<(), HousesError> {
+        if change.to.trim().is_empty() {
+            return Err(fault("to", format_args!("{:?}", change.to), "a name"));
+        }
+        if change.kind.is_some() && change.room.is_none() {
+            return Err(fault("kind", "a kind without a room", "`room` and `kind`"));
+        }
+        match (&change.object, &change.room) {
+            (Some(_), Some(_)) => Err(fault("object", "an object and a room", "one of them")),
+            (Some(name), None) => {
+                let id = object(&self.data, "object", name)?;
+                if *name != change.to {
+                    self.free_name("to", &change.to)?;
+                }
+                self.data.objects[id].name.clone_from(&change.to);
+                Ok(())
+            }
+            (None, Some(name)) => {
+                let id = surfaces::room(&self.data, "room", name)?;
+                let taken = self.data.rooms.iter().any(|room| room.name == change.to);
+                if taken && *name != change.to {
+                    return Err(fault(
+                        "to",
+                        format_args!("{:?}", change.to),
+                        "a name that no other room has",
+                    ));
+                }
+                let room = &mut self.data.rooms[id];
+                room.name.clone_from(&change.to);
+                if let Some(kind) = &change.kind {
+                    room.kinds = vec![room_kind(kind).unwrap_or_else(|plain| plain)];
+                }
+                Ok(())
+            }
+            (None, None) => {
+                self.data.name.clone_from(&change.to);
+                Ok(())
+            }
+        }
+    }
+
+    /// Refuses an object's name that is empty or taken.
+    pub(super) fn free_name(&self, field: &str, name: &str) -> Result<(), HousesError> {
+        if name.trim().is_empty() || self.data.objects.iter().any(|object| object.name == name) {
+            let possible = "a name that no other object has";
+            return Err(fault(field, format_args!("{name:?}"), possible));
+        }
+        Ok(())
+    }
+
+    /// `base_1`, `base_2`, ...: the first that is free.
+    pub(super) fn counted_name(&self, base: &str) -> String {
+        let base = if base.is_empty() { "thing" } else { base };
+        let taken: BTreeSet<&str> = self
+            .data
+            .objects
+            .iter()
+            .map(|object| object.name.as_str())
+            .collect();
+        let mut number = 1_u64;
+        loop {
+            let name = format!("{base}_{number}");
+            if !taken.contains(name.as_str()) {
+                return name;
+            }
+            number += 1;
+        }
+    }
+
+    /// The middle of an object's root, in the space of that part, m.
+    pub(super) fn middle_of_root(&self, id: ObjectId) -> Vec3 {
+        let part = &self.data.parts[self.data.objects[id].first_part];
+        let bounds = self.data.meshes[part.mesh].bounds();
+        if bounds.is_empty() {
+            return Vec3::ZERO;
+        }
+        bounds.transformed(&part.part_from_mesh).center()
+    }
+}

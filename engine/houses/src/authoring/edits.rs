@@ -1,0 +1,396 @@
+//! Edits as plain data: what can be told to a house, in JSON or from code. `docs/authoring.md` lists them with their fields.
+
+use dwell_scene::Mobility;
+use serde::{Deserialize, Serialize};
+
+/// One change of a house.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Edit {
+    /// Adds an object.
+    Add(Add),
+    /// Takes an object out.
+    Remove(Remove),
+    /// Puts an object elsewhere.
+    Move(Move),
+    /// Makes a surface of something else, or gives it another colour.
+    ReMaterial(ReMaterial),
+    /// Adds a source of sound.
+    AddEmitter(AddEmitter),
+    /// Adds a lamp, or light to an object.
+    AddLamp(AddLamp),
+    /// Adds a robot.
+    AddRobot(AddRobot),
+    /// Sets how far a door, drawer or lid is open at the start.
+    SetDoor(SetDoor),
+    /// Says what an object is.
+    Describe(Describe),
+    /// Gives another name.
+    Rename(Rename),
+}
+
+impl Edit {
+    /// What it is called in JSON.
+    pub(super) fn word(&self) -> &'static str {
+        match self {
+            Self::Add(_) => "add",
+            Self::Remove(_) => "remove",
+            Self::Move(_) => "move",
+            Self::ReMaterial(_) => "re_material",
+            Self::AddEmitter(_) => "add_emitter",
+            Self::AddLamp(_) => "add_lamp",
+            Self::AddRobot(_) => "add_robot",
+            Self::SetDoor(_) => "set_door",
+            Self::Describe(_) => "describe",
+            Self::Rename(_) => "rename",
+        }
+    }
+}
+
+/// Adds an object.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Add {
+    /// What is added.
+    pub what: What,
+    /// Its name; `None`: its category with a number.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// Where it goes.
+    #[serde(default)]
+    pub place: Placing,
+    /// What is told about it.
+    #[serde(default)]
+    pub traits: Traits,
+    /// What all its surfaces are made of instead.
+    #[serde(default)]
+    pub look: Option<Look>,
+    /// What it sounds like, from its middle.
+    #[serde(default)]
+    pub sound: Option<Sound>,
+}
+
+/// Where an object comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum What {
+    /// A thing of the catalogue that generated houses are furnished from.
+    Catalogue {
+        /// `"sofa"`, `"dining_chair"`, ...
+        kind: String,
+        /// The style; `None`: one for training, drawn by the seed.
+        #[serde(default)]
+        style: Option<String>,
+        /// Draws size and colours.
+        #[serde(default)]
+        seed: u64,
+    },
+    /// A mesh file: `.glb`, `.gltf` or `.obj`, all of it one rigid thing.
+    File {
+        /// The file; in a plan file, a path below the folder of the plan.
+        path: String,
+        /// Metres for one unit of the file.
+        #[serde(default = "one")]
+        scale: f32,
+        /// Which axis of the file points up.
+        #[serde(default)]
+        up: Up,
+    },
+    /// An object of this house or of another one, with its joints, lights and sounds.
+    Copy {
+        /// The HOUSE; `None`: this one.
+        #[serde(default)]
+        house: Option<String>,
+        /// The object's name there.
+        object: String,
+    },
+    /// A box.
+    Box {
+        /// Its edges, m.
+        size_m: [f32; 3],
+    },
+}
+
+const fn one() -> f32 {
+    1.0
+}
+
+/// The axis of a mesh file that points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Up {
+    /// +Y, as in glTF.
+    #[default]
+    Y,
+    /// +Z, as in most programs for buildings.
+    Z,
+}
+
+/// Where an object goes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Placing {
+    /// Where its anchor goes, m.
+    pub at: Option<[f32; 3]>,
+    /// The object on whose upper side it goes: at `at`, whose height then does not count, else in the middle.
+    pub on: Option<String>,
+    /// Where it is turned, degrees to the left; `None`: as it is.
+    pub yaw_deg: Option<f32>,
+    /// Which of its points `at` is.
+    pub anchor: Anchor,
+}
+
+/// A point of an object, in the upright box around it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Anchor {
+    /// The middle of the lower face.
+    #[default]
+    Foot,
+    /// The middle.
+    Middle,
+    /// The middle of the upper face.
+    Top,
+    /// The origin of its first part, as its model has it: of things of the catalogue that hang on a wall, a point of the
+    /// wall.
+    Origin,
+}
+
+/// What is told about an object. `None` leaves a thing as it is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Traits {
+    /// A row of `assets/categories.csv`, or one of its aliases.
+    pub category: Option<String>,
+    /// Fixed or movable; what has joints stays as it is.
+    pub mobility: Option<Mobility>,
+    /// Its whole mass, kg.
+    pub mass_kg: Option<f32>,
+    /// Its mean density over the volume of its collision pieces, kg/m³; not beside a mass.
+    pub density_kg_m3: Option<f32>,
+    /// Whether a hand can take it, as far as shape and use say.
+    pub pickable: Option<bool>,
+    /// Whether it starts switched on.
+    pub switch: Option<bool>,
+}
+
+/// What a surface is made of, and its colour. `None` leaves a thing as it is, except that another substance brings its own
+/// look.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Look {
+    /// A row of `assets/materials.toml`.
+    pub substance: Option<String>,
+    /// sRGB, 0 to 255; takes the place of colour and image.
+    pub srgb: Option<[u8; 3]>,
+    /// The fraction of light that does not pass, 0 to 1.
+    pub opacity: Option<f32>,
+    /// As in glTF 2.0, 0 to 1.
+    pub roughness: Option<f32>,
+    /// Another substance keeps colour, image, opacity and roughness.
+    pub keep_look: bool,
+}
+
+/// A sound.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sound {
+    /// The name of a signal.
+    pub signal: String,
+    /// Level at 1 m in the free field, dB SPL; -20 to 140.
+    pub level_db: f32,
+}
+
+/// Takes an object out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Remove {
+    /// The object's name.
+    pub object: String,
+    /// Whether what stands on it or lies in it goes too; else that stays where it is.
+    #[serde(default)]
+    pub with_things: bool,
+}
+
+/// Puts an object elsewhere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Move {
+    /// The object's name.
+    pub object: String,
+    /// Where it goes; without place and height it only turns.
+    #[serde(default)]
+    pub place: Placing,
+    /// By how much it is shifted after that, m.
+    #[serde(default)]
+    pub by: [f32; 3],
+    /// By how much it is turned about its anchor after that, degrees to the left.
+    #[serde(default)]
+    pub turn_deg: f32,
+    /// Whether what stands on it or lies in it comes along.
+    #[serde(default = "yes")]
+    pub with_things: bool,
+}
+
+const fn yes() -> bool {
+    true
+}
+
+/// Makes surfaces of something else.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReMaterial {
+    /// Which surfaces.
+    pub of: Surfaces,
+    /// What they are now.
+    pub look: Look,
+}
+
+/// Surfaces of a house.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Surfaces {
+    /// A material by its name, wherever it is.
+    Material(String),
+    /// A piece of the building by its name.
+    Structure(String),
+    /// An object, or one part of it.
+    Object {
+        /// The object's name.
+        name: String,
+        /// The part's name; `None`: all of them.
+        #[serde(default)]
+        part: Option<String>,
+    },
+    /// What a room shows to those in it.
+    Room {
+        /// The room's name.
+        name: String,
+        /// Which of its sides.
+        side: Side,
+    },
+}
+
+/// A side of a room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// The floor.
+    Floor,
+    /// All walls.
+    Walls,
+    /// The ceiling.
+    Ceiling,
+}
+
+/// Adds a source of sound, which sounds from the start.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AddEmitter {
+    /// What sounds.
+    pub sound: Sound,
+    /// The object that sounds, from its middle; it starts switched on.
+    #[serde(default)]
+    pub object: Option<String>,
+    /// A place in the house, m: a small disc is put right below it.
+    #[serde(default)]
+    pub at: Option<[f32; 3]>,
+    /// The name of that disc.
+    #[serde(default)]
+    pub name: Option<String>,
+}
+
+/// Adds a lamp.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AddLamp {
+    /// The object that shines, from its middle; `None`: a new lamp.
+    #[serde(default)]
+    pub object: Option<String>,
+    /// The kind of the new lamp in the catalogue.
+    #[serde(default = "ceiling_lamp")]
+    pub kind: String,
+    /// The new lamp's style, as of [`What::Catalogue`].
+    #[serde(default)]
+    pub style: Option<String>,
+    /// The new lamp's seed.
+    #[serde(default)]
+    pub seed: u64,
+    /// The new lamp's name.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// Where the new lamp goes.
+    #[serde(default)]
+    pub place: Placing,
+    /// Electrical power, W, of which 1 counts as 100 lm; `None`: the model's, or 10.
+    #[serde(default)]
+    pub power_w: Option<f32>,
+    /// Colour of the light, sRGB; `None`: warm white.
+    #[serde(default)]
+    pub srgb: Option<[u8; 3]>,
+    /// Whether it starts switched on.
+    #[serde(default = "yes")]
+    pub on: bool,
+}
+
+fn ceiling_lamp() -> String {
+    "ceiling_lamp".to_owned()
+}
+
+/// Adds a robot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AddRobot {
+    /// A `.urdf`, or a `.xml` of MuJoCo.
+    pub path: String,
+    /// The robot's name as an object.
+    pub name: String,
+    /// Where its base stands, m.
+    pub at: [f32; 3],
+    /// Where it faces, degrees to the left of -Z.
+    #[serde(default)]
+    pub yaw_deg: f32,
+    /// Whether its base is held for good; `None`: as the file says.
+    #[serde(default)]
+    pub fixed_base: Option<bool>,
+}
+
+/// Sets how far something is open at the start.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SetDoor {
+    /// The object's name.
+    pub object: String,
+    /// 0 closed, 1 fully open.
+    pub open: f32,
+    /// The joint's name; `None`: everything of the object that opens.
+    #[serde(default)]
+    pub joint: Option<String>,
+}
+
+/// Says what an object is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Describe {
+    /// The object's name.
+    pub object: String,
+    /// What it is.
+    pub traits: Traits,
+}
+
+/// Gives another name to an object or a room; without either, to the house.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rename {
+    /// The object's name.
+    #[serde(default)]
+    pub object: Option<String>,
+    /// The room's name.
+    #[serde(default)]
+    pub room: Option<String>,
+    /// The new name; not taken yet.
+    pub to: String,
+    /// What people call the room, if that changes too.
+    #[serde(default)]
+    pub kind: Option<String>,
+}

@@ -1,0 +1,58 @@
+//! Which files an edit may name.
+
+use std::path::{Path, PathBuf};
+
+use super::faults::fault;
+use crate::error::HousesError;
+use crate::report::At;
+use crate::root::DataRoot;
+
+/// Which files an edit may name.
+#[derive(Clone, Debug)]
+pub enum Files {
+    /// Any: the edits come from the user.
+    Anywhere,
+    /// Those below a folder: the edits come from a file in it.
+    Below(DataRoot),
+}
+
+impl Files {
+    /// The path that a name means.
+    ///
+    /// # Errors
+    /// [`HousesError::PathLeavesRoot`].
+    pub(super) fn path(&self, field: &str, name: &str) -> Result<PathBuf, HousesError> {
+        if name.is_empty() {
+            return Err(fault(field, "nothing", "the path of a file"));
+        }
+        let Self::Below(root) = self else {
+            return Ok(PathBuf::from(name));
+        };
+        let leaves = || HousesError::PathLeavesRoot {
+            at: At::file("plan").field(field),
+            path: name.to_owned(),
+            root: root.folder().to_owned(),
+        };
+        let inside = DataRoot::resolve("", name).map_err(|_| leaves())?;
+        let full = root.folder().join(&inside);
+        if full.exists() {
+            root.check_inside(&full, &inside)?;
+        }
+        Ok(full)
+    }
+
+    /// The HOUSE that a string means: paths as of [`Files::path`]; no plan rests on another plan.
+    ///
+    /// # Errors
+    /// [`HousesError::PathLeavesRoot`], and [`HousesError::Spec`] for a plan.
+    pub(super) fn house(&self, field: &str, house: &str) -> Result<String, HousesError> {
+        if super::open::recognizes(Path::new(house)) || house.contains("?map=") {
+            let possible = "a HOUSE that is no plan and has no map";
+            return Err(fault(field, format_args!("{house:?}"), possible));
+        }
+        if house.starts_with("builtin:") || house.starts_with("seed:") {
+            return Ok(house.to_owned());
+        }
+        Ok(self.path(field, house)?.to_string_lossy().into_owned())
+    }
+}

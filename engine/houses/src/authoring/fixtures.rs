@@ -1,0 +1,207 @@
+//! Sources of sound and lamps.
+
+use std::sync::Arc;
+
+use dwell_scene::material::library;
+use dwell_scene::{
+    Category, HouseData, Id, Light, LightShape, Material, Mesh, Mobility, Object, ObjectId, Part,
+    PartId, Pose, SoundEmitter, units,
+};
+use glam::{Affine3A, Vec3};
+
+use super::add::{from_model, model, put};
+use super::apply::{Desk, object};
+use super::edits::{AddEmitter, AddLamp, Placing, Sound};
+use super::faults::{fault, inside, point, within};
+use super::graft::graft;
+use crate::error::HousesError;
+
+/// Edge and height of the disc below a source of sound at a place, and how far below it lies, m.
+const DISC_M: [f32; 3] = [0.06, 0.02, 0.01];
+/// Colour of lamps, linear: about 3,000 K.
+const WARM_WHITE: [f32; 3] = [1.0, 0.86, 0.68];
+/// Lamps fade with the square of the distance.
+const ATTENUATION: [f32; 3] = [0.0, 0.0, 1.0];
+/// Power of a light of which nothing is told, W.
+const USUAL_W: f32 = 10.0;
+
+/// Gives an object a sound from its middle; it starts switched on.
+pub(super) fn sound_of(
+    desk: &mut Desk<'_>,
+    id: ObjectId,
+    sound: &Sound,
+) -> Result<(), HousesError> {
+    let level_db = within("level_db", sound.level_db, [-20.0, 140.0], "dB SPL at 1 m")?;
+    if sound.signal.is_empty() {
+        return Err(fault("signal", "nothing", "the name of a signal"));
+    }
+    let position = desk.middle_of_root(id);
+    let object = &mut desk.data.objects[id];
+    object.switch = object.switch.map(|_| true);
+    let part = object.first_part;
+    desk.data.emitters.push(SoundEmitter {
+        object: id,
+        part,
+        position,
+        signal: sound.signal.clone(),
+        level_db,
+    });
+    Ok(())
+}
+
+/// Adds a source of sound on an object or at a place.
+///
+/// # Errors
+/// [`HousesError::Spec`].
+pub(super) fn add_emitter(desk: &mut Desk<'_>, wanted: &AddEmitter) -> Result<(), HousesError> {
+    match (&wanted.object, wanted.at) {
+        (Some(name), None) => {
+            let id = object(&desk.data, "object", name)?;
+            if wanted.name.is_some() {
+                return Err(fault(
+                    "name",
+                    "a name for an object that has one",
+                    "a name beside `at`",
+                ));
+            }
+            sound_of(desk, id, &wanted.sound).map_err(inside("sound"))
+        }
+        (None, Some(at)) => {
+            let at = point("at", at)?;
+            if let Some(name) = &wanted.name {
+                desk.free_name("name", name)?;
+            }
+            let id = disc(&mut desk.data);
+            let name = match &wanted.name {
+                Some(name) => name.clone(),
+                None => desk.counted_name("source"),
+            };
+            let [_, _, below] = DISC_M;
+            let place = Placing {
+                at: Some((at - Vec3::Y * below).to_array()),
+                anchor: super::edits::Anchor::Top,
+                ..Placing::default()
+            };
+            put(desk, id, Some(&name), &place)?;
+            sound_of(desk, id, &wanted.sound).map_err(inside("sound"))?;
+            if let Some(emitter) = desk.data.emitters.last_mut() {
+                emitter.position = Vec3::Y * (0.5 * DISC_M[1] + below);
+            }
+            Ok(())
+        }
+        _ => {
+            let found = if wanted.object.is_some() {
+                "both"
+            } else {
+                "neither"
+            };
+            Err(fault("object, at", found, "one of them"))
+        }
+    }
+}
+
+/// A small black disc that nothing touches.
+fn disc(data: &mut HouseData) -> ObjectId {
+    let [edge, height, _] = DISC_M;
+    let half = 0.5 * Vec3::new(edge, height, edge);
+    let mut own = HouseData::default();
+    let mesh = own.meshes.push(Arc::new(Mesh::cuboid(-half, half)));
+    let plastic = library().get_or_default("plastic");
+    let black = Material::of("source_black", plastic).with_srgb([24; 3]);
+    let material = own.materials.push(black);
+    own.parts.push(Part {
+        object: ObjectId(0),
+        name: "body".to_owned(),
+        fixed: true,
+        world_from_part: Pose::IDENTITY,
+        mesh,
+        part_from_mesh: Affine3A::IDENTITY,
+        materials: vec![material],
+        colliders: Vec::new(),
+        mass_kg: None,
+        density_kg_m3: 1000.0,
+        inertial: None,
+    });
+    let row = crate::build::category(["loudspeaker"]);
+    let category = row.map_or_else(Category::default, |row| Category {
+        fine: row.name.clone(),
+        coarse: row.name.clone(),
+        nyu40: row.nyu40_name.clone(),
+    });
+    own.objects.push(Object {
+        name: "source".to_owned(),
+        source_id: "source".to_owned(),
+        model: "source".to_owned(),
+        category,
+        level: dwell_scene::LevelId(0),
+        room: None,
+        mobility: Mobility::Fixed,
+        pickable: false,
+        switch: None,
+        first_part: PartId(0),
+        part_count: 1,
+    });
+    let added = graft(data, &own, &[ObjectId(0)]);
+    added.first().copied().unwrap_or(ObjectId::from_index(0))
+}
+
+/// Adds a lamp of the catalogue, or light to an object.
+///
+/// # Errors
+/// [`HousesError::Spec`].
+pub(super) fn add_lamp(desk: &mut Desk<'_>, wanted: &AddLamp) -> Result<(), HousesError> {
+    let power = wanted
+        .power_w
+        .map(|power| within("power_w", power, [0.0, 1e5], "W"))
+        .transpose()?;
+    let color = wanted
+        .srgb
+        .map(|srgb| srgb.map(|c| units::linear_from_srgb(f32::from(c) / 255.0)));
+    if let Some(name) = &wanted.object {
+        let id = object(&desk.data, "object", name)?;
+        let position = desk.middle_of_root(id);
+        let object = &mut desk.data.objects[id];
+        object.switch = Some(wanted.on);
+        let part = object.first_part;
+        desk.data.lights.push(Light {
+            object: id,
+            part,
+            position,
+            shape: LightShape::Point,
+            color: color.unwrap_or(WARM_WHITE),
+            power_w: power.unwrap_or(USUAL_W),
+            attenuation: ATTENUATION,
+        });
+        return Ok(());
+    }
+    if let Some(name) = &wanted.name {
+        desk.free_name("name", name)?;
+    }
+    let lamp = model(&wanted.kind, wanted.style.as_deref(), wanted.seed)?;
+    if lamp.lights.is_empty() {
+        let lamps = "a lamp: ceiling_lamp, drum_lamp, pendant, chandelier, floor_lamp, table_lamp, desk_lamp, wall_lamp";
+        return Err(fault(
+            "kind",
+            format_args!("{:?}, which does not shine", wanted.kind),
+            lamps,
+        ));
+    }
+    if wanted.place.at.is_none() && wanted.place.on.is_none() {
+        return Err(fault("place", "no place", "`at`, `on`, or both"));
+    }
+    let id = from_model(&mut desk.data, lamp);
+    put(desk, id, wanted.name.as_deref(), &wanted.place)?;
+    desk.data.objects[id].switch = Some(wanted.on);
+    let own = desk
+        .data
+        .lights
+        .iter_mut()
+        .filter(|light| light.object == id);
+    let own: Vec<&mut Light> = own.collect();
+    let count = own.len() as f32;
+    for light in own {
+        light.power_w = power.map_or(light.power_w, |power| power / count);
+        light.color = color.unwrap_or(light.color);
+    }
+    Ok(())
+}

@@ -1,0 +1,132 @@
+//! A mesh file as one thing: the user's own GLB or OBJ.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use dwell_scene::{HouseData, MaterialId, Mesh};
+use glam::{Affine3A, Quat, Vec3};
+
+use super::apply::Desk;
+use super::edits::Up;
+use super::faults::{fault, within};
+use crate::build::{Scene, joined};
+use crate::damage::Damage;
+use crate::error::HousesError;
+use crate::limits::MAX_BUFFER_BYTES;
+use crate::report::{At, Report};
+use crate::root::DataRoot;
+
+/// What a mesh file holds, as the first mesh of tables that hold its materials and images too.
+pub(super) struct Loaded {
+    /// One mesh, and the file's materials and textures.
+    pub(super) data: HouseData,
+    /// The material of each slot of the mesh.
+    pub(super) materials: Vec<MaterialId>,
+}
+
+/// Reads a file; one that was read already is shared.
+///
+/// # Errors
+/// What the format's reader says; [`HousesError::Empty`] without a triangle.
+pub(super) fn load(
+    desk: &mut Desk<'_>,
+    name: &str,
+    scale: f32,
+    up: Up,
+) -> Result<Arc<Loaded>, HousesError> {
+    let scale = within(
+        "scale",
+        scale,
+        [1e-6, 1e6],
+        "metres for one unit of the file",
+    )?;
+    let key = format!("{name}\n{scale}\n{up:?}");
+    if let Some(known) = desk.meshes.get(&key) {
+        return Ok(known.clone());
+    }
+    let path = desk.files.path("path", name)?;
+    let mut report = Report::new();
+    let scene = read(&path, desk.threads, &mut report)?;
+    let turn = match up {
+        Up::Y => Quat::IDENTITY,
+        Up::Z => Quat::from_xyzw(
+            -std::f32::consts::FRAC_1_SQRT_2,
+            0.0,
+            0.0,
+            std::f32::consts::FRAC_1_SQRT_2,
+        ),
+    };
+    let ours_from_file =
+        Affine3A::from_scale_rotation_translation(Vec3::splat(scale), turn, Vec3::ZERO);
+    let pieces: Vec<(Arc<Mesh>, Vec<MaterialId>)> = scene
+        .things
+        .into_iter()
+        .map(|thing| {
+            let map = ours_from_file * thing.world_from_mesh;
+            let whole = map.is_finite() && map.matrix3.determinant().abs() > 1e-30;
+            let mesh = if whole {
+                thing.mesh.transformed(&map)
+            } else {
+                Mesh::default()
+            };
+            (Arc::new(mesh), thing.materials)
+        })
+        .collect();
+    let (mut mesh, materials) = joined(&pieces);
+    if mesh.triangles.is_empty() {
+        let at = At::file(path.display().to_string());
+        return Err(HousesError::Empty {
+            at,
+            damage: report.len(),
+        });
+    }
+    if mesh.bounds().size().max_element() > 1_000.0 {
+        let found = format!("{:?} m", mesh.bounds().size().to_array());
+        return Err(fault("scale", found, "a thing of at most 1000 m"));
+    }
+    mesh.shrink_to_fit();
+    let mut data = HouseData {
+        materials: scene.looks.into_materials(),
+        textures: scene.textures.into(),
+        ..HouseData::default()
+    };
+    data.meshes.push(Arc::new(mesh));
+    desk.report.append(report);
+    let loaded = Arc::new(Loaded { data, materials });
+    desk.meshes.insert(key, loaded.clone());
+    Ok(loaded)
+}
+
+fn read(
+    path: &Path,
+    threads: dwell_scene::parallel::Threads,
+    report: &mut Report,
+) -> Result<Scene, HousesError> {
+    std::fs::metadata(path).map_err(HousesError::io(path))?;
+    if crate::obj::recognizes(path) {
+        let (scene, at) = crate::obj::read_scene(path, threads, report)?;
+        let unread = report
+            .warnings()
+            .iter()
+            .find(|w| matches!(w.damage, Damage::UnreadableMesh { .. }));
+        return match unread {
+            Some(warning) => Err(HousesError::Syntax {
+                at,
+                message: warning.damage.to_string(),
+            }),
+            None => Ok(scene),
+        };
+    }
+    if crate::gltf::recognizes(path) {
+        let root = DataRoot::new(path.parent().unwrap_or_else(|| Path::new("")))?;
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let bytes = root.read_named(&name, MAX_BUFFER_BYTES)?;
+        return crate::gltf::read_scene(&bytes, &root, &name, threads, report);
+    }
+    let found = format!("{:?}", path.display().to_string());
+    Err(fault("path", found, "a .glb, .gltf or .obj"))
+}

@@ -1,0 +1,184 @@
+//! A plan: what a house is made of, as plain data and as a file `NAME.plan.json`.
+
+use std::path::Path;
+
+use dwell_scene::House;
+use dwell_scene::parallel::Threads;
+use serde::{Deserialize, Serialize};
+
+use super::apply::edit;
+use super::building::{Building, raise};
+use super::edits::Edit;
+use super::faults::{fault, inside};
+use super::files::Files;
+use super::map::Map;
+use crate::error::HousesError;
+use crate::formats::{Opened, open_with};
+use crate::limits::MAX_TEXT_BYTES;
+use crate::report::{At, Report};
+use crate::root::DataRoot;
+
+/// What the field `format` of a plan file holds.
+const FORMAT: &str = "dwell-plan";
+/// The version that is written and read.
+const VERSION: u32 = 1;
+/// The end of a plan file's name.
+const ENDING: &str = ".plan.json";
+
+/// What a house is made of: a building or another house, and edits, one after another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Plan {
+    /// `"dwell-plan"`.
+    pub format: String,
+    /// 1.
+    pub version: u32,
+    /// The house's name; empty: that of the file or of the house it rests on.
+    pub name: String,
+    /// A HOUSE that is edited.
+    pub house: Option<String>,
+    /// A building that is raised; not beside a house.
+    pub building: Option<Building>,
+    /// What is added and changed.
+    pub edits: Vec<Edit>,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            name: String::new(),
+            house: None,
+            building: None,
+            edits: Vec::new(),
+        }
+    }
+}
+
+/// Reads edits from JSON.
+///
+/// # Errors
+/// [`HousesError::Syntax`] with what was found and what is allowed there.
+pub fn edits_from_json(text: &str) -> Result<Vec<Edit>, HousesError> {
+    serde_json::from_str(text).map_err(syntax(&At::file("edits")))
+}
+
+fn syntax(at: &At) -> impl FnOnce(serde_json::Error) -> HousesError {
+    let at = at.clone();
+    move |error| HousesError::Syntax {
+        at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
+        message: error.to_string(),
+    }
+}
+
+impl Plan {
+    /// Reads a plan from JSON; `at` stands in errors.
+    ///
+    /// # Errors
+    /// [`HousesError::Syntax`], [`HousesError::Field`] for another format, [`HousesError::Version`].
+    pub fn from_json(text: &[u8], at: &At) -> Result<Self, HousesError> {
+        let plan: Self = serde_json::from_slice(text).map_err(syntax(at))?;
+        if plan.format != FORMAT {
+            return Err(HousesError::Field {
+                at: at.field("format"),
+                expected: "\"dwell-plan\"",
+                found: format!("{:?}", plan.format),
+            });
+        }
+        if plan.version != VERSION {
+            return Err(HousesError::Version {
+                at: at.field("version"),
+                found: plan.version.to_string(),
+                allowed: vec![VERSION.to_string()],
+            });
+        }
+        Ok(plan)
+    }
+}
+
+/// Makes the house of a plan.
+///
+/// # Errors
+/// [`HousesError::Spec`] names storey and room, or the edit, and the field, what was found and what is possible; otherwise
+/// what readers of files say.
+///
+/// # Determinism
+/// The same plan and files give the same house for any number of threads.
+///
+/// ```
+/// use dwell_houses::authoring::{Files, Plan, build};
+/// let plan: Plan = serde_json::from_str(
+///     r#"{"building": {"storeys": [{"rooms": [{"name": "study", "outline": [[0, 0], [4, 0], [4, 3], [0, 3]]}]}]}}"#,
+/// )?;
+/// let (house, _) = build(&plan, &Files::Anywhere)?;
+/// assert!((house.rooms.as_slice()[0].area_m2() - 12.0).abs() < 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn build(plan: &Plan, files: &Files) -> Result<(House, Report), HousesError> {
+    build_with(plan, files, Threads::default())
+}
+
+fn build_with(
+    plan: &Plan,
+    files: &Files,
+    threads: Threads,
+) -> Result<(House, Report), HousesError> {
+    let (base, mut report) = match (&plan.house, &plan.building) {
+        (Some(house), None) => open_with(&files.house("house", house)?, threads)?,
+        (None, Some(building)) => {
+            let data = raise(&plan.name, building).map_err(inside("building"))?;
+            let house = House::new(data).map_err(HousesError::scene(&At::file("plan")))?;
+            (house, Report::new())
+        }
+        (both, _) => {
+            let found = if both.is_some() { "both" } else { "neither" };
+            return Err(fault("house, building", found, "one of them"));
+        }
+    };
+    let (mut house, more) = edit(&base, &plan.edits, files)?;
+    report.append(more);
+    if !plan.name.is_empty() && plan.name != house.name {
+        let mut data = house.data().clone();
+        data.name.clone_from(&plan.name);
+        house = House::new(data).map_err(HousesError::scene(&At::file("plan")))?;
+    }
+    Ok((house, report))
+}
+
+/// Whether `path` names a plan.
+pub(crate) fn recognizes(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| {
+        name.to_string_lossy()
+            .to_ascii_lowercase()
+            .ends_with(ENDING)
+    })
+}
+
+/// Opens a plan file; the files that it names are read below its folder.
+pub(crate) fn open(path: &Path, threads: Threads) -> Opened {
+    std::fs::metadata(path).map_err(HousesError::io(path))?;
+    let root = DataRoot::new(path.parent().unwrap_or_else(|| Path::new("")))?;
+    let name = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let text = root.read_named(&name, MAX_TEXT_BYTES)?;
+    let mut plan = Plan::from_json(&text, &At::file(&name))?;
+    if plan.name.is_empty() && plan.building.is_some() {
+        name[..name.len().saturating_sub(ENDING.len())].clone_into(&mut plan.name);
+    }
+    build_with(&plan, &Files::Below(root), threads)
+}
+
+/// Opens a house with a map of its foreign names: `HOUSE?map=FILE`.
+pub(crate) fn open_mapped(house: &str, map: &str, threads: Threads) -> Opened {
+    if house.contains("?map=") {
+        return Err(fault("map", "two maps", "one"));
+    }
+    let map = Map::read(Path::new(map))?;
+    let (house, mut report) = open_with(house, threads)?;
+    let house = map.apply(&house, &mut report)?;
+    Ok((house, report))
+}

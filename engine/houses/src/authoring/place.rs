@@ -1,0 +1,265 @@
+//! Where objects stand: the upright box around one, where it is put, what stands on it, and the room that it is in then.
+
+use std::collections::BTreeSet;
+
+use dwell_scene::{
+    Aabb, House, HouseData, Id, LevelId, ObjectId, PartId, Pose, Room, RoomId, State, space,
+};
+use glam::{Quat, Vec2, Vec3};
+
+use super::edits::{Anchor, Placing};
+use super::faults::{fault, point, within};
+use crate::error::HousesError;
+
+/// How far a thing may hover above what it stands on, m.
+const GAP_M: f32 = 0.03;
+/// How far outside of a room's height its things may be, m.
+const ROOM_M: f32 = 0.3;
+
+/// The boxes that physics and eyes know of a part, as points in the world.
+fn points(data: &HouseData, part: PartId) -> impl Iterator<Item = Vec3> {
+    let part = &data.parts[part];
+    let map = part.world_from_part.to_affine() * part.part_from_mesh;
+    let positions = data.meshes[part.mesh].positions.iter();
+    positions.map(move |p| map.transform_point3(*p))
+}
+
+/// The box around an object, m, world space.
+pub(super) fn world_box(data: &HouseData, object: ObjectId) -> Aabb {
+    let parts = data.objects[object].parts();
+    Aabb::from_points(parts.flat_map(|part| points(data, part)))
+}
+
+/// A turn about the vertical.
+fn upright(yaw_rad: f32) -> Quat {
+    space::rotation_from_yaw_pitch(yaw_rad, 0.0)
+}
+
+/// Where a pose faces, rad.
+fn yaw_of(pose: &Pose) -> f32 {
+    space::yaw_from_forward(pose.rotation * Vec3::NEG_Z)
+}
+
+/// A point of an object, seen from its root as if that faced -Z.
+fn anchor(data: &HouseData, object: ObjectId, which: Anchor) -> Vec3 {
+    let root = data.parts[data.objects[object].first_part].world_from_part;
+    let back = upright(-yaw_of(&root));
+    let parts = data.objects[object].parts();
+    let seen = parts
+        .flat_map(|part| points(data, part))
+        .map(|p| back * (p - root.position));
+    let bounds = Aabb::from_points(seen);
+    if bounds.is_empty() {
+        return Vec3::ZERO;
+    }
+    let middle = bounds.center();
+    match which {
+        Anchor::Foot => middle.with_y(bounds.min.y),
+        Anchor::Middle => middle,
+        Anchor::Top => middle.with_y(bounds.max.y),
+        Anchor::Origin => Vec3::ZERO,
+    }
+}
+
+/// Where an object's anchor is, m.
+pub(super) fn anchor_in_world(data: &HouseData, object: ObjectId, which: Anchor) -> Vec3 {
+    let root = data.parts[data.objects[object].first_part].world_from_part;
+    root.position + upright(yaw_of(&root)) * anchor(data, object, which)
+}
+
+/// Shifts and turns objects, each part and each joint that hangs on the house.
+pub(super) fn carry(data: &mut HouseData, objects: &BTreeSet<ObjectId>, change: &Pose) {
+    for object in objects {
+        for part in data.objects[*object].parts() {
+            let pose = &mut data.parts[part].world_from_part;
+            *pose = *change * *pose;
+        }
+    }
+    let joints = data.joints.iter_mut();
+    for joint in joints.filter(|joint| joint.parent.is_none() && objects.contains(&joint.object)) {
+        joint.parent_from_joint = *change * joint.parent_from_joint;
+    }
+}
+
+/// The movement that puts an object's anchor somewhere and turns it there; what `placing` leaves open stays.
+pub(super) fn movement(
+    data: &HouseData,
+    object: ObjectId,
+    placing: &Placing,
+) -> Result<Pose, HousesError> {
+    let root = data.parts[data.objects[object].first_part].world_from_part;
+    let own = anchor(data, object, placing.anchor);
+    let old_yaw = yaw_of(&root);
+    let yaw = match placing.yaw_deg {
+        Some(degrees) => {
+            within("place.yaw_deg", degrees, [-36_000.0, 36_000.0], "degrees")?.to_radians()
+        }
+        None => old_yaw,
+    };
+    let at = target(data, object, placing)?;
+    let old = root.position + upright(old_yaw) * own;
+    let target = at.unwrap_or(old);
+    // An exact turn by nothing, so that what does not turn keeps its bits.
+    let turn = if placing.yaw_deg.is_some() {
+        upright(yaw - old_yaw)
+    } else {
+        Quat::IDENTITY
+    };
+    Ok(Pose::new(target - turn * old, turn))
+}
+
+/// Where the anchor goes; `None`: it stays.
+fn target(
+    data: &HouseData,
+    object: ObjectId,
+    placing: &Placing,
+) -> Result<Option<Vec3>, HousesError> {
+    let at = placing.at.map(|at| point("place.at", at)).transpose()?;
+    let Some(on) = &placing.on else {
+        return Ok(at);
+    };
+    let carrier = super::apply::object(data, "place.on", on)?;
+    if carrier == object {
+        return Err(fault(
+            "place.on",
+            format_args!("{on:?}, itself"),
+            "another object",
+        ));
+    }
+    let bounds = world_box(data, carrier);
+    let place = at.unwrap_or_else(|| bounds.center());
+    let (x, z) = (place.x, place.z);
+    let top = top_of(data, carrier, Vec2::new(x, z)).ok_or_else(|| {
+        let [low, high] = [bounds.min, bounds.max];
+        let possible = format!(
+            "a place over {on:?}: x {:.3} to {:.3} m, z {:.3} to {:.3} m",
+            low.x, high.x, low.z, high.z
+        );
+        fault(
+            "place.at",
+            format!("x {x}, z {z}, where nothing of {on:?} is"),
+            possible,
+        )
+    })?;
+    Ok(Some(Vec3::new(x, top, z)))
+}
+
+/// The highest point of an object on an upright line, m.
+fn top_of(data: &HouseData, object: ObjectId, xz: Vec2) -> Option<f32> {
+    let mut top: Option<f32> = None;
+    for part in data.objects[object].parts() {
+        let world: Vec<Vec3> = points(data, part).collect();
+        let mesh = &data.meshes[data.parts[part].mesh];
+        for triangle in &mesh.triangles {
+            let corners = triangle.map(|k| world[k as usize]);
+            let height = height_over(corners, xz);
+            top = top.into_iter().chain(height).reduce(f32::max);
+        }
+    }
+    top
+}
+
+/// The height of a triangle on an upright line that meets it.
+fn height_over([a, b, c]: [Vec3; 3], xz: Vec2) -> Option<f32> {
+    let flat = |p: Vec3| Vec2::new(p.x, p.z);
+    let (u, v, w) = (flat(b) - flat(a), flat(c) - flat(a), xz - flat(a));
+    let area = u.perp_dot(v);
+    if area.abs() < 1e-9 {
+        return None;
+    }
+    let (s, t) = (w.perp_dot(v) / area, u.perp_dot(w) / area);
+    let meets = s >= -1e-4 && t >= -1e-4 && s + t <= 1.0 + 1e-4;
+    meets.then_some(a.y + s * (b.y - a.y) + t * (c.y - a.y))
+}
+
+/// What stands on objects or lies in them, directly or on one another.
+pub(super) fn with_things(house: &House, object: ObjectId) -> BTreeSet<ObjectId> {
+    let state = State::new(house);
+    let boxes: Vec<Aabb> = house
+        .objects
+        .ids()
+        .map(|id| world_box(house.data(), id))
+        .collect();
+    let loose = |id: &ObjectId| house.objects[*id].mobility == dwell_scene::Mobility::Movable;
+    let rests = |thing: ObjectId, carrier: ObjectId| {
+        let (own, below) = (&boxes[thing.index()], &boxes[carrier.index()]);
+        if own.is_empty() || below.is_empty() {
+            return false;
+        }
+        let foot = own.center();
+        let over = (below.min.x..=below.max.x).contains(&foot.x)
+            && (below.min.z..=below.max.z).contains(&foot.z);
+        let touches =
+            over && own.min.y > below.min.y + 0.01 && own.min.y < below.max.y + GAP_M && {
+                let mut down = [0.0_f32, 0.25, -0.25]
+                    .into_iter()
+                    .flat_map(|x| [0.0_f32, 0.25, -0.25].map(|z| (x, z)));
+                down.any(|(x, z)| {
+                    let size = own.size();
+                    let at = Vec2::new(foot.x + x * size.x, foot.z + z * size.z);
+                    surface_near(house.data(), carrier, at, own.min.y)
+                })
+            };
+        touches || house.encloses(&state, carrier, below, own)
+    };
+    let mut all = BTreeSet::from([object]);
+    let mut open = vec![object];
+    while let Some(carrier) = open.pop() {
+        for thing in house.objects.ids().filter(loose) {
+            if !all.contains(&thing) && rests(thing, carrier) {
+                all.insert(thing);
+                open.push(thing);
+            }
+        }
+    }
+    all
+}
+
+/// Whether an object has a surface at about this height on an upright line.
+fn surface_near(data: &HouseData, object: ObjectId, xz: Vec2, height_m: f32) -> bool {
+    data.objects[object].parts().any(|part| {
+        let world: Vec<Vec3> = points(data, part).collect();
+        let mesh = &data.meshes[data.parts[part].mesh];
+        mesh.triangles.iter().any(|triangle| {
+            let corners = triangle.map(|k| world[k as usize]);
+            height_over(corners, xz).is_some_and(|y| (y - height_m).abs() < GAP_M)
+        })
+    })
+}
+
+/// The room and the storey of a box: the smallest room that holds its middle.
+pub(super) fn home(data: &HouseData, bounds: &Aabb) -> (Option<RoomId>, LevelId) {
+    let middle = bounds.center();
+    let holds = |room: &Room| {
+        room.contains_xz(Vec2::new(middle.x, middle.z))
+            && middle.y > room.floor_y - ROOM_M
+            && middle.y < room.ceiling_y + ROOM_M
+    };
+    let strays = |room: &Room| middle.y < room.floor_y || middle.y > room.ceiling_y;
+    let rooms = data.rooms.iter_ids().filter(|(_, room)| holds(room));
+    let best = rooms.min_by(|(_, a), (_, b)| {
+        strays(a)
+            .cmp(&strays(b))
+            .then(a.area_m2().total_cmp(&b.area_m2()))
+    });
+    if let Some((id, room)) = best {
+        return (Some(id), room.level);
+    }
+    let below = data
+        .levels
+        .iter()
+        .rposition(|level| level.bounds.min.y <= middle.y);
+    (None, LevelId(below.unwrap_or(0) as u32))
+}
+
+/// Writes room and storey of an object and widens the storey's box around it.
+pub(super) fn settle(data: &mut HouseData, object: ObjectId) {
+    let bounds = world_box(data, object);
+    if bounds.is_empty() {
+        return;
+    }
+    let (room, level) = home(data, &bounds);
+    (data.objects[object].room, data.objects[object].level) = (room, level);
+    let all = &mut data.levels[level].bounds;
+    *all = all.union(&bounds);
+}

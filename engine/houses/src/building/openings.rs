@@ -1,0 +1,35 @@
+//! What fills holes in walls.
+
+use std::f32::consts::FRAC_PI_2;
+
+use super::assembly::Assembly;
+use dwell_furniture::models::openings::{Door, Window};
+use dwell_furniture::stock::made_to_measure;
+use dwell_scene::{Pose, RoomId};
+
+/// Hangs a door into a hole, open by `openness` (0 to 1). `square`: the leaf opens to a right angle, as beside an outer wall,
+/// which is thicker.
+pub(crate) fn put_door(
+    assembly: &mut Assembly,
+    door: &Door,
+    square: bool,
+    pose: Pose,
+    room: RoomId,
+    openness: f32,
+) {
+    let settings = format!("{door:?} square {square}");
+    let kind = assembly.kind(made_to_measure(settings, || {
+        let mut model = door.build();
+        for joint in model.joints.iter_mut().filter(|_| square) {
+            joint.open = joint.open.min(FRAC_PI_2);
+        }
+        model
+    }));
+    assembly.place(&kind, pose, room, openness);
+}
+
+/// Puts a window into a hole; `pose` is its middle, the room at +Z.
+pub(crate) fn put_window(assembly: &mut Assembly, window: &Window, pose: Pose, room: RoomId) {
+    let kind = assembly.kind(made_to_measure(format!("{window:?}"), || window.build()));
+    assembly.place(&kind, pose, room, 0.0);
+}

@@ -1,0 +1,94 @@
+//! Stairs between storeys, and the railing where they end.
+
+use std::sync::Arc;
+
+use super::assembly::Assembly;
+use super::yaw::yaw;
+use dwell_furniture::finish::Finish;
+use dwell_furniture::model::Model;
+use dwell_furniture::models::stairs::{Stairs, railing};
+use dwell_furniture::stock::made_to_measure;
+use dwell_furniture::style::Style;
+use dwell_scene::{Pose, RoomId};
+use glam::Vec3;
+
+/// Half of the thickness of a railing with its distance from the edge, m.
+pub(crate) const RAILING_INSET_M: f32 = 0.05;
+
+/// Where two flights beside each other stand.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flights {
+    /// The middle of the front edge on the storey's floor, m.
+    pub(crate) front: Vec3,
+    /// The direction in which the first flight climbs, (x, z): one step along an axis.
+    pub(crate) climb: [i32; 2],
+    /// Whether the first flight is at the right of who looks along it, instead of at the left.
+    pub(crate) mirrored: bool,
+    /// Of both flights together, m.
+    pub(crate) width_m: f32,
+    /// From the front edge to the landing's far end, m.
+    pub(crate) depth_m: f32,
+}
+
+impl Flights {
+    fn climb(&self) -> Vec3 {
+        Vec3::new(self.climb[0] as f32, 0.0, self.climb[1] as f32)
+    }
+
+    /// The model climbs towards -Z.
+    fn yaw_deg(&self) -> f32 {
+        match (self.climb[0], self.climb[1]) {
+            (0, -1) => 0.0,
+            (-1, _) => 90.0,
+            (0, _) => 180.0,
+            _ => -90.0,
+        }
+    }
+}
+
+/// Puts stairs to the next storey, `rise_m` higher. `goes_on`: another flight starts there.
+pub(crate) fn put_stairs(
+    assembly: &mut Assembly,
+    flights: &Flights,
+    rise_m: f32,
+    goes_on: bool,
+    style: &Style,
+    room: RoomId,
+) {
+    let model = Stairs {
+        width_m: flights.width_m,
+        depth_m: flights.depth_m,
+        rise_m,
+        goes_on,
+        mirrored: flights.mirrored,
+        wood: style.wood.clone(),
+        paint: Finish::plain("stair_white", "wood", [238, 236, 230]),
+    };
+    let kind = assembly.kind(made_to_measure(format!("{model:?}"), || model.build()));
+    let pose = Pose::new(flights.front, yaw(flights.yaw_deg()));
+    assembly.place(&kind, pose, room, 0.0);
+}
+
+/// Puts a railing where a first flight would start on the storey where the stairs end.
+pub(crate) fn put_railing(assembly: &mut Assembly, flights: &Flights, style: &Style, room: RoomId) {
+    let climb = flights.climb();
+    // From the first flight to the second.
+    let across = if flights.mirrored {
+        Vec3::Y.cross(climb)
+    } else {
+        climb.cross(Vec3::Y)
+    };
+    let side = -across * 0.25 * flights.width_m;
+    let kind = assembly.kind(railing_of(0.5 * flights.width_m, style));
+    let back = climb * (RAILING_INSET_M - 0.1);
+    let pose = Pose::new(flights.front + side + back, yaw(flights.yaw_deg()));
+    assembly.place(&kind, pose, room, 0.0);
+}
+
+/// A railing of a length.
+pub(crate) fn railing_of(length_m: f32, style: &Style) -> Arc<Model> {
+    let metal = &style.metal;
+    made_to_measure(format!("railing {length_m} {metal:?}"), || {
+        railing(length_m, metal)
+    })
+}

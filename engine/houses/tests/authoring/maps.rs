@@ -1,0 +1,125 @@
+//! Map files: foreign names get a meaning, and what has none is listed.
+
+use dwell_houses::authoring::{UnmappedNames, map_template, unmapped};
+use dwell_houses::open;
+use dwell_scene::Mobility;
+use std::fs;
+
+/// A floor, a thing nobody knows that stands on it, and one that is a wall by no name.
+const OBJ: &str = "mtllib a.mtl\n\
+    o Floor\nv 0 0 0\nv 0 0 4\nv 4 0 4\nv 4 0 0\nusemtl Slot.001\nf 1 2 3 4\n\
+    o Cube.012\nv 1 0 1\nv 1.4 0 1\nv 1.4 0 1.4\nv 1 0 1.4\nv 1 0.5 1\nv 1.4 0.5 1\nv 1.4 0.5 1.4\nv 1 0.5 1.4\nusemtl Slot.002\n\
+    f 5 6 7 8\nf 9 12 11 10\nf 5 9 10 6\nf 6 10 11 7\nf 7 11 12 8\nf 8 12 9 5\n\
+    o Plane.3\nv 0 2.5 0\nv 4 2.5 0\nusemtl Slot.001\nf 1 4 14 13\n";
+
+fn folder() -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.obj"), OBJ).unwrap();
+    fs::write(
+        folder.path().join("a.mtl"),
+        "newmtl Slot.001\nKd 0.5 0.4 0.2\nnewmtl Slot.002\nKd 0.9 0.1 0.1\n",
+    )
+    .unwrap();
+    let house = folder.path().join("a.obj").to_string_lossy().into_owned();
+    (folder, house)
+}
+
+#[test]
+fn what_is_unmapped_is_listed_with_its_area_and_understood_with_a_map() {
+    let (folder, path) = folder();
+    let (house, report) = open(&path).unwrap();
+    let names = unmapped(&house, &report);
+    let materials: Vec<_> = names
+        .materials
+        .iter()
+        .map(|row| (row.name.as_str(), row.count, row.area_m2))
+        .collect();
+    assert_eq!(materials[0].0, "Slot.001");
+    assert!(
+        (materials[0].2 - 26.0).abs() < 1e-4 && materials[0].1 == 2,
+        "{materials:?}"
+    );
+    assert!((materials[1].2 - (2.0 * 0.16 + 4.0 * 0.2)).abs() < 1e-4);
+    let nodes: Vec<&str> = names.nodes.iter().map(|row| row.name.as_str()).collect();
+    assert_eq!(nodes, ["Plane.3", "Cube.012"]);
+    assert_eq!(names.rooms.len(), 1);
+
+    // The template lists them, is a map as it is, and changes nothing.
+    let map = folder.path().join("house-map.toml");
+    let template = map_template(&path, &names);
+    fs::write(&map, &template).unwrap();
+    let mapped = format!("{path}?map={}", map.display());
+    assert_eq!(open(&mapped).unwrap().0, house);
+
+    fs::write(&map, "[materials]\n\"slot.001\" = \"parquet\"\n\"Slot.*\" = { substance = \"steel\", roughness = 0.2 }\n\
+        [nodes]\n\"Cube*\" = { category = \"stool\", name = \"seat\", mass_kg = 4.0 }\n\"Plane.?\" = { structure = \"wall\" }\n\
+        [rooms]\n\"room_1\" = \"kitchen\"\n").unwrap();
+    let (house, report) = open(&mapped).unwrap();
+    let substance = |name: &str| {
+        house
+            .materials
+            .iter()
+            .find(|material| material.name == name)
+            .unwrap()
+    };
+    assert_eq!(
+        (
+            substance("Slot.001").substance.as_str(),
+            substance("Slot.002").substance.as_str()
+        ),
+        ("parquet", "steel")
+    );
+    // It looks as in the file.
+    assert!(
+        (substance("Slot.002").base_color[0] - dwell_scene::units::linear_from_srgb(0.9)).abs()
+            < 1e-5
+    );
+    assert_eq!(substance("Slot.002").roughness, 0.2);
+    let seat = house.object_named("seat").unwrap();
+    assert_eq!(
+        (house.objects.len(), house.objects[seat].mobility),
+        (1, Mobility::Movable)
+    );
+    assert_eq!(
+        house.parts[house.objects[seat].first_part].mass_kg,
+        Some(4.0)
+    );
+    assert_eq!(house.objects[seat].category.coarse, "stool");
+    assert!(house.structure.iter().any(|piece| piece.name == "Plane.3"));
+    assert_eq!(house.rooms.as_slice()[0].kinds, ["kitchen"]);
+    assert_eq!(unmapped(&house, &report), UnmappedNames::default());
+}
+
+#[test]
+fn a_map_that_cannot_be_is_refused_with_its_place() {
+    let (folder, path) = folder();
+    let map = folder.path().join("m.toml");
+    let told = |text: &str| {
+        fs::write(&map, text).unwrap();
+        open(&format!("{path}?map={}", map.display()))
+            .unwrap_err()
+            .to_string()
+    };
+    let said = told("[materials]\n\"Slot*\" = \"parkett\"\n");
+    assert!(
+        said.contains("materials.\"Slot*\".substance: found \"parkett\"")
+            && said.contains("parquet"),
+        "{said}"
+    );
+    let said = told("[nodes]\n\"Cube*\" = { category = \"stool\", mass_kg = -1.0 }\n");
+    assert!(said.contains("nodes.\"Cube*\".mass_kg: found -1"), "{said}");
+    let said = told("[materials\n");
+    assert!(said.contains("m.toml"), "{said}");
+    assert!(
+        open(&format!("{path}?map=none.toml"))
+            .unwrap_err()
+            .to_string()
+            .contains("none.toml")
+    );
+    assert!(
+        open(&format!("{path}?map=a?map=b"))
+            .unwrap_err()
+            .to_string()
+            .contains("two maps")
+    );
+}

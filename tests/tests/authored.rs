@@ -1,0 +1,217 @@
+//! Houses that people make, as eyes, hands and ears find them.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "what json! makes is given as it stands"
+)]
+
+use dwell::{Engines, World, WorldConfig};
+use dwell_acoustics::{AcousticConfig, AcousticScene};
+use dwell_houses::authoring::{Files, Plan, build};
+use dwell_physics::Action;
+use dwell_scene::random::Key;
+use dwell_scene::{AgentId, House, State};
+use glam::Vec3;
+use serde_json::{Value, json};
+use std::fs;
+use std::sync::Arc;
+
+const AGENT: AgentId = AgentId(0);
+const BLOCK: usize = 800;
+
+fn built(plan: Value) -> House {
+    let plan: Plan = serde_json::from_value(plan).unwrap();
+    build(&plan, &Files::Anywhere).unwrap().0
+}
+
+/// A room of 4 by 2.5 by 3 m with a floor of carpet and walls of brick, and a second one behind a door.
+fn rooms(edits: Value) -> Value {
+    let covering = |name: &str| json!({"substance": name});
+    json!({"edits": edits, "building": {"storeys": [{"height_m": 2.5,
+        "rooms": [
+            {"name": "study", "outline": [[0, 0], [4, 0], [4, 3], [0, 3]], "floor": covering("carpet"),
+             "walls": covering("brick"), "ceiling": covering("acoustic_panel")},
+            {"name": "hall", "outline": [[4.1, 0], [6, 0], [6, 3], [4.1, 3]], "floor": covering("concrete")},
+        ],
+        "doors": [{"rooms": ["study", "hall"], "name": "way"}],
+    }]}})
+}
+
+fn world(house: House) -> World {
+    let mut world = World::new(Engines::new(Arc::new(house)), &WorldConfig::default()).unwrap();
+    world.reset(Key::root(5)).unwrap();
+    world
+}
+
+/// What both ears heard in some steps.
+fn heard_rms(world: &mut World, steps: usize) -> f64 {
+    let mut power = 0.0;
+    for _ in 0..steps {
+        world.step(&[]).unwrap();
+        for channel in 0..2 {
+            let mut heard = [0.0; BLOCK];
+            world.heard(AGENT, channel, &mut heard);
+            power += heard.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
+        }
+    }
+    (power / (2 * steps * BLOCK) as f64).sqrt()
+}
+
+#[test]
+fn sound_meets_the_areas_of_what_the_rooms_are_covered_with() {
+    let house = Arc::new(built(rooms(json!([]))));
+    let scene = AcousticScene::new(house, AcousticConfig::rl()).unwrap();
+    let told = scene.explain();
+    let area = |substance: &str| -> f64 {
+        let rows = told
+            .materials
+            .iter()
+            .filter(|row| row.substance == substance);
+        rows.map(|row| row.area_m2).sum()
+    };
+    // The slab of the floor: its upper face reaches under the walls, and has a lower face and edges of 0.2 m.
+    let floor = area("carpet");
+    assert!(
+        (2.0 * 12.0..2.0 * 4.4 * 3.4 + 0.2 * 2.0 * (4.4 + 3.4) + 0.1).contains(&floor),
+        "{floor}"
+    );
+    // The inner faces of its four walls, less the door to the hall.
+    let brick = area("brick");
+    assert!(
+        (brick - (2.0 * (4.0 + 3.0) * 2.5 - 0.98 * 2.06)).abs() < 0.01,
+        "{brick}"
+    );
+    let row = told
+        .materials
+        .iter()
+        .find(|row| row.substance == "carpet")
+        .unwrap();
+    let library = dwell_scene::material::library().get("carpet").unwrap();
+    assert!((row.absorption[4] - library.absorption.at(1000.0)).abs() < 1e-6);
+}
+
+#[test]
+fn a_hand_opens_the_door() {
+    let mut world = world(built(rooms(json!([]))));
+    let door = world.house().object_named("way").unwrap();
+    world
+        .place_agent(
+            AGENT,
+            Vec3::new(2.6, 0.0, 1.5),
+            -std::f32::consts::FRAC_PI_2,
+        )
+        .unwrap();
+    let openness = |world: &World| {
+        let house = world.house().clone();
+        let (id, joint) = house
+            .joints
+            .iter_ids()
+            .find(|(_, joint)| joint.object == door)
+            .unwrap();
+        joint.openness(world.state().joint_position[id])
+    };
+    assert!(openness(&world) < 0.01);
+    let outcome = world.act(
+        AGENT,
+        &Action::Open {
+            target: door.into(),
+            fraction: 1.0,
+        },
+    );
+    assert!(outcome.success, "{}", outcome.sentence);
+    for _ in 0..80 {
+        world.step(&[]).unwrap();
+    }
+    assert!(openness(&world) > 0.8, "{}", openness(&world));
+}
+
+/// A cube of an edge of 1 as an OBJ file with two materials.
+const CUBE: &str = "o cube\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\nv 1 1 0\nv 1 1 1\nv 0 1 1\n\
+    usemtl a\nf 1 2 3 4\nf 5 8 7 6\nusemtl b\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
+
+#[test]
+fn an_own_mesh_falls_rests_weighs_and_rings_as_it_was_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cube.obj");
+    fs::write(&path, CUBE).unwrap();
+    let drop = |substance: &str| {
+        let cube = json!({"add": {"what": {"file": {"path": path, "scale": 0.12}}, "name": "mine",
+            "place": {"at": [5, 0.6, 1.5], "yaw_deg": 20}, "traits": {"mass_kg": 0.75}, "look": {"substance": substance, "keep_look": true}}});
+        let mut world = world(built(rooms(json!([cube]))));
+        world
+            .place_agent(AGENT, Vec3::new(4.6, 0.0, 0.6), 0.0)
+            .unwrap();
+        world.listen(&[(AGENT, BLOCK)]).unwrap();
+        let mine = world.house().object_named("mine").unwrap();
+        let mass = world
+            .parameter(&"part/mine/body/mass_kg".parse().unwrap())
+            .unwrap();
+        assert!((mass.value - 0.75).abs() < 1e-6);
+        let part = world.house().objects[mine].first_part;
+        let (mut touched, mut high) = (Vec::new(), 0.0);
+        for _ in 0..60 {
+            world.step(&[]).unwrap();
+            let mut heard = [0.0; BLOCK];
+            world.heard(AGENT, 0, &mut heard);
+            let steps = heard
+                .windows(2)
+                .map(|pair| f64::from(pair[1] - pair[0]).powi(2));
+            high += steps.sum::<f64>();
+            touched.extend(
+                world
+                    .events()
+                    .iter()
+                    .flat_map(|event| [event.substance_a, event.substance_b]),
+            );
+        }
+        let state = world.state();
+        let speed = state.part_velocity[part].linear.length();
+        // The mesh's own origin is its corner: it lies flat on the floor, whose height is 0.
+        let height = state.part_pose[part].position.y;
+        assert!(speed < 1e-3 && height.abs() < 0.005, "{speed} {height}");
+        assert!(touched.contains(&substance), "{touched:?}");
+        high
+    };
+    // Struck steel rings high, foam does not; how low the blow itself is depends on its weight, which is the same.
+    let (steel, foam) = (drop("steel"), drop("foam"));
+    assert!(steel > 100.0 * foam && foam > 0.0, "{steel} {foam}");
+}
+
+#[test]
+fn an_emitter_is_heard_from_the_start_at_its_level() {
+    let at = [1.0, 1.2, 1.5];
+    let quiet = built(rooms(json!([])));
+    let emitter = |level_db: f32| json!([{"add_emitter": {"at": at, "name": "voice", "sound": {"signal": "noise", "level_db": level_db}}}]);
+    let listen = |house: House| {
+        let mut world = world(house);
+        world
+            .place_agent(AGENT, Vec3::new(3.0, 0.0, 1.5), std::f32::consts::FRAC_PI_2)
+            .unwrap();
+        world.listen(&[(AGENT, BLOCK)]).unwrap();
+        heard_rms(&mut world, 2);
+        heard_rms(&mut world, 20)
+    };
+    let loud = built(rooms(emitter(70.0)));
+    let voice = loud.object_named("voice").unwrap();
+    // The source is where it was put, above its disc, in the free.
+    let state = State::new(&loud);
+    let source = loud.emitters.last().unwrap();
+    assert_eq!(source.object, voice);
+    assert!(
+        (state.part_pose[source.part].transform_point(source.position) - Vec3::from(at)).length()
+            < 1e-5
+    );
+    let (loud, soft, silence) = (
+        listen(loud),
+        listen(built(rooms(emitter(50.0)))),
+        listen(quiet),
+    );
+    assert!(silence < 0.02 * soft, "{silence} {soft}");
+    let apart_db = 20.0 * (loud / soft).log10();
+    assert!((apart_db - 20.0).abs() < 0.5, "{apart_db}");
+    // 70 dB SPL at 1 m is a power of 81 dB: more than the free field's 64 dB at 2 m, and less than what a room would give that
+    // absorbs as 4 m2 of open window (81 dB); the ceiling alone absorbs more.
+    let level_db = 20.0 * (loud / 20e-6).log10();
+    assert!((64.0..81.0).contains(&level_db), "{level_db}");
+}
