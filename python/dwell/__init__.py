@@ -30,8 +30,10 @@ from dwell._native import (
 if TYPE_CHECKING:
     from dwell.acoustics import AcousticScene
     from dwell.actions import Outcome, Pointed
+    from dwell.building import HouseBuilder
     from dwell.calibration import calibrate
     from dwell.camera import Camera
+    from dwell.editing import HouseEdit
     from dwell.envs import register_envs, register_task
     from dwell.heads import Head
     from dwell.house import House
@@ -49,6 +51,8 @@ _LAZY = {
     "Camera": "dwell.camera",
     "Head": "dwell.heads",
     "House": "dwell.house",
+    "HouseBuilder": "dwell.building",
+    "HouseEdit": "dwell.editing",
     "Microphone": "dwell.listening",
     "Navigation": "dwell.navigation",
     "Outcome": "dwell.actions",
@@ -75,6 +79,8 @@ __all__ = [
     "EngineBug",
     "Head",
     "House",
+    "HouseBuilder",
+    "HouseEdit",
     "HouseError",
     "HouseNotFoundError",
     "MeasuredDataError",

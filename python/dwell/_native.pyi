@@ -90,6 +90,13 @@ class House:
     @staticmethod
     def open(house: str) -> House: ...
     @staticmethod
+    def built(plan_json: str) -> House:
+        """The house of a plan."""
+    def edited(self, edits_json: str) -> House:
+        """The same house with edits."""
+    def map_template(self, house: str) -> str:
+        """A map file for what stayed unmapped; ``house`` stands in its head."""
+    @staticmethod
     def shoebox(
         size_m: tuple[float, float, float],
         substance: str | None = ...,

@@ -6,11 +6,14 @@ import json
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import UsageError, _native, arguments
 from dwell.arguments import file_name, finite, flag, point, text, whole
 from dwell.navigation import Navigation, Walker, walker_json
+
+if TYPE_CHECKING:
+    from dwell.editing import HouseEdit
 
 Level = Literal["object", "room", "house", "graph", "instructions"]
 Form = Literal["dwell", "suncg", "glb"]
@@ -35,22 +38,30 @@ class House:
         self._again = again
 
     @classmethod
-    def open(cls, house: str | os.PathLike[str]) -> House:
+    def open(
+        cls, house: str | os.PathLike[str], *, map: str | os.PathLike[str] | None = None
+    ) -> House:
         """Opens a HOUSE string.
 
         Args:
             house: ``builtin:NAME``, ``seed:N``, or the path of a SUNCG ``house.json``, a ``.dwell``
                 folder, a ``.glb``, ``.gltf`` or ``.obj`` file, a ``.scene_instance.json`` of
-                Habitat, a house's ``.json`` of ProcTHOR, a ``.urdf`` or MuJoCo ``.xml``.
+                Habitat, a house's ``.json`` of ProcTHOR, a ``.urdf`` or MuJoCo ``.xml``, a
+                ``.plan.json`` of :class:`dwell.HouseBuilder`.
+            map: A file that says what foreign names of materials, nodes and rooms mean; the same as
+                ``HOUSE?map=FILE``. ``docs/authoring.md`` lists its fields.
 
         Returns:
-            The house; what its reader had to say stands in ``info()["report"]``.
+            The house; what its reader had to say stands in ``info()["report"]``, what it knows
+            nothing of in ``info()["unmapped"]``.
 
         Raises:
             HouseNotFoundError: There is nothing of that name.
             HouseError: It cannot be read; the message names file, node and field.
         """
         name = arguments.path("house", house)
+        if map is not None:
+            name = f"{name}?map={arguments.path('map', map)}"
         return cls(_native.House.open(name), (House.open, (name,)))
 
     @staticmethod
@@ -152,6 +163,23 @@ class House:
             )
         )
 
+    def edit(self) -> HouseEdit:
+        """Begins changes: things added, moved, taken out, made of something else.
+
+        >>> import dwell
+        >>> room = dwell.House.shoebox((4.0, 2.5, 3.0), substance="plaster")
+        >>> edit = room.edit().add("desk", (2.0, 0.0, 1.0), name="desk").add("mug", on="desk")
+        >>> edit.done().info()["objects"]
+        2
+        """
+        from dwell.editing import HouseEdit
+
+        return HouseEdit(self)
+
+    def map_template(self) -> str:
+        """A map file with everything that stayed unmapped, to be filled in."""
+        return self._native.map_template(self.name)
+
     @property
     def native(self) -> _native.House:
         """The built half."""
@@ -163,7 +191,7 @@ class House:
         return self._native.name
 
     def info(self) -> dict[str, Any]:
-        """Counts, rooms, categories, and the report of damage."""
+        """Counts, rooms, categories, the report of damage, and the names that stayed unmapped."""
         info: dict[str, Any] = json.loads(self._native.info_json())
         return info
 

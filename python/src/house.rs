@@ -1,5 +1,6 @@
 //! Houses for Python.
 
+use crate::authoring;
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::head::PyHead;
@@ -25,15 +26,19 @@ pub(crate) struct PyHouse {
 }
 
 impl PyHouse {
-    fn from_house(house: House, report: Value) -> Self {
+    pub(crate) fn from_house(house: House, report: Value) -> Self {
         Self {
             engines: Engines::new(Arc::new(house)),
             report,
         }
     }
 
-    fn house(&self) -> &House {
+    pub(crate) fn house(&self) -> &House {
         self.engines.house()
+    }
+
+    pub(crate) fn report(&self) -> &Value {
+        &self.report
     }
 }
 
@@ -43,14 +48,24 @@ impl PyHouse {
     fn open(py: Python<'_>, house: &str) -> PyResult<Self> {
         py.engine(|| -> Result<_, Fault> {
             let (house, report) = dwell_houses::open(house)?;
-            let mut rows = serde_json::to_value(&report)?;
-            if let Some(warnings) = rows["warnings"].as_array_mut() {
-                for (row, warning) in warnings.iter_mut().zip(report.warnings()) {
-                    row["sentence"] = warning.to_string().into();
-                }
-            }
-            Ok(Self::from_house(house, rows))
+            Ok(Self::from_house(house, authoring::rows(&report)?))
         })
+    }
+
+    /// The house of a plan, as `dwell_houses::authoring::Plan` in JSON.
+    #[staticmethod]
+    fn built(py: Python<'_>, plan_json: &str) -> PyResult<Self> {
+        py.engine(|| authoring::built(plan_json))
+    }
+
+    /// The same house with edits, as `dwell_houses::authoring::Edit` in JSON.
+    fn edited(&self, py: Python<'_>, edits_json: &str) -> PyResult<Self> {
+        py.engine(|| authoring::edited(self, edits_json))
+    }
+
+    /// A map file for what stayed unmapped; `house` stands in its head.
+    fn map_template(&self, py: Python<'_>, house: &str) -> PyResult<String> {
+        py.engine(|| Ok::<_, Fault>(authoring::map_template(self, house)))
     }
 
     fn add_head(&self, head: &Bound<'_, PyHead>) {
@@ -126,7 +141,7 @@ impl PyHouse {
     }
 
     fn info_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| Ok::<_, Fault>(dwell::info(&self.engines, &self.report).to_string()))
+        py.engine(|| authoring::info(self))
     }
 
     fn rooms_json(&self, py: Python<'_>) -> PyResult<String> {

@@ -6,6 +6,7 @@
 )]
 
 mod acoustics;
+mod authoring;
 mod batch;
 mod bench;
 mod calibrate;

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import Any
 
+from dwell import ConfigError
 from dwell.cli.common import print_json
 
 _MOST_WARNINGS = 20
@@ -14,6 +16,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("house", metavar="HOUSE", nargs="?", help="without it: built-in houses")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    parser.add_argument("--map", metavar="FILE", help="what foreign names of the house mean")
+    parser.add_argument(
+        "--init-map", metavar="FILE", help="write a map with what stayed unmapped, to be filled in"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -24,7 +30,10 @@ def run(args: argparse.Namespace) -> int:
         names = House.builtins()
         print_json({"builtins": names}) if args.json else print("\n".join(names))
         return 0
-    info = House.open(args.house).info()
+    house = House.open(args.house, map=args.map)
+    if args.init_map is not None:
+        _write_new(Path(args.init_map), house.map_template())
+    info = house.info()
     if args.json:
         print_json(info)
         return 0
@@ -44,9 +53,33 @@ def run(args: argparse.Namespace) -> int:
         print(f"  {room['name']}: {kinds}, {room['area_m2']:.1f} m2, {things}")
     rows = sorted(info["categories"].items(), key=lambda row: (-row[1], row[0]))
     print("categories: " + ", ".join(f"{count} {name or 'unknown'}" for name, count in rows))
-    for line in _report(info["report"]):
+    for line in [*_unmapped(info["unmapped"]), *_report(info["report"])]:
         print(line)
     return 0
+
+
+def _write_new(path: Path, text: str) -> None:
+    """Writes a file that is not there yet: a map that somebody filled in stays."""
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise ConfigError(f"--init-map: {path} is there already; name a new file") from None
+
+
+def _unmapped(names: dict[str, list[dict[str, Any]]]) -> list[str]:
+    """What the house's names did not say, the largest first."""
+    lines = []
+    for what, rows in names.items():
+        if not rows:
+            continue
+        lines.append(f"unmapped {what}: {len(rows)}")
+        for row in rows[:_MOST_WARNINGS]:
+            taken = f", taken for {row['taken_for']}" if row["taken_for"] else ""
+            lines.append(f"  {row['name']}: {row['count']}, {row['area_m2']:.1f} m2{taken}")
+        if len(rows) > _MOST_WARNINGS:
+            lines.append(f"  and {len(rows) - _MOST_WARNINGS} more (--json has them)")
+    return lines
 
 
 def _many(count: int, noun: str) -> str:

@@ -1,0 +1,540 @@
+"""Changes of a house that are noted until a new house is made of them.
+
+What is noted is plain data: it can be saved and pickled. ``docs/authoring.md`` is the tutorial.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Literal
+
+from dwell import ConfigError, UsageError, _native, arguments
+from dwell.arguments import choice, finite, flag, path, point, text, whole
+from dwell.house import House
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+Point = tuple[float, float, float]
+Rgb = tuple[int, int, int]
+Anchor = Literal["foot", "middle", "top", "origin"]
+Mobility = Literal["fixed", "movable"]
+Side = Literal["floor", "walls", "ceiling"]
+
+
+class Edits:
+    """Changes that are noted, one after another; what :class:`HouseEdit` and the builder share.
+
+    A thing goes where ``at`` is (x, y, z in m), which is the middle of its lower face unless
+    ``anchor`` says otherwise, or ``on`` another object: there at ``at``, whose height then does not
+    count, or in the middle. At ``yaw_deg`` 0 things of the catalogue face +z; positive is to the
+    left. Every method gives back the same object, so that calls can be chained.
+    """
+
+    def __init__(self) -> None:
+        """Notes nothing yet."""
+        self._edits: list[dict[str, Any]] = []
+
+    @property
+    def edits(self) -> list[dict[str, Any]]:
+        """What was noted, as plain data; ``docs/authoring.md`` lists the fields."""
+        edits: list[dict[str, Any]] = json.loads(arguments.to_json(self._edits))
+        return edits
+
+    def _note(self, word: str, fields: Mapping[str, Any]) -> Self:
+        self._edits.append({word: {key: row for key, row in fields.items() if row is not None}})
+        return self
+
+    def add(
+        self,
+        kind: str,
+        at: Point | None = None,
+        *,
+        on: str | None = None,
+        yaw_deg: float | None = None,
+        anchor: Anchor = "foot",
+        name: str | None = None,
+        style: str | None = None,
+        seed: int = 0,
+        substance: str | None = None,
+        srgb: Rgb | None = None,
+    ) -> Self:
+        """Adds a thing of the catalogue that generated houses are furnished from.
+
+        Args:
+            kind: ``"sofa"``, ``"dining_chair"``, ``"mug"``, ...; an unknown one is answered with
+                the nearest.
+            at: Where it goes, m.
+            on: The object on which it goes.
+            yaw_deg: Where it faces.
+            anchor: Which of its points ``at`` is.
+            name: Its name; without one its category with a number.
+            style: ``"nordic"``, ``"modern"``, ...; without one drawn by the seed.
+            seed: Draws size and colours.
+            substance: What all of it is made of instead.
+            srgb: The colour of all of it, 0 to 255.
+        """
+        what = {"kind": text("kind", kind), "style": style, "seed": whole("seed", seed)}
+        return self._note(
+            "add",
+            {
+                "what": {"catalogue": what},
+                "name": name,
+                "place": _place(at, on, yaw_deg, anchor),
+                "look": _look(substance, srgb),
+            },
+        )
+
+    def add_file(
+        self,
+        file: str | os.PathLike[str],
+        at: Point | None = None,
+        *,
+        on: str | None = None,
+        yaw_deg: float | None = None,
+        anchor: Anchor = "foot",
+        name: str | None = None,
+        scale: float = 1.0,
+        up: Literal["y", "z"] = "y",
+        category: str | None = None,
+        mobility: Mobility | None = None,
+        mass_kg: float | None = None,
+        density_kg_m3: float | None = None,
+        pickable: bool | None = None,
+        substance: str | None = None,
+        srgb: Rgb | None = None,
+        signal: str | None = None,
+        level_db: float | None = None,
+    ) -> Self:
+        """Adds a mesh file of your own, as one rigid thing that falls and rests.
+
+        Args:
+            file: A ``.glb``, ``.gltf`` or ``.obj``.
+            at: Where it goes, m.
+            on: The object on which it goes.
+            yaw_deg: Where it is turned.
+            anchor: Which of its points ``at`` is.
+            name: Its name; without one its category with a number.
+            scale: Metres for one unit of the file.
+            up: Which axis of the file points up.
+            category: What it is: ``"chair"``, ``"mug"``, ...
+            mobility: ``"movable"`` unless told.
+            mass_kg: Its mass; without it that of its category, over the box around it.
+            density_kg_m3: Its mean density instead of a mass.
+            pickable: Whether a hand can take it; without it by its size.
+            substance: What it is made of, for hands and ears; without it what the names of the
+                file's materials mean. Colours and images stay.
+            srgb: Its colour, 0 to 255, instead of the file's.
+            signal: What it sounds like from the start; :func:`dwell.sounds.signals` lists names.
+            level_db: How loud at 1 m, dB SPL; without it as usual for the signal.
+        """
+        what = {"path": path("file", file), "scale": finite("scale", scale), "up": up}
+        return self._note(
+            "add",
+            {
+                "what": {"file": what},
+                "name": name,
+                "place": _place(at, on, yaw_deg, anchor),
+                "traits": _traits(category, mobility, mass_kg, density_kg_m3, pickable, None),
+                "look": _look(substance, srgb, keep_look=True),
+                "sound": None if signal is None else _sound(signal, level_db),
+            },
+        )
+
+    def add_box(
+        self,
+        size_m: Point,
+        at: Point | None = None,
+        *,
+        on: str | None = None,
+        yaw_deg: float | None = None,
+        anchor: Anchor = "foot",
+        name: str | None = None,
+        category: str | None = None,
+        mobility: Mobility | None = None,
+        mass_kg: float | None = None,
+        density_kg_m3: float | None = None,
+        substance: str | None = None,
+        srgb: Rgb | None = None,
+    ) -> Self:
+        """Adds a box with edges of ``size_m`` (x, height, z); the rest as for :meth:`add_file`."""
+        return self._note(
+            "add",
+            {
+                "what": {"box": {"size_m": point("size_m", size_m)}},
+                "name": name,
+                "place": _place(at, on, yaw_deg, anchor),
+                "traits": _traits(category, mobility, mass_kg, density_kg_m3, None, None),
+                "look": _look(substance, srgb),
+            },
+        )
+
+    def add_copy(
+        self,
+        thing: str,
+        at: Point | None = None,
+        *,
+        house: str | os.PathLike[str] | None = None,
+        on: str | None = None,
+        yaw_deg: float | None = None,
+        anchor: Anchor = "foot",
+        name: str | None = None,
+    ) -> Self:
+        """Adds a copy of an object, with its joints, lights and sounds.
+
+        Args:
+            thing: The object's name.
+            at: Where the copy goes, m.
+            house: The HOUSE that has the object; without it this one.
+            on: The object on which it goes.
+            yaw_deg: Where it faces.
+            anchor: Which of its points ``at`` is.
+            name: Its name; without one its category with a number.
+        """
+        what = {"object": text("thing", thing)}
+        if house is not None:
+            what["house"] = path("house", house)
+        place = _place(at, on, yaw_deg, anchor)
+        return self._note("add", {"what": {"copy": what}, "name": name, "place": place})
+
+    def remove(self, thing: str, *, with_things: bool = False) -> Self:
+        """Takes an object out, ``with_things`` also what stands on it or lies in it.
+
+        Objects behind it move up in the list; names stay.
+        """
+        fields = {"object": text("thing", thing), "with_things": flag("with_things", with_things)}
+        return self._note("remove", fields)
+
+    def move(
+        self,
+        thing: str,
+        at: Point | None = None,
+        *,
+        on: str | None = None,
+        yaw_deg: float | None = None,
+        by: Point = (0.0, 0.0, 0.0),
+        turn_deg: float = 0.0,
+        anchor: Anchor = "foot",
+        with_things: bool = True,
+    ) -> Self:
+        """Puts an object elsewhere.
+
+        Args:
+            thing: The object's name.
+            at: Where it goes, m; without it it stays and may turn.
+            on: The object on which it goes.
+            yaw_deg: Where it faces then.
+            by: By how much it is shifted after that, m.
+            turn_deg: By how much it is turned after that, degrees to the left.
+            anchor: Which of its points ``at`` is.
+            with_things: Whether what stands on it or lies in it comes along.
+        """
+        return self._note(
+            "move",
+            {
+                "object": text("thing", thing),
+                "place": _place(at, on, yaw_deg, anchor),
+                "by": point("by", by),
+                "turn_deg": finite("turn_deg", turn_deg),
+                "with_things": flag("with_things", with_things),
+            },
+        )
+
+    def re_material(
+        self,
+        *,
+        room: str | None = None,
+        side: Side | None = None,
+        thing: str | None = None,
+        part: str | None = None,
+        structure: str | None = None,
+        material: str | None = None,
+        substance: str | None = None,
+        srgb: Rgb | None = None,
+        opacity: float | None = None,
+        roughness: float | None = None,
+        keep_look: bool = False,
+    ) -> Self:
+        """Makes surfaces of something else, or gives them another colour.
+
+        Args:
+            room: A room, with ``side``: only what that room sees of its walls changes.
+            side: ``"floor"``, ``"walls"`` or ``"ceiling"``.
+            thing: An object,
+            part: or one part of it.
+            structure: A piece of the building.
+            material: A material, wherever it is.
+            substance: A row of the materials table; it brings its own look.
+            srgb: A colour, 0 to 255, instead of colour and image.
+            opacity: The fraction of light that does not pass, 0 to 1.
+            roughness: As in glTF 2.0, 0 to 1.
+            keep_look: The substance changes, what one sees does not.
+        """
+        surfaces: dict[str, Any] = {}
+        if room is not None:
+            wanted = choice("side", side, ("floor", "walls", "ceiling"))
+            surfaces["room"] = {"name": text("room", room), "side": wanted}
+        if thing is not None:
+            surfaces["object"] = {"name": text("thing", thing), "part": part}
+        if structure is not None:
+            surfaces["structure"] = text("structure", structure)
+        if material is not None:
+            surfaces["material"] = text("material", material)
+        if len(surfaces) != 1:
+            found = ", ".join(surfaces) or "nothing"
+            raise ConfigError(
+                f"re_material of {found}; expected one of room, thing, structure and material"
+            )
+        look = {
+            "substance": substance,
+            "srgb": None if srgb is None else rgb("srgb", srgb),
+            "opacity": None if opacity is None else finite("opacity", opacity),
+            "roughness": None if roughness is None else finite("roughness", roughness),
+            "keep_look": flag("keep_look", keep_look),
+        }
+        return self._note("re_material", {"of": surfaces, "look": look})
+
+    def add_emitter(
+        self,
+        signal: str,
+        at: Point | None = None,
+        *,
+        thing: str | None = None,
+        level_db: float | None = None,
+        name: str | None = None,
+    ) -> Self:
+        """Adds a source of sound, which sounds from the start of every world.
+
+        Args:
+            signal: What sounds: a name of :func:`dwell.sounds.signals`.
+            at: A place, m: a small black disc that nothing touches lies right below it.
+            thing: An object instead, which sounds from its middle.
+            level_db: How loud at 1 m in the free field, dB SPL; without it as usual for the signal.
+            name: The disc's name.
+        """
+        return self._note(
+            "add_emitter",
+            {
+                "sound": _sound(signal, level_db),
+                "object": thing,
+                "at": None if at is None else point("at", at),
+                "name": name,
+            },
+        )
+
+    def add_lamp(
+        self,
+        at: Point | None = None,
+        *,
+        kind: str = "ceiling_lamp",
+        on: str | None = None,
+        thing: str | None = None,
+        yaw_deg: float | None = None,
+        anchor: Anchor | None = None,
+        name: str | None = None,
+        style: str | None = None,
+        seed: int = 0,
+        power_w: float | None = None,
+        srgb: Rgb | None = None,
+        lit: bool = True,
+    ) -> Self:
+        """Adds a lamp, or light to an object.
+
+        Args:
+            at: Where the lamp goes, m.
+            kind: A lamp of the catalogue: ``"ceiling_lamp"``, ``"pendant"``, ``"floor_lamp"``, ...
+            on: The object on which it goes.
+            thing: An object that shines from its middle, instead of a new lamp.
+            yaw_deg: Where it faces.
+            anchor: Which of its points ``at`` is: the top of lamps that hang, the foot of others.
+            name: Its name.
+            style: Its style.
+            seed: Draws size and colours.
+            power_w: Electrical power, W, of which 1 counts as 100 lm.
+            srgb: The light's colour, 0 to 255; without it warm white.
+            lit: Whether it starts switched on.
+        """
+        hangs = kind in ("ceiling_lamp", "drum_lamp", "pendant", "chandelier")
+        return self._note(
+            "add_lamp",
+            {
+                "object": thing,
+                "kind": text("kind", kind),
+                "style": style,
+                "seed": whole("seed", seed),
+                "name": name,
+                "place": _place(at, on, yaw_deg, anchor or ("top" if hangs else "foot")),
+                "power_w": None if power_w is None else finite("power_w", power_w),
+                "srgb": None if srgb is None else rgb("srgb", srgb),
+                "on": flag("lit", lit),
+            },
+        )
+
+    def add_robot(
+        self,
+        file: str | os.PathLike[str],
+        name: str,
+        at: Point,
+        *,
+        yaw_deg: float = 0.0,
+        fixed_base: bool | None = None,
+    ) -> Self:
+        """Adds a robot, as :meth:`dwell.House.with_robot` does."""
+        return self._note(
+            "add_robot",
+            {
+                "path": path("file", file),
+                "name": text("name", name),
+                "at": point("at", at),
+                "yaw_deg": finite("yaw_deg", yaw_deg),
+                "fixed_base": None if fixed_base is None else flag("fixed_base", fixed_base),
+            },
+        )
+
+    def set_door(self, thing: str, opened: float, *, joint: str | None = None) -> Self:
+        """Sets how far a door, drawer or lid is open at the start.
+
+        Args:
+            thing: The object's name.
+            opened: 0 closed, 1 fully open.
+            joint: One of its joints; without it all that open.
+        """
+        fields = {"object": text("thing", thing), "open": finite("opened", opened), "joint": joint}
+        return self._note("set_door", fields)
+
+    def describe(
+        self,
+        thing: str,
+        *,
+        category: str | None = None,
+        mobility: Mobility | None = None,
+        mass_kg: float | None = None,
+        density_kg_m3: float | None = None,
+        pickable: bool | None = None,
+        switch: bool | None = None,
+    ) -> Self:
+        """Says what an object is: category, whether it moves, its mass, whether it starts on."""
+        traits = _traits(category, mobility, mass_kg, density_kg_m3, pickable, switch)
+        return self._note("describe", {"object": text("thing", thing), "traits": traits or {}})
+
+    def rename(
+        self,
+        to: str,
+        *,
+        thing: str | None = None,
+        room: str | None = None,
+        kind: str | None = None,
+    ) -> Self:
+        """Gives an object or a room, or without either the house, another name.
+
+        Args:
+            to: The new name.
+            thing: The object.
+            room: The room,
+            kind: and what people call it: ``"living room"``.
+        """
+        fields = {"object": thing, "room": room, "to": text("to", to), "kind": kind}
+        return self._note("rename", fields)
+
+
+class HouseEdit(Edits):
+    """Changes of a house that are noted until :meth:`done` makes a new house of them.
+
+    As a context it makes the house at the end, and :attr:`house` is it.
+    """
+
+    def __init__(self, house: House) -> None:
+        """Use :meth:`dwell.House.edit`."""
+        super().__init__()
+        self._base = house
+        self._made: House | None = None
+
+    def done(self) -> House:
+        """The edited house; it shares meshes and images with the one it was made from.
+
+        Raises:
+            HouseError: An edit cannot be; the message names it and the field, what was found, and
+                what is possible. Nothing has changed then.
+        """
+        return _edited(self._base, arguments.to_json(self._edits))
+
+    @property
+    def house(self) -> House:
+        """The house, after the end of a ``with`` block."""
+        if self._made is None:
+            raise UsageError("the edited house is there after the with block; or call done()")
+        return self._made
+
+    def __enter__(self) -> Self:
+        """Itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Makes the house unless something went wrong."""
+        if kind is None:
+            self._made = self.done()
+
+
+def _edited(base: House, edits: str) -> House:
+    return House(base.native.edited(edits), (_edited, (base, edits)))
+
+
+def _place(at: Point | None, on: str | None, yaw_deg: float | None, anchor: str) -> dict[str, Any]:
+    return {
+        "at": None if at is None else point("at", at),
+        "on": on,
+        "yaw_deg": None if yaw_deg is None else finite("yaw_deg", yaw_deg),
+        "anchor": choice("anchor", anchor, ("foot", "middle", "top", "origin")),
+    }
+
+
+def _traits(
+    category: str | None,
+    mobility: str | None,
+    mass_kg: float | None,
+    density_kg_m3: float | None,
+    pickable: bool | None,
+    switch: bool | None,
+) -> dict[str, Any] | None:
+    traits = {
+        "category": category,
+        "mobility": mobility,
+        "mass_kg": None if mass_kg is None else finite("mass_kg", mass_kg),
+        "density_kg_m3": None if density_kg_m3 is None else finite("density_kg_m3", density_kg_m3),
+        "pickable": None if pickable is None else flag("pickable", pickable),
+        "switch": None if switch is None else flag("switch", switch),
+    }
+    told = {key: value for key, value in traits.items() if value is not None}
+    return told or None
+
+
+def _look(
+    substance: str | None, srgb: Rgb | None, *, keep_look: bool = False
+) -> dict[str, Any] | None:
+    if substance is None and srgb is None:
+        return None
+    color = None if srgb is None else rgb("srgb", srgb)
+    return {"substance": substance, "srgb": color, "keep_look": keep_look}
+
+
+def _sound(signal: str, level_db: float | None) -> dict[str, Any]:
+    rows = {row["name"]: row for row in json.loads(_native.signals_json())}
+    choice("signal", signal, list(rows))
+    level = rows[signal]["usual_level_db"] if level_db is None else finite("level_db", level_db)
+    return {"signal": signal, "level_db": level}
+
+
+def rgb(name: str, color: Sequence[int]) -> list[int]:
+    """A colour: three whole numbers, 0 to 255."""
+    parts = [whole(f"{name}[{k}]", value, high=255) for k, value in enumerate(color)]
+    if len(parts) != 3:
+        raise ConfigError(f"{name} has {len(parts)} numbers; expected 3")
+    return parts

@@ -1,0 +1,66 @@
+//! Houses that people make and change, for Python: plans and edits come as JSON.
+
+use crate::errors::Fault;
+use crate::house::PyHouse;
+use dwell_acoustics::signals;
+use dwell_houses::authoring::{self, Files, Plan, UnmappedNames};
+use dwell_houses::{At, Report};
+use dwell_scene::House;
+use serde_json::Value;
+
+/// The report of damage with a sentence for each warning.
+pub(crate) fn rows(report: &Report) -> Result<Value, Fault> {
+    let mut rows = serde_json::to_value(report)?;
+    if let Some(warnings) = rows["warnings"].as_array_mut() {
+        for (row, warning) in warnings.iter_mut().zip(report.warnings()) {
+            row["sentence"] = warning.to_string().into();
+        }
+    }
+    Ok(rows)
+}
+
+/// The house of a plan.
+pub(crate) fn built(plan_json: &str) -> Result<PyHouse, Fault> {
+    let plan = Plan::from_json(plan_json.as_bytes(), &At::file("plan"))?;
+    let (house, report) = authoring::build(&plan, &Files::Anywhere)?;
+    check_signals(&house, 0)?;
+    Ok(PyHouse::from_house(house, rows(&report)?))
+}
+
+/// The same house with edits.
+pub(crate) fn edited(base: &PyHouse, edits_json: &str) -> Result<PyHouse, Fault> {
+    let edits = authoring::edits_from_json(edits_json)?;
+    let (house, report) = authoring::edit(base.house(), &edits, &Files::Anywhere)?;
+    check_signals(&house, base.house().emitters.len())?;
+    let mut all = report_of(base);
+    all.append(report);
+    Ok(PyHouse::from_house(house, rows(&all)?))
+}
+
+/// Refuses sounds that nobody can make.
+fn check_signals(house: &House, known: usize) -> Result<(), Fault> {
+    for emitter in house.emitters.iter().skip(known.min(house.emitters.len())) {
+        signals::info(&emitter.signal).map_err(|error| Fault::House(error.to_string()))?;
+    }
+    Ok(())
+}
+
+fn report_of(house: &PyHouse) -> Report {
+    serde_json::from_value(house.report().clone()).unwrap_or_default()
+}
+
+fn unmapped(house: &PyHouse) -> UnmappedNames {
+    authoring::unmapped(house.house(), &report_of(house))
+}
+
+/// Counts, rooms and categories, with what stayed unmapped, as JSON.
+pub(crate) fn info(house: &PyHouse) -> Result<String, Fault> {
+    let mut info = dwell::info(&house.engines, house.report());
+    info["unmapped"] = serde_json::to_value(unmapped(house))?;
+    Ok(info.to_string())
+}
+
+/// A map file for what stayed unmapped.
+pub(crate) fn map_template(house: &PyHouse, name: &str) -> String {
+    authoring::map_template(name, &unmapped(house))
+}
