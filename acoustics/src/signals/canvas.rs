@@ -1,6 +1,7 @@
 //! A loop of sound to paint on: everything that is added wraps around its end.
 
 use crate::fft::RealFft;
+use dwell_scene::interrupt;
 use dwell_scene::random::Key;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
@@ -15,6 +16,9 @@ pub(super) struct Tone {
     /// Time of the swelling and of the fading, s; both are raised cosines.
     pub(super) edge_s: f64,
 }
+
+/// Between looks at whether the loop is still wanted.
+const SAMPLES_PER_CHECK: usize = 1 << 12;
 
 /// One loop.
 #[derive(Debug)]
@@ -43,6 +47,9 @@ impl Canvas {
         let first = (start_s * self.rate_hz).ceil();
         let count = (duration_s * self.rate_hz) as usize;
         for k in 0..count {
+            if k % SAMPLES_PER_CHECK == 0 {
+                interrupt::check();
+            }
             let place = (first as i64 + k as i64).rem_euclid(length as i64) as usize;
             self.samples[place] += value((first + k as f64) / self.rate_hz - start_s);
         }
@@ -92,6 +99,9 @@ impl Canvas {
         let step_hz = self.rate_hz / fft.len() as f64;
         let last = spectrum.len() - 1;
         for (k, value) in spectrum.iter_mut().enumerate() {
+            if k % SAMPLES_PER_CHECK == 0 {
+                interrupt::check();
+            }
             let phase = TAU * stream.uniform();
             if k > 0 && k < last {
                 let size = gain(k as f64 * step_hz);

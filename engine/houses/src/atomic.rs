@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::HousesError;
+use dwell_scene::interrupt;
 
 /// A name beside `path` that nobody else uses: no other process, no other thread.
 fn beside(path: &Path, what: &str) -> PathBuf {
@@ -59,13 +60,13 @@ pub(crate) fn write_folder(
         }
         moved(&partial, path)
     };
-    let result = write();
-    if result.is_err() {
+    let result = interrupt::attempt(write);
+    if !matches!(result, Ok(Ok(()))) {
         let _ = fs::remove_dir_all(&partial);
         if old.exists() && !path.exists() {
             let _ = fs::rename(&old, path);
         }
     }
     let _ = fs::remove_dir_all(&old);
-    result
+    result.unwrap_or_else(|interrupted| interrupted.resume())
 }

@@ -1,6 +1,7 @@
 //! HOUSE strings: the list of formats, and the one function that opens them all.
 
 use std::path::Path;
+use std::time::Instant;
 
 use dwell_scene::House;
 use dwell_scene::parallel::Threads;
@@ -181,8 +182,16 @@ pub fn open_with(house: &str, threads: Threads) -> Result<(House, Report), House
             allowed,
         });
     };
+    let start = Instant::now();
+    let name = house;
     let (house, report) = (format.open)(house, threads)?;
+    // The report is the caller's; here is only that there is one.
+    if let Some(first) = report.warnings().first() {
+        tracing::info!(house = name, warnings = report.len(), %first, "house opened with damage");
+    }
     tracing::debug!(
+        house = name,
+        took_ms = start.elapsed().as_millis() as u64,
         format = format.name,
         rooms = house.rooms.len(),
         objects = house.objects.len(),

@@ -14,6 +14,7 @@ mod fixtures;
 mod house;
 mod ids;
 pub mod instructions;
+pub mod interrupt;
 pub mod law;
 pub mod material;
 pub mod math;

@@ -6,6 +6,7 @@ use crate::env::{Env, StepInfo};
 use crate::error::WorldError;
 use crate::sensors::{Dtype, Out, SensorSpec};
 use dwell_acoustics::signals;
+use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use std::collections::BTreeSet;
 
@@ -231,7 +232,25 @@ impl Batch {
         )))
     }
 
+    /// Does `work` in the environments of `active`. Where it is stopped, some have done it, some half and some not at all:
+    /// then the episodes of all of them are over (a reset sets all of a world anew), and what was under way is forgotten.
+    fn or_over<R>(
+        &mut self,
+        active: &[bool],
+        work: impl FnOnce(&mut Self) -> Result<R, WorldError>,
+    ) -> Result<R, WorldError> {
+        interrupt::attempt(|| work(self)).unwrap_or_else(|interrupted| {
+            let stopped = self.envs.iter_mut().zip(active).filter(|(_, on)| **on);
+            stopped.for_each(|(env, _)| env.give_up());
+            self.under_way.clear();
+            self.is_started.fill(false);
+            interrupted.resume()
+        })
+    }
+
     /// Starts new episodes where `seeds` has one; the others go on.
+    ///
+    /// Stopped by [`interrupt`], no episode runs where one was to start.
     ///
     /// # Errors
     /// [`WorldError`] of the first environment that cannot start.
@@ -243,16 +262,18 @@ impl Batch {
             env.listen()
         };
         let (names, rate_hz) = self.signals_to_make(&active);
-        if names.is_empty() {
-            self.change(&active, reset)?;
-            return Ok(());
-        }
-        // The first time: loops of sound take longest, and need nothing of the world.
-        let threads = self.threads;
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let make = || signals::make(&names, rate_hz, threads);
-        threads.both(make, || self.change(&active, reset)).1?;
-        Ok(())
+        self.or_over(&active, |batch| {
+            if names.is_empty() {
+                batch.change(&active, reset)?;
+                return Ok(());
+            }
+            // The first time: loops of sound take longest, and need nothing of the world.
+            let threads = batch.threads;
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let make = || signals::make(&names, rate_hz, threads);
+            threads.both(make, || batch.change(&active, reset)).1?;
+            Ok(())
+        })
     }
 
     /// What the environments that begin will sound like and nobody has made yet; all have one rate.
@@ -269,6 +290,8 @@ impl Batch {
 
     /// Steps the environments for which `actions` has one.
     ///
+    /// Stopped by [`interrupt`], the episodes of all of them are over: reset them.
+    ///
     /// # Errors
     /// [`WorldError::Usage`] for an environment whose episode has ended; then none is stepped.
     pub fn step(
@@ -280,10 +303,12 @@ impl Batch {
         for (env, _) in self.envs.iter().zip(&active).filter(|(_, active)| **active) {
             env.ready()?;
         }
-        self.change(&active, |k, env| {
-            let info = env.step(actions[k].unwrap_or(DiscreteAction::Stop))?;
-            env.listen()?;
-            Ok(info)
+        self.or_over(&active, |batch| {
+            batch.change(&active, |k, env| {
+                let info = env.step(actions[k].unwrap_or(DiscreteAction::Stop))?;
+                env.listen()?;
+                Ok(info)
+            })
         })
     }
 
@@ -305,10 +330,13 @@ impl Batch {
                 specs.len()
             )));
         }
-        self.finish_pictures()?;
-        let chosen = self.envs.iter_mut().enumerate();
-        let chosen = chosen.filter(|(number, _)| which[*number] && !self.is_started[*number]);
-        batch_pictures::take(chosen, self.threads)?;
+        // Episodes go on whatever stops this: worlds are only looked at.
+        self.or_over(&vec![false; self.envs.len()], |batch| {
+            batch.finish_pictures()?;
+            let chosen = batch.envs.iter_mut().enumerate();
+            let chosen = chosen.filter(|(number, _)| which[*number] && !batch.is_started[*number]);
+            batch_pictures::take(chosen, batch.threads)
+        })?;
         for (is_started, _) in self.is_started.iter_mut().zip(which).filter(|(_, on)| **on) {
             *is_started = false;
         }

@@ -227,12 +227,17 @@ impl Env {
     pub fn reset(&mut self, seed: u64) -> Result<&Episode, WorldError> {
         let key = Key::root(seed).child("episode");
         // What fails from here on leaves no episode behind that could go on.
-        self.episode = None;
-        self.done = false;
+        self.give_up();
         self.world.reset(key)?;
         let episode = self.task.reset(&mut self.world, key.child("task"))?;
         (self.seed, self.episode_key) = (seed, key);
         Ok(self.episode.insert(episode))
+    }
+
+    /// Ends the episode: what happens to the world from here on belongs to none.
+    pub(crate) fn give_up(&mut self) {
+        self.episode = None;
+        self.done = false;
     }
 
     /// World and episode as bytes.

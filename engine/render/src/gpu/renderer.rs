@@ -8,6 +8,7 @@ use super::slot::{SEEN_BYTES, Slot};
 use crate::cpu::{CpuRenderer, Job};
 use crate::error::RenderError;
 use crate::frame::{FrameMut, Preset};
+use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use std::sync::{Arc, Mutex, mpsc};
 
@@ -110,7 +111,8 @@ impl GpuRenderer {
         if jobs.iter().all(|job| is_ours(job)) {
             let submitted = self.submit(jobs, threads)?;
             let frames = jobs.iter_mut().map(|job| &mut job.frame);
-            return self.deliver(submitted, frames, threads);
+            // What an adapter has begun is waited for.
+            return interrupt::whole(|| self.deliver(submitted, frames, threads));
         }
         for (k, job) in jobs.iter().enumerate() {
             self.cpu.check(k, job)?;
@@ -142,7 +144,8 @@ impl GpuRenderer {
         let (mut rest, mut most) = (jobs, usize::MAX);
         while !rest.is_empty() {
             let some = self.fitting(rest).min(most);
-            let part = self.submit_part(&rest[..some], threads)?;
+            interrupt::check();
+            let part = interrupt::whole(|| self.submit_part(&rest[..some], threads))?;
             let taken = part.slot.batch.places.len();
             // What follows is as large as a rule.
             most = if taken < some { taken } else { most };
@@ -167,7 +170,7 @@ impl GpuRenderer {
         frames: &mut [FrameMut<'_>],
         threads: Threads,
     ) -> Result<(), RenderError> {
-        self.deliver(submitted, frames.iter_mut(), threads)
+        interrupt::whole(|| self.deliver(submitted, frames.iter_mut(), threads))
     }
 
     /// How many of the first jobs fit into one submission as far as their images go; at least one.

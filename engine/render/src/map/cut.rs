@@ -6,11 +6,14 @@ use crate::color::Srgb;
 use crate::cpu::{CpuRenderer, Job};
 use crate::error::RenderError;
 use crate::frame::{Channels, Frame, View};
+use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Entity, EntityId, State, StructureKind};
 use glam::{Vec2, Vec3};
 
+/// Between looks at whether the map is still wanted.
+const PIXELS_PER_CHECK: usize = 1 << 14;
 /// Where nothing is.
 const PAPER: [u8; 3] = [250, 249, 246];
 /// Where light comes from in the camera's frame: from above, the left, and the viewer.
@@ -119,6 +122,9 @@ impl Cut<'_> {
             found => found.is_none(),
         };
         for (k, rgb) in frame.rgb.chunks_exact_mut(3).enumerate() {
+            if k % PIXELS_PER_CHECK == 0 {
+                interrupt::check();
+            }
             let point = self.point(k, frame.depth[k]);
             if frame.instance[k] == 0 || point.y < self.floor_y || ground(frame.instance[k]) {
                 rgb.copy_from_slice(&PAPER);
@@ -152,6 +158,7 @@ impl Cut<'_> {
         );
         let across = self.view.camera.width() as usize;
         for (row, rgb) in rgb.chunks_exact_mut(across * 3).enumerate() {
+            interrupt::check();
             let Some(near_m) = self.near_m(row as u32) else {
                 continue;
             };

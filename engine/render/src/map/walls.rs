@@ -1,6 +1,7 @@
 //! Walls on maps: a camera that starts inside a wall sees nothing of it.
 
 use super::Map;
+use dwell_scene::interrupt;
 use dwell_scene::{House, Mesh, StructureKind};
 use glam::Vec2;
 
@@ -19,6 +20,7 @@ impl Map {
             .iter()
             .filter(|piece| piece.kind == StructureKind::Wall)
         {
+            interrupt::check();
             let lines = self.cut(&house.meshes[piece.mesh]);
             self.fill(&lines, rgb);
         }

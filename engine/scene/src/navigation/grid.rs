@@ -8,6 +8,7 @@ use super::obstacles::{Obstacles, openness, stands_open};
 use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::LevelId;
+use crate::interrupt;
 use crate::random::Key;
 use crate::state::State;
 use glam::Vec3;
@@ -153,6 +154,7 @@ impl NavGrid {
         linked: &[usize],
     ) -> Result<(), SceneError> {
         for &column in filled {
+            interrupt::check();
             self.fill(column);
             let spans = spans_at(&self.mixed, &self.ground, column);
             self.layers.stand(column, spans, &self.config);
@@ -163,6 +165,7 @@ impl NavGrid {
         }
         self.layers.trim();
         for &column in near {
+            interrupt::check();
             let cells: Vec<usize> = self.layers.cells_of(column).collect();
             for (layer, cell) in cells.into_iter().enumerate() {
                 self.layers.flags[cell] = self.flags(house, column, layer, cell);
@@ -170,6 +173,7 @@ impl NavGrid {
         }
         self.mark_doorways();
         for &column in linked {
+            interrupt::check();
             self.layers.link(column, &self.ground.frame, &self.config);
         }
         self.island = self.layers.islands();

@@ -8,6 +8,7 @@ use crate::bounds::Aabb;
 use crate::error::SceneError;
 use crate::house::{House, StructureKind, SurfaceOwner};
 use crate::ids::{IdVec, JointId, LevelId, PartId};
+use crate::interrupt;
 use crate::space::Pose;
 use crate::state::State;
 use glam::{Affine3A, Vec3};
@@ -193,6 +194,7 @@ fn fixed_columns(house: &House, frame: &Frame) -> (Columns, Columns) {
             .map(|p| placed.world_from_mesh.transform_point3(*p))
             .collect();
         for triangle in &mesh.triangles {
+            interrupt::check();
             frame.cross(triangle.map(|v| points[v as usize]), |column, span| {
                 fixed[column].push(span);
                 if is_floor {

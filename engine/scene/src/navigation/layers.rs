@@ -3,6 +3,7 @@
 use super::columns::{Frame, Span};
 use super::config::NavConfig;
 use super::ground::{around, standing};
+use crate::interrupt;
 use glam::Vec3;
 
 /// No cell.
@@ -212,6 +213,7 @@ impl Layers {
             if island[start] != NOWHERE || !self.is_free(start) {
                 continue;
             }
+            interrupt::check();
             let label = found.len() as u32;
             let (mut indoors, mut size, mut kept) = (0, 0, false);
             island[start] = label;

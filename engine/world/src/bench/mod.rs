@@ -12,6 +12,7 @@ pub use physics::{BenchBox, BenchBoxes};
 use crate::engines::Engines;
 use crate::error::WorldError;
 use dwell_render::{BackEnd, Preset};
+use dwell_scene::interrupt;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::sync::Arc;
@@ -135,6 +136,7 @@ fn timed(
 ) -> Result<Vec<f64>, WorldError> {
     let mut seconds = Vec::with_capacity(repeats);
     for _ in 0..repeats {
+        interrupt::check();
         let start = Instant::now();
         run()?;
         seconds.push(start.elapsed().as_secs_f64());

@@ -3,6 +3,7 @@
 use super::{BenchOptions, median};
 use crate::error::WorldError;
 use dwell_physics::{PhysicsConfig, PhysicsModel, PhysicsWorld};
+use dwell_scene::interrupt;
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
 use dwell_scene::{
@@ -124,6 +125,7 @@ impl Start {
         let mut events = Vec::new();
         let start = Instant::now();
         for _ in 0..physics_steps.div_ceil(STEPS_PER_CONTROL) {
+            interrupt::check();
             self.world.step(&mut self.state, &[], &mut events)?;
             events.clear();
         }

@@ -3,9 +3,12 @@
 //! A pool belongs to one process id, because threads do not survive `fork()`. Results never depend on the number of
 //! threads: work is cut into pieces of constant size, and pieces are joined in order.
 
+mod count;
+mod pool;
+
 use crate::error::SceneError;
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use crate::interrupt;
+pub use count::{available_cores, machine_threads, variable};
 
 /// How many threads a call may use; at least one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,41 +31,17 @@ impl Threads {
     /// # Errors
     /// [`SceneError::Threads`] for none or too many, asked for or in the variable, and for a variable that is no number.
     pub fn requested(requested: Option<usize>) -> Result<Self, SceneError> {
-        let refuse = |at: &'static str, found: String| SceneError::Threads {
-            at,
-            found,
-            allowed: Self::MOST,
-        };
-        let range = 1..=Self::MOST;
-        if let Some(count) = requested {
-            let allowed = range.contains(&count).then_some(Self(count));
-            return allowed.ok_or_else(|| refuse("threads", count.to_string()));
+        match requested {
+            Some(count) if (1..=Self::MOST).contains(&count) => Ok(Self(count)),
+            Some(count) => Err(count::refuse("threads", count.to_string())),
+            None => Ok(Self::exactly(count::usual(variable()?))),
         }
-        if let Ok(text) = std::env::var("DWELL_THREADS") {
-            let count = text.trim().parse().ok().filter(|n| range.contains(n));
-            return count
-                .map(Self)
-                .ok_or_else(|| refuse("DWELL_THREADS", format!("{text:?}")));
-        }
-        Ok(Self::resolve(None))
     }
 
-    /// `requested` if given, else the variable `DWELL_THREADS`, else what the affinity mask and the cgroup allow.
+    /// `requested` if given, else all [`available_cores`], but no more than the variable `DWELL_THREADS` allows. A variable
+    /// that makes no sense counts as none.
     pub fn resolve(requested: Option<usize>) -> Self {
-        let from_environment = || {
-            std::env::var("DWELL_THREADS")
-                .ok()?
-                .trim()
-                .parse::<usize>()
-                .ok()
-                .filter(|n| *n > 0)
-        };
-        let available = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        Self::exactly(
-            requested
-                .or_else(from_environment)
-                .unwrap_or_else(available),
-        )
+        Self::exactly(requested.unwrap_or_else(|| count::usual(variable().ok().flatten())))
     }
 
     /// The number of threads.
@@ -70,51 +49,29 @@ impl Threads {
         self.0
     }
 
-    fn pool(self) -> Option<Arc<rayon::ThreadPool>> {
-        static POOLS: Mutex<BTreeMap<(u32, usize), Arc<rayon::ThreadPool>>> =
-            Mutex::new(BTreeMap::new());
-        let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-        let key = (std::process::id(), self.0);
-        if let Some(pool) = pools.get(&key) {
-            return Some(pool.clone());
-        }
-        // Pools of a parent process have no threads in this one; they are forgotten, never dropped or joined.
-        let stale: Vec<_> = pools
-            .keys()
-            .filter(|(process, _)| *process != key.0)
-            .copied()
-            .collect();
-        for old in stale {
-            if let Some(pool) = pools.remove(&old) {
-                std::mem::forget(pool);
-            }
-        }
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.0)
-            .thread_name(|k| format!("dwell-{k}"))
-            .build();
-        let pool = Arc::new(pool.ok()?);
-        pools.insert(key, pool.clone());
-        Some(pool)
+    /// The pool, where there is more than one thread to work.
+    fn pool(self) -> Option<std::sync::Arc<rayon::ThreadPool>> {
+        (self.0 > 1).then(|| pool::pool(self.0)).flatten()
     }
 
-    /// Calls `work` once for each item, with the item's position.
+    /// Calls `work` once for each item, with the item's position. Stops between items: see [`interrupt`].
     pub fn for_each<T: Send>(self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
         use rayon::prelude::*;
-        if self.0 > 1
-            && items.len() > 1
+        if items.len() > 1
             && let Some(pool) = self.pool()
         {
-            pool.install(|| {
+            let token = interrupt::token();
+            pool::install(&pool, || {
                 items
                     .par_iter_mut()
                     .enumerate()
                     .with_max_len(1)
-                    .for_each(|(k, item)| work(k, item));
+                    .for_each(|(k, item)| interrupt::piece(token.as_ref(), || work(k, item)));
             });
             return;
         }
         for (k, item) in items.iter_mut().enumerate() {
+            interrupt::check();
             work(k, item);
         }
     }
@@ -125,29 +82,38 @@ impl Threads {
         first: impl FnOnce() -> A + Send,
         second: impl FnOnce() -> B + Send,
     ) -> (A, B) {
-        if self.0 > 1
-            && let Some(pool) = self.pool()
-        {
-            return pool.install(|| rayon::join(first, second));
+        if let Some(pool) = self.pool() {
+            let token = interrupt::token();
+            let token = token.as_ref();
+            return pool::install(&pool, || {
+                rayon::join(
+                    || interrupt::piece(token, first),
+                    || interrupt::piece(token, second),
+                )
+            });
         }
         (first(), second())
     }
 
-    /// The results of `work(0)` to `work(count - 1)`, in order.
+    /// The results of `work(0)` to `work(count - 1)`, in order. Stops between them: see [`interrupt`].
     pub fn map<R: Send>(self, count: usize, work: impl Fn(usize) -> R + Sync) -> Vec<R> {
         use rayon::prelude::*;
-        if self.0 > 1
-            && count > 1
+        if count > 1
             && let Some(pool) = self.pool()
         {
-            return pool.install(|| {
+            let token = interrupt::token();
+            return pool::install(&pool, || {
                 (0..count)
                     .into_par_iter()
                     .with_max_len(1)
-                    .map(&work)
+                    .map(|k| interrupt::piece(token.as_ref(), || work(k)))
                     .collect()
             });
         }
+        let work = |k| {
+            interrupt::check();
+            work(k)
+        };
         (0..count).map(work).collect()
     }
 }

@@ -1,0 +1,221 @@
+//! Work that its caller can stop.
+//!
+//! Long loops call [`check`] between pieces of at most some 20 ms; `parallel` does so between all pieces that it hands out.
+//! Who wants to be able to stop a call wraps it in [`stoppable`], with a question that is asked every [`INTERVAL`] on the
+//! calling thread. When the answer is yes, `check` unwinds the stack, of pool threads too, with [`Interrupted`], and
+//! `stoppable` returns it. That is no panic: no hook sees it. (salsa cancels its queries in the same way.)
+//!
+//! What must not stop half-way runs in [`whole`]; what holds a lock or half a result meanwhile uses [`attempt`].
+
+use std::cell::{Cell, RefCell};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How often the question is asked.
+pub const INTERVAL: Duration = Duration::from_millis(25);
+
+/// What unwinds when a call is stopped.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the call was stopped")]
+pub struct Interrupted(());
+
+impl Interrupted {
+    /// Goes on unwinding, to who wanted the call to stop.
+    pub fn resume(self) -> ! {
+        resume_unwind(Box::new(self))
+    }
+}
+
+/// Whether a call is to stop. Shared with all threads that work for it.
+pub(crate) type Token = Arc<AtomicBool>;
+
+/// What is asked, and when again.
+type Ask = Option<(fn() -> bool, Instant)>;
+
+thread_local! {
+    /// Of the call that this thread works for; none: nobody can stop it.
+    static TOKEN: RefCell<Option<Token>> = const { RefCell::new(None) };
+    /// Only on the thread that called.
+    static ASK: Cell<Ask> = const { Cell::new(None) };
+}
+
+/// Puts back what stood there, also when the stack unwinds.
+struct Restore {
+    token: Option<Token>,
+    ask: Ask,
+}
+
+impl Restore {
+    fn and_set(token: Option<Token>, ask: Ask) -> Self {
+        Self {
+            token: TOKEN.replace(token),
+            ask: ASK.replace(ask),
+        }
+    }
+}
+
+impl Drop for Restore {
+    fn drop(&mut self) {
+        TOKEN.set(self.token.take());
+        ASK.set(self.ask);
+    }
+}
+
+/// Does `work`; stops it soon after `ask` has answered that it shall stop. `ask` is called on this thread only, in the
+/// middle of `work`: it must not call engines, whose locks `work` may hold.
+///
+/// # Errors
+/// [`Interrupted`] when the work was stopped. Work that ends before it meets a [`check`] is done, whatever the answer was.
+pub fn stoppable<R>(ask: fn() -> bool, work: impl FnOnce() -> R) -> Result<R, Interrupted> {
+    let token = Arc::new(AtomicBool::new(false));
+    let _restore = Restore::and_set(Some(token), Some((ask, Instant::now() + INTERVAL)));
+    attempt(work)
+}
+
+/// Does `work`, and takes hold of the unwinding when it is stopped. Panics go on.
+///
+/// # Errors
+/// [`Interrupted`] when the work was stopped; hand it on by [`Interrupted::resume`] or as an error.
+pub fn attempt<R>(work: impl FnOnce() -> R) -> Result<R, Interrupted> {
+    // Panics go on, and what was interrupted is for the caller to mend: that is what `attempt` is for.
+    catch_unwind(AssertUnwindSafe(work)).map_err(|cause| match cause.downcast::<Interrupted>() {
+        Ok(interrupted) => *interrupted,
+        Err(panic) => resume_unwind(panic),
+    })
+}
+
+/// Does `work` to its end: nothing in it stops, and nothing is asked meanwhile.
+pub fn whole<R>(work: impl FnOnce() -> R) -> R {
+    let _restore = Restore::and_set(None, None);
+    work()
+}
+
+/// Stops here when the call is to stop. Costs some nanoseconds; meant for loops whose turns take a millisecond or so.
+pub fn check() {
+    if ASK.get().is_some_and(|(_, next)| Instant::now() >= next) {
+        ask_now();
+    }
+    if TOKEN.with_borrow(|token| token.as_ref().is_some_and(is_set)) {
+        Interrupted(()).resume();
+    }
+}
+
+fn is_set(token: &Token) -> bool {
+    token.load(Ordering::Relaxed)
+}
+
+/// Whether this thread has somebody to ask.
+pub(crate) fn asks() -> bool {
+    ASK.get().is_some()
+}
+
+/// Asks, and remembers the answer for all threads of the call.
+pub(crate) fn ask_now() {
+    let Some((ask, _)) = ASK.get() else {
+        return;
+    };
+    if ask() {
+        TOKEN.with_borrow(|token| {
+            if let Some(token) = token {
+                token.store(true, Ordering::Relaxed);
+            }
+        });
+    }
+    ASK.set(Some((ask, Instant::now() + INTERVAL)));
+}
+
+/// The token of the call that this thread works for.
+pub(crate) fn token() -> Option<Token> {
+    TOKEN.with_borrow(Clone::clone)
+}
+
+/// Does a piece of the work of the call that `token` belongs to, on whatever thread.
+pub(crate) fn piece<R>(token: Option<&Token>, work: impl FnOnce() -> R) -> R {
+    // The thread that called asks, too, when it has pieces to do itself.
+    let _restore = Restore::and_set(token.cloned(), ASK.get());
+    check();
+    work()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parallel::Threads;
+    use std::sync::atomic::AtomicUsize;
+
+    fn yes() -> bool {
+        true
+    }
+
+    fn no() -> bool {
+        false
+    }
+
+    /// Turns of a millisecond each.
+    fn spin(turns: usize) -> usize {
+        for _ in 0..turns {
+            check();
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        turns
+    }
+
+    #[test]
+    fn a_loop_stops_when_its_caller_wants_it_to() {
+        let start = Instant::now();
+        assert_eq!(stoppable(yes, || spin(100_000)), Err(Interrupted(())));
+        assert!(start.elapsed() >= INTERVAL);
+        assert_eq!(stoppable(no, || spin(40)), Ok(40));
+        check();
+    }
+
+    #[test]
+    fn pieces_on_other_threads_stop_too_and_those_of_others_do_not() {
+        for threads in [1, 2, 7] {
+            let done = AtomicUsize::new(0);
+            let count = 100_000;
+            let stopped = stoppable(yes, || {
+                Threads::exactly(threads).map(count, |_| {
+                    std::thread::sleep(Duration::from_millis(1));
+                    done.fetch_add(1, Ordering::Relaxed)
+                })
+            });
+            assert!(stopped.is_err());
+            let done = done.into_inner();
+            assert!(done > 0 && done < count, "{done}");
+            assert_eq!(Threads::exactly(threads).map(3, |k| k), [0, 1, 2]);
+        }
+    }
+
+    #[test]
+    fn what_must_be_whole_is_whole() {
+        let mut turns = 0;
+        let stopped = stoppable(yes, || {
+            turns = whole(|| spin(60) + Threads::exactly(2).map(60, |_| spin(1)).len());
+            spin(100_000)
+        });
+        assert!(stopped.is_err());
+        assert_eq!(turns, 120);
+    }
+
+    #[test]
+    fn half_work_can_be_mended_on_the_way() {
+        let mut mended = false;
+        let stopped = stoppable(yes, || {
+            attempt(|| spin(100_000)).unwrap_or_else(|interrupted| {
+                mended = true;
+                interrupted.resume()
+            })
+        });
+        assert!(stopped.is_err() && mended);
+    }
+
+    #[test]
+    fn a_panic_is_no_interruption() {
+        let panicked = catch_unwind(|| stoppable(no, || panic!("on purpose")));
+        assert!(panicked.is_err());
+        assert!(!asks() && token().is_none());
+    }
+}

@@ -1,0 +1,63 @@
+//! How many threads: the one place that counts.
+
+use super::Threads;
+use crate::error::SceneError;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The variable that says how many threads there may be at most.
+const VARIABLE: &str = "DWELL_THREADS";
+
+/// Cores that the affinity mask and the cgroup's quota give this process, at least one; on Linux a quota of 2.5 cores
+/// counts as 2. Counted once in a process, and anew in one that was forked.
+pub fn available_cores() -> usize {
+    // The process's number above, the count below: reading the quota takes longer than a small picture.
+    static COUNTED: AtomicU64 = AtomicU64::new(0);
+    let process = u64::from(std::process::id()) << 32;
+    let counted = COUNTED.load(Ordering::Relaxed);
+    if counted & !u64::from(u32::MAX) == process && counted as u32 > 0 {
+        return counted as u32 as usize;
+    }
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    COUNTED.store(process | cores as u64, Ordering::Relaxed);
+    cores
+}
+
+/// Hardware threads of the machine, whoever may use them; `None` where nobody says.
+pub fn machine_threads() -> Option<usize> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let count = text
+        .lines()
+        .filter(|line| line.starts_with("processor"))
+        .count();
+    (count > 0).then_some(count)
+}
+
+/// What `DWELL_THREADS` says; `None` where it is not set.
+///
+/// # Errors
+/// [`SceneError::Threads`] for what is no number, or out of range.
+pub fn variable() -> Result<Option<usize>, SceneError> {
+    let Some(text) = std::env::var_os(VARIABLE) else {
+        return Ok(None);
+    };
+    let range = 1..=Threads::MOST;
+    let count = text.to_str().and_then(|text| text.trim().parse().ok());
+    count
+        .filter(|count| range.contains(count))
+        .map(Some)
+        .ok_or_else(|| refuse(VARIABLE, format!("{:?}", text.to_string_lossy())))
+}
+
+/// The error of a number of threads that makes no sense.
+pub(super) fn refuse(at: &'static str, found: String) -> SceneError {
+    SceneError::Threads {
+        at,
+        found,
+        allowed: Threads::MOST,
+    }
+}
+
+/// Threads where nobody asks for a number: all cores, or fewer where the variable says so.
+pub(super) fn usual(variable: Option<usize>) -> usize {
+    variable.map_or(available_cores(), |most| most.min(available_cores()))
+}
