@@ -46,6 +46,35 @@ assert observation["audio"].shape == (2, 800)
 print("seen", flush=True)
 """
 
+#: This wheel has another linker than the tests' extension: what unwinds must stop at the border.
+UNWINDS = """
+import os, signal, threading, time
+import dwell
+from dwell import _native
+world = dwell.World("builtin:studio")
+for victim in (None, world.native):
+    try:
+        _native.panic_for_tests(victim)
+    except dwell.EngineBug as bug:
+        assert "on purpose" in str(bug)
+    else:
+        raise SystemExit("a panic went by")
+try:
+    world.step()
+except dwell.UsageError:
+    pass
+else:
+    raise SystemExit("a world that a bug stopped goes on")
+world = dwell.World("builtin:studio")
+threading.Thread(target=lambda: (time.sleep(0.2), os.kill(os.getpid(), signal.SIGINT))).start()
+try:
+    while True:
+        world.render(agent=0, camera=dwell.Camera(4096, 4096))
+except KeyboardInterrupt:
+    world.step()
+print("stopped", flush=True)
+"""
+
 
 class Failed(Exception):
     """A check that failed, with what was found."""
@@ -123,6 +152,12 @@ def clean_env() -> str:
     return "nothing to say"
 
 
+def unwinds() -> str:
+    """A panic is ``EngineBug``, and Ctrl-C ends a picture."""
+    timed(UNWINDS)
+    return "panics and Ctrl-C stop at the border"
+
+
 def doctor() -> str:
     """The doctor speaks of this machine and this version."""
     facts = json.loads(command("doctor", "--json"))
@@ -155,6 +190,7 @@ CHECKS: dict[str, Callable[[], str]] = {
     "import": lambda: median_below("import dwell", IMPORT_S),
     "first observation": lambda: median_below(OBSERVATION, OBSERVATION_S),
     "check_env": clean_env,
+    "bugs and signals": unwinds,
     "dwell doctor": doctor,
     "dwell demo": demo,
 }

@@ -43,6 +43,7 @@ __all__ = [
     "laws_json",
     "map",
     "max_text_length",
+    "panic_for_tests",
     "response_metrics_json",
     "sensors_json",
     "signals_json",
@@ -310,6 +311,9 @@ def charset() -> str: ...
 def max_text_length() -> int: ...
 def doctor_json() -> str: ...
 def expand(house: str) -> list[str]: ...
+def panic_for_tests(world: World | None = None) -> None:
+    """Panics on purpose: in a thread of a pool, or while ``world`` is being changed."""
+
 def response_metrics_json(samples: NDArray[np.float32], rate_hz: float, width_json: str) -> str:
     """For each band: centre_hz and EDT, T20, T30, C50, C80, D50, Ts, G, DRR. ``width_json``: octave or third_octave."""
 

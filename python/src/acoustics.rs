@@ -1,5 +1,6 @@
 //! Impulse responses for Python.
 
+use crate::arrays;
 use crate::doorway::Doorway;
 use crate::errors::{Fault, to_python};
 use crate::head::PyHead;
@@ -34,6 +35,7 @@ impl PyAcousticScene {
         laws_json: &str,
         parameters_json: &str,
     ) -> PyResult<Self> {
+        arrays::ready(py)?;
         let house = house.get().engines.house().clone();
         py.engine(|| -> Result<_, Fault> {
             let config: AcousticConfig = serde_json::from_str(config_json)?;
@@ -181,7 +183,7 @@ pub(crate) fn response_metrics_json(
     rate_hz: f64,
     width_json: &str,
 ) -> PyResult<String> {
-    let samples = samples.as_slice()?;
+    let samples = arrays::row("samples", &samples)?;
     py.engine(|| -> Result<_, Fault> {
         let width: BandWidth = serde_json::from_str(width_json)?;
         let found = metrics::of_impulse_response(samples, rate_hz, width);
@@ -198,7 +200,7 @@ pub(crate) fn ear_metrics_json(
     rate_hz: f64,
     width_json: &str,
 ) -> PyResult<String> {
-    let (left, right) = (left.as_slice()?, right.as_slice()?);
+    let (left, right) = (arrays::row("left", &left)?, arrays::row("right", &right)?);
     py.engine(|| -> Result<_, Fault> {
         let width: BandWidth = serde_json::from_str(width_json)?;
         let found = metrics::of_ears(left, right, rate_hz, width);

@@ -1,5 +1,6 @@
 //! Environments stepped together.
 
+use crate::arrays;
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::PyHouse;
@@ -7,10 +8,11 @@ use crate::picture;
 use crate::world::PyWorld;
 use dwell::sensors::{Dtype, Out};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, Verdict};
+use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use numpy::{
     BorrowError, IntoPyArray, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1,
-    PyReadwriteArrayDyn,
+    PyReadwriteArrayDyn, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -28,25 +30,37 @@ enum Lent<'py> {
     Text(String),
 }
 
+/// The refusal of an array that cannot be written into as it lies.
+fn refused(sensor: &str, dtype: Dtype) -> PyErr {
+    let dtype = match dtype {
+        Dtype::Uint8 => "uint8",
+        Dtype::Float32 => "float32",
+        Dtype::Int32 => "int32",
+        Dtype::Text => "text",
+    };
+    crate::errors::to_python(Fault::Config(format!(
+        "{sensor}: expected a writeable C-contiguous {dtype} array"
+    )))
+}
+
 /// An array of the caller to write into.
 fn lend<'py, T: numpy::Element>(
     sensor: &str,
-    dtype: &str,
+    dtype: Dtype,
     out: &Bound<'py, PyAny>,
 ) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
-    let refuse = |message: String| crate::errors::to_python(Fault::Config(message));
-    let array = out.cast::<PyArrayDyn<T>>().map_err(|_| {
-        refuse(format!(
-            "{sensor}: expected a writeable C-contiguous {dtype} array"
-        ))
-    })?;
+    let array = out
+        .cast::<PyArrayDyn<T>>()
+        .map_err(|_| refused(sensor, dtype))?;
+    // A slice would be had of an array in Fortran's order, too, and be filled in the wrong one.
+    if !array.is_c_contiguous() {
+        return Err(refused(sensor, dtype));
+    }
     array.try_readwrite().map_err(|error| match error {
         BorrowError::AlreadyBorrowed => crate::errors::to_python(Fault::Usage(format!(
             "{sensor}: its buffer is in use by another call; one thread at a time steps an environment"
         ))),
-        _ => refuse(format!(
-            "{sensor}: expected a writeable C-contiguous {dtype} array"
-        )),
+        _ => refused(sensor, dtype),
     })
 }
 
@@ -72,10 +86,14 @@ impl PyBatch {
         py: Python<'_>,
         work: impl FnOnce(&mut Batch) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
-        py.engine(|| work(&mut *self.lock()?))
+        py.engine(|| {
+            let mut batch = self.lock()?;
+            // Not through the guard: it would take the unwinding for a panic. The batch mends itself.
+            interrupt::attempt(|| work(&mut batch))?
+        })
     }
 
-    /// The batch for one call, without the GIL.
+    /// The batch for one call, without the GIL. A call that found a bug left it poisoned: then it refuses.
     pub(crate) fn lock(&self) -> Result<std::sync::MutexGuard<'_, Batch>, Fault> {
         self.batch.lock().map_err(|_| {
             Fault::Usage("a bug of the engine stopped these environments; make new ones".to_owned())
@@ -104,6 +122,7 @@ impl PyBatch {
         threads: Option<usize>,
         overlap: bool,
     ) -> PyResult<Self> {
+        arrays::ready(py)?;
         let shared: Vec<std::sync::Arc<Engines>> = houses
             .iter()
             .map(|house| house.get().engines.clone())
@@ -139,7 +158,7 @@ impl PyBatch {
         py: Python<'py>,
         actions: PyReadonlyArray1<'py, i64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let numbers = actions.as_slice()?.to_vec();
+        let numbers = arrays::row("actions", &actions)?.to_vec();
         let infos = self.with(py, |batch| {
             let actions = numbers
                 .iter()
@@ -189,24 +208,26 @@ impl PyBatch {
         which: PyReadonlyArray1<'py, bool>,
         outs: Vec<Option<Bound<'py, PyAny>>>,
     ) -> PyResult<()> {
-        let which = which.as_slice()?.to_vec();
+        let which = arrays::row("which", &which)?.to_vec();
         let specs = self.with(py, |batch| Ok(batch.specs()))?;
         let mut lent = Vec::new();
         for (k, out) in outs.iter().enumerate() {
             let Some(spec) = specs.get(k) else { break };
             lent.push(match (spec.dtype, out) {
                 (Dtype::Text, _) | (_, None) => Lent::Text(String::new()),
-                (Dtype::Uint8, Some(out)) => Lent::Uint8(lend(&spec.name, "uint8", out)?),
-                (Dtype::Float32, Some(out)) => Lent::Float32(lend(&spec.name, "float32", out)?),
-                (Dtype::Int32, Some(out)) => Lent::Int32(lend(&spec.name, "int32", out)?),
+                (Dtype::Uint8, Some(out)) => Lent::Uint8(lend(&spec.name, spec.dtype, out)?),
+                (Dtype::Float32, Some(out)) => Lent::Float32(lend(&spec.name, spec.dtype, out)?),
+                (Dtype::Int32, Some(out)) => Lent::Int32(lend(&spec.name, spec.dtype, out)?),
             });
         }
         let mut slices = Vec::new();
-        for array in &mut lent {
+        for (array, spec) in lent.iter_mut().zip(&specs) {
+            let name = &spec.name;
+            let refuse = |_| refused(name, spec.dtype);
             slices.push(match array {
-                Lent::Uint8(array) => Out::Uint8(array.as_slice_mut()?),
-                Lent::Float32(array) => Out::Float32(array.as_slice_mut()?),
-                Lent::Int32(array) => Out::Int32(array.as_slice_mut()?),
+                Lent::Uint8(array) => Out::Uint8(array.as_slice_mut().map_err(refuse)?),
+                Lent::Float32(array) => Out::Float32(array.as_slice_mut().map_err(refuse)?),
+                Lent::Int32(array) => Out::Int32(array.as_slice_mut().map_err(refuse)?),
                 Lent::Text(text) => Out::Text(text),
             });
         }

@@ -3,6 +3,7 @@
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use dwell_calibration::rollout::study::Peer;
+use dwell_scene::parallel::Threads;
 use pyo3::prelude::*;
 use std::path::Path;
 
@@ -21,6 +22,7 @@ pub(crate) fn calibrate(
     let report = py.engine(|| -> Result<String, Fault> {
         let options = dwell_calibration::Options {
             house: house.map(str::to_owned),
+            threads: Some(Threads::requested(None)?.count()),
             ..Default::default()
         };
         let peers: Result<Vec<Peer>, _> = peers.iter().map(|p| Peer::read(Path::new(p))).collect();

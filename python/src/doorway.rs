@@ -1,38 +1,88 @@
-//! The one doorway between Python and the engines: the GIL is released, errors become exceptions, panics stop here.
+//! The one doorway between Python and the engines: the GIL is released, errors become exceptions, panics stop here, signals
+//! come through, and what the engines log arrives in Python's `logging`.
 
-use crate::errors::{EngineBug, to_python};
+use crate::errors::{Fault, to_python};
+use crate::{bugs, forks, logs};
+use dwell_scene::interrupt;
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
+use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+
+thread_local! {
+    /// What a handler of signals raised while an engine worked.
+    static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
+    /// Whether this thread is in the middle of a call and runs handlers.
+    static IS_ASKING: Cell<bool> = const { Cell::new(false) };
+}
 
 /// Runs engine code for Python.
 pub(crate) trait Doorway {
-    /// Calls `work` without the GIL; its error becomes the exception it stands for, a panic [`EngineBug`].
+    /// Calls `work` without the GIL; its error becomes the exception it stands for, a panic `EngineBug`.
+    ///
+    /// On Python's main thread handlers of signals run meanwhile; what one raises stops `work` at its next
+    /// [`interrupt::check`] and is raised here.
     fn engine<T, E>(self, work: impl FnOnce() -> Result<T, E> + Send) -> PyResult<T>
     where
         T: Send,
-        E: Into<crate::errors::Fault> + Send;
+        E: Into<Fault> + Send;
 }
 
 impl Doorway for Python<'_> {
     fn engine<T, E>(self, work: impl FnOnce() -> Result<T, E> + Send) -> PyResult<T>
     where
         T: Send,
-        E: Into<crate::errors::Fault> + Send,
+        E: Into<Fault> + Send,
     {
-        // What a panic leaves half done is never looked at again: the object that raised is poisoned by its mutex.
-        let outcome = self.detach(|| catch_unwind(AssertUnwindSafe(work)));
-        match outcome {
-            Ok(Ok(value)) => Ok(value),
-            Ok(Err(error)) => Err(to_python(error.into())),
-            Err(panic) => {
-                let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-                let text = text
-                    .or_else(|| panic.downcast_ref::<String>().cloned())
-                    .unwrap_or_default();
-                Err(EngineBug::new_err(format!(
-                    "a bug of the engine, please report it: {text}"
-                )))
-            }
+        if IS_ASKING.get() {
+            let message = "a handler of signals, or of logs, runs in the middle of another call and cannot call dwell: \
+                           let it set a flag, and call when that call has ended";
+            return Err(to_python(Fault::Usage(message.to_owned())));
+        }
+        logs::heed(self);
+        let hears_signals = forks::is_main_thread(self);
+        let call = forks::Call::begin(self);
+        let outcome = self.detach(|| {
+            // What a panic leaves half done is never looked at again: the object that raised is poisoned by its mutex.
+            let outcome = catch_unwind(AssertUnwindSafe(|| {
+                if hears_signals {
+                    interrupt::stoppable(ask, work)
+                } else {
+                    Ok(work())
+                }
+            }));
+            // Before the GIL is asked for: who forks holds it, and waits for calls to end.
+            drop(call);
+            outcome
+        });
+        logs::deliver(self);
+        let raised = RAISED.take();
+        match (raised, outcome) {
+            // A panic goes first: the object is lost.
+            (_, Err(panic)) => Err(bugs::exception(self, panic.as_ref())),
+            // What was done is lost, too, as with any call that a signal ends.
+            (Some(raised), _) => Err(raised),
+            (None, Ok(Ok(Ok(value)))) => Ok(value),
+            (None, Ok(Ok(Err(error)))) => match error.into() {
+                Fault::Interrupted => Err(PyKeyboardInterrupt::new_err(())),
+                fault => Err(to_python(fault)),
+            },
+            (None, Ok(Err(_))) => Err(PyKeyboardInterrupt::new_err(())),
         }
     }
+}
+
+/// Lets handlers of signals and of logs run; whether one of a signal raised. They cannot call engines: the call that they
+/// run in may hold any lock.
+fn ask() -> bool {
+    IS_ASKING.set(true);
+    let stop = Python::attach(|py| {
+        logs::deliver(py);
+        let raised = py.check_signals().err();
+        let stop = raised.is_some();
+        RAISED.with_borrow_mut(|slot| *slot = raised.or_else(|| slot.take()));
+        stop
+    });
+    IS_ASKING.set(false);
+    stop
 }

@@ -7,6 +7,7 @@ use dwell::WorldError;
 use dwell_calibration::CalibrationError;
 use dwell_houses::HousesError;
 use dwell_scene::SceneError;
+use dwell_scene::interrupt::Interrupted;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -29,6 +30,8 @@ pub(crate) enum Fault {
     Config(String),
     Usage(String),
     Measured(String),
+    /// The call was stopped: a handler of signals has raised, and that is what Python gets.
+    Interrupted,
 }
 
 /// The exceptions with two bases, made once.
@@ -133,8 +136,8 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 pub(crate) struct EngineBug;
 
 impl EngineBug {
-    pub(crate) fn new_err(message: String) -> PyErr {
-        Python::attach(|py| kind(py, "EngineBug", message))
+    pub(crate) fn new_err(py: Python<'_>, message: String) -> PyErr {
+        kind(py, "EngineBug", message)
     }
 }
 
@@ -147,13 +150,25 @@ pub(crate) fn to_python(fault: Fault) -> PyErr {
         Fault::Config(message) => ("ConfigError", message),
         Fault::Usage(message) => ("UsageError", message),
         Fault::Measured(message) => ("MeasuredDataError", message),
+        // The doorway raises what the handler did.
+        Fault::Interrupted => ("UsageError", "the call was stopped".to_owned()),
     };
     Python::attach(|py| kind(py, name, message))
 }
 
 impl From<SceneError> for Fault {
     fn from(error: SceneError) -> Self {
-        Self::Scene(error.to_string())
+        match error {
+            // Of the caller, not of a scene.
+            SceneError::Threads { .. } => Self::Config(error.to_string()),
+            other => Self::Scene(other.to_string()),
+        }
+    }
+}
+
+impl From<Interrupted> for Fault {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
     }
 }
 

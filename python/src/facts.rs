@@ -3,6 +3,7 @@
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use dwell::DiscreteAction;
+use dwell_scene::parallel::{self, Threads};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -71,23 +72,24 @@ pub(crate) fn expand(py: Python<'_>, house: &str) -> PyResult<Vec<String>> {
 /// Versions, threads and features: what `dwell doctor` prints.
 #[pyfunction]
 pub(crate) fn doctor_json(py: Python<'_>) -> PyResult<String> {
-    py.engine(|| Ok::<_, Fault>(doctor()))
+    py.engine(doctor)
 }
 
-fn doctor() -> String {
-    let threads = dwell_scene::parallel::Threads::resolve(None).count();
-    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    json!({
+fn doctor() -> Result<String, Fault> {
+    let threads = Threads::requested(None)?.count();
+    Ok(json!({
         "version": env!("CARGO_PKG_VERSION"),
         "target": format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
         "threads": threads,
-        "available_cores": cores,
+        "available_cores": parallel::available_cores(),
+        "machine_threads": parallel::machine_threads(),
+        "threads_variable": parallel::variable()?,
         "cpu_features": cpu_features(),
         "render_back_ends": ["cpu", "gpu"],
         "graphics_adapters": graphics_adapters(),
         "houses": dwell_houses::builtin::names(),
     })
-    .to_string()
+    .to_string())
 }
 
 /// The adapters that `gpu` and `gpu:NAME` may mean, with the path that each takes and the speeds that say so.

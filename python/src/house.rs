@@ -7,6 +7,7 @@ use crate::head::PyHead;
 use dwell::Engines;
 use dwell_houses::Loss;
 use dwell_scene::material::library;
+use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::{Bands, House, Material, Pose, ShoeboxMaterials, State};
 use dwell_semantics::graph::scene_graph;
@@ -47,7 +48,7 @@ impl PyHouse {
     #[staticmethod]
     fn open(py: Python<'_>, house: &str) -> PyResult<Self> {
         py.engine(|| -> Result<_, Fault> {
-            let (house, report) = dwell_houses::open(house)?;
+            let (house, report) = dwell_houses::open_with(house, Threads::requested(None)?)?;
             Ok(Self::from_house(house, authoring::rows(&report)?))
         })
     }
@@ -68,8 +69,12 @@ impl PyHouse {
         py.engine(|| Ok::<_, Fault>(authoring::map_template(self, house)))
     }
 
-    fn add_head(&self, head: &Bound<'_, PyHead>) {
-        self.engines.add_head(&head.get().head);
+    fn add_head(&self, py: Python<'_>, head: &Bound<'_, PyHead>) -> PyResult<()> {
+        let head = &head.get().head;
+        py.engine(|| {
+            self.engines.add_head(head);
+            Ok::<_, Fault>(())
+        })
     }
 
     #[staticmethod]

@@ -6,17 +6,22 @@
 )]
 
 mod acoustics;
+mod arrays;
 mod authoring;
 mod batch;
 mod bench;
+mod bugs;
 mod calibrate;
 mod doorway;
 mod errors;
 mod facts;
+mod forks;
 mod head;
 mod house;
+mod logs;
 mod navigation;
 mod picture;
+mod rows;
 mod running;
 mod show;
 mod world;
@@ -27,6 +32,9 @@ use pyo3::prelude::*;
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     errors::register(module)?;
+    forks::register(module.py())?;
+    logs::install();
+    bugs::install_hook();
     module.add_class::<house::PyHouse>()?;
     module.add_class::<world::PyWorld>()?;
     module.add_class::<navigation::PyNavigation>()?;
@@ -56,5 +64,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(show::surfaces, module)?)?;
     module.add_function(wrap_pyfunction!(show::texture, module)?)?;
     module.add_function(wrap_pyfunction!(bench::bench_json, module)?)?;
+    module.add_function(wrap_pyfunction!(bugs::panic_for_tests, module)?)?;
     Ok(())
 }

@@ -3,6 +3,7 @@
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::PyHouse;
+use dwell_scene::interrupt;
 use dwell_scene::navigation::{Cell, NavConfig, NavGrid};
 use dwell_scene::random::Key;
 use dwell_scene::{House, LevelId, State};
@@ -10,7 +11,7 @@ use glam::Vec3;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use serde_json::json;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// How close a point must be to a place to stand, m.
 const NEAR_M: f32 = 0.5;
@@ -39,11 +40,19 @@ impl PyNavigation {
 
     /// Follows what has moved; returns how many columns were looked at again.
     pub(crate) fn follow(&self, state: &State) -> Result<usize, Fault> {
-        Ok(self.with(|grid| grid.update(&self.house, state))?.looked_at)
+        Ok(self
+            .with(|grid| grid.update(&self.house, state))??
+            .looked_at)
     }
 
-    fn with<T>(&self, work: impl FnOnce(&mut NavGrid) -> T) -> T {
-        work(&mut self.grid.lock().unwrap_or_else(PoisonError::into_inner))
+    /// The grid for one call, which no signal ends half-way.
+    fn with<T>(&self, work: impl FnOnce(&mut NavGrid) -> T) -> Result<T, Fault> {
+        let refuse = |_| {
+            let message = "a bug of the engine stopped this navigation; make a new one";
+            Fault::Usage(message.to_owned())
+        };
+        let mut grid = self.grid.lock().map_err(refuse)?;
+        Ok(interrupt::whole(|| work(&mut grid)))
     }
 }
 
@@ -72,7 +81,7 @@ impl PyNavigation {
         start: Option<[f32; 3]>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let points = py.engine(|| {
-            Ok::<_, Fault>(self.with(|grid| -> Vec<Vec3> {
+            self.with(|grid| -> Vec<Vec3> {
                 let place = |cell: Cell| grid.position(cell);
                 match start {
                     None => grid.walkable().map(place).collect(),
@@ -82,18 +91,18 @@ impl PyNavigation {
                         cells.map(place).collect()
                     }
                 }
-            }))
+            })
         })?;
         positions(py, points)
     }
 
     fn islands(&self, py: Python<'_>, points: Vec<[f32; 3]>) -> PyResult<Vec<Option<u32>>> {
         py.engine(|| {
-            Ok::<_, Fault>(self.with(|grid| {
+            self.with(|grid| {
                 let island =
                     |point: &[f32; 3]| grid.island(grid.nearest(Vec3::from_array(*point), NEAR_M)?);
                 points.iter().map(island).collect()
-            }))
+            })
         })
     }
 
@@ -110,7 +119,7 @@ impl PyNavigation {
                 let message = format!("count is {count}; allowed are 0 to {MOST_SAMPLES}");
                 return Err(Fault::Config(message));
             }
-            Ok(self.with(|grid| -> Vec<Vec3> {
+            self.with(|grid| -> Vec<Vec3> {
                 let start = start.map(|start| grid.nearest(Vec3::from_array(start), NEAR_M));
                 let cells: Vec<Cell> = match start {
                     None => grid.walkable().collect(),
@@ -120,7 +129,7 @@ impl PyNavigation {
                 let mut stream = Key::root(seed).child("navigation").stream();
                 let chosen = (0..count).filter_map(|_| stream.choose(&cells).copied());
                 chosen.map(|cell| grid.position(cell)).collect()
-            }))
+            })
         })?;
         positions(py, points)
     }
@@ -132,7 +141,7 @@ impl PyNavigation {
         goal: [f32; 3],
     ) -> PyResult<Option<Way<'py>>> {
         let ends = (Vec3::from_array(start), Vec3::from_array(goal));
-        let route = py.engine(|| Ok::<_, Fault>(self.with(|grid| grid.route(ends.0, ends.1))))?;
+        let route = py.engine(|| self.with(|grid| grid.route(ends.0, ends.1)))?;
         let Some(route) = route else { return Ok(None) };
         let named = |joint: &dwell_scene::JointId| {
             let object = self.house.joints[*joint].object;
@@ -148,7 +157,7 @@ impl PyNavigation {
         level: u32,
     ) -> PyResult<(Bound<'py, PyArray2<u8>>, f32, f32, f32)> {
         let map = py.engine(|| {
-            let map = self.with(|grid| grid.occupancy(LevelId(level)));
+            let map = self.with(|grid| grid.occupancy(LevelId(level)))?;
             map.ok_or_else(|| {
                 let count = self.house.levels.len();
                 Fault::Config(format!("no storey {level}; there are {count}"))
@@ -161,7 +170,7 @@ impl PyNavigation {
 
     fn doors_json(&self, py: Python<'_>) -> PyResult<String> {
         py.engine(|| {
-            let doors = self.with(|grid| grid.doors());
+            let doors = self.with(|grid| grid.doors())?;
             let doors = doors.into_iter().map(|door| {
                 let object = self.house.joints[door.joint].object;
                 let cells = door.cells.len();

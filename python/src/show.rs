@@ -1,5 +1,6 @@
 //! Pictures and shapes of worlds for people: maps, doll's houses, meshes for viewers.
 
+use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::PyHouse;
 use crate::world::PyWorld;
@@ -21,7 +22,7 @@ pub(crate) fn map<'py>(
     level: u32,
     longest_edge: u32,
 ) -> PyResult<(Picture<'py>, f32, f32, f32)> {
-    let (rgb, map) = world.get().with(py, |running| {
+    let (rgb, map) = world.get().look(py, |running| {
         let world = &running.world;
         let map = Map::new(world.house(), LevelId(level), longest_edge)?;
         let (renderer, threads) = (world.engines().renderer(), Threads::requested(None)?);
@@ -43,7 +44,7 @@ pub(crate) fn dollhouse<'py>(
     level: u32,
     config_json: &str,
 ) -> PyResult<Picture<'py>> {
-    let (rgb, size) = world.get().with(py, |running| {
+    let (rgb, size) = world.get().look(py, |running| {
         let world = &running.world;
         let config: DollhouseConfig = serde_json::from_str(config_json)?;
         let doll = Dollhouse::new(world.house(), LevelId(level), &config)?;
@@ -66,7 +67,7 @@ pub(crate) fn floor_plan_json(
     world: &Bound<'_, PyWorld>,
     level: u32,
 ) -> PyResult<String> {
-    world.get().with(py, |running| {
+    world.get().look(py, |running| {
         let plan = dwell::floor_plan(running.world, LevelId(level));
         Ok(serde_json::to_string(&plan)?)
     })
@@ -75,7 +76,7 @@ pub(crate) fn floor_plan_json(
 /// Lamps, sources of sound, joints and boxes as they stand: one JSON object.
 #[pyfunction]
 pub(crate) fn fixtures_json(py: Python<'_>, world: &Bound<'_, PyWorld>) -> PyResult<String> {
-    world.get().with(py, |running| {
+    world.get().look(py, |running| {
         Ok(serde_json::to_string(&dwell::fixtures(running.world))?)
     })
 }
@@ -86,7 +87,7 @@ pub(crate) fn surfaces<'py>(
     py: Python<'py>,
     world: &Bound<'py, PyWorld>,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    let (house, surfaces) = world.get().with(py, |running| {
+    let (house, surfaces) = world.get().look(py, |running| {
         let world = &running.world;
         Ok((world.house().clone(), dwell::room_surfaces(world)))
     })?;
@@ -132,6 +133,6 @@ pub(crate) fn texture<'py>(
         return Err(crate::errors::to_python(fault));
     };
     let (height, width) = (found.height as usize, found.width as usize);
-    let rgba = found.rgba().to_vec();
+    let rgba = py.engine(|| Ok::<_, Fault>(found.rgba().to_vec()))?;
     rgba.into_pyarray(py).reshape([height, width, 4])
 }

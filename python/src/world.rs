@@ -1,15 +1,18 @@
 //! Worlds for Python.
 
+use crate::arrays;
 use crate::batch::PyBatch;
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::{PyHouse, describe_level};
 use crate::navigation::PyNavigation;
 use crate::picture;
+use crate::rows::{AgentRow, BodyRow, PlaceRow, SoundRow};
 use crate::running::{GuideTo, Running};
 use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
-use dwell::{PlayRequest, SoundName, SoundPlace};
+use dwell::{PlayRequest, SoundPlace};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
+use dwell_scene::interrupt;
 use dwell_scene::random::Key;
 use dwell_scene::{Address, JointCommand, JointId, Pose, Velocity};
 use glam::{Quat, Vec3};
@@ -37,34 +40,60 @@ enum Source {
 }
 
 impl PyWorld {
+    /// Changes the world: wholly, whatever signals arrive. A panic on the way leaves it poisoned.
     pub(crate) fn with<T: Send>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&mut Running<'_>) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
-        py.engine(|| {
-            let mut guide = self.guide.lock().map_err(|_| stopped())?;
-            let work = |world: &mut World, stride| {
-                let guide = &mut *guide;
-                work(&mut Running {
-                    world,
-                    guide,
-                    stride,
-                })
-            };
-            match &self.source {
-                Source::Own(world) => {
-                    let mut world = world.lock().map_err(|_| stopped())?;
-                    work(&mut world, Stride::default())
-                }
-                Source::Env { batch, env } => {
-                    let mut batch = batch.get().lock()?;
-                    let env = batch.env_mut(*env)?;
-                    let stride = *env.stride();
-                    work(env.world_mut(), stride)
-                }
+        py.engine(|| self.reach(|running| interrupt::whole(|| work(running))))
+    }
+
+    /// Changes the world in one stroke at the end of what may take its time: a signal before it leaves the world as it was.
+    fn prepare<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Running<'_>) -> Result<T, Fault> + Send,
+    ) -> PyResult<T> {
+        // Within the guards: they would take the unwinding for a panic.
+        py.engine(|| self.reach(|running| interrupt::attempt(|| work(running))?))
+    }
+
+    /// Looks at the world, which may take its time: a signal ends it, and the world is as it was.
+    pub(crate) fn look<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Running<'_>) -> Result<T, Fault> + Send,
+    ) -> PyResult<T> {
+        py.engine(|| self.reach(|running| interrupt::attempt(|| work(running))?))
+    }
+
+    /// The world for one call, without the GIL.
+    fn reach<T>(
+        &self,
+        work: impl FnOnce(&mut Running<'_>) -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
+        let mut guide = self.guide.lock().map_err(|_| stopped())?;
+        let work = |world: &mut World, stride| {
+            let guide = &mut *guide;
+            work(&mut Running {
+                world,
+                guide,
+                stride,
+            })
+        };
+        match &self.source {
+            Source::Own(world) => {
+                let mut world = world.lock().map_err(|_| stopped())?;
+                work(&mut world, Stride::default())
             }
-        })
+            Source::Env { batch, env } => {
+                let mut batch = batch.get().lock()?;
+                let env = batch.env_mut(*env)?;
+                let stride = *env.stride();
+                work(env.world_mut(), stride)
+            }
+        }
     }
 
     /// The world of environment `env`.
@@ -74,49 +103,6 @@ impl PyWorld {
             guide: Mutex::default(),
         }
     }
-}
-
-/// A thing that is put somewhere, as Python says it.
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BodyRow {
-    object: String,
-    part: Option<String>,
-    position: [f32; 3],
-    rotation: [f32; 4],
-    linear_m_s: [f32; 3],
-    angular_rad_s: [f32; 3],
-}
-
-/// An agent that is put somewhere, as Python says it.
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct AgentRow {
-    position: [f32; 3],
-    yaw_deg: f32,
-    pitch_deg: f32,
-    linear_m_s: [f32; 3],
-    yaw_rate_rad_s: f32,
-    crouched_by_m: f32,
-    wheel_rad_s: Option<[f32; 2]>,
-}
-
-/// A sound to play, as Python says it.
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SoundRow {
-    sound: SoundName,
-    at: PlaceRow,
-    level_db: Option<f32>,
-    loops: bool,
-}
-
-#[derive(serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum PlaceRow {
-    Position([f32; 3]),
-    Object(String),
-    Agent(usize),
 }
 
 fn stopped() -> Fault {
@@ -133,6 +119,7 @@ impl PyWorld {
         config_json: &str,
         seed: u64,
     ) -> PyResult<Self> {
+        arrays::ready(py)?;
         let engines = house.get().engines.clone();
         let world = py.engine(|| -> Result<World, Fault> {
             let config: WorldConfig = serde_json::from_str(config_json)?;
@@ -199,7 +186,7 @@ impl PyWorld {
     }
 
     fn notices_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             let mut notices = Vec::new();
             for notice in running.world.notices() {
                 let outcome = running.outcome_json(&notice.outcome)?;
@@ -228,25 +215,25 @@ impl PyWorld {
     }
 
     fn agents_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             Ok(serde_json::to_string(&running.world.state().agents)?)
         })
     }
 
     fn objects_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             Ok(serde_json::to_string(&dwell::objects_now(running.world))?)
         })
     }
 
     fn events_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             Ok(serde_json::to_string(running.world.events())?)
         })
     }
 
     fn start_report_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             Ok(serde_json::to_string(running.world.start_report())?)
         })
     }
@@ -257,7 +244,7 @@ impl PyWorld {
         view_json: &str,
         channels: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let seen = self.with(py, |running| {
+        let seen = self.look(py, |running| {
             picture::render(running.world, view_json, &channels)
         })?;
         let images = PyDict::new(py);
@@ -273,7 +260,7 @@ impl PyWorld {
         agent: usize,
         samples: usize,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let heard = self.with(py, |running| {
+        let heard = self.prepare(py, |running| {
             if samples == 0 || samples > 10 * running.world.config().sound_rate_hz as usize {
                 return Err(Fault::Config(format!(
                     "samples is {samples}; allowed are 1 to ten seconds' worth"
@@ -327,14 +314,14 @@ impl PyWorld {
     }
 
     fn sounds_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             Ok(serde_json::to_string(&running.world.sounds())?)
         })
     }
 
     #[pyo3(signature = (config_json="{}"))]
     fn navigation(&self, py: Python<'_>, config_json: &str) -> PyResult<PyNavigation> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             let world = &running.world;
             PyNavigation::build(world.house(), world.state(), config_json)
         })
@@ -342,11 +329,11 @@ impl PyWorld {
 
     fn follow(&self, py: Python<'_>, navigation: &Bound<'_, PyNavigation>) -> PyResult<usize> {
         let navigation = navigation.get();
-        self.with(py, |running| navigation.follow(running.world.state()))
+        self.look(py, |running| navigation.follow(running.world.state()))
     }
 
     fn merged_events_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             Ok(serde_json::to_string(&running.world.merged_events())?)
         })
     }
@@ -357,7 +344,7 @@ impl PyWorld {
         agent: usize,
         goal: [f32; 3],
     ) -> PyResult<Option<Vec<[f32; 3]>>> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             let agent = running.agent(agent)?;
             let state = &running.world.state().agents[agent];
             let grid = running.world.engines().navigation(&state.body)?;
@@ -378,7 +365,7 @@ impl PyWorld {
     }
 
     fn guide(&self, py: Python<'_>, agent: usize, goal: [f32; 3]) -> PyResult<Option<usize>> {
-        self.with(py, |running| {
+        self.prepare(py, |running| {
             let id = running.agent(agent)?;
             let bits = goal.map(f32::to_bits);
             let body = running.world.state().agents[id].body;
@@ -404,7 +391,7 @@ impl PyWorld {
     }
 
     fn face(&self, py: Python<'_>, agent: usize, object: &str) -> PyResult<Option<usize>> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             let agent = running.agent(agent)?;
             let object = running.object(&json!(object))?;
             Ok(dwell::face(running.world, agent, object, &running.stride)
@@ -413,14 +400,14 @@ impl PyWorld {
     }
 
     fn gaze_target(&self, py: Python<'_>, agent: usize) -> PyResult<Option<String>> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             let target = running.world.gaze_target(running.agent(agent)?);
             Ok(target.map(|object| running.world.house().objects[object].name.clone()))
         })
     }
 
     fn joints_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             let (house, state) = (running.world.house(), running.world.state());
             let rows: Vec<_> = house
                 .joints
@@ -471,7 +458,7 @@ impl PyWorld {
     }
 
     fn body_json(&self, py: Python<'_>, object: &str, part: Option<&str>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             let id = running.part(object, part)?;
             let state = running.world.state();
             let (pose, velocity) = (state.part_pose[id], state.part_velocity[id]);
@@ -506,14 +493,14 @@ impl PyWorld {
     }
 
     fn parameter_json(&self, py: Python<'_>, address: &str) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             let address: Address = address.parse()?;
             Ok(serde_json::to_string(&running.world.parameter(&address)?)?)
         })
     }
 
     fn parameters_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             let rows = running.world.parameters();
             Ok(serde_json::to_string(&rows)?)
         })
@@ -530,7 +517,7 @@ impl PyWorld {
     }
 
     fn describe(&self, py: Python<'_>, level: &str) -> PyResult<Vec<String>> {
-        self.with(py, |running| {
+        self.look(py, |running| {
             describe_level(
                 running.world.engines().semantics(),
                 running.world.state(),
@@ -541,7 +528,7 @@ impl PyWorld {
     }
 
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = self.with(py, |running| Ok(running.world.snapshot()))?;
+        let bytes = self.look(py, |running| Ok(running.world.snapshot()))?;
         Ok(PyBytes::new(py, &bytes))
     }
 
@@ -565,16 +552,16 @@ impl PyWorld {
     }
 
     fn hash(&self, py: Python<'_>) -> PyResult<u64> {
-        self.with(py, |running| Ok(running.world.hash()))
+        self.look(py, |running| Ok(running.world.hash()))
     }
 
     #[getter]
     fn time_s(&self, py: Python<'_>) -> PyResult<f64> {
-        self.with(py, |running| Ok(running.world.state().time_s))
+        self.look(py, |running| Ok(running.world.state().time_s))
     }
 
     #[getter]
     fn step_count(&self, py: Python<'_>) -> PyResult<u64> {
-        self.with(py, |running| Ok(running.world.state().step))
+        self.look(py, |running| Ok(running.world.state().step))
     }
 }

@@ -3,6 +3,7 @@
 
 mod bits;
 mod check;
+mod doorway;
 mod features;
 mod layers;
 mod licences;
@@ -49,6 +50,11 @@ const COMMANDS: &[(&str, &str, Command)] = &[
         "bits",
         "no elementary functions of the platform where bits matter",
         bits::run,
+    ),
+    (
+        "doorway",
+        "every function for Python releases the GIL, maps errors, stops panics and hears signals",
+        doorway::run,
     ),
     (
         "check",

@@ -37,8 +37,7 @@ def run(args: argparse.Namespace) -> int:
         print_json(facts)
         return 0
     print(f"dwell {facts['version']} for {facts['target']}, Python {facts['python']}")
-    cores, threads = facts["available_cores"], facts["threads"]
-    print(f"processor: {cores} cores available, {threads} threads used (DWELL_THREADS changes it)")
+    print(f"processor: {_threads(facts)}")
     print(f"instructions: {', '.join(facts['cpu_features']) or 'none that are looked for'}")
     print("rendering: cpu, unless --backend, renderer= or DWELL_RENDERER says otherwise")
     for adapter in facts["graphics_adapters"]:
@@ -54,6 +53,17 @@ def run(args: argparse.Namespace) -> int:
         print(f"{name}: {'there' if there else f'missing ({purpose}): {how}'}")
     print(f"Python at {sys.executable}")
     return 0
+
+
+def _threads(facts: dict[str, Any]) -> str:
+    """How many threads are used, and what decided it."""
+    cores, machine, most = (
+        facts[key] for key in ("available_cores", "machine_threads", "threads_variable")
+    )
+    of = "" if machine in (None, cores) else f" of the machine's {machine}"
+    why = f"affinity and quota leave {cores}{of}" if of else f"all {cores} cores of the machine"
+    allowed = "DWELL_THREADS is not set" if most is None else f"DWELL_THREADS allows {most}"
+    return f"{facts['threads']} threads used ({why}; {allowed})"
 
 
 def _path(adapter: dict[str, Any]) -> str:

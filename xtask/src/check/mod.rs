@@ -3,7 +3,7 @@
 mod stages;
 
 use crate::outcome::Outcome;
-use crate::{bits, features, layers, licences, sizes};
+use crate::{bits, doorway, features, layers, licences, sizes};
 use stages::Stage;
 use std::path::Path;
 use std::process::Command;
@@ -16,12 +16,13 @@ pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
         println!("-- {}", stage.name);
         timed(&mut outcome, stage.name, || run_program(root, &stage));
     }
-    let own: [(&str, crate::Command); 5] = [
+    let own: [(&str, crate::Command); 6] = [
         ("layers", layers::run),
         ("sizes", sizes::run),
         ("licences", licences::run),
         ("features", features::run),
         ("bits", bits::run),
+        ("doorway", doorway::run),
     ];
     for (name, command) in own {
         println!("-- {name}");

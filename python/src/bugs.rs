@@ -1,0 +1,69 @@
+//! Panics: bugs of the engines, that reach Python as `EngineBug` and nothing else.
+//!
+//! The hook prints nothing. The exception says what and where; printing would say it twice, and tear the output of whoever
+//! catches it. The backtrace goes to the log `dwell.python.bugs`, level debug, where `RUST_BACKTRACE=1` asks for one.
+
+use crate::doorway::Doorway;
+use crate::errors::{EngineBug, Fault};
+use crate::world::PyWorld;
+use dwell_scene::parallel::Threads;
+use pyo3::prelude::*;
+use std::any::Any;
+use std::backtrace::{Backtrace, BacktraceStatus};
+use std::sync::{Mutex, PoisonError};
+
+/// The latest panics, what they said and where they stood: a panic of a pool's thread loses its place on the way.
+static PLACES: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
+/// As many as can be under way at once, generously.
+const MOST_PLACES: usize = 16;
+
+fn text(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "it left no message".to_owned())
+}
+
+/// Takes the place of std's hook in this extension; that of other extensions stays.
+pub(crate) fn install_hook() {
+    std::panic::set_hook(Box::new(|info| {
+        let text = text(info.payload());
+        let place = info.location().map(ToString::to_string).unwrap_or_default();
+        let trace = Backtrace::capture();
+        let trace = match trace.status() {
+            BacktraceStatus::Captured => trace.to_string(),
+            _ => "RUST_BACKTRACE=1 shows the way there".to_owned(),
+        };
+        tracing::debug!(place, trace, "a bug of the engine: {text}");
+        let mut places = PLACES.lock().unwrap_or_else(PoisonError::into_inner);
+        if places.len() == MOST_PLACES {
+            places.remove(0);
+        }
+        places.push((text, place));
+    }));
+}
+
+/// The exception of a panic.
+pub(crate) fn exception(py: Python<'_>, panic: &(dyn Any + Send)) -> PyErr {
+    let text = text(panic);
+    let mut places = PLACES.lock().unwrap_or_else(PoisonError::into_inner);
+    let place = places.iter().rposition(|(said, _)| *said == text);
+    let place = place.map_or_else(String::new, |k| format!(" ({})", places.remove(k).1));
+    EngineBug::new_err(
+        py,
+        format!("a bug of the engine, please report it: {text}{place}"),
+    )
+}
+
+/// Panics on purpose, as a bug would: in a pool's thread, or while `world` is being changed. The tests of the border and of
+/// the wheel call it, to see that the unwinding stops at the doorway.
+#[pyfunction]
+#[pyo3(signature = (world=None))]
+pub(crate) fn panic_for_tests(py: Python<'_>, world: Option<&Bound<'_, PyWorld>>) -> PyResult<()> {
+    match world {
+        Some(world) => world.get().with(py, |_| panic!("a world's, on purpose")),
+        None => py.engine(|| {
+            Threads::exactly(2).map(4, |k| assert!(k != 3, "a pool's, on purpose"));
+            Ok::<_, Fault>(())
+        }),
+    }
+}

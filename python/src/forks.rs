@@ -1,0 +1,114 @@
+//! What `fork()` must know: which calls of engines run, and which thread is Python's main one.
+//!
+//! A child has one thread, the one that forked; locks that others held stay locked in it for ever. So a fork waits until
+//! no other thread is in a call of the engines, and meanwhile no call begins. It holds the GIL from then on, and calls begin
+//! with the GIL: none can begin before the fork is done.
+
+use pyo3::prelude::*;
+use pyo3::types::{PyCFunction, PyDict};
+use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// How long a fork waits for other threads' calls at most.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Between looks at whether one can go on.
+const PAUSE: Duration = Duration::from_micros(500);
+
+/// Calls of engines in this process.
+static CALLS: AtomicUsize = AtomicUsize::new(0);
+/// Threads that are about to fork.
+static FORKS: AtomicUsize = AtomicUsize::new(0);
+/// Forks that lie between the first process and this one.
+static GENERATION: AtomicU32 = AtomicU32::new(0);
+
+thread_local! {
+    /// Calls of this thread, one within the other.
+    static OWN: Cell<usize> = const { Cell::new(0) };
+    /// Whether this is the main thread, and of which generation.
+    static MAIN: Cell<Option<(u32, bool)>> = const { Cell::new(None) };
+}
+
+/// A call of an engine, as long as it lasts.
+pub(crate) struct Call(());
+
+impl Call {
+    /// Begins a call, after those who are about to fork. A call within another does not wait: that one is waited for.
+    pub(crate) fn begin(py: Python<'_>) -> Self {
+        while OWN.get() == 0 && FORKS.load(Ordering::SeqCst) > 0 {
+            py.detach(|| std::thread::sleep(PAUSE));
+        }
+        CALLS.fetch_add(1, Ordering::SeqCst);
+        OWN.set(OWN.get() + 1);
+        Self(())
+    }
+}
+
+impl Drop for Call {
+    fn drop(&mut self) {
+        OWN.set(OWN.get().saturating_sub(1));
+        CALLS.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+/// Whether this is the thread on which Python runs handlers of signals.
+pub(crate) fn is_main_thread(py: Python<'_>) -> bool {
+    let generation = GENERATION.load(Ordering::Relaxed);
+    if let Some((of, is_main)) = MAIN.get()
+        && of == generation
+    {
+        return is_main;
+    }
+    // Where threading cannot say, nobody is asked about signals.
+    let is_main = asked(py).unwrap_or(false);
+    MAIN.set(Some((generation, is_main)));
+    is_main
+}
+
+fn asked(py: Python<'_>) -> PyResult<bool> {
+    let threading = py.import("threading")?;
+    let main = threading.call_method0("main_thread")?.getattr("ident")?;
+    main.eq(threading.call_method0("get_ident")?)
+}
+
+/// Before a fork: waits for the engine calls of other threads.
+fn wait(py: Python<'_>) {
+    FORKS.fetch_add(1, Ordering::SeqCst);
+    let start = Instant::now();
+    while CALLS.load(Ordering::SeqCst) > OWN.get() {
+        if start.elapsed() > PATIENCE {
+            let calls = CALLS.load(Ordering::SeqCst) - OWN.get();
+            tracing::warn!(
+                calls,
+                "fork while engines work in other threads: the child may find their locks held"
+            );
+            crate::logs::deliver(py);
+            return;
+        }
+        py.detach(|| std::thread::sleep(PAUSE));
+    }
+}
+
+/// Asks Python to call us around forks. Where there is no `fork`, there is nothing to ask.
+pub(crate) fn register(py: Python<'_>) -> PyResult<()> {
+    let os = py.import("os")?;
+    if !os.hasattr("register_at_fork")? {
+        return Ok(());
+    }
+    let before = PyCFunction::new_closure(py, None, None, |args, _| wait(args.py()))?;
+    let in_parent = PyCFunction::new_closure(py, None, None, |_, _| {
+        FORKS.fetch_sub(1, Ordering::SeqCst);
+    })?;
+    let in_child = PyCFunction::new_closure(py, None, None, |_, _| {
+        GENERATION.fetch_add(1, Ordering::Relaxed);
+        // The threads of other calls and forks are not here.
+        CALLS.store(OWN.get(), Ordering::SeqCst);
+        FORKS.store(0, Ordering::SeqCst);
+    })?;
+    let hooks = PyDict::new(py);
+    hooks.set_item("before", before)?;
+    hooks.set_item("after_in_parent", in_parent)?;
+    hooks.set_item("after_in_child", in_child)?;
+    os.call_method("register_at_fork", (), Some(&hooks))?;
+    Ok(())
+}

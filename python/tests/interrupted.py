@@ -1,0 +1,184 @@
+"""Sends Ctrl-C into long calls and measures how long they go on: what ``test_interrupt.py`` runs.
+
+As a program it prints, for each call, the median and the longest time from the signal to
+``KeyboardInterrupt``, ms:
+
+    .venv/bin/python python/tests/interrupted.py --rounds 20
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import json
+import os
+import signal
+import statistics
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+import dwell
+import dwell.listening
+from dwell import _native
+from dwell.envs import DwellVectorEnv
+
+#: How long a call is repeated at most: far longer than it takes to be stopped.
+LONGEST_S = 30.0
+#: A call that takes long, after what it needs was made.
+Call = Callable[[], object]
+
+
+def generate() -> Call:
+    """Generating houses, large ones."""
+    seeds = itertools.count()
+    return lambda: dwell.House.generate(next(seeds), home="house", storeys=2)
+
+
+def open_file(folder: Path) -> Call:
+    """Opening a house from a file."""
+    path = folder / "house.dwell"
+    dwell.House.generate(7).write(str(path), "dwell")
+    return lambda: dwell.House.open(str(path))
+
+
+def make_world() -> Call:
+    """A world with all that engines derive from a house that nobody has used."""
+    houses = iter([dwell.House.generate(seed) for seed in range(12)])
+    return lambda: dwell.World(next(houses)).render(agent=0)
+
+
+def responses() -> Call:
+    """Impulse responses at many places."""
+    scene = dwell.AcousticScene("builtin:apartment", rays=200_000)
+    ears = [dwell.listening.Receiver.omni((2.0 + 0.1 * k, 1.2, 2.0)) for k in range(4)]
+    return lambda: scene.impulse_responses(dwell.Source((3.0, 1.5, 3.0)), ears)
+
+
+def render() -> Call:
+    """A picture of 16 million pixels."""
+    world = dwell.World("builtin:apartment")
+    return lambda: world.render(agent=0, camera=dwell.Camera(width=4096, height=4096))
+
+
+def draw_map() -> Call:
+    """A map of many pixels."""
+    world = dwell.World("builtin:apartment")
+    return lambda: world.map(4096)
+
+
+def navigation() -> Call:
+    """A grid of places with cells of 2 cm."""
+    world = dwell.World("builtin:apartment")
+    return lambda: world.navigation(dwell.Walker(cell_m=0.02))
+
+
+def calibrate(folder: Path) -> Call:
+    """A calibration without anybody who watches its progress."""
+    _native.calibration_example(str(folder), 0)
+    return lambda: _native.calibrate(str(folder))
+
+
+def bench() -> Call:
+    """A bench in the engines."""
+    options = json.dumps({"worlds": 8, "repeats": 1000, "steps": 100_000})
+    return lambda: _native.bench_json("physics", "builtin:studio", options)
+
+
+def step_batch() -> Call:
+    """Steps of many environments in one call."""
+    envs = DwellVectorEnv(48, sensors=["rgb"])
+    envs.reset(seed=0)
+    return lambda: envs.step(np.full(48, 3))
+
+
+def reset_batch() -> Call:
+    """New episodes of many environments in one call."""
+    envs = DwellVectorEnv(16)
+    return lambda: envs.reset(seed=0)
+
+
+def listen() -> Call:
+    """Ten seconds of sound."""
+    world = dwell.World("builtin:apartment")
+    return lambda: world.listen(10 * 16_000)
+
+
+def write(folder: Path) -> Call:
+    """Writing a house."""
+    house = dwell.House.generate(7)
+    return lambda: house.write(str(folder / "out.glb"), "glb")
+
+
+CALLS: dict[str, Callable[..., Call]] = {
+    "generate": generate,
+    "open": open_file,
+    "world": make_world,
+    "responses": responses,
+    "render": render,
+    "map": draw_map,
+    "navigation": navigation,
+    "calibrate": calibrate,
+    "bench": bench,
+    "batch step": step_batch,
+    "batch reset": reset_batch,
+    "listen": listen,
+    "write": write,
+}
+
+
+def latency_s(name: str, delay_s: float, folder: Path) -> float:
+    """From the signal to the exception, s."""
+    make = CALLS[name]
+    call = make(folder) if make.__code__.co_argcount else make()
+    sent: list[float] = []
+
+    def send() -> None:
+        time.sleep(delay_s)
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    sender = threading.Thread(target=send)
+    sender.start()
+    end = time.monotonic() + LONGEST_S
+    try:
+        while time.monotonic() < end:
+            call()
+    except KeyboardInterrupt:
+        return time.monotonic() - sent[0]
+    except StopIteration:
+        pass
+    finally:
+        sender.join()
+    raise AssertionError(f"{name} had the signal and did not stop in {LONGEST_S} s")
+
+
+def main() -> None:
+    """Prints figures; with ``--one`` one latency as JSON."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=10)
+    parser.add_argument("--one", choices=CALLS)
+    parser.add_argument("--delay", type=float, default=0.1, help="s from the start to the signal")
+    parser.add_argument("names", nargs="*", default=[])
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        if args.one:
+            print(json.dumps(latency_s(args.one, args.delay, Path(folder))))
+            return
+        draw = np.random.default_rng(0)
+        for name in args.names or CALLS:
+            found: list[float] = []
+            for _ in range(args.rounds):
+                own = Path(tempfile.mkdtemp(dir=folder))
+                found.append(1e3 * latency_s(name, float(draw.uniform(0.02, 0.4)), own))
+            print(f"{name}: median {statistics.median(found):.0f}, longest {max(found):.0f} ms")
+            sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()

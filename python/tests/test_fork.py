@@ -1,0 +1,168 @@
+"""Processes that are forked from one that has used the engines."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+
+import dwell
+from dwell.envs import DwellEnv
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+#: Python warns of forks beside threads; that is what these tests are about.
+warned = pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")
+WALK = (3, 1, 3, 3, 2)
+
+
+def senses(world: dwell.World) -> list[Any]:
+    """Steps, looks, listens, asks the way."""
+    world.step()
+    heard = world.listen(1600)
+    image = world.render(agent=0, camera=dwell.Camera(96, 96))["rgb"]
+    scene = dwell.AcousticScene("builtin:studio", rays=2000)
+    response = scene.impulse_response((1.5, 1.5, 1.5), (2.0, 1.0, 2.0))
+    return [world.state_hash(), heard.sum(), int(image.sum()), float(np.abs(response).sum())]
+
+
+def in_child(work: Callable[[], Any]) -> Any:  # noqa: ANN401 - whatever the work gives
+    """What ``work`` gives in a forked child, in a minute at most."""
+    fork = multiprocessing.get_context("fork")
+    ours, theirs = fork.Pipe()
+    process = fork.Process(target=lambda: theirs.send(work()))
+    process.start()
+    try:
+        assert ours.poll(60), "the child hangs"
+        return ours.recv()
+    finally:
+        process.kill()
+        process.join()
+
+
+@warned
+def test_a_child_of_a_used_parent_steps_sees_and_hears_the_same() -> None:
+    world, twin = dwell.World("builtin:studio"), dwell.World("builtin:studio")
+    assert senses(world) == senses(twin)
+    there = in_child(lambda: senses(world))
+    assert there == senses(world) == senses(twin)
+    # A grandchild, and the parent meanwhile.
+    assert in_child(lambda: in_child(lambda: senses(twin))) == senses(world)
+
+
+@warned
+def test_environments_in_forked_workers_play_what_one_here_plays() -> None:
+    here = DwellEnv(houses="builtin:studio", sensors=["rgb", "audio"])
+    played = [here.reset(seed=4)[0]] + [here.step(np.int64(a))[0] for a in WALK]
+
+    def make() -> gymnasium.Env[Any, Any]:
+        return DwellEnv(houses="builtin:studio", sensors=["rgb", "audio"])
+
+    envs = gymnasium.vector.AsyncVectorEnv([make] * 3, context="fork")
+    try:
+        there = [envs.reset(seed=[4, 4, 5])[0]]
+        there += [envs.step(np.full(3, action))[0] for action in WALK]
+    finally:
+        envs.close(timeout=30)
+    for one, many in zip(played, there, strict=True):
+        for name, value in one.items():
+            assert (many[name][0] == value).all(), name
+            assert (many[name][1] == value).all(), name
+
+
+@warned
+def test_a_fork_beside_a_busy_thread_waits_for_its_call() -> None:
+    """Locks that another thread holds at the fork would stay locked in the child for ever."""
+    world, done = dwell.World("builtin:studio"), threading.Event()
+
+    def work() -> None:
+        own = dwell.World("builtin:studio")
+        while not done.is_set():
+            own.render(agent=0, camera=dwell.Camera(512, 512))
+            own.listen(800)
+
+    expected = dwell.World("builtin:studio").render(agent=0)["rgb"].sum()
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    start = time.monotonic()
+    try:
+        for _ in range(5):
+            found = in_child(lambda: dwell.World("builtin:studio").render(agent=0)["rgb"].sum())
+            assert found == expected
+            assert in_child(lambda: world.render(agent=0)["rgb"].sum()) == expected
+        assert time.monotonic() - start < 30.0, (
+            "calls that follow each other closely kept it waiting"
+        )
+    finally:
+        done.set()
+        for thread in threads:
+            thread.join()
+
+
+def test_a_fork_waits_for_a_while_and_no_longer() -> None:
+    program = """
+import logging, os, threading, time
+import dwell
+logging.basicConfig(format="%(name)s %(message)s")
+world = dwell.World("builtin:studio")
+camera = dwell.Camera(8192, 8192)
+thread = threading.Thread(target=lambda: [world.render(agent=0, camera=camera) for _ in range(3)])
+thread.daemon = True
+thread.start()
+time.sleep(0.2)
+start = time.monotonic()
+child = os.fork()
+if child == 0:
+    os._exit(0)
+waited = time.monotonic() - start
+os.waitpid(child, 0)
+print(thread.is_alive(), waited)
+os._exit(0)
+"""
+    ran = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", program],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert ran.returncode == 0, ran.stderr
+    alive, waited = ran.stdout.split()
+    # Between two pictures, or after its patience; a warning comes with the latter.
+    assert float(waited) < 15.0
+    assert ("fork while engines work" in ran.stderr) == (float(waited) > 5.0)
+    assert alive == "True"
+
+
+@warned
+def test_a_forked_child_hears_ctrl_c() -> None:
+    world = dwell.World("builtin:studio")
+    world.render(agent=0)
+
+    def interrupted() -> float:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        sent: list[float] = []
+
+        def send() -> None:
+            time.sleep(0.1)
+            sent.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Thread(target=send).start()
+        try:
+            world.render(agent=0, camera=dwell.Camera(8192, 8192))
+        except KeyboardInterrupt:
+            return time.monotonic() - sent[0]
+        return 1e9
+
+    assert in_child(interrupted) < 1.5
