@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from dwell.house import House
     from dwell.listening import Microphone, Receiver, Source
     from dwell.navigation import Navigation, Walker
+    from dwell.replays import Replay
     from dwell.rewards import Reward
     from dwell.sensors import Sensor
     from dwell.tasks import Ask, Task, Verdict
@@ -58,6 +59,7 @@ _LAZY = {
     "Outcome": "dwell.actions",
     "Pointed": "dwell.actions",
     "Receiver": "dwell.listening",
+    "Replay": "dwell.replays",
     "Reward": "dwell.rewards",
     "Sensor": "dwell.sensors",
     "Source": "dwell.listening",
@@ -89,6 +91,7 @@ __all__ = [
     "Outcome",
     "Pointed",
     "Receiver",
+    "Replay",
     "Reward",
     "SceneError",
     "Sensor",

@@ -239,6 +239,7 @@ class Batch:
     def texts(self, sensor: int) -> list[str]: ...
     def render(self, env: int, view_json: str) -> NDArray[np.uint8]:
         """What environment ``env``'s agent sees, lit; ``view_json``: as :meth:`World.render`."""
+    def instruction(self, env: int) -> str: ...
     def world(self, env: int) -> World:
         """The world of environment ``env``, which both go on to use."""
     def ask(self, env: int, instruction: str | None = ..., distance_m: float | None = ...) -> None:

@@ -126,6 +126,17 @@ class World(Guiding, Sounds):
         """Simulated time, s."""
         return self._native.time_s
 
+    @property
+    def sound_rate_hz(self) -> int:
+        """Samples a second of what is heard."""
+        return int(json.loads(self._native.config_json())["sound_rate_hz"])
+
+    @property
+    def samples_a_step(self) -> int:
+        """Samples of sound in a control step."""
+        config = json.loads(self._native.config_json())
+        return int(config["sound_rate_hz"] // config["control_rate_hz"])
+
     def step(
         self,
         controls: NDArray[np.float32]

@@ -234,6 +234,14 @@ impl PyBatch {
         self.with(py, |batch| Ok(batch.observe(&which, &mut slices)?))
     }
 
+    fn instruction(&self, py: Python<'_>, env: usize) -> PyResult<String> {
+        self.with(py, |batch| {
+            let episode = batch.env(env)?.episode();
+            let refuse = || Fault::Usage("no episode has begun; call reset first".to_owned());
+            Ok(episode.ok_or_else(refuse)?.instruction.clone())
+        })
+    }
+
     /// The world of an environment, which both go on to use.
     fn world(slf: Bound<'_, Self>, env: usize) -> PyResult<PyWorld> {
         slf.get()

@@ -100,7 +100,7 @@ def test_links_of_the_site_lead_to_its_pages(pages: ModuleType) -> None:
     linked = pages.sources.linked
     assert linked("index.md", "[a](docs/laws.md#physics)") == "[a](laws.md#physics)"
     assert linked("index.md", "[a](examples/README.md)") == "[a](guide/index.md)"
-    assert linked("guide/index.md", "[a](03_act.py)") == "[a](03_act.md)"
+    assert linked("guide/index.md", "[a](10_act.py)") == "[a](10_act.md)"
     assert linked("decisions/0004-rays.md", "[a](../physics.md)") == "[a](../physics.md)"
     assert linked("peers.md", "[a](../../docs/laws.md)") == "[a](laws.md)"
     assert linked("index.md", "![a](docs/images/demo.jpg)") == "![a](images/demo.jpg)"

@@ -15,6 +15,7 @@ COMMANDS = {
     "info": "counts, rooms, areas, categories, report of damage",
     "render": "pictures from a place in a house, plans, doll's houses, contact sheets",
     "view": "a house in the Rerun viewer, or as a recording for it",
+    "replay": "a recorded episode: checked to the bit, seen and heard again",
     "describe": "sentences about houses",
     "ir": "an impulse response between two points",
     "generate": "houses from seeds, in bulk, written as files",

@@ -7,23 +7,19 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
-import numpy as np
-
 from dwell.camera import PRESETS, Camera, Channel
 from dwell.cli.common import (
     Bar,
     add_back_end,
-    atomic,
     back_end,
     count,
     number,
     point,
     print_json,
 )
+from dwell.cli.saving import save_picture, write_image
 
 if TYPE_CHECKING:
-    from PIL import Image
-
     from dwell.world import World
 
 _SENSORS: tuple[Channel, ...] = get_args(Channel)
@@ -135,7 +131,7 @@ def _sheet(args: argparse.Namespace, houses: list[str]) -> tuple[list[str], int]
     if not tiles:
         return [], refused
     picture = plans.sheet(tiles, columns=args.columns)
-    return [_save(args.out / "sheet.png", picture)], refused
+    return [save_picture(args.out / "sheet.png", picture)], refused
 
 
 def _whole(args: argparse.Namespace, world: World) -> list[str]:
@@ -146,14 +142,14 @@ def _whole(args: argparse.Namespace, world: World) -> list[str]:
     if args.map:
         for level in range(plans.levels_of(world.house)):
             plan = plans.floor_plan(world, level, longest_edge=width)
-            files.append(_save(args.out / f"map_{level}.png", plan))
+            files.append(save_picture(args.out / f"map_{level}.png", plan))
     if args.dollhouse:
         yaw_deg = 25.0 if args.yaw_deg is None else args.yaw_deg
         doll = plans.dollhouse(world, width=width, yaw_deg=yaw_deg, cut_m=args.cut_m)
-        files.append(_save(args.out / "dollhouse.png", doll))
+        files.append(save_picture(args.out / "dollhouse.png", doll))
     if args.sheet:
         sheet = plans.house_sheet(world, columns=args.columns, preset=args.preset)
-        files.append(_save(args.out / "sheet.png", sheet))
+        files.append(save_picture(args.out / "sheet.png", sheet))
     return files
 
 
@@ -176,7 +172,7 @@ def _views(args: argparse.Namespace, world: World, channels: list[Channel]) -> l
             channels=channels,
         )
         for channel, image in images.items():
-            files += _write(args.out, f"{name}_{channel}", channel, image)
+            files += write_image(args.out, f"{name}_{channel}", channel, image)
     return files
 
 
@@ -219,25 +215,3 @@ def _camera(args: argparse.Namespace) -> Camera:
         height = max(width // 2, 1) if kind == "equirectangular" else 6 * width
     projection = {"kind": kind, **numbers, **args.intrinsics}
     return Camera(width, height, preset=preset, projection=projection)
-
-
-def _save(path: Path, picture: Image.Image) -> str:
-    """Writes a PNG whole or not at all."""
-    with atomic(path) as temporary:
-        picture.save(temporary, format="PNG")
-    return str(path)
-
-
-def _write(folder: Path, name: str, channel: str, image: np.ndarray[Any, Any]) -> list[str]:
-    """Writes one image as PNG, and what a PNG cannot hold as NPY too."""
-    from dwell.pictures import has_picture, picture
-
-    paths = []
-    if has_picture(channel):
-        paths.append(_save(folder / f"{name}.png", picture(channel, image)))
-    if channel != "rgb":
-        path = folder / f"{name}.npy"
-        with atomic(path) as temporary, temporary.open("wb") as file:
-            np.save(file, image)
-        paths.append(str(path))
-    return paths

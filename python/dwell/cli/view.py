@@ -12,7 +12,7 @@ from dwell.cli.common import atomic, count, print_json
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    parser.add_argument("house", metavar="HOUSE")
+    parser.add_argument("house", metavar="HOUSE|REPLAY", help="a replay file ends with .replay")
     parser.add_argument(
         "--out",
         type=Path,
@@ -29,17 +29,23 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Shows surfaces, boxes, lamps, joints, cameras, ways of sound, and how an episode goes."""
     from dwell.house import House
-    from dwell.recording import Recording, record_episode, record_house, sdk
+    from dwell.recording import Recording, record_episode, record_house, record_replay, sdk
+    from dwell.replays import Replay
     from dwell.world import World
 
     sdk()
     if args.out is None and not _has_display():
         raise ValueError("no display for the viewer; --out FILE.rrd writes a recording for it")
-    house = House.open(args.house)
+    replay = Replay.read(args.house) if args.house.endswith(".replay") else None
+    if replay is not None and args.task is not None:
+        raise ValueError("--task plays an episode of its own; a replay is one already")
+    house = House.open(args.house if replay is None else replay.house)
 
     def fill(path: Path | None) -> None:
         recording = Recording(f"dwell {args.house}", path)
         record_house(recording, World(house, agents=0))
+        if replay is not None:
+            record_replay(recording, house, replay)
         if args.task is not None:
             record_episode(recording, house, args.task, args.seed)
         recording.close()

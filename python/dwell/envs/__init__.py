@@ -1,9 +1,10 @@
 """Gymnasium environments, registered as ``dwell/<Task>-v<version>``."""
 
+from dwell.envs.recorder import ReplayRecorder
 from dwell.envs.registration import register_envs, register_task
 from dwell.envs.single import DwellEnv
 from dwell.envs.vector import DwellVectorEnv
 
-__all__ = ["DwellEnv", "DwellVectorEnv", "register_envs", "register_task"]
+__all__ = ["DwellEnv", "DwellVectorEnv", "ReplayRecorder", "register_envs", "register_task"]
 
 register_envs()

@@ -52,6 +52,11 @@ class HouseShelf:
             else:
                 raise ConfigError(f"houses[{k}] is {row!r}; expected a HOUSE string or a House")
 
+    @property
+    def has_objects(self) -> bool:
+        """Whether houses were handed over that a HOUSE string does not open."""
+        return bool(self._given)
+
     def __getitem__(self, index: int) -> House:
         """House ``index`` modulo their number."""
         name = self.names[index % len(self.names)]

@@ -46,6 +46,7 @@ class Runner:
             for head in heads:
                 house.native.add_head(head.native)
         self.batch = _native.Batch([house.native for house in houses], config, threads, overlap)
+        self.houses = [*houses]
         self.count = len(houses)
         self.specs = specs(self.batch)
         self.buffers: list[NDArray[Any] | None] = [spec.buffer(self.count) for spec in self.specs]

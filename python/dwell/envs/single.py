@@ -244,6 +244,34 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._house, self._seed = house, seed
         return self._observation(), self._info()
 
+    @property
+    def config_json(self) -> str:
+        """What the native side was told: task, sensors, laws, parameters and rates."""
+        return self._config
+
+    def part_names(self) -> list[str]:
+        """The names of the classes of task and reward, where they are written in Python."""
+        makers = (self._custom.task, self._custom.reward)
+        return [type(make()).__name__ for make in makers if make is not None]
+
+    def instruction(self) -> str:
+        """What the episode asks for."""
+        return self._runner.batch.instruction(0)
+
+    def refuse_what_files_cannot_name(self) -> None:
+        """For those who write down what is played here.
+
+        Raises:
+            ConfigError: A house was handed over as an object, or there is a measured head.
+        """
+        if self._shelf.has_objects:
+            raise ConfigError(
+                "houses: a house was handed over as an object, which a file cannot name; write it "
+                "(house.write) and give its path"
+            )
+        if self._heads:
+            raise ConfigError("world.sound_head: a file cannot hold a measured head")
+
     def agents(self) -> list[dict[str, Any]]:
         """The agents' states."""
         agents: list[dict[str, Any]] = json.loads(self._runner.batch.agents_json(0))

@@ -14,6 +14,7 @@ from dwell.acoustics import AcousticScene
 from dwell.camera import Camera
 from dwell.house import House
 from dwell.recording.viewer import Recording
+from dwell.replays import Replay
 from dwell.world import World
 
 #: Where ears are over a floor, m.
@@ -67,6 +68,19 @@ def record_episode(recording: Recording, house: House, task: str, seed: int) -> 
         steps += 1
     recording.way(task, way)
     return steps
+
+
+def record_replay(recording: Recording, house: House, replay: Replay) -> None:
+    """A recorded episode as it went: its way, and what the agent saw at every step."""
+    camera = Camera(256, 192, 90.0)
+    recording.text("instruction", replay.instruction)
+    way = []
+    for moment in replay.play(house=house):
+        agent = moment.world.agents()[0]
+        way.append(agent["position"])
+        image = moment.world.render(agent=0, camera=camera)["rgb"]
+        recording.step(moment.step, agent, image, camera)
+    recording.way("replay", way)
 
 
 def _listener(source: Sequence[float], rooms: Sequence[Mapping[str, Any]]) -> list[float]:

@@ -1,0 +1,129 @@
+"""``dwell replay``: a recorded episode, checked, and seen and heard again."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
+
+from dwell.camera import PRESETS, Camera, Channel
+from dwell.cli.common import Bar, add_back_end, atomic, back_end, count, number, print_json
+
+if TYPE_CHECKING:
+    from dwell.replays import Moment, Replay
+
+#: Beside the pictures, what ``--sensors`` takes.
+_AUDIO = "audio"
+#: Full scale of the written sound, Pa: 94 dB above 20 micropascal.
+_FULL_SCALE_PA = 1.0
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
+    parser.add_argument("file", metavar="FILE", type=Path, help="as ReplayRecorder writes it")
+    parser.add_argument(
+        "--verify", action="store_true", help="every step has the bits that were recorded, or fail"
+    )
+    parser.add_argument(
+        "--sensors",
+        help=f"what to take at the agent's eyes and ears: {','.join(get_args(Channel))},{_AUDIO}",
+    )
+    parser.add_argument("--every", type=count, default=1, help="take a picture every so many steps")
+    parser.add_argument("--width", type=count, default=320)
+    parser.add_argument("--height", type=count, default=240)
+    parser.add_argument("--fov-deg", type=number, default=90.0, help="horizontal field of view")
+    parser.add_argument("--preset", choices=PRESETS, default="lit")
+    add_back_end(parser)
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where --sensors go")
+    parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Plays the episode if anything asks for it, and says what it is."""
+    from dwell.replays import Replay
+
+    if (args.sensors is None) != (args.out is None):
+        raise ValueError("--sensors and --out DIR are given together")
+    if args.every < 1:
+        raise ValueError("--every is 0; allowed are whole numbers from 1")
+    taker = None if args.sensors is None else _Taker(args)
+    replay = Replay.read(args.file)
+    told: dict[str, Any] = {
+        "house": replay.house,
+        "instruction": replay.instruction,
+        "steps": len(replay.actions),
+        "success": replay.success,
+    }
+    if args.verify or taker is not None:
+        told["first_difference"] = _play(replay, args, taker)
+    if taker is not None:
+        told["files"] = taker.files
+    if args.json:
+        print_json(told)
+    else:
+        for name, value in told.items():
+            print(f"{name}: {value}")
+    return 1 if args.verify and told["first_difference"] is not None else 0
+
+
+def _play(replay: Replay, args: argparse.Namespace, taker: _Taker | None) -> int | None:
+    bar, first = Bar(), None
+    for moment in replay.play(renderer=back_end(args) if taker is not None else None):
+        bar(moment.step / max(len(replay.actions), 1), replay.house)
+        if not moment.is_same and first is None:
+            first = moment.step
+            if taker is None:
+                break
+        if taker is not None:
+            taker.take(moment)
+    if taker is not None:
+        taker.finish()
+    return first
+
+
+class _Taker:
+    """Takes what ``--sensors`` asks for at the steps of an episode, and writes it."""
+
+    def __init__(self, args: argparse.Namespace) -> None:
+        known: tuple[Channel, ...] = get_args(Channel)
+        names = [name.strip() for name in args.sensors.split(",")]
+        for name in names:
+            if name not in (*known, _AUDIO):
+                allowed = ", ".join((*known, _AUDIO))
+                raise ValueError(f"--sensors: no {name!r}; allowed are {allowed}")
+        self._channels = [name for name in known if name in names]
+        self._hears = _AUDIO in names
+        self._camera = Camera(args.width, args.height, args.fov_deg, preset=args.preset)
+        self._out: Path = args.out
+        self._every: int = args.every
+        self._heard: list[Any] = []
+        self._rate_hz = 0
+        self.files: list[str] = []
+
+    def take(self, moment: Moment) -> None:
+        """Looks and listens at one step."""
+        from dwell.cli.saving import write_image
+
+        if self._channels and moment.step % self._every == 0:
+            images = moment.world.render(agent=0, camera=self._camera, channels=self._channels)
+            for channel, image in images.items():
+                name = f"{channel}_{moment.step:05}"
+                self.files += write_image(self._out, name, channel, image)
+        if self._hears:
+            self._rate_hz, samples = moment.world.sound_rate_hz, moment.world.samples_a_step
+            heard = moment.world.listen(samples)
+            if moment.step:
+                self._heard.append(heard)
+
+    def finish(self) -> None:
+        """Writes what was heard."""
+        import numpy as np
+
+        from dwell.sounds import write_wav
+
+        if self._heard:
+            path = self._out / "audio.wav"
+            with atomic(path) as draft:
+                sound = np.concatenate(self._heard, axis=1)
+                write_wav(draft, sound, self._rate_hz, full_scale_pa=_FULL_SCALE_PA)
+            self.files.append(str(path))
