@@ -1,7 +1,5 @@
 //! Every registered sensor, task and law keeps its contract.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use dwell::{Batch, DiscreteAction, tasks};
 use dwell_scene::parallel::Threads;
 use dwell_tests::observed::{all_sensors, observe};

@@ -4,6 +4,7 @@
 //! all their views in one submission.
 
 mod action;
+mod asking;
 mod batch;
 mod batch_pictures;
 pub mod bench;

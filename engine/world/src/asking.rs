@@ -1,0 +1,156 @@
+//! How a task outside of this crate, one in Python for instance, plays upon an environment: it asks, and it judges.
+
+use crate::env::{Env, Verdict};
+use crate::error::WorldError;
+use crate::metrics::Progress;
+use crate::sensors::Dtype;
+use dwell_scene::{AgentId, Pose};
+use dwell_semantics::instruct::{CHARSET, MAX_TEXT_LEN};
+use dwell_semantics::tokens;
+
+impl Env {
+    /// Asks something else of the episode that has just begun: what a task outside of this crate does, once it has arranged
+    /// the world. The agent starts where it stands now.
+    ///
+    /// `asked`: the instruction, and the way to the goal, m, where there is a goal to go to; `None`: as the task asks.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] before the first reset, [`WorldError::Config`] for a text that the sensors of instructions
+    /// cannot give, or a distance that is none. Nothing has changed then.
+    pub fn ask(&mut self, asked: Option<(&str, Option<f64>)>) -> Result<(), WorldError> {
+        let tokens = asked.map(|(text, _)| self.tokens_of(text)).transpose()?;
+        check_distance(asked.and_then(|(_, distance_m)| distance_m))?;
+        let agent = self.world.state().agents.get(AgentId(0));
+        let start = agent.map(|agent| Pose::from_position_yaw(agent.position, agent.yaw_rad));
+        let Some(episode) = self.episode.as_mut() else {
+            let message = "ask: no episode has begun; call reset first";
+            return Err(WorldError::Usage(message.to_owned()));
+        };
+        episode.start = start.unwrap_or(episode.start);
+        let mut distance_m = episode.progress.start_distance_m;
+        if let (Some((text, way_m)), Some(tokens)) = (asked, tokens) {
+            text.clone_into(&mut episode.instruction);
+            (episode.tokens, distance_m) = (tokens, way_m);
+        }
+        episode.progress = Progress::new(episode.start.position, distance_m);
+        Ok(())
+    }
+
+    /// Judges the latest step anew, in place of the task; `distance_m` is the way to the goal that is left, m, the last known
+    /// one where it is `None`. Gives back the measures of the episode.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] before the first reset, [`WorldError::Config`] for a reward or a distance that is no number.
+    pub fn rule(
+        &mut self,
+        verdict: Verdict,
+        distance_m: Option<f64>,
+    ) -> Result<Progress, WorldError> {
+        check_distance(distance_m)?;
+        if !verdict.reward.is_finite() {
+            return Err(WorldError::Config {
+                field: "reward",
+                found: verdict.reward.to_string(),
+                allowed: "finite numbers".to_owned(),
+            });
+        }
+        let Some(episode) = self.episode.as_mut() else {
+            let message = "rule: no episode has begun; call reset first";
+            return Err(WorldError::Usage(message.to_owned()));
+        };
+        episode.progress.distance_m = distance_m.or(episode.progress.distance_m);
+        self.done = verdict.terminated;
+        Ok(episode.progress)
+    }
+
+    /// The tokens of an instruction; where no sensor gives tokens, words need none.
+    pub(crate) fn tokens_of(&self, instruction: &str) -> Result<Vec<i32>, WorldError> {
+        let specs = self.sensors.iter().map(|sensor| sensor.spec());
+        let (mut gives_text, mut gives_tokens) = (false, false);
+        for spec in specs {
+            gives_text |= spec.dtype == Dtype::Text;
+            gives_tokens |= spec.unit == "token";
+        }
+        let fits = instruction.len() <= MAX_TEXT_LEN
+            && !instruction.is_empty()
+            && instruction.chars().all(|c| CHARSET.contains(c));
+        if gives_text && !fits {
+            return Err(WorldError::Config {
+                field: "instruction",
+                found: format!("{instruction:?}"),
+                allowed: format!("1 to {MAX_TEXT_LEN} characters of {CHARSET:?}"),
+            });
+        }
+        match tokens::tokenize(instruction) {
+            Ok(tokens) => Ok(tokens),
+            Err(error) if gives_tokens => Err(error.into()),
+            Err(_) => Ok(vec![tokens::PAD; tokens::LENGTH]),
+        }
+    }
+}
+
+fn check_distance(distance_m: Option<f64>) -> Result<(), WorldError> {
+    match distance_m {
+        Some(distance_m) if !(0.0..f64::INFINITY).contains(&distance_m) => {
+            Err(WorldError::Config {
+                field: "distance_m",
+                found: distance_m.to_string(),
+                allowed: "finite numbers from 0, m".to_owned(),
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::action::DiscreteAction;
+    use crate::engines::Engines;
+    use crate::env::{EnvConfig, SensorConfig};
+    use std::sync::Arc;
+
+    #[test]
+    fn what_others_ask_and_rule_counts_and_comes_back() {
+        let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
+        let sensors = Some(vec![SensorConfig {
+            kind: "compass".to_owned(),
+            settings: serde_json::Value::Null,
+        }]);
+        let config = EnvConfig {
+            sensors,
+            ..EnvConfig::default()
+        };
+        let mut env = Env::new(Engines::new(Arc::new(house)), &config).unwrap();
+        let ruled = Verdict {
+            reward: 1.5,
+            terminated: true,
+            success: true,
+        };
+        assert!(env.ask(None).is_err() && env.rule(ruled, None).is_err());
+        env.reset(3).unwrap();
+        // There is no sensor of instructions here, so that any words will do.
+        env.ask(Some(("Über die Treppe!", Some(4.0)))).unwrap();
+        for distance_m in [-1.0, f64::NAN, f64::INFINITY] {
+            assert!(env.ask(Some(("x", Some(distance_m)))).is_err());
+            assert!(env.rule(ruled, Some(distance_m)).is_err());
+        }
+        env.step(DiscreteAction::MoveForward).unwrap();
+        let unread = Verdict {
+            reward: f64::NAN,
+            ..ruled
+        };
+        assert!(env.rule(unread, None).is_err() && env.ready().is_ok());
+        let progress = env.rule(ruled, Some(3.0)).unwrap();
+        assert_eq!(progress.start_distance_m, Some(4.0));
+        assert_eq!(progress.distance_m, Some(3.0));
+        assert!(env.ready().is_err());
+        let snapshot = env.snapshot().unwrap();
+        env.reset(4).unwrap();
+        env.restore(&snapshot).unwrap();
+        let episode = env.episode().unwrap();
+        assert_eq!(episode.instruction, "Über die Treppe!");
+        assert_eq!(episode.progress, progress);
+        assert!(env.ready().is_err());
+    }
+}
