@@ -142,7 +142,7 @@ fn play(mut watch: Option<&mut Watch>) -> u64 {
     for number in 0..episodes {
         // One in so many, a different house each time.
         let turn = number + number / houses();
-        homes.episode(number, turn % (STEPS_A_LOOK / STEPS_AN_EPISODE) == 0);
+        homes.episode(number, turn.is_multiple_of(STEPS_A_LOOK / STEPS_AN_EPISODE));
         if let Some(watch) = watch.as_mut()
             && share(number) != share(number + 1)
         {
