@@ -80,6 +80,33 @@ impl Collider {
         }
     }
 
+    /// Whether its numbers are finite, its sizes not negative, and all of it within `reach_m` of the part's origin.
+    pub fn is_valid(&self, reach_m: f32) -> bool {
+        let shaped = match self {
+            Self::Cuboid {
+                part_from_box,
+                half_extents,
+            } => {
+                part_from_box.is_valid()
+                    && half_extents.is_finite()
+                    && half_extents.min_element() >= 0.0
+            }
+            Self::Ball { center, radius } => center.is_finite() && *radius >= 0.0,
+            Self::Cylinder {
+                part_from_cylinder,
+                half_height,
+                radius,
+            } => part_from_cylinder.is_valid() && *half_height >= 0.0 && *radius >= 0.0,
+            Self::Hull { points } => points.iter().all(|point| point.is_finite()),
+            Self::ExactMesh => return true,
+        };
+        let within = |bounds: Aabb| {
+            let reach = bounds.min.abs().max(bounds.max.abs());
+            bounds.is_empty() || reach.max_element() <= reach_m
+        };
+        shaped && self.bounds().is_some_and(within)
+    }
+
     /// A box with the given corners.
     pub fn cuboid(min: Vec3, max: Vec3) -> Self {
         Self::Cuboid {

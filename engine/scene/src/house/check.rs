@@ -274,6 +274,16 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                     allowed,
                 )?;
             }
+            for (k, collider) in part.colliders.iter().enumerate() {
+                let at = format!("{at} colliders[{k}]");
+                let (ok, found) = (
+                    collider.is_valid(LARGEST_COORDINATE_M),
+                    format!("{collider:?}"),
+                );
+                let allowed =
+                    "finite numbers, sizes from 0, all within 32768 m of the part's origin";
+                range(&at, "shape", ok, found, allowed)?;
+            }
             let exact = part.colliders.contains(&Collider::ExactMesh);
             range(
                 &at,
