@@ -125,7 +125,7 @@ fn is_the_golden_kind() -> bool {
 
 /// Compares with the last line of the golden file, `DIGEST  WHY`, or adds one where [`MINT`] says why.
 fn check_golden(digest: u64) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("golden/episode.txt");
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("digests/episode.txt");
     if !is_the_golden_kind() {
         println!("skipped: the golden digest is of x86-64 Linux with AVX and FMA");
         return;
@@ -140,7 +140,7 @@ fn check_golden(digest: u64) {
     assert!(
         why.trim().len() >= 10,
         "the episode has the digest {found}, not {golden:?}. If it changed on purpose, {MINT}=\"why it changed\" writes it \
-         to tests/golden/episode.txt"
+         to tests/digests/episode.txt"
     );
     std::fs::write(&path, format!("{text}{found}  {}\n", why.trim())).unwrap();
 }
