@@ -3,9 +3,9 @@
 import tempfile
 
 import dwell
-from dwell import _native
+from dwell.calibration import write_example
 
 with tempfile.TemporaryDirectory() as folder:
-    print("hidden:", _native.calibration_example(folder, 3))
+    print("hidden:", write_example(folder, 3))
     report = dwell.calibrate(folder)
 print("found:", report["sentence"])

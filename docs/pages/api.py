@@ -13,6 +13,7 @@ from pages.tables import code, table
 #: What is public besides the names of `dwell` and `dwell.envs`: what these return, and functions
 #: that stand beside them.
 _BESIDE = {
+    "dwell.calibration": ("write_example",),
     "dwell.echogram": ("Echogram",),
     "dwell.house": ("split_of_seed",),
     "dwell.measures": ("of_response", "of_ears"),

@@ -115,6 +115,11 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the module holds u
     return getattr(importlib.import_module(module), name)
 
 
+def __dir__() -> list[str]:
+    """What there is to import, also what is loaded at first use."""
+    return sorted({*globals(), *__all__})
+
+
 # Importing gymnasium takes longer than most commands: the command line does without.
 if os.path.basename(sys.argv[0] if sys.argv else "") not in ("dwell", "dwell.exe", "-m"):
     importlib.import_module("dwell.envs").register_envs()

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from dwell import _native
+from dwell.arguments import whole
 
 
 def calibrate(
@@ -38,3 +39,16 @@ def calibrate(
     text = _native.calibrate(os.fspath(measured), house, progress, names)
     report: dict[str, Any] = json.loads(text)
     return report
+
+
+def write_example(folder: str | os.PathLike[str], seed: int = 0) -> str:
+    """Writes a measured bundle whose world has something that the simulation lacks.
+
+    Args:
+        folder: Where to; made if it is not there.
+        seed: Draws what is hidden.
+
+    Returns:
+        What is hidden, in a sentence: what :func:`calibrate` should find.
+    """
+    return _native.calibration_example(os.fspath(folder), whole("seed", seed))

@@ -36,6 +36,8 @@ class House:
         """
         self._native = native
         self._again = again
+        #: Where somebody stands and looks best takes a while to find.
+        self._rooms_json: str | None = None
 
     @classmethod
     def open(
@@ -197,7 +199,9 @@ class House:
 
     def rooms(self) -> list[dict[str, Any]]:
         """For each room: name, kinds, area_m2, floor_y, a view (eye, yaw_deg), a place to stand."""
-        rooms: list[dict[str, Any]] = json.loads(self._native.rooms_json())
+        if self._rooms_json is None:
+            self._rooms_json = self._native.rooms_json()
+        rooms: list[dict[str, Any]] = json.loads(self._rooms_json)
         return rooms
 
     def describe(self, level: Level = "house", *, seed: int | None = None) -> list[str]:

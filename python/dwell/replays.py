@@ -38,7 +38,8 @@ class Moment:
         action: The name of the last action; ``None`` at the start.
         reward: What the last step gave; 0 at the start.
         world: The world as it is, to look at and listen to; the same object at every step.
-        is_same: Whether its bits are those that were recorded.
+        is_same: Whether its bits are those that were recorded; not once somebody has listened to
+            ``world``, since the sound that ears keep is among them.
     """
 
     step: int
@@ -107,6 +108,8 @@ class Replay:
                 success=row["success"] is True,
                 made_by=text("made_by", row["made_by"]),
             )
+        except MeasuredDataError:
+            raise
         except (ValueError, RecursionError) as error:
             raise MeasuredDataError(f"{path}: {error}") from None
         replay.check(str(path))

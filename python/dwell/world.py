@@ -382,10 +382,15 @@ class World(Guiding, Sounds):
         """The newest samples at an agent's ears, (2, samples), Pa.
 
         From the first call until the next reset the agent listens, and each step adds what it
-        hears; before that the window holds the last step's sound and zeros. Reading changes
-        nothing.
+        hears; before that the window holds the last step's sound and zeros. Ears keep as much as
+        the longest call so far asked for: who wants a second at the end asks for one at the start.
+        Nothing that happens changes by it; :meth:`state_hash` holds the sound that ears keep, too.
+
+        Args:
+            samples: How many, 1 to ten seconds' worth.
+            agent: Whose ears.
         """
-        return self._native.listen(whole("agent", agent), whole("samples", samples))
+        return self._native.listen(whole("agent", agent), whole("samples", samples, low=1))
 
     def describe(self, level: str = "house") -> list[str]:
         """As :meth:`House.describe`, of the house as it is now."""

@@ -54,9 +54,10 @@ def run(args: argparse.Namespace) -> int:
         "steps": len(replay.actions),
         "success": replay.success,
     }
-    if args.verify or taker is not None:
-        told["first_difference"] = _play(replay, args, taker)
+    if args.verify:
+        told["first_difference"] = replay.first_difference()
     if taker is not None:
+        _take(replay, args, taker)
         told["files"] = taker.files
     if args.json:
         print_json(told)
@@ -66,19 +67,12 @@ def run(args: argparse.Namespace) -> int:
     return 1 if args.verify and told["first_difference"] is not None else 0
 
 
-def _play(replay: Replay, args: argparse.Namespace, taker: _Taker | None) -> int | None:
-    bar, first = Bar(), None
-    for moment in replay.play(renderer=back_end(args) if taker is not None else None):
+def _take(replay: Replay, args: argparse.Namespace, taker: _Taker) -> None:
+    bar = Bar()
+    for moment in replay.play(renderer=back_end(args)):
         bar(moment.step / max(len(replay.actions), 1), replay.house)
-        if not moment.is_same and first is None:
-            first = moment.step
-            if taker is None:
-                break
-        if taker is not None:
-            taker.take(moment)
-    if taker is not None:
-        taker.finish()
-    return first
+        taker.take(moment)
+    taker.finish()
 
 
 class _Taker:

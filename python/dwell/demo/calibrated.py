@@ -6,8 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from dwell import _native
-from dwell.calibration import calibrate
+from dwell.calibration import calibrate, write_example
 
 _SEED = 3
 
@@ -15,7 +14,7 @@ _SEED = 3
 def example(folder: Path, progress: Callable[[float], None]) -> dict[str, Any]:
     """Writes a small measured bundle with something hidden in it, and calibrates it."""
     bundle = folder / "example.measured"
-    hidden = _native.calibration_example(str(bundle), _SEED)
+    hidden = write_example(bundle, _SEED)
     report = calibrate(bundle, progress=lambda part, _what: progress(part))
     page = report.pop("html", "")
     (folder / "calibration.html").write_text(page, "utf-8")

@@ -2,7 +2,7 @@
 
 use super::contents::grouped;
 use super::object::landmark;
-use crate::english::{be, capitalized, counted, list};
+use crate::english::{be, capitalized, counted, list, with_article};
 use crate::predicates;
 use crate::scene::{Scene, Term};
 use dwell_scene::{ObjectId, RoomId, StructureKind};
@@ -55,7 +55,7 @@ fn shell(scene: &Scene<'_>, room: RoomId) -> String {
     let facts = scene.semantics.room(room);
     let area = facts.area_m2.round().max(1.0);
     let mut with = Vec::new();
-    with.extend(facts.floor_word.map(|word| format!("a {word} floor")));
+    with.extend(facts.floor_word.map(|word| with_article(&format!("{word} floor"))));
     with.extend(facts.wall_color.map(|word| format!("{word} walls")));
     let with = if with.is_empty() {
         String::new()
@@ -85,24 +85,28 @@ fn openings(scene: &Scene<'_>, room: RoomId) -> Option<String> {
     if windows > 0 {
         parts.push(counted(windows, "", "window", "windows"));
     }
-    if !doors.is_empty() {
-        let mut beyond: Vec<RoomId> = doors
-            .iter()
-            .flat_map(|door| rooms_beside(scene, *door))
-            .filter(|other| *other != room)
-            .collect();
+    let leads_to = |door: &ObjectId| {
+        let beside = rooms_beside(scene, *door);
+        beside.into_iter().filter(|other| *other != room)
+    };
+    // Behind some there is no room: they lead to the outside, or to what the house does not tell.
+    let (inner, further): (Vec<ObjectId>, Vec<ObjectId>) = doors
+        .into_iter()
+        .partition(|door| leads_to(door).next().is_some());
+    if !inner.is_empty() {
+        let mut beyond: Vec<RoomId> = inner.iter().flat_map(leads_to).collect();
         beyond.sort();
         beyond.dedup();
         let names: Vec<String> = beyond
             .iter()
             .map(|other| format!("the {}", scene.semantics.room(*other).label))
             .collect();
-        let to = if names.is_empty() {
-            String::new()
-        } else {
-            format!(" to {}", list(&names))
-        };
-        parts.push(format!("{}{to}", counted(doors.len(), "", "door", "doors")));
+        let count = counted(inner.len(), "", "door", "doors");
+        parts.push(format!("{count} to {}", list(&names)));
+    }
+    if !further.is_empty() {
+        let what = if inner.is_empty() { "" } else { "further" };
+        parts.push(counted(further.len(), what, "door", "doors"));
     }
     (!parts.is_empty()).then(|| format!("It has {}.", list(&parts)))
 }
