@@ -22,6 +22,5 @@ before = set(world.describe("object"))
 world.set_body(thing["name"], position=world.house.rooms()[0]["stand"])
 for _ in range(40):
     world.step()
-print(
-    f"{thing['name']} was moved; now it is said: {sorted(set(world.describe('object')) - before)[0]}"
-)
+now = sorted(set(world.describe("object")) - before)[0]
+print(f"{thing['name']} was moved; now it is said: {now}")

@@ -13,9 +13,7 @@ from dwell import ConfigError, _native
 from dwell.actions import Outcome, action_json
 from dwell.arguments import (
     bodies,
-    fields,
     finite,
-    flag,
     mapping,
     pair,
     point,
@@ -27,6 +25,7 @@ from dwell.arguments import (
     whole,
 )
 from dwell.camera import Camera, Channel, camera_settings
+from dwell.controls import controls_of
 from dwell.guiding import Guiding
 from dwell.heads import Head
 from dwell.house import House
@@ -170,7 +169,7 @@ class World(Guiding, Sounds):
         """
         if controls is None:
             controls = np.zeros((len(self.agents()), 4), np.float32)
-        rows = _controls(controls)
+        rows = controls_of(controls)
         if isinstance(rows, np.ndarray):
             self._native.step(rows)
         else:
@@ -569,41 +568,6 @@ class World(Guiding, Sounds):
     def state_hash(self) -> int:
         """A number that changes with any bit of state, physics, sound queues or random streams."""
         return self._native.hash()
-
-
-def _controls(controls: object) -> NDArray[np.float32] | list[dict[str, Any]]:
-    """Controls as the native half reads them: an array (agent, 4), or a mapping for each agent."""
-    expected = "expected numbers of shape (agent, 4) or a mapping for each agent"
-    if isinstance(controls, str | bytes | Mapping):
-        raise ConfigError(f"controls is {controls!r}; {expected}")
-    try:
-        rows = controls if isinstance(controls, np.ndarray) else list(controls)  # type: ignore[call-overload]
-    except TypeError:
-        raise ConfigError(f"controls is {controls!r}; {expected}") from None
-    if isinstance(rows, list) and any(isinstance(row, Mapping) for row in rows):
-        return [fields(f"controls[{k}]", row, _CONTROL) for k, row in enumerate(rows)]
-    try:
-        array = np.asarray(rows)
-        if array.dtype.kind not in "fiu" and array.size > 0:
-            raise TypeError
-    except (TypeError, ValueError):
-        raise ConfigError(f"controls is {controls!r}; {expected}") from None
-    if array.ndim != 2 or array.shape[1] != 4:
-        raise ConfigError(f"controls has the shape {array.shape}; {expected}")
-    # What float32 does not hold becomes infinite, and is refused by its place.
-    with np.errstate(over="ignore"):
-        return np.ascontiguousarray(array, np.float32)
-
-
-#: The fields of a control, and what they may be.
-_CONTROL = {
-    "forward_m_s": finite,
-    "right_m_s": finite,
-    "yaw_rate_rad_s": finite,
-    "pitch_rate_rad_s": finite,
-    "wheel_rad_s": pair,
-    "crouch": flag,
-}
 
 
 def actions() -> list[str]:

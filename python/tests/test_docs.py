@@ -20,6 +20,7 @@ import dwell
 import dwell.envs
 import dwell.world
 from dwell import _native
+from dwell.controls import CONTROL
 
 ROOT = Path(__file__).resolve().parents[2]
 MARKDOWN = sorted(
@@ -151,7 +152,7 @@ def test_every_action_stands_in_the_tables(pages: ModuleType, apartment: dwell.H
     kinds = re.findall(r"\w+", str(refused.value).split("there are")[1])
     assert [row[0] for row in rows_of(page, "## Hands")] == kinds
     continuous = rows_of(page, "## Continuous")
-    assert [row[0] for row in continuous] == list(dwell.world._CONTROL)
+    assert [row[0] for row in continuous] == list(CONTROL)
     assert [row[1] for row in continuous] == ["0", "1", "2", "3", "", ""]
 
 

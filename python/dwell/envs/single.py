@@ -161,7 +161,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             raise ConfigError(f"options: no {unknown[0]!r}; allowed are house and episode_id")
         house = int(self.np_random.integers(len(self._shelf.names)))
         if "house" in options:
-            house = whole("options: house, an index,", options["house"], high=len(self._shelf.names) - 1)
+            house = whole(
+                "options: house, an index,", options["house"], high=len(self._shelf.names) - 1
+            )
         episode = int(self.np_random.integers(2**63))
         if "episode_id" in options:
             house, episode = self._replayed(options["episode_id"])
