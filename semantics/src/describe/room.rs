@@ -55,7 +55,11 @@ fn shell(scene: &Scene<'_>, room: RoomId) -> String {
     let facts = scene.semantics.room(room);
     let area = facts.area_m2.round().max(1.0);
     let mut with = Vec::new();
-    with.extend(facts.floor_word.map(|word| with_article(&format!("{word} floor"))));
+    with.extend(
+        facts
+            .floor_word
+            .map(|word| with_article(&format!("{word} floor"))),
+    );
     with.extend(facts.wall_color.map(|word| format!("{word} walls")));
     let with = if with.is_empty() {
         String::new()
