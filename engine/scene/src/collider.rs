@@ -80,31 +80,32 @@ impl Collider {
         }
     }
 
-    /// Whether its numbers are finite, its sizes not negative, and all of it within `reach_m` of the part's origin.
+    /// Whether its numbers are finite and all of it lies within `reach_m` of the part's origin; sizes count without their sign,
+    /// as physics takes them.
     pub fn is_valid(&self, reach_m: f32) -> bool {
-        let shaped = match self {
+        let around = |middle: Vec3, size_m: f32| middle.abs().max_element() + size_m.abs();
+        let far_m = match self {
             Self::Cuboid {
                 part_from_box,
                 half_extents,
-            } => {
-                part_from_box.is_valid()
-                    && half_extents.is_finite()
-                    && half_extents.min_element() >= 0.0
-            }
-            Self::Ball { center, radius } => center.is_finite() && *radius >= 0.0,
+            } if part_from_box.is_valid() => around(part_from_box.position, half_extents.length()),
+            Self::Ball { center, radius } if center.is_finite() => around(*center, *radius),
             Self::Cylinder {
                 part_from_cylinder,
                 half_height,
                 radius,
-            } => part_from_cylinder.is_valid() && *half_height >= 0.0 && *radius >= 0.0,
-            Self::Hull { points } => points.iter().all(|point| point.is_finite()),
-            Self::ExactMesh => return true,
+            } if part_from_cylinder.is_valid() => around(
+                part_from_cylinder.position,
+                half_height.abs() + radius.abs(),
+            ),
+            Self::Hull { points } if points.iter().all(|point| point.is_finite()) => points
+                .iter()
+                .map(|point| point.abs().max_element())
+                .fold(0.0, f32::max),
+            Self::ExactMesh => 0.0,
+            _ => return false,
         };
-        let within = |bounds: Aabb| {
-            let reach = bounds.min.abs().max(bounds.max.abs());
-            bounds.is_empty() || reach.max_element() <= reach_m
-        };
-        shaped && self.bounds().is_some_and(within)
+        far_m <= reach_m
     }
 
     /// A box with the given corners.

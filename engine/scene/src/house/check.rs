@@ -280,8 +280,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                     collider.is_valid(LARGEST_COORDINATE_M),
                     format!("{collider:?}"),
                 );
-                let allowed =
-                    "finite numbers, sizes from 0, all within 32768 m of the part's origin";
+                let allowed = "finite numbers, all within 32768 m of the part's origin";
                 range(&at, "shape", ok, found, allowed)?;
             }
             let exact = part.colliders.contains(&Collider::ExactMesh);
