@@ -37,8 +37,8 @@ class AcousticScene:
                 found (laws and parameters), as a mapping or as the path of its ``found.json``.
                 Those of air and sources change energies and responses; those of microphones act on
                 what ``impulse_response`` returns, as on a recording of the impulse.
-            **config: What :attr:`config` lists, by name: ``rate_hz`` (8,000 to 192,000), ``rays`` of
-                the tail (0 to 10,000,000), ``image_order`` (0 to 4), ``max_duration_s`` (0.02 to
+            **config: What :attr:`config` lists, by name: ``rate_hz`` (8,000 to 192,000), ``rays``
+                of the tail (0 to 10,000,000), ``image_order`` (0 to 4), ``max_duration_s`` (0.02 to
                 20) and so on. A response ends after ``max_duration_s``: decay times of a room that
                 rings longer come out too short, so give it at least the longest T30.
         """
