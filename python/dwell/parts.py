@@ -36,7 +36,7 @@ def factory(
         settings: What it is called with.
 
     Raises:
-        ConfigError: It is none of these, or there is no such module or name.
+        ConfigError: It is none of these, lacks a method, or there is no such module or name.
     """
     make = _imported(at, given) if isinstance(given, str) else given
     if isinstance(make, kind):
@@ -48,6 +48,8 @@ def factory(
     if not callable(make) or (isinstance(make, type) and not issubclass(make, kind)):
         expected = f"a subclass of dwell.{kind.__name__}, what makes one, or its 'module:Name'"
         raise ConfigError(f"{at} is {given!r}; expected {expected}")
+    if missing := sorted(getattr(make, "__abstractmethods__", ())):
+        raise ConfigError(f"{at}: {given!r} lacks the method {missing[0]}")
     fields = {} if settings is None else mapping(f"settings of {at}", settings)
 
     def made() -> _Part:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 from typing import TYPE_CHECKING
 
 from dwell.parts import Part
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
     from dwell.world import World
 
 
-class Reward(Part):
+class Reward(Part, abc.ABC):
     """A reward in Python: ``DwellEnv(reward=MyReward)`` gives it in place of the task's own.
 
     Examples:
@@ -28,6 +29,7 @@ class Reward(Part):
     def reset(self, world: World) -> None:
         """Begins an episode, after the task has."""
 
+    @abc.abstractmethod
     def reward(self, world: World, action: str, verdict: Verdict) -> float:
         """The reward of the step that has just been made.
 
@@ -36,4 +38,3 @@ class Reward(Part):
             action: The action's name.
             verdict: How the task judged the step, with its own reward.
         """
-        raise NotImplementedError

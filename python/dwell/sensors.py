@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 from typing import TYPE_CHECKING, Any
 
 from dwell.parts import Part
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from dwell.world import World
 
 
-class Sensor(Part):
+class Sensor(Part, abc.ABC):
     """A sensor in Python: ``DwellEnv(sensors=["rgb", MySensor])`` observes with it.
 
     Attributes:
@@ -43,6 +44,7 @@ class Sensor(Part):
     def reset(self, world: World) -> None:
         """Begins an episode, after the task has."""
 
+    @abc.abstractmethod
     def observe(self, world: World, rng: np.random.Generator) -> Any:  # noqa: ANN401 - of its space
         """What is observed now: an element of :attr:`space`.
 
@@ -51,4 +53,3 @@ class Sensor(Part):
             rng: The source of everything random, such as noise; it comes from the episode's seed
                 and the step, so that it is the same after a restored snapshot.
         """
-        raise NotImplementedError

@@ -249,12 +249,26 @@ def test_parts_are_found_by_name() -> None:
     assert set(again.reset(seed=1)[0]) == {"gps", "noisy"}
 
 
-class Nameless(dwell.Sensor):
+class Nothing(dwell.Sensor):
+    def observe(self, world: dwell.World, rng: np.random.Generator) -> object:
+        return 0
+
+
+class Nameless(Nothing):
     space = gymnasium.spaces.Discrete(2)
 
 
-class Spaceless(dwell.Sensor):
+class Spaceless(Nothing):
     name = "spaceless"
+
+
+class Blind(dwell.Sensor):
+    name = "blind"
+    space = gymnasium.spaces.Discrete(2)
+
+
+class Unrewarding(dwell.Reward):
+    pass
 
 
 class Gps(Noisy):
@@ -309,6 +323,8 @@ MAKING: list[tuple[dict[str, Any], str]] = [
     ({"sensors": [Nameless]}, "Nameless.name is None"),
     ({"sensors": [Spaceless]}, "space is None"),
     ({"sensors": {"mine": 5}}, "mine"),
+    ({"sensors": ["gps", Blind]}, "lacks the method observe"),
+    ({"reward": Unrewarding}, "lacks the method reward"),
 ]
 
 

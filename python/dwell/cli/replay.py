@@ -91,7 +91,7 @@ class _Taker:
         self._out: Path = args.out
         self._every: int = args.every
         self._heard: list[Any] = []
-        self._rate_hz = 0
+        self._rate_hz = self._samples = 0
         self.files: list[str] = []
 
     def take(self, moment: Moment) -> None:
@@ -104,8 +104,10 @@ class _Taker:
                 name = f"{channel}_{moment.step:05}"
                 self.files += write_image(self._out, name, channel, image)
         if self._hears:
-            self._rate_hz, samples = moment.world.sound_rate_hz, moment.world.samples_a_step
-            heard = moment.world.listen(samples)
+            if moment.step == 0:
+                self._rate_hz = moment.world.sound_rate_hz
+                self._samples = moment.world.samples_a_step
+            heard = moment.world.listen(self._samples)
             if moment.step:
                 self._heard.append(heard)
 

@@ -72,7 +72,7 @@ def split(
         task, settings = text("task.base", one.base), one.base_settings
         sensors = one.sensors if sensors is None else sensors
     names, own = _sensors(sensors)
-    make_reward = None if reward is None else factory("reward", reward, Reward)
+    make_reward = None if reward is None else factory("reward", reward, Reward)  # type: ignore[type-abstract] # its kind
     return Native(task, settings, names), Custom(make_task, make_reward, own)
 
 
@@ -86,7 +86,7 @@ def _sensors(
         settings = {}
         for name, row in mapping("sensors", sensors).items():
             if callable(row) or isinstance(row, str):
-                own.append(_named(name, factory(f"sensors.{name}", row, Sensor)))
+                own.append(_named(name, factory(f"sensors.{name}", row, Sensor)))  # type: ignore[type-abstract]
             else:
                 settings[name] = row
         return settings, tuple(own)
@@ -99,7 +99,7 @@ def _sensors(
     names = []
     for k, row in enumerate(rows):
         if not isinstance(row, str) or ":" in row:
-            own.append(factory(f"sensors[{k}]", row, Sensor))
+            own.append(factory(f"sensors[{k}]", row, Sensor))  # type: ignore[type-abstract]
         else:
             names.append(row)
     return names, tuple(own)
