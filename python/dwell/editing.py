@@ -107,7 +107,10 @@ class Edits:
         substance: str | None = None,
         srgb: Rgb | None = None,
         signal: str | None = None,
+        sound: str | os.PathLike[str] | None = None,
         level_db: float | None = None,
+        loop: bool = True,
+        start_s: float = 0.0,
     ) -> Self:
         """Adds a mesh file of your own, as one rigid thing that falls and rests.
 
@@ -128,8 +131,11 @@ class Edits:
             substance: What it is made of, for hands and ears; without it what the names of the
                 file's materials mean. Colours and images stay.
             srgb: Its colour, 0 to 255, instead of the file's.
-            signal: What it sounds like from the start; :func:`dwell.sounds.signals` lists names.
-            level_db: How loud at 1 m, dB SPL; without it as usual for the signal.
+            signal: What it sounds like from its middle, as for :meth:`add_emitter`,
+            sound: or a sound file,
+            level_db: how loud,
+            loop: whether over and over,
+            start_s: and from when on.
         """
         what = {"path": path("file", file), "scale": finite("scale", scale), "up": up}
         return self._note(
@@ -140,7 +146,9 @@ class Edits:
                 "place": _place(at, on, yaw_deg, anchor),
                 "traits": _traits(category, mobility, mass_kg, density_kg_m3, pickable, None),
                 "look": _look(substance, srgb, keep_look=True),
-                "sound": None if signal is None else _sound(signal, level_db),
+                "sound": None
+                if signal is None and sound is None
+                else _sound(signal, sound, level_db, loop=loop, start_s=start_s),
             },
         )
 
@@ -299,26 +307,34 @@ class Edits:
 
     def add_emitter(
         self,
-        signal: str,
+        signal: str | None = None,
         at: Point | None = None,
         *,
+        sound: str | os.PathLike[str] | None = None,
         thing: str | None = None,
         level_db: float | None = None,
+        loop: bool = True,
+        start_s: float = 0.0,
         name: str | None = None,
     ) -> Self:
-        """Adds a source of sound, which sounds from the start of every world.
+        """Adds a source of sound, which sounds in every world.
 
         Args:
             signal: What sounds: a name of :func:`dwell.sounds.signals`.
             at: A place, m: a small black disc that nothing touches lies right below it.
-            thing: An object instead, which sounds from its middle.
-            level_db: How loud at 1 m in the free field, dB SPL; without it as usual for the signal.
+            sound: A WAV, FLAC or Ogg Vorbis file instead of a signal, of at most 64 MiB; the house
+                then carries it. Channels are mixed, any rate is taken.
+            thing: An object instead of a place, which sounds from its middle.
+            level_db: How loud at 1 m in the free field, dB SPL (RMS over the whole sound); without
+                it as usual for the signal. Files need one.
+            loop: Whether it begins again when it is over.
+            start_s: When it begins, s after the start of a world.
             name: The disc's name.
         """
         return self._note(
             "add_emitter",
             {
-                "sound": _sound(signal, level_db),
+                "sound": _sound(signal, sound, level_db, loop=loop, start_s=start_s),
                 "object": thing,
                 "at": None if at is None else point("at", at),
                 "name": name,
@@ -391,6 +407,33 @@ class Edits:
                 "at": point("at", at),
                 "yaw_deg": finite("yaw_deg", yaw_deg),
                 "fixed_base": None if fixed_base is None else flag("fixed_base", fixed_base),
+            },
+        )
+
+    def agent_start(
+        self,
+        at: Point | None = None,
+        *,
+        room: str | None = None,
+        yaw_deg: float = 0.0,
+        agent: int | None = None,
+    ) -> Self:
+        """Says where an agent starts, in worlds and where a task asks for no other place.
+
+        Args:
+            at: Where its feet are, m; without it nearest to the middle of ``room`` where someone of
+                usual size can stand, as the house is after the edits before this one.
+            room: The room; with ``at`` it must hold that place.
+            yaw_deg: Where it faces, to the left of -z.
+            agent: Which agent, counted from 0; without it the first that has no start yet.
+        """
+        return self._note(
+            "agent_start",
+            {
+                "at": None if at is None else point("at", at),
+                "room": room,
+                "yaw_deg": finite("yaw_deg", yaw_deg),
+                "agent": None if agent is None else whole("agent", agent),
             },
         )
 
@@ -525,11 +568,33 @@ def _look(
     return {"substance": substance, "srgb": color, "keep_look": keep_look}
 
 
-def _sound(signal: str, level_db: float | None) -> dict[str, Any]:
-    rows = {row["name"]: row for row in json.loads(_native.signals_json())}
-    choice("signal", signal, list(rows))
-    level = rows[signal]["usual_level_db"] if level_db is None else finite("level_db", level_db)
-    return {"signal": signal, "level_db": level}
+def _sound(
+    signal: str | None,
+    sound: str | os.PathLike[str] | None,
+    level_db: float | None,
+    *,
+    loop: bool,
+    start_s: float,
+) -> dict[str, Any]:
+    told: dict[str, Any] = {}
+    if (signal is None) == (sound is None):
+        found = "neither" if signal is None else "both"
+        raise ConfigError(f"signal, sound: found {found}; expected one of them")
+    if signal is not None:
+        rows = {row["name"]: row for row in json.loads(_native.signals_json())}
+        told["signal"] = choice("signal", signal, list(rows))
+        level_db = rows[signal]["usual_level_db"] if level_db is None else level_db
+    elif sound is not None:
+        told["file"] = path("sound", sound)
+        if level_db is None:
+            raise ConfigError("level_db: a sound file needs one, dB SPL at 1 m")
+    told["level_db"] = finite("level_db", level_db)
+    # What every sound does anyway is not noted.
+    if not flag("loop", loop):
+        told["loops"] = False
+    if finite("start_s", start_s) != 0.0:
+        told["start_s"] = start_s
+    return told
 
 
 def rgb(name: str, color: Sequence[int]) -> list[int]:

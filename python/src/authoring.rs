@@ -2,7 +2,7 @@
 
 use crate::errors::Fault;
 use crate::house::PyHouse;
-use dwell_acoustics::signals;
+use dwell_acoustics::{Recording, signals};
 use dwell_houses::authoring::{self, Files, Plan, UnmappedNames};
 use dwell_houses::{At, Report};
 use dwell_scene::House;
@@ -40,7 +40,14 @@ pub(crate) fn edited(base: &PyHouse, edits_json: &str) -> Result<PyHouse, Fault>
 /// Refuses sounds that nobody can make.
 fn check_signals(house: &House, known: usize) -> Result<(), Fault> {
     for emitter in house.emitters.iter().skip(known.min(house.emitters.len())) {
-        signals::info(&emitter.signal).map_err(|error| Fault::House(error.to_string()))?;
+        let told = match emitter.sound_file {
+            Some(file) => {
+                let file = &house.sound_files[file];
+                Recording::decode(&file.name, &file.bytes).map(drop)
+            }
+            None => signals::info(&emitter.signal).map(drop),
+        };
+        told.map_err(|error| Fault::House(error.to_string()))?;
     }
     Ok(())
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import wave
 from pathlib import Path
 
 import gymnasium
@@ -100,6 +101,48 @@ def test_what_cannot_be_is_said_with_what_is_possible(apartment: dwell.House) ->
     edits = json.dumps([{"add_emitter": {"at": [0, 0, 0], "sound": sound}}])
     with pytest.raises(dwell.HouseError, match="gramophone"):
         apartment.native.edited(edits)
+
+
+def test_a_sound_file_and_starts_travel_with_the_house(tmp_path: Path) -> None:
+    kettle = tmp_path / "kettle.wav"
+    with wave.open(str(kettle), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(8000)
+        tone = 9000 * np.sin(2 * np.pi * 500 * np.arange(8000) / 8000)
+        file.writeframes(tone.astype("<i2").tobytes())
+    edit = flat().build().edit()
+    edit.add_emitter(sound=kettle, thing="desk", level_db=70, loop=False, start_s=0.5)
+    edit.agent_start(room="hall", yaw_deg=45).agent_start((1.0, 0.0, 2.5), room="study")
+    house = edit.done()
+    assert house.info()["sound_files"] == ["kettle.wav"]
+    assert [start["room"] for start in house.info()["agent_starts"]] == ["hall", "study"]
+    house.write(tmp_path / "a.dwell", "dwell")
+    assert (tmp_path / "a.dwell" / "sound_0.wav").read_bytes() == kettle.read_bytes()
+    kettle.unlink()
+    env = gymnasium.make(
+        "dwell/Free-v0", houses=str(tmp_path / "a.dwell"), sensors={"audio": {}, "compass": {}}
+    )
+    for seed in (0, 1):
+        env.reset(seed=seed)
+        loud = [np.abs(env.step(3)[0]["audio"]).max() for _ in range(20)]
+        # Before it begins one hears only one's own steps.
+        assert np.mean(loud[12:]) > 3.0 * np.mean(loud[:9])
+        agent = env.unwrapped.agents()[0]
+        assert agent["position"] == pytest.approx([5.05, 0.0, 1.5], abs=0.1)
+    env.close()
+
+
+def test_sounds_that_cannot_be_are_refused(apartment: dwell.House, tmp_path: Path) -> None:
+    edit = apartment.edit()
+    with pytest.raises(dwell.ConfigError, match="a sound file needs one"):
+        edit.add_emitter(sound="a.wav", at=(0.0, 0.0, 0.0))
+    with pytest.raises(dwell.ConfigError, match="found both"):
+        edit.add_emitter("radio", (0.0, 0.0, 0.0), sound="a.wav", level_db=50)
+    broken = tmp_path / "a.wav"
+    broken.write_bytes(b"RIFFnothing")
+    with pytest.raises(dwell.HouseError, match=r"a\.wav"):
+        edit.add_emitter(sound=broken, at=(0.0, 0.0, 0.0), level_db=50).done()
 
 
 def test_an_environment_in_an_edited_house_is_sound() -> None:

@@ -215,3 +215,122 @@ fn an_emitter_is_heard_from_the_start_at_its_level() {
     let level_db = 20.0 * (loud / 20e-6).log10();
     assert!((64.0..81.0).contains(&level_db), "{level_db}");
 }
+
+/// Half a second of a tone of 1 kHz at 8,000 samples a second of 8 bits, as a WAV file.
+fn tone() -> Vec<u8> {
+    const RATE_HZ: u32 = 8_000;
+    let samples: Vec<u8> = [128, 185, 208, 185, 128, 71, 48, 71].repeat(500);
+    let count = samples.len() as u32;
+    let mut file = b"RIFF".to_vec();
+    file.extend((36 + count).to_le_bytes());
+    file.extend(b"WAVEfmt \x10\0\0\0\x01\0\x01\0");
+    file.extend([RATE_HZ, RATE_HZ].map(u32::to_le_bytes).concat());
+    file.extend(b"\x01\0\x08\0data");
+    file.extend(count.to_le_bytes());
+    file.extend(samples);
+    file
+}
+
+#[test]
+fn a_sound_file_is_heard_when_it_is_told_to_and_at_its_level() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tone.wav");
+    fs::write(&path, tone()).unwrap();
+    let emitter = |more: Value| {
+        let mut sound = json!({"file": path, "level_db": 60.0});
+        for (key, value) in more.as_object().unwrap() {
+            sound[key] = value.clone();
+        }
+        world(built(rooms(
+            json!([{"add_emitter": {"at": [1.0, 1.2, 1.5], "sound": sound}}]),
+        )))
+    };
+    // RMS of both ears in each tenth of a second.
+    let heard = |mut world: World| -> Vec<f64> {
+        world
+            .place_agent(AGENT, Vec3::new(3.0, 0.0, 1.5), std::f32::consts::FRAC_PI_2)
+            .unwrap();
+        world.listen(&[(AGENT, BLOCK)]).unwrap();
+        (0..20).map(|_| heard_rms(&mut world, 2)).collect()
+    };
+    let once = heard(emitter(json!({"loops": false, "start_s": 0.6})));
+    let over = heard(emitter(json!({"level_db": 66.0})));
+    let late = heard(emitter(json!({"start_s": 1.0})));
+    let mean = |rms: &[f64]| (rms.iter().map(|x| x * x).sum::<f64>() / rms.len() as f64).sqrt();
+    // Nothing is heard before it begins but the room's noise, then the tone, then its reverberation dies away.
+    let (before, during, after) = (mean(&once[..6]), mean(&once[7..11]), mean(&once[16..]));
+    assert!(before < 0.01 * during && after < 0.05 * during, "{once:?}");
+    assert!(mean(&late[..10]) < 0.01 * mean(&late[12..]), "{late:?}");
+    // Over and over: as loud at the end as before, 6 dB above the other.
+    let (first, last) = (mean(&over[4..10]), mean(&over[14..]));
+    assert!((20.0 * (first / last).log10()).abs() < 0.5, "{over:?}");
+    let apart_db = 20.0 * (last / mean(&late[14..])).log10();
+    assert!((apart_db - 6.0).abs() < 0.5, "{apart_db}");
+    // As of a signal of that level: between the free field's and that of a room without carpet.
+    let level_db = 20.0 * (last / 20e-6).log10();
+    assert!((60.0..77.0).contains(&level_db), "{level_db}");
+    let named = emitter(json!({})).sounds();
+    let named = named.last().unwrap();
+    assert_eq!(named.sound, dwell::SoundName::File("tone.wav".to_owned()));
+}
+
+#[test]
+fn a_sound_that_goes_on_is_the_same_after_a_restore() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tone.wav");
+    fs::write(&path, tone()).unwrap();
+    let sound = json!({"file": path, "level_db": 60.0, "loops": false, "start_s": 0.3});
+    let house = built(rooms(
+        json!([{"add_emitter": {"at": [1.0, 1.2, 1.5], "sound": sound}}]),
+    ));
+    let mut world = world(house);
+    world.listen(&[(AGENT, BLOCK)]).unwrap();
+    heard_rms(&mut world, 8);
+    let snapshot = world.snapshot();
+    let first = heard_rms(&mut world, 10);
+    world.restore(&snapshot).unwrap();
+    assert_eq!(heard_rms(&mut world, 10).to_bits(), first.to_bits());
+}
+
+#[test]
+fn agents_and_free_episodes_start_where_the_house_says() {
+    let starts = json!([
+        {"agent_start": {"room": "hall", "yaw_deg": 90.0}},
+        {"agent_start": {"at": [1.0, 0.0, 1.0], "room": "study"}},
+    ]);
+    let house = Arc::new(built(rooms(starts)));
+    let engines = Engines::new(house.clone());
+    let body = dwell_scene::AgentBody::default();
+    let config = WorldConfig {
+        agents: vec![body; 3],
+        ..WorldConfig::default()
+    };
+    let mut world = World::new(engines.clone(), &config).unwrap();
+    world.reset(Key::root(5)).unwrap();
+    let agents = world.state().agents.as_slice();
+    let room = |k: usize| {
+        let room = house.room_at(agents[k].position + Vec3::Y * 0.1).unwrap();
+        house.rooms[room].name.as_str()
+    };
+    // The third has no start of its own: the first room's floor.
+    assert_eq!([0, 1, 2].map(room), ["hall", "study", "study"]);
+    assert!((agents[0].yaw_rad - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
+    assert!((agents[1].position - Vec3::new(1.0, 0.0, 1.0)).length() < 1e-3);
+
+    let begin = |settings: Value, seed: u64| {
+        let config = dwell::EnvConfig {
+            task: "Free".to_owned(),
+            task_settings: settings,
+            ..dwell::EnvConfig::default()
+        };
+        let mut env = dwell::Env::new(engines.clone(), &config).unwrap();
+        env.reset(seed).unwrap();
+        env.world().state().agents[AGENT].position
+    };
+    let own = house.agent_starts[0].position;
+    for seed in 0..3 {
+        assert!((begin(Value::Null, seed) - own).length() < 0.05);
+    }
+    let apart = |seed| (begin(json!({"start": "anywhere"}), seed) - own).length() > 0.3;
+    assert!((0..4).filter(|seed| apart(*seed)).count() >= 2);
+}

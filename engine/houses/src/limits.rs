@@ -28,6 +28,8 @@ pub(crate) const MAX_XML_DEPTH: usize = 200;
 pub(crate) const MAX_PATTERN_WORDS: usize = 12;
 /// Largest binary buffer of glTF and of the native form, bytes.
 pub(crate) const MAX_BUFFER_BYTES: u64 = 2 << 30;
+/// Most bytes of all sound files of a house.
+pub(crate) const MAX_ALL_SOUND_BYTES: u64 = 512 << 20;
 /// Most nodes in a house, all levels together: what rests on what is asked for every pair. The largest SUNCG houses have a
 /// few thousand.
 pub(crate) const MAX_NODES: usize = 50_000;
@@ -57,6 +59,7 @@ mod tests {
             ("MAX_IMAGE_PIXELS", MAX_IMAGE_PIXELS),
             ("MAX_ALL_PIXELS", MAX_ALL_PIXELS),
             ("MAX_BUFFER_BYTES", MAX_BUFFER_BYTES),
+            ("MAX_ALL_SOUND_BYTES", MAX_ALL_SOUND_BYTES),
             ("MAX_CORNERS_SHOWN", MAX_CORNERS_SHOWN),
             ("MAX_NODES", MAX_NODES as u64),
             ("MAX_CORNERS", MAX_CORNERS as u64),

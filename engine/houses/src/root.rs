@@ -124,6 +124,30 @@ impl DataRoot {
     }
 }
 
+/// A file that the user named, and the folder that bounds what it refers to.
+pub(crate) struct Named {
+    pub(crate) root: DataRoot,
+    /// The file's name in that folder.
+    pub(crate) name: String,
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl Named {
+    /// Reads a file of at most `max_bytes`.
+    ///
+    /// # Errors
+    /// [`HousesError::TooLarge`] above `max_bytes`, [`HousesError::Io`] when the system refuses.
+    pub(crate) fn read(path: &Path, max_bytes: u64) -> Result<Self, HousesError> {
+        // A file that is not there is told with its whole path, not with a folder that is missing.
+        std::fs::metadata(path).map_err(HousesError::io(path))?;
+        let root = DataRoot::new(path.parent().unwrap_or_else(|| Path::new("")))?;
+        let name = path.file_name().unwrap_or_default();
+        let name = name.to_string_lossy().into_owned();
+        let bytes = read_capped(path, &name, max_bytes)?;
+        Ok(Self { root, name, bytes })
+    }
+}
+
 /// Whether a file is JSON by its name and holds all of these words: enough to tell formats apart, before anything is read in earnest.
 pub(crate) fn is_json_with(path: &Path, words: &[&str]) -> bool {
     let is_json = path

@@ -107,7 +107,7 @@ fn a_house_of_version_1_is_read() {
     let tables = path.join("house.json");
     let mut text = std::fs::read_to_string(&tables).unwrap();
     for (new, old) in [
-        ("\"version\":2", "\"version\":1"),
+        ("\"version\":3", "\"version\":1"),
         (",\"inertial\":null", ""),
         (",\"armature\":0.0", ""),
         (",\"mimic\":null", ""),
@@ -184,8 +184,8 @@ fn foreign_and_broken_files_say_where_and_what() {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(
         broken(folder.path(), |text| text
-            .replace("\"version\":2", "\"version\":7")),
-        "house.json: version: version \"7\" is not read; allowed are [\"1\", \"2\"]"
+            .replace("\"version\":3", "\"version\":7")),
+        "house.json: version: version \"7\" is not read; allowed are [\"1\", \"2\", \"3\"]"
     );
     assert_eq!(
         broken(folder.path(), |_| "{}".to_owned()),

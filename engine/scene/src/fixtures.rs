@@ -1,7 +1,7 @@
 //! What objects carry besides shape: lights, sounds, and surfaces that hold other things.
 
 use crate::bounds::Aabb;
-use crate::ids::{ObjectId, PartId};
+use crate::ids::{ObjectId, PartId, SoundFileId};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -55,10 +55,77 @@ pub struct SoundEmitter {
     pub part: PartId,
     /// Where it stands in part space, m.
     pub position: Vec3,
-    /// What sounds: the name of a signal, as `dwell_acoustics::signals` lists them (`"radio"`, `"television"`, ...).
+    /// What sounds: the name of a signal, as `dwell_acoustics::signals` lists them (`"radio"`, `"television"`, ...); beside a
+    /// `sound_file` the name of that.
     pub signal: String,
-    /// Level at 1 m in the free field, dB SPL (RMS).
+    /// Level at 1 m in the free field, dB SPL (RMS over the whole sound).
     pub level_db: f32,
+    /// The house's own sound file that sounds instead of a signal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sound_file: Option<SoundFileId>,
+    /// Whether it begins again when it is over.
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    pub loops: bool,
+    /// When it begins, s after the start of a world; 0 to 86400. What loops from 0 on has always sounded.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub start_s: f32,
+}
+
+impl SoundEmitter {
+    /// A signal that sounds over and over from the start.
+    pub fn steady(
+        object: ObjectId,
+        part: PartId,
+        position: Vec3,
+        signal: impl Into<String>,
+        level_db: f32,
+    ) -> Self {
+        Self {
+            object,
+            part,
+            position,
+            signal: signal.into(),
+            level_db,
+            sound_file: None,
+            loops: true,
+            start_s: 0.0,
+        }
+    }
+}
+
+// What every emitter once was is not written, so that houses without sound files keep their bytes and fingerprints.
+const fn yes() -> bool {
+    true
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde asks with a reference"
+)]
+const fn is_true(value: &bool) -> bool {
+    *value
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde asks with a reference"
+)]
+fn is_zero(value: &f32) -> bool {
+    *value == 0.0
+}
+
+/// A sound file that a house carries, as it was read: WAV, FLAC or Ogg Vorbis. `dwell_acoustics::Recording` decodes it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SoundFile {
+    /// The file's name, unique in the house: `"kettle.wav"`.
+    pub name: String,
+    /// Its bytes; at most [`SoundFile::MOST_BYTES`].
+    pub bytes: Vec<u8>,
+}
+
+impl SoundFile {
+    /// The most bytes that a sound file may have.
+    pub const MOST_BYTES: u64 = 64 << 20;
 }
 
 /// How a receptacle holds things.

@@ -53,6 +53,8 @@ ids! {
     MaterialId,
     /// A texture image.
     TextureId,
+    /// A sound file that the house carries.
+    SoundFileId,
     /// An agent of a world.
     AgentId,
 }

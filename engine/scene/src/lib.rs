@@ -34,14 +34,15 @@ pub use articulation::{Articulation, JointCommand, JointKind, Mimic, Servo};
 pub use bounds::Aabb;
 pub use collider::Collider;
 pub use error::SceneError;
-pub use fixtures::{Holding, Light, LightShape, Receptacle, SoundEmitter};
+pub use fixtures::{Holding, Light, LightShape, Receptacle, SoundEmitter, SoundFile};
 pub use house::{
-    Category, Geometry, House, HouseData, Inertial, Level, Mobility, Object, Part, Placed, Room,
-    ShoeboxMaterials, StaticTriangle, Structure, StructureKind, Surface, SurfaceOwner,
+    AgentStart, Category, Geometry, House, HouseData, Inertial, Level, Mobility, Object, Part,
+    Placed, Room, ShoeboxMaterials, StaticTriangle, Structure, StructureKind, Surface,
+    SurfaceOwner,
 };
 pub use ids::{
     AgentId, Entity, EntityId, Id, IdVec, JointId, LevelId, MaterialId, MeshId, ObjectId, PartId,
-    RoomId, StructureId, TextureId,
+    RoomId, SoundFileId, StructureId, TextureId,
 };
 pub use law::{LawInfo, LawSpec};
 pub use material::{Bands, Material};

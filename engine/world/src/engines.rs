@@ -9,7 +9,7 @@ use dwell_acoustics::{AcousticConfig, AcousticScene, Head, HeadId};
 use dwell_physics::PhysicsModel;
 use dwell_render::{BackEnd, CpuRenderer, Renderer};
 use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
-use dwell_scene::{House, State};
+use dwell_scene::{House, SoundFileId, State};
 use dwell_semantics::Semantics;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
@@ -156,6 +156,11 @@ impl Engines {
         rate_hz: u32,
     ) -> Result<(Signal, u64), WorldError> {
         self.recordings.open(root, name, rate_hz)
+    }
+
+    /// A sound file of the house at a sample rate; decoded once.
+    pub(crate) fn house_sound(&self, id: SoundFileId, rate_hz: u32) -> Result<Signal, WorldError> {
+        self.recordings.of_house(&self.house, id, rate_hz)
     }
 
     /// Where a body can walk in the house as it starts, with all doors open. The first body's grid is shared.

@@ -30,6 +30,15 @@ pub fn info(engines: &Engines, report: &Value) -> Value {
             json!({"name": room.name, "kinds": room.kinds, "level": room.level.0, "area_m2": house.own_area_m2(id), "objects": objects})
         })
         .collect();
+    let starts: Vec<Value> = house
+        .agent_starts
+        .iter()
+        .map(|start| {
+            let room = house.room_at(start.position + Vec3::Y * 0.1);
+            let room = room.map(|room| house.rooms[room].name.as_str());
+            json!({"position": start.position, "yaw_deg": start.yaw_rad.to_degrees(), "room": room})
+        })
+        .collect();
     json!({
         "name": house.name,
         "source": house.source,
@@ -42,6 +51,8 @@ pub fn info(engines: &Engines, report: &Value) -> Value {
         "joints": house.joints.len(),
         "lights": house.lights.len(),
         "emitters": house.emitters.len(),
+        "sound_files": house.sound_files.iter().map(|sound| &sound.name).collect::<Vec<_>>(),
+        "agent_starts": starts,
         "triangles": house.triangle_count(),
         "materials": house.materials.len(),
         "textures": house.textures.len(),

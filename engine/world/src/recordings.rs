@@ -1,10 +1,11 @@
 //! Sound files, read once and shared by all worlds over a house.
 
 use crate::error::WorldError;
-use dwell_acoustics::Recording;
 use dwell_acoustics::recordings::MOST_BYTES;
 use dwell_acoustics::signals::Signal;
+use dwell_acoustics::{AcousticsError, Recording};
 use dwell_houses::{At, DataRoot, HousesError};
+use dwell_scene::{House, SoundFileId};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use xxhash_rust::xxh3::Xxh3;
@@ -15,9 +16,18 @@ const MOST_KEPT: usize = 1 << 26;
 /// By root, path and rate.
 type Known = BTreeMap<(String, String, u32), (Signal, u64)>;
 
+/// The house's own sounds, by number and rate. They sound in every block, so none is forgotten.
+#[derive(Debug, Default)]
+struct Own {
+    signals: BTreeMap<(SoundFileId, u32), Signal>,
+    /// Of all of them.
+    samples: usize,
+}
+
 #[derive(Debug, Default)]
 pub(crate) struct Recordings {
     known: Mutex<Known>,
+    own: Mutex<Own>,
 }
 
 fn print(samples: &[f32]) -> u64 {
@@ -63,5 +73,37 @@ impl Recordings {
         }
         known.insert(key, found.clone());
         Ok(found)
+    }
+
+    /// A sound file of the house at `rate_hz`.
+    ///
+    /// # Errors
+    /// [`WorldError::Acoustics`] for what is no sound, and where all that sound have more than [`MOST_KEPT`] samples together.
+    pub(crate) fn of_house(
+        &self,
+        house: &House,
+        id: SoundFileId,
+        rate_hz: u32,
+    ) -> Result<Signal, WorldError> {
+        let mut own = self.own.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = own.signals.get(&(id, rate_hz)) {
+            return Ok(found.clone());
+        }
+        let file = &house.sound_files[id];
+        let signal = Recording::decode(&file.name, &file.bytes)?.signal(rate_hz)?;
+        let samples = own.samples + signal.samples().len();
+        if samples > MOST_KEPT {
+            return Err(WorldError::Acoustics(AcousticsError::SoundFile {
+                name: file.name.clone(),
+                what: format!(
+                    "samples with those of the house's other sound files at {rate_hz} Hz"
+                ),
+                found: samples.to_string(),
+                allowed: format!("at most {MOST_KEPT}"),
+            }));
+        }
+        own.samples = samples;
+        own.signals.insert((id, rate_hz), signal.clone());
+        Ok(signal)
     }
 }

@@ -5,12 +5,12 @@ use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::saving::Base;
 use dwell_physics::{PhysicsConfig, PhysicsWorld, StartReport};
-use dwell_scene::{Address, AgentState, House, State};
+use dwell_scene::{Address, AgentStart, AgentState, House, State};
 use glam::Vec3;
 use std::sync::OnceLock;
 
-/// The first moment of a world: nothing overlaps, doors are shut, agents stand at the first room's floor. Worlds begin with a
-/// copy of it, and go back to one.
+/// The first moment of a world: nothing overlaps, doors are shut, agents stand where the house has them start, or on the first
+/// room's floor. Worlds begin with a copy of it, and go back to one.
 #[derive(Debug)]
 pub(crate) struct Start {
     pub(crate) state: State,
@@ -31,9 +31,14 @@ impl Start {
         let house = engines.house();
         let mut state = State::new(house);
         // Agents come first: parameters and laws may name them.
-        let spot = default_spot(house);
-        for body in &config.agents {
-            state.agents.push(AgentState::new(*body, spot, 0.0));
+        let spot = AgentStart {
+            position: default_spot(house),
+            yaw_rad: 0.0,
+        };
+        for (k, body) in config.agents.iter().enumerate() {
+            let start = house.agent_starts.get(k).copied().unwrap_or(spot);
+            let agent = AgentState::new(*body, start.position, start.yaw_rad);
+            state.agents.push(agent);
         }
         state.laws = crate::laws::install(house, &config.laws)?;
         let values: Vec<(Address, f64)> = config

@@ -190,6 +190,10 @@ pub fn sample(name: &str) -> Sample {
         "plan" => {
             put("home.plan.json", include_str!("samples/home.plan.json"));
             put("a.obj", OBJ);
+            put(
+                "a.wav",
+                "RIFF: what a house carries is not decoded when it opens",
+            );
             "home.plan.json".to_owned()
         }
         "map" => {

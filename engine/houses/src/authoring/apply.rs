@@ -11,7 +11,7 @@ use super::edits::{AddRobot, Edit, Move, Remove, Rename};
 use super::faults::{fault, inside, point, unknown, within};
 use super::files::Files;
 use super::mesh_file::Loaded;
-use super::{add, describe, doors, fixtures, place, prune, surfaces};
+use super::{add, agent_starts, describe, doors, fixtures, place, prune, surfaces};
 use crate::build::room_kind;
 use crate::error::HousesError;
 use crate::report::{At, Report};
@@ -112,6 +112,7 @@ impl<'a> Desk<'a> {
             Edit::AddEmitter(emitter) => fixtures::add_emitter(self, emitter),
             Edit::AddLamp(lamp) => fixtures::add_lamp(self, lamp),
             Edit::AddRobot(robot) => self.robot(robot),
+            Edit::AgentStart(start) => agent_starts::set(self, start),
             Edit::SetDoor(door) => doors::set_door(&mut self.data, door),
             Edit::Describe(change) => {
                 let id = object(&self.data, "object", &change.object)?;
@@ -122,7 +123,7 @@ impl<'a> Desk<'a> {
     }
 
     /// The house as it is now.
-    fn checked(&self) -> Result<House, HousesError> {
+    pub(super) fn checked(&self) -> Result<House, HousesError> {
         House::new(self.data.clone()).map_err(HousesError::scene(&At::file("edits")))
     }
 

@@ -21,6 +21,8 @@ pub enum Edit {
     AddLamp(AddLamp),
     /// Adds a robot.
     AddRobot(AddRobot),
+    /// Says where an agent starts.
+    AgentStart(StartAgent),
     /// Sets how far a door, drawer or lid is open at the start.
     SetDoor(SetDoor),
     /// Says what an object is.
@@ -40,6 +42,7 @@ impl Edit {
             Self::AddEmitter(_) => "add_emitter",
             Self::AddLamp(_) => "add_lamp",
             Self::AddRobot(_) => "add_robot",
+            Self::AgentStart(_) => "agent_start",
             Self::SetDoor(_) => "set_door",
             Self::Describe(_) => "describe",
             Self::Rename(_) => "rename",
@@ -191,14 +194,25 @@ pub struct Look {
     pub keep_look: bool,
 }
 
-/// A sound.
+/// A sound: a signal or a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sound {
     /// The name of a signal.
-    pub signal: String,
-    /// Level at 1 m in the free field, dB SPL; -20 to 140.
+    #[serde(default)]
+    pub signal: Option<String>,
+    /// A WAV, FLAC or Ogg Vorbis file instead, which the house then carries; in a plan file, a path below the folder of the
+    /// plan.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// Level at 1 m in the free field, dB SPL (RMS over the whole sound); -20 to 140.
     pub level_db: f32,
+    /// Whether it begins again when it is over.
+    #[serde(default = "yes")]
+    pub loops: bool,
+    /// When it begins, s after the start of a world; 0 to 86400.
+    #[serde(default)]
+    pub start_s: f32,
 }
 
 /// Takes an object out.
@@ -353,6 +367,20 @@ pub struct AddRobot {
     /// Whether its base is held for good; `None`: as the file says.
     #[serde(default)]
     pub fixed_base: Option<bool>,
+}
+
+/// Says where an agent starts.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct StartAgent {
+    /// Where its feet are, m; `None`: nearest to the middle of the room where someone of usual size can stand.
+    pub at: Option<[f32; 3]>,
+    /// The room's name; beside `at` that room must hold the place.
+    pub room: Option<String>,
+    /// Where it faces, degrees to the left of -Z.
+    pub yaw_deg: f32,
+    /// Which agent, counted from 0; `None`: the first that has no start yet.
+    pub agent: Option<u32>,
 }
 
 /// Sets how far something is open at the start.

@@ -14,6 +14,7 @@ use super::apply::{Desk, object};
 use super::edits::{AddEmitter, AddLamp, Placing, Sound};
 use super::faults::{fault, inside, point, within};
 use super::graft::graft;
+use super::sound_file;
 use crate::error::HousesError;
 
 /// Edge and height of the disc below a source of sound at a place, and how far below it lies, m.
@@ -32,9 +33,24 @@ pub(super) fn sound_of(
     sound: &Sound,
 ) -> Result<(), HousesError> {
     let level_db = within("level_db", sound.level_db, [-20.0, 140.0], "dB SPL at 1 m")?;
-    if sound.signal.is_empty() {
-        return Err(fault("signal", "nothing", "the name of a signal"));
-    }
+    let start_s = within("start_s", sound.start_s, [0.0, 86_400.0], "s")?;
+    let (signal, sound_file) = match (&sound.signal, &sound.file) {
+        (Some(signal), None) if !signal.is_empty() => (signal.clone(), None),
+        (None, Some(file)) => {
+            let sound = sound_file::load(desk.files, file)?;
+            let id = sound_file::keep(&mut desk.data.sound_files, Arc::new(sound));
+            (desk.data.sound_files[id].name.clone(), Some(id))
+        }
+        (both, _) => {
+            let found = if both.as_ref().is_some_and(|signal| !signal.is_empty()) {
+                "both"
+            } else {
+                "nothing"
+            };
+            let possible = "the name of a signal, or a sound file";
+            return Err(fault("signal, file", found, possible));
+        }
+    };
     let position = desk.middle_of_root(id);
     let object = &mut desk.data.objects[id];
     object.switch = object.switch.map(|_| true);
@@ -43,8 +59,11 @@ pub(super) fn sound_of(
         object: id,
         part,
         position,
-        signal: sound.signal.clone(),
+        signal,
         level_db,
+        sound_file,
+        loops: sound.loops,
+        start_s,
     });
     Ok(())
 }

@@ -7,6 +7,8 @@ use dwell_scene::{
     HouseData, Id, IdVec, JointId, LevelId, Material, MaterialId, MeshId, Object, ObjectId, PartId,
 };
 
+use super::sound_file;
+
 /// Puts copies of `objects` behind those of `into` and gives back their ids. Storey and room are left for the caller to say.
 pub(super) fn graft(into: &mut HouseData, from: &HouseData, objects: &[ObjectId]) -> Vec<ObjectId> {
     let mut graft = Graft {
@@ -73,10 +75,16 @@ impl Graft<'_> {
             light
         }));
         let emitters = from.emitters.iter().filter(|emitter| emitter.object == id);
-        into.emitters.extend(emitters.cloned().map(|mut emitter| {
+        for mut emitter in emitters.cloned() {
             (emitter.object, emitter.part) = (new, part_of(emitter.part));
-            emitter
-        }));
+            if let Some(file) = emitter.sound_file {
+                let sound = from.sound_files[file].clone();
+                let file = sound_file::keep(&mut into.sound_files, sound);
+                emitter.signal.clone_from(&into.sound_files[file].name);
+                emitter.sound_file = Some(file);
+            }
+            into.emitters.push(emitter);
+        }
         let spaces = from.receptacles.iter().filter(|space| space.object == id);
         into.receptacles.extend(spaces.cloned().map(|mut space| {
             (space.object, space.part) = (new, part_of(space.part));

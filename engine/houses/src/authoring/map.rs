@@ -19,7 +19,7 @@ use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::MAX_TEXT_BYTES;
 use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::root::Named;
 
 /// The most patterns, and letters of one.
 const MOST: [usize; 2] = [20_000, 256];
@@ -161,14 +161,7 @@ impl Map {
     /// # Errors
     /// [`HousesError::Io`], and those of [`Self::parse`].
     pub fn read(path: &Path) -> Result<Self, HousesError> {
-        std::fs::metadata(path).map_err(HousesError::io(path))?;
-        let root = DataRoot::new(path.parent().unwrap_or_else(|| Path::new("")))?;
-        let name = path
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let bytes = root.read_named(&name, MAX_TEXT_BYTES)?;
+        let Named { name, bytes, .. } = Named::read(path, MAX_TEXT_BYTES)?;
         let at = At::file(&name);
         let text = std::str::from_utf8(&bytes).map_err(|error| HousesError::Syntax {
             at: at.clone(),

@@ -14,7 +14,7 @@ use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::MAX_BUFFER_BYTES;
 use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::root::Named;
 
 /// What a mesh file holds, as the first mesh of tables that hold its materials and images too.
 pub(super) struct Loaded {
@@ -118,13 +118,7 @@ fn read(
         };
     }
     if crate::gltf::recognizes(path) {
-        let root = DataRoot::new(path.parent().unwrap_or_else(|| Path::new("")))?;
-        let name = path
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let bytes = root.read_named(&name, MAX_BUFFER_BYTES)?;
+        let Named { root, name, bytes } = Named::read(path, MAX_BUFFER_BYTES)?;
         return crate::gltf::read_scene(&bytes, &root, &name, threads, report);
     }
     let found = format!("{:?}", path.display().to_string());

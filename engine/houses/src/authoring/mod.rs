@@ -5,6 +5,7 @@
 //! `docs/authoring.md` is the tutorial.
 
 mod add;
+mod agent_starts;
 mod apply;
 mod building;
 mod describe;
@@ -19,6 +20,7 @@ mod mesh_file;
 mod open;
 mod place;
 mod prune;
+mod sound_file;
 mod surfaces;
 mod unmapped;
 
@@ -28,7 +30,7 @@ pub use building::{
 };
 pub use edits::{
     Add, AddEmitter, AddLamp, AddRobot, Anchor, Describe, Edit, Look, Move, Placing, ReMaterial,
-    Remove, Rename, SetDoor, Side, Sound, Surfaces, Traits, Up, What,
+    Remove, Rename, SetDoor, Side, Sound, StartAgent, Surfaces, Traits, Up, What,
 };
 pub use files::Files;
 pub use map::{Map, MaterialRow, NodeRow, RoomRow, map_template};

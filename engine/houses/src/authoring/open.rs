@@ -16,7 +16,7 @@ use crate::error::HousesError;
 use crate::formats::{Opened, open_with};
 use crate::limits::MAX_TEXT_BYTES;
 use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::root::Named;
 
 /// What the field `format` of a plan file holds.
 const FORMAT: &str = "dwell-plan";
@@ -157,15 +157,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 
 /// Opens a plan file; the files that it names are read below its folder.
 pub(crate) fn open(path: &Path, threads: Threads) -> Opened {
-    std::fs::metadata(path).map_err(HousesError::io(path))?;
-    let root = DataRoot::new(path.parent().unwrap_or_else(|| Path::new("")))?;
-    let name = path
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let text = root.read_named(&name, MAX_TEXT_BYTES)?;
-    let mut plan = Plan::from_json(&text, &At::file(&name))?;
+    let Named { root, name, bytes } = Named::read(path, MAX_TEXT_BYTES)?;
+    let mut plan = Plan::from_json(&bytes, &At::file(&name))?;
     if plan.name.is_empty() && plan.building.is_some() {
         name[..name.len().saturating_sub(ENDING.len())].clone_into(&mut plan.name);
     }

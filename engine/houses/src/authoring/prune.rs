@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use dwell_scene::{HouseData, Id, IdVec, JointId, MaterialId, MeshId, ObjectId, PartId, TextureId};
+use dwell_scene::{
+    HouseData, Id, IdVec, JointId, MaterialId, MeshId, ObjectId, PartId, SoundFileId, TextureId,
+};
 
 /// New ids of a table from which some entries are taken: `None` for those.
 struct Renumbering(Vec<Option<u32>>);
@@ -74,10 +76,31 @@ pub(super) fn remove(data: &mut HouseData, gone: &BTreeSet<ObjectId>) {
             }
         };
     }
+    let sounded = sound_files(data);
     keep!(lights);
     keep!(emitters);
     keep!(receptacles);
+    drop_sounds(data, &sounded);
     drop_unused(data, &before);
+}
+
+/// The sound files that emitters name.
+fn sound_files(data: &HouseData) -> BTreeSet<SoundFileId> {
+    let emitters = data.emitters.iter();
+    emitters.filter_map(|emitter| emitter.sound_file).collect()
+}
+
+/// Takes out the sound files that were named before (`once`) and are not any more.
+fn drop_sounds(data: &mut HouseData, once: &BTreeSet<SoundFileId>) {
+    let now = sound_files(data);
+    let kept = Renumbering::of(data.sound_files.len(), |k| {
+        let id = SoundFileId::from_index(k);
+        !once.contains(&id) || now.contains(&id)
+    });
+    data.sound_files = kept.kept(&data.sound_files);
+    for emitter in &mut data.emitters {
+        emitter.sound_file = emitter.sound_file.map(|id| kept.renumbered(id));
+    }
 }
 
 /// Takes out what was used before (`once`) and is not any more.

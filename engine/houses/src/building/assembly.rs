@@ -231,14 +231,15 @@ impl Assembly {
             power_w: light.power_w,
             attenuation: ATTENUATION,
         }));
-        data.emitters
-            .extend(model.sounds.iter().map(|sound| SoundEmitter {
+        data.emitters.extend(model.sounds.iter().map(|sound| {
+            SoundEmitter::steady(
                 object,
-                part: part_id(sound.part),
-                position: sound.position,
-                signal: sound.signal.to_owned(),
-                level_db: sound.level_db,
-            }));
+                part_id(sound.part),
+                sound.position,
+                sound.signal,
+                sound.level_db,
+            )
+        }));
         data.receptacles
             .extend(model.spaces.iter().map(|space| Receptacle {
                 object,

@@ -8,9 +8,10 @@ use crate::gltf::MeshAccessors;
 /// What the field `format` holds.
 pub const FORMAT: &str = "dwell-house";
 /// The version that is written.
-pub const VERSION: u32 = 2;
-/// The versions that are read. 1 had no inertials, no joints without limits, and of motors only the position servo.
-pub(super) const VERSIONS: [u32; 2] = [1, VERSION];
+pub const VERSION: u32 = 3;
+/// The versions that are read. 1 had no inertials, no joints without limits, and of motors only the position servo; 2 had no
+/// sound files and no starts of agents.
+pub(super) const VERSIONS: [u32; 3] = [1, 2, VERSION];
 
 /// The head of the file, which every version has.
 #[derive(Debug, Serialize, Deserialize)]
@@ -35,6 +36,19 @@ pub(super) struct NativeFile {
     pub(super) mesh_accessors: Vec<MeshAccessors>,
     /// For each texture its size; the images of the geometry file have the same order.
     pub(super) texture_sizes: Vec<[u32; 2]>,
-    /// All tables; `meshes` and `textures` are empty here.
+    /// The name of each sound file; its bytes are in [`sound_path`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) sound_names: Vec<String>,
+    /// All tables; `meshes`, `textures` and `sound_files` are empty here.
     pub(super) house: HouseData,
+}
+
+/// Where the bytes of sound file `k` stand in the house's folder: never at a path that the tables spell.
+pub(super) fn sound_path(k: usize, name: &str) -> String {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+    let known = ["wav", "flac", "ogg", "oga"];
+    let ending = known
+        .iter()
+        .find(|known| known.eq_ignore_ascii_case(ending));
+    format!("sound_{k}.{}", ending.unwrap_or(&"sound"))
 }

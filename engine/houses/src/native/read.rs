@@ -4,15 +4,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use dwell_scene::parallel::Threads;
-use dwell_scene::{House, Mesh};
+use dwell_scene::{House, Mesh, SoundFile};
 use glam::{Vec2, Vec3};
 
-use super::file::{FORMAT, Head, NativeFile, VERSIONS};
+use super::file::{FORMAT, Head, NativeFile, VERSIONS, sound_path};
 use super::{GEOMETRY, TABLES};
 use crate::build::PixelBudget;
 use crate::error::HousesError;
 use crate::gltf::{Geometry, MeshAccessors};
-use crate::limits::{MAX_BUFFER_BYTES, MAX_TEXT_BYTES};
+use crate::limits::{MAX_ALL_SOUND_BYTES, MAX_BUFFER_BYTES, MAX_TEXT_BYTES};
 use crate::report::{At, Report};
 use crate::root::DataRoot;
 
@@ -77,6 +77,13 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         data.textures.push(Arc::new(
             texture.map_err(|message| HousesError::Syntax { at, message })?,
         ));
+    }
+    let mut left = MAX_ALL_SOUND_BYTES;
+    for (k, name) in file.sound_names.into_iter().enumerate() {
+        let path = sound_path(k, &name);
+        let bytes = root.read(&path, left.min(SoundFile::MOST_BYTES))?;
+        left -= bytes.len() as u64;
+        data.sound_files.push(Arc::new(SoundFile { name, bytes }));
     }
     let house = House::new(data).map_err(HousesError::scene(&at))?;
     Ok((house, Report::new()))

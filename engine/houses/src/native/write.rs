@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use dwell_scene::{House, HouseData, IdVec};
 
-use super::file::{FORMAT, NativeFile, VERSION};
+use super::file::{FORMAT, NativeFile, VERSION, sound_path};
 use super::{GEOMETRY, TABLES};
 use crate::atomic::write_folder;
 use crate::error::HousesError;
@@ -50,7 +50,13 @@ fn write_as(house: &House, path: &Path, storage: Storage) -> Result<(), HousesEr
             .iter()
             .map(|texture| [texture.width, texture.height])
             .collect(),
+        sound_names: house
+            .sound_files
+            .iter()
+            .map(|sound| sound.name.clone())
+            .collect(),
         house: HouseData {
+            sound_files: IdVec::new(),
             meshes: IdVec::new(),
             textures: IdVec::new(),
             ..house.data().clone()
@@ -78,6 +84,10 @@ fn write_as(house: &House, path: &Path, storage: Storage) -> Result<(), HousesEr
         for (name, bytes) in [(TABLES, &text), (GEOMETRY, &written.file)] {
             let path = folder.join(name);
             fs::write(&path, bytes).map_err(HousesError::io(&path))?;
+        }
+        for (k, sound) in house.sound_files.iter().enumerate() {
+            let path = folder.join(sound_path(k, &sound.name));
+            fs::write(&path, &sound.bytes).map_err(HousesError::io(&path))?;
         }
         Ok(())
     })

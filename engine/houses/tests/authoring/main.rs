@@ -10,6 +10,8 @@ mod buildings;
 mod edits;
 mod files;
 mod maps;
+mod sounds;
+mod starts;
 
 use dwell_houses::authoring::{Edit, Files, edit};
 use dwell_scene::House;

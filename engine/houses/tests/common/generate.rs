@@ -376,13 +376,8 @@ fn fixtures(n: &mut Numbers<'_>, data: &mut HouseData, object: ObjectId, part: P
         });
     }
     for k in 0..n.below(2) {
-        data.emitters.push(SoundEmitter {
-            object,
-            part,
-            position: n.vec3(),
-            signal: n.name(k),
-            level_db: n.unit() * 100.0,
-        });
+        let emitter = SoundEmitter::steady(object, part, n.vec3(), n.name(k), n.unit() * 100.0);
+        data.emitters.push(emitter);
         let holding = if n.flag() { Holding::On } else { Holding::In };
         data.receptacles.push(Receptacle {
             object,

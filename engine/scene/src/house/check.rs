@@ -1,10 +1,10 @@
 //! The one check of a house's tables.
 
-use super::data::{HouseData, Mobility};
+use super::data::{AgentStart, HouseData, Mobility};
 use crate::articulation::Articulation;
 use crate::collider::Collider;
 use crate::error::{SceneError, range};
-use crate::fixtures::LightShape;
+use crate::fixtures::{LightShape, SoundFile};
 use crate::ids::{Id, IdVec, JointId, MaterialId, MeshId};
 use glam::Vec3A;
 use std::collections::BTreeSet;
@@ -517,6 +517,59 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
             (-20.0..=140.0).contains(&emitter.level_db),
             emitter.level_db,
             "-20 to 140",
+        )?;
+        if let Some(file) = emitter.sound_file {
+            exists("emitters", "sound_files", &data.sound_files, file)?;
+        }
+        range(
+            "emitters",
+            "start_s",
+            (0.0..=86_400.0).contains(&emitter.start_s),
+            emitter.start_s,
+            "0 to 86400",
+        )?;
+    }
+    sounds_and_starts(data)
+}
+
+fn sounds_and_starts(data: &HouseData) -> Result<(), SceneError> {
+    unique(
+        "sound_files",
+        data.sound_files.iter().map(|sound| sound.name.as_str()),
+    )?;
+    for (id, sound) in data.sound_files.iter_ids() {
+        range(
+            &format!("sound_files[{}] {:?}", id.0, sound.name),
+            "bytes",
+            (1..=SoundFile::MOST_BYTES).contains(&(sound.bytes.len() as u64)),
+            sound.bytes.len(),
+            "1 to 67108864",
+        )?;
+    }
+    range(
+        "agent_starts",
+        "count",
+        data.agent_starts.len() <= AgentStart::MOST,
+        data.agent_starts.len(),
+        "at most 64",
+    )?;
+    for (k, start) in data.agent_starts.iter().enumerate() {
+        let at = format!("agent_starts[{k}]");
+        let mut numbers = start.position.to_array().into_iter();
+        let far = numbers.find(|x| !is_near(*x));
+        range(
+            &at,
+            "position",
+            far.is_none(),
+            far.unwrap_or_default(),
+            "within 32768 m of the origin",
+        )?;
+        range(
+            &at,
+            "yaw_rad",
+            start.yaw_rad.abs() <= 1000.0,
+            start.yaw_rad,
+            "-1000 to 1000",
         )?;
     }
     Ok(())

@@ -3,9 +3,10 @@
 use crate::articulation::Articulation;
 use crate::bounds::Aabb;
 use crate::collider::Collider;
-use crate::fixtures::{Light, Receptacle, SoundEmitter};
+use crate::fixtures::{Light, Receptacle, SoundEmitter, SoundFile};
 use crate::ids::{
-    IdVec, JointId, LevelId, MaterialId, MeshId, ObjectId, PartId, RoomId, StructureId, TextureId,
+    IdVec, JointId, LevelId, MaterialId, MeshId, ObjectId, PartId, RoomId, SoundFileId,
+    StructureId, TextureId,
 };
 use crate::material::Material;
 use crate::mesh::Mesh;
@@ -50,6 +51,26 @@ pub struct HouseData {
     /// Sun and sky; `None`: nothing is known of the open air.
     #[serde(default)]
     pub sky: Option<Sky>,
+    /// Sound files that emitters name, shared between them.
+    #[serde(default, skip_serializing_if = "IdVec::is_empty")]
+    pub sound_files: IdVec<SoundFileId, Arc<SoundFile>>,
+    /// Where agents start, the first agent first; agents beyond them start in the first room.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub agent_starts: Vec<AgentStart>,
+}
+
+/// Where an agent starts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AgentStart {
+    /// Where its feet are, m.
+    pub position: Vec3,
+    /// Where it faces, rad to the left of -Z.
+    pub yaw_rad: f32,
+}
+
+impl AgentStart {
+    /// The most of a house: as many as a world has agents.
+    pub const MOST: usize = 64;
 }
 
 /// A storey.

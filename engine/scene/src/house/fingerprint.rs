@@ -8,11 +8,12 @@ use xxhash_rust::xxh3::Xxh3;
 /// The number of [`House::fingerprint`](super::House::fingerprint).
 pub(super) fn of(data: &HouseData) -> u64 {
     let mut hash = Xxh3::new();
-    // Meshes are hashed below, images and the sky not at all: they only look.
+    // Meshes and sounds are hashed below, images and the sky not at all: they only look.
     let tables = HouseData {
         meshes: IdVec::default(),
         textures: IdVec::default(),
         sky: None,
+        sound_files: IdVec::default(),
         ..data.clone()
     };
     let tables = postcard::to_stdvec(&tables)
@@ -26,6 +27,11 @@ pub(super) fn of(data: &HouseData) -> u64 {
         for triangle in &mesh.triangles {
             hash.update(&triangle.map(u32::to_le_bytes).concat());
         }
+    }
+    for sound in &data.sound_files {
+        hash.update(sound.name.as_bytes());
+        hash.update(&(sound.bytes.len() as u64).to_le_bytes());
+        hash.update(&sound.bytes);
     }
     hash.digest()
 }
@@ -41,7 +47,7 @@ fn bytes_of(position: &Vec3) -> [u8; 12] {
 #[cfg(test)]
 mod tests {
     use super::super::HouseData;
-    use crate::{House, Mesh, ShoeboxMaterials};
+    use crate::{AgentStart, House, Mesh, ShoeboxMaterials, SoundFile};
     use glam::{Affine3A, Vec3};
     use std::sync::Arc;
 
@@ -67,7 +73,29 @@ mod tests {
             other.triangles[0].rotate_left(1);
             *mesh = Arc::new(other);
         });
-        let numbers = [house.fingerprint(), slippery, larger, turned];
+        let started = changed(&|data| {
+            data.agent_starts.push(AgentStart {
+                position: Vec3::ONE,
+                yaw_rad: 0.0,
+            });
+        });
+        let sounding = |bytes: &[u8]| {
+            changed(&|data| {
+                data.sound_files.push(Arc::new(SoundFile {
+                    name: "a.wav".to_owned(),
+                    bytes: bytes.to_vec(),
+                }));
+            })
+        };
+        let numbers = [
+            house.fingerprint(),
+            slippery,
+            larger,
+            turned,
+            started,
+            sounding(b"a"),
+            sounding(b"b"),
+        ];
         for (k, number) in numbers.iter().enumerate() {
             assert!(!numbers[..k].contains(number), "{numbers:?}");
         }

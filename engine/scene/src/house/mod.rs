@@ -8,7 +8,8 @@ mod queries;
 mod shoebox;
 
 pub use data::{
-    Category, HouseData, Inertial, Level, Mobility, Object, Part, Room, Structure, StructureKind,
+    AgentStart, Category, HouseData, Inertial, Level, Mobility, Object, Part, Room, Structure,
+    StructureKind,
 };
 pub(crate) use geometry::normals_map;
 pub use geometry::{Geometry, Placed, StaticTriangle, Surface, SurfaceOwner};

@@ -1,10 +1,44 @@
 //! The sounds of the house's own objects.
 
 use super::fade::Fade;
+use crate::engines::Engines;
+use crate::error::WorldError;
+use dwell_acoustics::signals::Signal;
 use dwell_scene::units::pa_from_db_spl;
-use dwell_scene::{House, State};
+use dwell_scene::{House, SoundEmitter, State};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+
+/// Writes the block that begins at sample `start` of an emitter's sound, root mean square 1 over the whole sound. `time`: samples
+/// a second, samples a block, `start`; the world starts with the second block.
+///
+/// # Errors
+/// [`WorldError`] for a signal that nobody knows and a sound file that is none.
+pub(super) fn read(
+    engines: &Engines,
+    emitter: &SoundEmitter,
+    (rate_hz, block, start): (u32, u64, u64),
+    out: &mut [f32],
+) -> Result<(), WorldError> {
+    let signal = match emitter.sound_file {
+        Some(file) => engines.house_sound(file, rate_hz)?,
+        None => Signal::open(&emitter.signal, rate_hz)?,
+    };
+    if emitter.loops && emitter.start_s == 0.0 {
+        signal.read(start, out);
+        return Ok(());
+    }
+    let begins = block + (f64::from(emitter.start_s) * f64::from(rate_hz)).round() as u64;
+    let skip = begins.saturating_sub(start).min(out.len() as u64) as usize;
+    let elapsed = start.saturating_sub(begins);
+    out[..skip].fill(0.0);
+    if emitter.loops {
+        signal.read(elapsed, &mut out[skip..]);
+    } else {
+        signal.read_once(elapsed, &mut out[skip..]);
+    }
+    Ok(())
+}
 
 /// What was told to an object's own sound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

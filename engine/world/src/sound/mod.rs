@@ -20,7 +20,7 @@ pub use playing::{PlayRequest, SoundName, SoundPlace, usual_level_db};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use dwell_acoustics::{AcousticConfig, HeadId, Stream, StreamConfig, signals};
+use dwell_acoustics::{AcousticConfig, HeadId, Stream, StreamConfig};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
@@ -98,7 +98,9 @@ impl Sound {
     /// The signals of emitters that are on, each once, and the rate at which they are heard.
     pub(crate) fn signals(&self, house: &House, state: &State) -> (Vec<String>, u32) {
         let emitters = house.emitters.iter().enumerate();
-        let on = emitters.filter(|(k, _)| self.emitters.is_on(house, state, *k));
+        let on = emitters.filter(|(k, emitter)| {
+            emitter.sound_file.is_none() && self.emitters.is_on(house, state, *k)
+        });
         let names: BTreeSet<&String> = on.map(|(_, emitter)| &emitter.signal).collect();
         (names.into_iter().cloned().collect(), self.rate_hz)
     }
@@ -116,7 +118,7 @@ impl Sound {
             playing.told.fade.go(target);
         }
         if !self.ears.is_empty() {
-            let sources = self.sources(engines.house(), state, self.blocks)?;
+            let sources = self.sources(engines, state, self.blocks)?;
             for ears in &mut self.ears {
                 ears.hear(engines.house(), rays, state, &sources)?;
             }
@@ -153,7 +155,7 @@ impl Sound {
                 window: vec![0.0; 2 * length],
                 length,
             };
-            let sources = self.sources(engines.house(), state, self.blocks - 1)?;
+            let sources = self.sources(engines, state, self.blocks - 1)?;
             ears.hear(engines.house(), rays, state, &sources)?;
             // In the order of agents, whoever began first.
             let place = self.ears.partition_point(|other| other.agent < *agent);
@@ -187,10 +189,11 @@ impl Sound {
     /// What sounds in the block that has just ended or ends now: emitters, what plays, and what touched.
     fn sources(
         &self,
-        house: &House,
+        engines: &Engines,
         state: &State,
         block: u64,
     ) -> Result<Vec<Sounding>, WorldError> {
+        let house = engines.house();
         let start = block * self.block as u64;
         let mut sources = Vec::new();
         let fades = self.emitters.fades(house, state);
@@ -199,7 +202,8 @@ impl Sound {
                 continue;
             }
             let mut signal = vec![0.0; self.block];
-            signals::synthesize(&emitter.signal, self.rate_hz, start, &mut signal)?;
+            let time = (self.rate_hz, self.block as u64, start);
+            emitters::read(engines, emitter, time, &mut signal)?;
             fade.apply(self.rate_hz, &mut signal);
             sources.push(Sounding {
                 id: k as u64,
@@ -303,12 +307,15 @@ impl Sound {
             .enumerate()
             .map(|(k, emitter)| SoundNow {
                 handle: k as u64,
-                sound: SoundName::Signal(emitter.signal.clone()),
+                sound: match emitter.sound_file {
+                    Some(_) => SoundName::File(emitter.signal.clone()),
+                    None => SoundName::Signal(emitter.signal.clone()),
+                },
                 position: state.part_pose[emitter.part]
                     .transform_point(emitter.position)
                     .to_array(),
                 level_db: self.emitters.level_db(house, k),
-                loops: true,
+                loops: emitter.loops,
                 on: self.emitters.is_on(house, state, k),
                 object: Some(house.objects[emitter.object].name.clone()),
             });

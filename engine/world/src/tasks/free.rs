@@ -1,7 +1,7 @@
 //! Nothing is asked: a place to explore, to collect data in, and to build tasks upon.
 //!
-//! The agent starts anywhere on the largest piece of floor that it can walk, looking anywhere. Every reward is 0, and an episode
-//! ends with `stop`, without success.
+//! The agent starts where the house says; without that, or where the settings ask for it, anywhere on the largest piece of
+//! floor that it can walk, looking anywhere. Every reward is 0, and an episode ends with `stop`, without success.
 
 use super::leaves::Leaves;
 use super::{Task, TaskKind};
@@ -11,8 +11,9 @@ use crate::error::WorldError;
 use crate::metrics::Progress;
 use crate::world::World;
 use dwell_scene::random::Key;
-use dwell_scene::{AgentId, Pose};
+use dwell_scene::{AgentBody, AgentId, Pose};
 use dwell_semantics::tokens;
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 const NAME: &str = "Free";
@@ -32,22 +33,76 @@ pub(super) const KIND: TaskKind = TaskKind {
 /// The task's settings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-struct Settings {}
+struct Settings {
+    /// Where an episode starts: `"house"` (default), where the house has its first agent start, if it says so; `"anywhere"`,
+    /// another place each time.
+    start: From,
+}
+
+/// Where an episode starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum From {
+    /// At the house's start of the first agent, where it has one; else anywhere.
+    #[default]
+    House,
+    /// Anywhere, another place each time.
+    Anywhere,
+}
+
+/// How far the place where one can stand may be from the house's start, m.
+const NEAR_M: f32 = 0.3;
 
 fn build(value: &serde_json::Value, _: Stride) -> Result<Box<dyn Task>, WorldError> {
-    if !value.is_null() {
-        let refuse = |error| WorldError::Settings {
-            of: "task_settings",
-            found: value.to_string(),
-            error,
-        };
-        let Settings {} = serde_json::from_value(value.clone()).map_err(refuse)?;
-    }
-    Ok(Box::new(Free))
+    let refuse = |error| WorldError::Settings {
+        of: "task_settings",
+        found: value.to_string(),
+        error,
+    };
+    let settings = if value.is_null() {
+        Settings::default()
+    } else {
+        serde_json::from_value(value.clone()).map_err(refuse)?
+    };
+    Ok(Box::new(Free { settings }))
 }
 
 #[derive(Debug)]
-struct Free;
+struct Free {
+    settings: Settings,
+}
+
+impl Free {
+    /// Where an episode starts: the place, and where to look, rad.
+    fn start(&self, world: &World, body: &AgentBody, key: Key) -> Result<(Vec3, f32), WorldError> {
+        let unplayable = |why: String| WorldError::Unplayable {
+            task: NAME,
+            house: world.house().name.clone(),
+            why,
+        };
+        let grid = world.engines().navigation(body)?;
+        let of_house = world.house().agent_starts.first();
+        if let Some(start) = of_house.filter(|_| self.settings.start == From::House) {
+            if grid.nearest(start.position, NEAR_M).is_none() {
+                let at = start.position.to_array();
+                return Err(unplayable(format!(
+                    "nobody of the agent's size can stand at the house's start, {at:?} m"
+                )));
+            }
+            return Ok((start.position, start.yaw_rad));
+        }
+        let leaves = Leaves::of(world, &grid);
+        let on_island = |cell| grid.island(cell) == Some(0) && !leaves.block(&grid, cell);
+        let start = grid.sample(key.child("start"), on_island);
+        let Some(cell) = start else {
+            let why = "nobody of the agent's size can stand anywhere";
+            return Err(unplayable(why.to_owned()));
+        };
+        let (low, high) = (-std::f32::consts::PI, std::f32::consts::PI);
+        let yaw_rad = key.child("yaw").stream().range(low, high);
+        Ok((grid.position(cell), yaw_rad))
+    }
+}
 
 impl Task for Free {
     fn reset(&mut self, world: &mut World, key: Key) -> Result<Episode, WorldError> {
@@ -57,19 +112,7 @@ impl Task for Free {
                 "{NAME} needs a world with one agent"
             )));
         };
-        let grid = world.engines().navigation(&body)?;
-        let leaves = Leaves::of(world, &grid);
-        let on_island = |cell| grid.island(cell) == Some(0) && !leaves.block(&grid, cell);
-        let start = grid.sample(key.child("start"), on_island);
-        let Some(position) = start.map(|cell| grid.position(cell)) else {
-            return Err(WorldError::Unplayable {
-                task: NAME,
-                house: world.house().name.clone(),
-                why: "nobody of the agent's size can stand anywhere".to_owned(),
-            });
-        };
-        let (low, high) = (-std::f32::consts::PI, std::f32::consts::PI);
-        let yaw_rad = key.child("yaw").stream().range(low, high);
+        let (position, yaw_rad) = self.start(world, &body, key)?;
         world.place_agent(agent, position, yaw_rad)?;
         Ok(Episode {
             instruction: INSTRUCTION.to_owned(),

@@ -77,6 +77,8 @@ fn losses(house: &HouseData) -> Vec<Loss> {
     lights::losses(house, &mut losses);
     losses.add("sound emitters; listed in extras", house.emitters.len());
     losses.add("receptacles; listed in extras", house.receptacles.len());
+    losses.add("sound files", house.sound_files.len());
+    losses.add("agents' starts", house.agent_starts.len());
     losses.into_vec()
 }
 

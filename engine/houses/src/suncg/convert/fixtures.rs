@@ -59,13 +59,8 @@ impl Converter<'_> {
                 self.report.warn(at.clone(), Damage::Simplified { what });
                 continue;
             };
-            self.data.emitters.push(SoundEmitter {
-                object,
-                part: part_id,
-                position,
-                signal: signal.to_owned(),
-                level_db,
-            });
+            let emitter = SoundEmitter::steady(object, part_id, position, signal, level_db);
+            self.data.emitters.push(emitter);
         }
         self.data.emitters.len() > before
     }

@@ -50,6 +50,8 @@ pub(super) fn of_house(house: &House) -> Losses {
     );
     losses.add("receptacles", house.receptacles.len());
     losses.add("levels of sounds", house.emitters.len());
+    losses.add("sound files", house.sound_files.len());
+    losses.add("agents' starts", house.agent_starts.len());
     losses.add("sun and sky", usize::from(house.sky.is_some()));
     let lit = |id| house.lights.iter().any(|light| light.object == id);
     let off = house

@@ -130,7 +130,7 @@ impl Writer<'_> {
             signals: house
                 .emitters
                 .iter()
-                .filter(|emitter| emitter.object == id)
+                .filter(|emitter| emitter.object == id && emitter.sound_file.is_none())
                 .map(|e| e.signal.clone())
                 .collect(),
         }

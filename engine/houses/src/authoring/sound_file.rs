@@ -1,0 +1,53 @@
+//! Sound files of the user's own. The house carries them as they are; what plays them decodes them.
+
+use std::sync::Arc;
+
+use dwell_scene::{IdVec, SoundFile, SoundFileId};
+
+use super::faults::fault;
+use super::files::Files;
+use crate::error::HousesError;
+use crate::root::Named;
+
+/// What the files begin with: WAV, FLAC, Ogg.
+const BEGINNINGS: [&[u8]; 3] = [b"RIFF", b"fLaC", b"OggS"];
+
+/// Reads a sound file.
+///
+/// # Errors
+/// [`HousesError::PathLeavesRoot`], [`HousesError::Io`], [`HousesError::TooLarge`] above [`SoundFile::MOST_BYTES`], and
+/// [`HousesError::Spec`] for a file of another form.
+pub(super) fn load(files: &Files, file: &str) -> Result<SoundFile, HousesError> {
+    let path = files.path("file", file)?;
+    let Named { name, bytes, .. } = Named::read(&path, SoundFile::MOST_BYTES)?;
+    if !BEGINNINGS.iter().any(|begin| bytes.starts_with(begin)) {
+        let begins: Vec<u8> = bytes.iter().copied().take(4).collect();
+        let begins = String::from_utf8_lossy(&begins);
+        return Err(fault(
+            "file",
+            format_args!("{file:?}, which begins with {begins:?}"),
+            "WAV (\"RIFF\"), FLAC (\"fLaC\") or Ogg Vorbis (\"OggS\")",
+        ));
+    }
+    Ok(SoundFile { name, bytes })
+}
+
+/// The id of a sound file: of one with the same name and bytes, else of a new one with a name that was free.
+pub(super) fn keep(
+    table: &mut IdVec<SoundFileId, Arc<SoundFile>>,
+    mut sound: Arc<SoundFile>,
+) -> SoundFileId {
+    let own = sound.name.clone();
+    let (stem, ending) = own.rsplit_once('.').unwrap_or((&own, "sound"));
+    let mut number = 1;
+    loop {
+        let known = table.iter_ids().find(|(_, other)| other.name == sound.name);
+        match known {
+            None => return table.push(sound),
+            Some((id, other)) if *other == sound => return id,
+            Some(_) => {}
+        }
+        number += 1;
+        Arc::make_mut(&mut sound).name = format!("{stem}_{number}.{ending}");
+    }
+}
