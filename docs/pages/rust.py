@@ -92,7 +92,10 @@ _TYPES = {
 }
 
 #: Where the texts come from that a field may have.
-_ENUMS = {"InstructionKind": "semantics/src/instruct/task.rs"}
+_ENUMS = {
+    "InstructionKind": "semantics/src/instruct/task.rs",
+    "StartFrom": "engine/world/src/tasks/free.rs",
+}
 
 
 def plain_type(rust: str) -> str:

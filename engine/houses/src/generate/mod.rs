@@ -186,17 +186,31 @@ pub(crate) fn open(house: &str) -> Opened {
             });
         }
     }
-    let spec = serde_json::from_value(spec.into()).map_err(|error| HousesError::Spec {
-        field: "spec".to_owned(),
-        found: error.to_string(),
-        possible: "the fields of a HouseSpec as field=value, joined by &".to_owned(),
-    })?;
+    let spec = parsed(spec)?;
     let generated = generate(seed, &spec)?;
     let mut report = Report::new();
     for what in generated.report.given_up {
         report.warn(At::file(house), Damage::GivenUp { what });
     }
     Ok((generated.house, report))
+}
+
+/// The spec that fields say; an error names the first that cannot be read.
+fn parsed(fields: serde_json::Map<String, serde_json::Value>) -> Result<HouseSpec, HousesError> {
+    let read = |fields: serde_json::Map<_, _>| serde_json::from_value::<HouseSpec>(fields.into());
+    for (name, value) in &fields {
+        let alone = [(name.clone(), value.clone())].into_iter().collect();
+        read(alone).map_err(|error| HousesError::Spec {
+            field: name.clone(),
+            found: error.to_string(),
+            possible: "the fields of a HouseSpec as field=value, joined by &".to_owned(),
+        })?;
+    }
+    read(fields).map_err(|error| HousesError::Spec {
+        field: "spec".to_owned(),
+        found: error.to_string(),
+        possible: "the fields of a HouseSpec as field=value, joined by &".to_owned(),
+    })
 }
 
 /// Shares of the furniture that a room can do without, one after the other until it is reached.

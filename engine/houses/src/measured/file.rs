@@ -1,7 +1,9 @@
 //! What the file holds, nothing interpreted.
 
-use serde::Deserialize;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// A measured room. Fields that are not named here belong to the measurement.
 #[derive(Debug, Deserialize)]
@@ -16,8 +18,34 @@ pub(super) struct RoomFile {
     pub(super) walls: BTreeMap<String, String>,
     /// An OBJ file beside this one whose `usemtl` names are materials.
     pub(super) mesh: Option<String>,
-    /// By name.
+    /// By name, each once.
+    #[serde(deserialize_with = "each_once")]
     pub(super) materials: BTreeMap<String, MaterialFile>,
+}
+
+/// A map in which no name stands twice: which of two materials counts is not for us to say.
+fn each_once<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<BTreeMap<String, MaterialFile>, D::Error> {
+    struct Once;
+    impl<'de> Visitor<'de> for Once {
+        type Value = BTreeMap<String, MaterialFile>;
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("materials by name")
+        }
+        fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Self::Value, A::Error> {
+            let mut all = BTreeMap::new();
+            while let Some((name, material)) = entries.next_entry::<String, MaterialFile>()? {
+                if all.contains_key(&name) {
+                    let told = format!("the material {name:?} stands there twice");
+                    return Err(serde::de::Error::custom(told));
+                }
+                all.insert(name, material);
+            }
+            Ok(all)
+        }
+    }
+    deserializer.deserialize_map(Once)
 }
 
 /// What a surface does to sound energy.

@@ -80,7 +80,7 @@ pub(super) fn read(mut source: Source, report: &mut Report) -> Result<House, Hou
     reader.rooms(report, &source);
     for root in objects {
         match source.robot(root, report) {
-            Ok(thing) => reader.object(&source, root, &thing),
+            Ok(thing) => reader.object(&source, root, &thing, report),
             Err(error) => left_out(&error, &source, report),
         }
     }
@@ -295,10 +295,15 @@ impl Reader {
     }
 
     /// A body with what hangs on it.
-    fn object(&mut self, source: &Source, root: BodyId, thing: &robot::Robot) {
+    fn object(&mut self, source: &Source, root: BodyId, thing: &robot::Robot, report: &mut Report) {
         let body = &source.model.bodies[root].body;
         let file_name = name_of(&source.model, root);
         let name = self.names.unique(&file_name);
+        if name != file_name {
+            let at = source.at.field(format_args!("body[{file_name}]"));
+            let (id, renamed) = (file_name.clone(), name.clone());
+            report.warn(at, Damage::DuplicateId { id, renamed });
+        }
         let world_from_root = self.world_from_file * pose(&body.pose);
         robot::add(
             &mut self.data,

@@ -239,6 +239,10 @@ impl Reader<'_> {
             bounds.add_point(Vec3::new(*x, ceiling_y, *z));
         }
         let name = names.counted(&kind.replace(' ', "_"));
+        if self.rooms.iter().any(|other| other.file_id == room.id) {
+            let (id, renamed) = (room.id.clone(), name.clone());
+            self.warn(&format!("{at}.id"), Damage::DuplicateId { id, renamed });
+        }
         let id = self.assembly.data.rooms.push(Room {
             name: name.clone(),
             level: self.assembly.level,

@@ -6,6 +6,8 @@
 mod common;
 mod gltf;
 mod kit;
+#[cfg(unix)]
+mod matrix;
 mod native;
 mod obj;
 mod robots;
@@ -48,6 +50,12 @@ fn opened(house: &Path) -> (Result<Report, HousesError>, u64) {
 }
 
 fn check(cases: &[Case]) {
+    let wrong = wrong(cases);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A sentence for each of the inputs that end otherwise than they should.
+fn wrong<'a>(cases: impl IntoIterator<Item = &'a Case>) -> Vec<String> {
     let _alone = ALONE
         .lock()
         .unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -86,7 +94,7 @@ fn check(cases: &[Case]) {
             wrong.push(format!("{}: {taken} bytes were asked for", case.name));
         }
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    wrong
 }
 
 #[test]
@@ -132,6 +140,20 @@ fn urdf_robots() {
 #[test]
 fn mjcf_files() {
     check(robots::MJCF_CASES);
+}
+
+/// What only the matrix of kinds and formats has.
+#[cfg(unix)]
+#[test]
+fn every_kind_of_input_in_every_format() {
+    let wrong: Vec<String> = matrix::columns()
+        .into_iter()
+        .flat_map(|column| {
+            let told = wrong(matrix::inputs(column)).into_iter();
+            told.map(|told| format!("{}: {told}", column.format))
+        })
+        .collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// Every file of a small house in every format, cut at 24 places: an error that names a file, or a house.

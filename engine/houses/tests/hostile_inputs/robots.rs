@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use crate::kit::{Case, fails, png_of, put, warns};
 
-const URDF: &str = r#"<robot name="r">
+pub(crate) const URDF: &str = r#"<robot name="r">
 <link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
 <visual><geometry><box size="1 1 1"/></geometry></visual></link>
 <link name="b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint>
 </robot>"#;
 
-const MJCF: &str = r#"<mujoco model="m">
+pub(crate) const MJCF: &str = r#"<mujoco model="m">
 <asset></asset>
 <worldbody>
 <geom name="floor" type="plane" size="4 4 1"/>
@@ -20,18 +20,18 @@ const MJCF: &str = r#"<mujoco model="m">
 </worldbody></mujoco>"#;
 
 /// The file in which `from` became `to`.
-fn urdf(folder: &Path, from: &str, to: &str) -> PathBuf {
+pub(crate) fn urdf(folder: &Path, from: &str, to: &str) -> PathBuf {
     assert!(URDF.contains(from));
     put(folder, "r.urdf", URDF.replacen(from, to, 1))
 }
 
-fn mjcf(folder: &Path, from: &str, to: &str) -> PathBuf {
+pub(crate) fn mjcf(folder: &Path, from: &str, to: &str) -> PathBuf {
     assert!(MJCF.contains(from));
     put(folder, "m.xml", MJCF.replacen(from, to, 1))
 }
 
-const BOX: &str = "<box size=\"1 1 1\"/>";
-const ASSET: &str = "<asset></asset>";
+pub(crate) const BOX: &str = "<box size=\"1 1 1\"/>";
+pub(crate) const ASSET: &str = "<asset></asset>";
 
 pub(crate) const URDF_CASES: &[Case] = &[
     fails("an empty file", |d| put(d, "r.urdf", ""), &["r.urdf:1"]),

@@ -8,7 +8,7 @@ use crate::common::{habitat_set, procthor_set};
 use crate::kit::{Case, fails, obj_of, png_of, put, warns, with};
 
 /// Habitat's sample with one file's `from` become `to`.
-fn habitat(folder: &Path, file: &str, from: &str, to: &str) -> PathBuf {
+pub(crate) fn habitat(folder: &Path, file: &str, from: &str, to: &str) -> PathBuf {
     let scene = habitat_set::write(folder);
     let text = std::fs::read_to_string(folder.join(file)).unwrap();
     assert!(text.contains(from), "{text}");
@@ -16,9 +16,9 @@ fn habitat(folder: &Path, file: &str, from: &str, to: &str) -> PathBuf {
     scene
 }
 
-const SCENE: &str = "room.scene_instance.json";
+pub(crate) const SCENE: &str = "room.scene_instance.json";
 const DATASET: &str = "set.scene_dataset_config.json";
-const BLOCK: &str = "objects/b/block.object_config.json";
+pub(crate) const BLOCK: &str = "objects/b/block.object_config.json";
 const REGIONS: &str = "semantics/scenes/room.semantic_config.json";
 
 pub(crate) const HABITAT: &[Case] = &[
@@ -181,7 +181,7 @@ pub(crate) const HABITAT: &[Case] = &[
 ];
 
 /// ProcTHOR's sample with one value set.
-fn procthor(folder: &Path, pointer: &str, value: Value) -> PathBuf {
+pub(crate) fn procthor(folder: &Path, pointer: &str, value: Value) -> PathBuf {
     put(
         folder,
         "asset-database.json",
@@ -292,7 +292,7 @@ pub(crate) const PROCTHOR: &[Case] = &[
 ];
 
 /// A measured room.
-fn measured(folder: &Path, mesh: &str, absorption: &str) -> PathBuf {
+pub(crate) fn measured(folder: &Path, mesh: &str, absorption: &str) -> PathBuf {
     put(
         folder,
         "scene.json",

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use crate::kit::{Case, fails, obj_of, png_of, put, warns};
 
-const IDENTITY: &str = "[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]";
+pub(crate) const IDENTITY: &str = "[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]";
 
 /// A house of one box, and these nodes.
-fn house(folder: &Path, nodes: &str) -> PathBuf {
+pub(crate) fn house(folder: &Path, nodes: &str) -> PathBuf {
     let text = format!(
         r#"{{"id": "h", "levels": [{{"id": "0", "nodes": [
         {{"id": "0_0", "type": "Box", "dimensions": [1, 1, 1], "transform": {IDENTITY}}}, {nodes}]}}]}}"#

@@ -36,13 +36,13 @@ pub(super) const KIND: TaskKind = TaskKind {
 struct Settings {
     /// Where an episode starts: `"house"` (default), where the house has its first agent start, if it says so; `"anywhere"`,
     /// another place each time.
-    start: From,
+    start: StartFrom,
 }
 
 /// Where an episode starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum From {
+enum StartFrom {
     /// At the house's start of the first agent, where it has one; else anywhere.
     #[default]
     House,
@@ -82,7 +82,7 @@ impl Free {
         };
         let grid = world.engines().navigation(body)?;
         let of_house = world.house().agent_starts.first();
-        if let Some(start) = of_house.filter(|_| self.settings.start == From::House) {
+        if let Some(start) = of_house.filter(|_| self.settings.start == StartFrom::House) {
             if grid.nearest(start.position, NEAR_M).is_none() {
                 let at = start.position.to_array();
                 return Err(unplayable(format!(
