@@ -334,3 +334,37 @@ fn agents_and_free_episodes_start_where_the_house_says() {
     let apart = |seed| (begin(json!({"start": "anywhere"}), seed) - own).length() > 0.3;
     assert!((0..4).filter(|seed| apart(*seed)).count() >= 2);
 }
+
+#[test]
+fn a_hand_opens_a_door_that_a_map_has_hung() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = "o Floor\nv 0 0 0\nv 0 0 4\nv 4 0 4\nv 4 0 0\nf 1 2 3 4\no Leaf.1\n".to_owned();
+    for y in [0.01, 2.01] {
+        for (x, z) in [(1.5, 2.0), (2.4, 2.0), (2.4, 2.04), (1.5, 2.04)] {
+            text += &format!("v {x} {y} {z}\n");
+        }
+    }
+    text += "f 5 6 7 8\nf 9 12 11 10\nf 5 9 10 6\nf 6 10 11 7\nf 7 11 12 8\nf 8 12 9 5\n";
+    fs::write(folder.path().join("a.obj"), text).unwrap();
+    let map = "[nodes]\n\"leaf*\" = { name = \"door\", mass_kg = 20.0, hinge = { edge = \"-x\", open_deg = 100 } }\n";
+    fs::write(folder.path().join("m.toml"), map).unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let house = format!("{}?map={}", at("a.obj"), at("m.toml"));
+    let (house, _) = dwell_houses::open(&house).unwrap();
+    let mut world = world(house);
+    let door = world.house().object_named("door").unwrap();
+    world
+        .place_agent(AGENT, Vec3::new(1.9, 0.0, 2.9), 0.0)
+        .unwrap();
+    let open = Action::Open {
+        target: door.into(),
+        fraction: 1.0,
+    };
+    let outcome = world.act(AGENT, &open);
+    assert!(outcome.success, "{}", outcome.sentence);
+    for _ in 0..100 {
+        world.step(&[]).unwrap();
+    }
+    let turned = world.state().joint_position.as_slice()[0];
+    assert!(turned > 80_f32.to_radians(), "{turned}");
+}

@@ -12,6 +12,7 @@ use serde::{Deserialize, Deserializer};
 
 use super::edits::{Look, Traits};
 use super::faults::{fault, inside};
+use super::hinge::{NodeHinge, hang};
 use super::unmapped::UnmappedNames;
 use super::{describe, place, prune, surfaces};
 use crate::build::{category, room_kind, room_over_floors};
@@ -79,6 +80,8 @@ pub struct NodeTable {
     pub pickable: Option<bool>,
     /// It is no object but a piece of the building.
     pub structure: Option<StructureKind>,
+    /// It opens about this hinge; a thing that nobody knows is a door then.
+    pub hinge: Option<NodeHinge>,
 }
 
 /// What people call a room.
@@ -193,8 +196,8 @@ impl Map {
                 let name = || std::iter::once(name.as_str());
                 let material = best(&self.materials, name())
                     .is_some_and(|(_, row)| !row.0.substance.is_empty());
-                let node =
-                    best(&self.nodes, name()).is_some_and(|(_, row)| !row.0.category.is_empty());
+                let node = best(&self.nodes, name())
+                    .is_some_and(|(_, row)| !row.0.category.is_empty() || row.0.hinge.is_some());
                 let room = best(&self.rooms, name()).is_some_and(|(_, kind)| !kind.is_empty());
                 !(material || node || room)
             }
@@ -256,6 +259,11 @@ impl Map {
                 continue;
             };
             let place = format!("nodes.{pattern:?}");
+            if row.hinge.is_some() && (row.structure.is_some() || row.mobility.is_some()) {
+                let found = "it beside `structure` or `mobility`";
+                let possible = "a hinge alone: what hangs on one moves with it";
+                return Err(inside(place)(fault("hinge", found, possible)));
+            }
             if let Some(kind) = row.structure {
                 becomes_structure(data, id, kind).map_err(inside(place))?;
                 walls.insert(id);
@@ -263,16 +271,24 @@ impl Map {
             }
             let unknown = object.category.coarse.is_empty();
             let told = Some(row.category.clone()).filter(|name| !name.is_empty());
+            let door = (unknown && row.hinge.is_some()).then(|| "door".to_owned());
+            let told = told.or(door);
             let traits = Traits {
                 category: told,
-                mobility: row
-                    .mobility
-                    .or_else(|| usual_mobility(data, id, unknown, &row.category)),
+                mobility: row.mobility.or_else(|| {
+                    let loose = row.hinge.is_none();
+                    loose
+                        .then(|| usual_mobility(data, id, unknown, &row.category))
+                        .flatten()
+                }),
                 mass_kg: row.mass_kg,
                 density_kg_m3: row.density_kg_m3,
                 pickable: row.pickable,
                 switch: None,
             };
+            if let Some(hinge) = &row.hinge {
+                hang(data, id, hinge).map_err(inside(&place))?;
+            }
             describe::describe(data, id, &traits).map_err(inside(&place))?;
             let object = &mut data.objects[id];
             let kind = category([object.category.coarse.as_str()]);

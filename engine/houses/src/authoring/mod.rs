@@ -15,6 +15,7 @@ mod faults;
 mod files;
 mod fixtures;
 mod graft;
+mod hinge;
 mod map;
 mod mesh_file;
 mod open;
@@ -33,6 +34,7 @@ pub use edits::{
     Remove, Rename, SetDoor, Side, Sound, StartAgent, Surfaces, Traits, Up, What,
 };
 pub use files::Files;
+pub use hinge::{BoxSide, HingeAxis, NodeHinge};
 pub use map::{Map, MaterialRow, NodeRow, RoomRow, map_template};
 pub use open::{Plan, build, edits_from_json};
 pub(crate) use open::{open, open_mapped, recognizes};

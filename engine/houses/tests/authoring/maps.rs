@@ -123,3 +123,95 @@ fn a_map_that_cannot_be_is_refused_with_its_place() {
             .contains("two maps")
     );
 }
+
+/// A floor, and a leaf of 0.9 by 2 by 0.04 m along x that stands free in the middle.
+fn leaf(folder: &std::path::Path) -> String {
+    let mut text = "o Floor\nv 0 0 0\nv 0 0 4\nv 4 0 4\nv 4 0 0\nf 1 2 3 4\no Leaf.1\n".to_owned();
+    for y in [0.01, 2.01] {
+        for (x, z) in [(1.5, 2.0), (2.4, 2.0), (2.4, 2.04), (1.5, 2.04)] {
+            text += &format!("v {x} {y} {z}\n");
+        }
+    }
+    text += "f 5 6 7 8\nf 9 12 11 10\nf 5 9 10 6\nf 6 10 11 7\nf 7 11 12 8\nf 8 12 9 5\n";
+    let path = folder.join("b.obj");
+    fs::write(&path, text).unwrap();
+    path.to_string_lossy().into_owned()
+}
+
+#[test]
+fn a_node_hangs_on_the_hinge_that_the_map_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = leaf(folder.path());
+    let map = folder.path().join("m.toml");
+    let with = |hinge: &str| {
+        fs::write(&map, format!("[nodes]\n\"leaf*\" = {hinge}\n")).unwrap();
+        open(&format!("{path}?map={}", map.display())).map(|(house, _)| house)
+    };
+    let plain = open(&path).unwrap().0;
+    let house = with("{ hinge = { edge = \"-x\", open_deg = 100, closed_deg = -10 }, name = \"door\", mass_kg = 20.0 }").unwrap();
+    let door = house.object_named("door").unwrap();
+    let object = &house.objects[door];
+    assert_eq!(
+        (object.mobility, object.category.coarse.as_str()),
+        (Mobility::Articulated, "door")
+    );
+    let part = &house.parts[object.first_part];
+    assert_eq!(
+        (part.mass_kg, part.fixed, part.colliders.len()),
+        (Some(20.0), false, 1)
+    );
+    let joint = house
+        .joints
+        .iter()
+        .find(|joint| joint.object == door)
+        .unwrap();
+    assert!(joint.opens());
+    let radians = |degrees: f32| degrees.to_radians();
+    assert_eq!(joint.limits, Some([radians(-10.0), radians(100.0)]));
+    // It stands where the file has it, and turns about its left edge: x goes to -z.
+    let rest = joint.world_from_child(&dwell_scene::Pose::IDENTITY, 0.0);
+    let corner = |pose: &dwell_scene::Pose| {
+        let local = part
+            .world_from_part
+            .inverse()
+            .transform_point(glam::Vec3::new(2.4, 0.01, 2.02));
+        pose.transform_point(local)
+    };
+    assert!((rest.position - part.world_from_part.position).length() < 1e-5);
+    let turned = joint.world_from_child(&dwell_scene::Pose::IDENTITY, radians(90.0));
+    assert!((corner(&turned) - glam::Vec3::new(1.5, 0.01, 1.12)).length() < 1e-4);
+    let at = with("{ hinge = { at = [1.5, 0.0, 2.02], open_deg = 100 } }").unwrap();
+    let other = at.joints.iter().next().unwrap();
+    let same = other.world_from_child(&dwell_scene::Pose::IDENTITY, radians(90.0));
+    assert!((same.position - turned.position).length() < 1e-4);
+    assert_eq!(plain.joints.len(), 0);
+    // A flap, about its upper edge.
+    let flap =
+        with("{ category = \"box\", hinge = { axis = \"x\", edge = \"+y\", open_deg = -80 } }")
+            .unwrap();
+    let joint = flap.joints.iter().next().unwrap();
+    assert!((joint.parent_from_joint.position.y - 2.01).abs() < 1e-5);
+    for (hinge, words) in [
+        ("{ hinge = {} }", "hinge.edge, hinge.at: found neither"),
+        (
+            "{ hinge = { edge = \"+y\" } }",
+            "a side that the axis runs along",
+        ),
+        (
+            "{ hinge = { edge = \"+x\", open_deg = 0 } }",
+            "nodes.\"leaf*\".hinge.open_deg",
+        ),
+        (
+            "{ hinge = { edge = \"+x\", open_deg = nan } }",
+            "-360 to 360",
+        ),
+        ("{ hinge = { edge = \"north\" } }", "unknown variant"),
+        (
+            "{ hinge = { edge = \"+x\" }, structure = \"wall\" }",
+            "a hinge alone",
+        ),
+    ] {
+        let told = with(hinge).unwrap_err().to_string();
+        assert!(told.contains(words), "{told}");
+    }
+}
