@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::Cell::{Cannot, Has, Is};
 use super::{Column, Row};
-use crate::common::{habitat_set, procthor_set};
+use crate::common::procthor_set;
 use crate::kit::{fails, glb, obj_of, png_of, put, triangle, triangle_bytes, warns, with};
 use crate::scenes::{self, BLOCK, SCENE, measured};
 use crate::suncg;
