@@ -14,6 +14,7 @@ use dwell_scene::random::Key;
 use dwell_scene::{AgentId, House, State};
 use glam::Vec3;
 use serde_json::{Value, json};
+use std::fmt::Write as _;
 use std::fs;
 use std::sync::Arc;
 
@@ -341,7 +342,7 @@ fn a_hand_opens_a_door_that_a_map_has_hung() {
     let mut text = "o Floor\nv 0 0 0\nv 0 0 4\nv 4 0 4\nv 4 0 0\nf 1 2 3 4\no Leaf.1\n".to_owned();
     for y in [0.01, 2.01] {
         for (x, z) in [(1.5, 2.0), (2.4, 2.0), (2.4, 2.04), (1.5, 2.04)] {
-            text += &format!("v {x} {y} {z}\n");
+            writeln!(text, "v {x} {y} {z}").unwrap();
         }
     }
     text += "f 5 6 7 8\nf 9 12 11 10\nf 5 9 10 6\nf 6 10 11 7\nf 7 11 12 8\nf 8 12 9 5\n";

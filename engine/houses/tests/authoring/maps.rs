@@ -3,6 +3,7 @@
 use dwell_houses::authoring::{UnmappedNames, map_template, unmapped};
 use dwell_houses::open;
 use dwell_scene::Mobility;
+use std::fmt::Write as _;
 use std::fs;
 
 /// A floor, a thing nobody knows that stands on it, and one that is a wall by no name.
@@ -129,7 +130,7 @@ fn leaf(folder: &std::path::Path) -> String {
     let mut text = "o Floor\nv 0 0 0\nv 0 0 4\nv 4 0 4\nv 4 0 0\nf 1 2 3 4\no Leaf.1\n".to_owned();
     for y in [0.01, 2.01] {
         for (x, z) in [(1.5, 2.0), (2.4, 2.0), (2.4, 2.04), (1.5, 2.04)] {
-            text += &format!("v {x} {y} {z}\n");
+            writeln!(text, "v {x} {y} {z}").unwrap();
         }
     }
     text += "f 5 6 7 8\nf 9 12 11 10\nf 5 9 10 6\nf 6 10 11 7\nf 7 11 12 8\nf 8 12 9 5\n";
