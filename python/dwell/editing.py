@@ -11,9 +11,10 @@ from collections.abc import Mapping, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
-from dwell import ConfigError, UsageError, _native, arguments
+from dwell import ConfigError, UsageError, arguments
 from dwell.arguments import choice, finite, flag, path, point, text, whole
 from dwell.house import House
+from dwell.playing import emitter_sound
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -148,7 +149,7 @@ class Edits:
                 "look": _look(substance, srgb, keep_look=True),
                 "sound": None
                 if signal is None and sound is None
-                else _sound(signal, sound, level_db, loop=loop, start_s=start_s),
+                else emitter_sound(signal, sound, level_db, loop=loop, start_s=start_s),
             },
         )
 
@@ -334,7 +335,7 @@ class Edits:
         return self._note(
             "add_emitter",
             {
-                "sound": _sound(signal, sound, level_db, loop=loop, start_s=start_s),
+                "sound": emitter_sound(signal, sound, level_db, loop=loop, start_s=start_s),
                 "object": thing,
                 "at": None if at is None else point("at", at),
                 "name": name,
@@ -566,35 +567,6 @@ def _look(
         return None
     color = None if srgb is None else rgb("srgb", srgb)
     return {"substance": substance, "srgb": color, "keep_look": keep_look}
-
-
-def _sound(
-    signal: str | None,
-    sound: str | os.PathLike[str] | None,
-    level_db: float | None,
-    *,
-    loop: bool,
-    start_s: float,
-) -> dict[str, Any]:
-    told: dict[str, Any] = {}
-    if (signal is None) == (sound is None):
-        found = "neither" if signal is None else "both"
-        raise ConfigError(f"signal, sound: found {found}; expected one of them")
-    if signal is not None:
-        rows = {row["name"]: row for row in json.loads(_native.signals_json())}
-        told["signal"] = choice("signal", signal, list(rows))
-        level_db = rows[signal]["usual_level_db"] if level_db is None else level_db
-    elif sound is not None:
-        told["file"] = path("sound", sound)
-        if level_db is None:
-            raise ConfigError("level_db: a sound file needs one, dB SPL at 1 m")
-    told["level_db"] = finite("level_db", level_db)
-    # What every sound does anyway is not noted.
-    if not flag("loop", loop):
-        told["loops"] = False
-    if finite("start_s", start_s) != 0.0:
-        told["start_s"] = start_s
-    return told
 
 
 def rgb(name: str, color: Sequence[int]) -> list[int]:

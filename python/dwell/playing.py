@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from dwell import _native
-from dwell.arguments import finite, flag, path, point, to_json, whole
+from dwell import ConfigError, _native
+from dwell.arguments import choice, finite, flag, path, point, to_json, whole
 
 #: What the names of sound files end with.
 _ENDINGS = (".wav", ".flac", ".ogg", ".oga")
@@ -45,6 +45,40 @@ def _play_json(
             "loops": flag("loop", loop),
         }
     )
+
+
+def emitter_sound(
+    signal: str | None,
+    sound: str | os.PathLike[str] | None,
+    level_db: float | None,
+    *,
+    loop: bool,
+    start_s: float,
+) -> dict[str, Any]:
+    """What an edit notes of a sound: a signal or a file, its level, and when it sounds.
+
+    Raises:
+        ConfigError: For neither or both of them, and a file without a level.
+    """
+    told: dict[str, Any] = {}
+    if (signal is None) == (sound is None):
+        found = "neither" if signal is None else "both"
+        raise ConfigError(f"signal, sound: found {found}; expected one of them")
+    if signal is not None:
+        rows = {row["name"]: row for row in json.loads(_native.signals_json())}
+        told["signal"] = choice("signal", signal, list(rows))
+        level_db = rows[signal]["usual_level_db"] if level_db is None else level_db
+    elif sound is not None:
+        told["file"] = path("sound", sound)
+        if level_db is None:
+            raise ConfigError("level_db: a sound file needs one, dB SPL at 1 m")
+    told["level_db"] = finite("level_db", level_db)
+    # What every sound does anyway is not noted.
+    if not flag("loop", loop):
+        told["loops"] = False
+    if finite("start_s", start_s) != 0.0:
+        told["start_s"] = start_s
+    return told
 
 
 class Sounds:
