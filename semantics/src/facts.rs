@@ -20,7 +20,8 @@ pub struct Facts {
     pub noun: String,
     /// Spoken noun, for several.
     pub plural: String,
-    /// Its materials by share of the visible surface, largest first.
+    /// Its materials by share of what is seen of it where it stands at the start, from around and a little above (below, for
+    /// what hangs), largest first; by share of its whole surface where nothing of it is seen.
     pub patches: Vec<Patch>,
     /// Its colours in plain words with their shares, largest first; none for what is mostly glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
@@ -36,6 +37,7 @@ impl Facts {
     pub(crate) fn gather(
         house: &House,
         colors: &IdVec<MaterialId, [f32; 3]>,
+        seen: &[(MaterialId, f32)],
         id: ObjectId,
     ) -> Self {
         let object = &house.objects[id];
@@ -44,7 +46,10 @@ impl Facts {
             || unknown_noun(&object.category),
             |row| (row.singular.to_owned(), row.plural.to_owned()),
         );
-        let (patches, substances) = surfaces(house, colors, id);
+        let areas = areas_m2(house, id);
+        let shown: &[(MaterialId, f32)] = if seen.is_empty() { &areas } else { seen };
+        let patches = patches(house, colors, shown);
+        let substances = substances(house, &areas);
         let extents_m = own_box(house, id).size();
         // Glass and mirrors have the colour of what lies behind or before them.
         let clear = ["glass", "double_glazing", "mirror"];
@@ -132,6 +137,12 @@ impl Facts {
             .is_some_and(|row| classes.contains(&row.nyu40_name))
     }
 
+    /// Whether it closes or frames a way between rooms.
+    pub fn is_door(&self) -> bool {
+        let names = ["door", "garage_door", "arch"];
+        self.category.is_some_and(|row| names.contains(&row.name))
+    }
+
     /// Whether a speaker may call it `noun`: its spoken noun, a synonym, or a more general last word ("table" for a
     /// coffee table).
     pub fn is_called(&self, noun: &str) -> bool {
@@ -191,12 +202,8 @@ fn own_box(house: &House, id: ObjectId) -> Aabb {
 
 type Substances = Vec<(&'static Substance, f32)>;
 
-/// Materials by opacity-weighted share of the surface, and substances by plain share.
-fn surfaces(
-    house: &House,
-    colors: &IdVec<MaterialId, [f32; 3]>,
-    id: ObjectId,
-) -> (Vec<Patch>, Substances) {
+/// The whole surface by material, m².
+fn areas_m2(house: &House, id: ObjectId) -> Vec<(MaterialId, f32)> {
     let mut areas: Vec<(MaterialId, f64)> = Vec::new();
     for part in house.objects[id].parts() {
         let part = &house.parts[part];
@@ -212,23 +219,25 @@ fn surfaces(
             }
         }
     }
-    let seen = |material: MaterialId, area: f64| {
-        area * f64::from(house.materials[material].opacity.max(0.02))
-    };
-    let visible: f64 = areas
-        .iter()
-        .map(|(material, area)| seen(*material, *area))
-        .sum();
-    let total: f64 = areas.iter().map(|(_, area)| area).sum();
-    if total <= 0.0 {
-        return (Vec::new(), Vec::new());
-    }
+    let rounded = areas.into_iter().map(|(id, area)| (id, area as f32));
+    rounded.filter(|(_, area)| *area > 0.0).collect()
+}
+
+/// Materials by opacity-weighted share of `areas`, largest first.
+fn patches(
+    house: &House,
+    colors: &IdVec<MaterialId, [f32; 3]>,
+    areas: &[(MaterialId, f32)],
+) -> Vec<Patch> {
+    let weight =
+        |(material, area): &(MaterialId, f32)| area * house.materials[*material].opacity.max(0.02);
+    let total: f32 = areas.iter().map(weight).sum();
     let mut patches: Vec<Patch> = areas
         .iter()
-        .map(|(material, area)| Patch {
-            material: *material,
-            linear: colors[*material],
-            share: (seen(*material, *area) / visible) as f32,
+        .map(|area| Patch {
+            material: area.0,
+            linear: colors[area.0],
+            share: weight(area) / total,
         })
         .collect();
     patches.sort_by(|p, q| {
@@ -236,10 +245,16 @@ fn surfaces(
             .total_cmp(&p.share)
             .then(p.material.cmp(&q.material))
     });
+    patches
+}
+
+/// Substances by share of `areas`, largest first.
+fn substances(house: &House, areas: &[(MaterialId, f32)]) -> Substances {
+    let total: f32 = areas.iter().map(|(_, area)| area).sum();
     let mut substances: Substances = Vec::new();
     for (material, area) in areas {
-        let substance = library().get_or_default(&house.materials[material].substance);
-        let share = (area / total) as f32;
+        let substance = library().get_or_default(&house.materials[*material].substance);
+        let share = area / total;
         match substances
             .iter_mut()
             .find(|(known, _)| known.name == substance.name)
@@ -249,5 +264,5 @@ fn surfaces(
         }
     }
     substances.sort_by(|p, q| q.1.total_cmp(&p.1).then(p.0.name.cmp(&q.0.name)));
-    (patches, substances)
+    substances
 }

@@ -25,6 +25,9 @@ pub struct RoomNode {
     pub name: String,
     /// Floor area, m².
     pub area_m2: f32,
+    /// The rooms that it is open to without a door between, rising.
+    #[serde(default)]
+    pub passages: Vec<u32>,
 }
 
 /// An object.
@@ -107,6 +110,7 @@ pub fn scene_graph(scene: &Scene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
             room: id.0,
             name: facts.label.clone(),
             area_m2: facts.area_m2,
+            passages: facts.passages.iter().map(|room| room.0).collect(),
         }
     });
     let mut relations = Vec::new();

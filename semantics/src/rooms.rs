@@ -2,15 +2,15 @@
 
 use crate::color::{Patch, Vocabulary, color_words};
 use crate::english;
+use crate::passages::passages;
 use crate::room_kind::{RoomKind, room_kinds};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::math;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{House, IdVec, MaterialId, RoomId, StructureKind, SurfaceOwner};
+use dwell_scene::{Aabb, House, IdVec, MaterialId, RoomId, StructureKind, SurfaceOwner};
 use glam::Vec3;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// How many points of its floor stand for a room.
 const POINTS: usize = 256;
@@ -38,19 +38,27 @@ pub struct RoomFacts {
     pub floor_word: Option<&'static str>,
     /// The colour word of most of its walls' inner faces.
     pub wall_color: Option<&'static str>,
+    /// The rooms that it is open to without a door between, rising.
+    pub passages: Vec<RoomId>,
 }
 
 impl RoomFacts {
     pub(crate) fn gather(
-        house: &Arc<House>,
+        rays: &RayScene,
         colors: &IdVec<MaterialId, [f32; 3]>,
+        doors: &[Aabb],
     ) -> IdVec<RoomId, Self> {
-        let surfaces = Surfaces::gather(house, colors);
+        let house = rays.house();
+        let surfaces = Surfaces::gather(rays, colors);
+        let passages = passages(rays, doors);
         let mut rooms: IdVec<RoomId, Self> = house
             .rooms
             .ids()
             .map(|id| Self::of(house, &surfaces, id))
             .collect();
+        for (room, open) in rooms.iter_mut().zip(passages.iter()) {
+            room.passages.clone_from(open);
+        }
         let mut seen: BTreeMap<String, usize> = BTreeMap::new();
         let mut total: BTreeMap<String, usize> = BTreeMap::new();
         for room in &rooms {
@@ -94,6 +102,7 @@ impl RoomFacts {
             area_m2: house.own_area_m2(id),
             floor_word: surfaces.floor_word(id),
             wall_color: surfaces.wall_color(id),
+            passages: Vec::new(),
         }
     }
 
@@ -110,7 +119,8 @@ struct Surfaces {
 }
 
 impl Surfaces {
-    fn gather(house: &Arc<House>, colors: &IdVec<MaterialId, [f32; 3]>) -> Self {
+    fn gather(rays: &RayScene, colors: &IdVec<MaterialId, [f32; 3]>) -> Self {
+        let house = rays.house();
         let count = house.rooms.len();
         let mut floors = IdVec::filled(BTreeMap::new(), count);
         for piece in &house.structure {
@@ -134,7 +144,6 @@ impl Surfaces {
                 }
             }
         }
-        let rays = RayScene::new(house.clone());
         let points: IdVec<RoomId, Vec<Vec3>> = house
             .rooms
             .ids()
@@ -142,7 +151,7 @@ impl Surfaces {
             .collect();
         let walls = points
             .iter()
-            .map(|points| seen_walls(&rays, colors, points))
+            .map(|points| seen_walls(rays, colors, points))
             .collect();
         Self { floors, walls }
     }

@@ -5,7 +5,8 @@ use crate::geometry::Extent;
 use crate::predicates::{Support, supports_of};
 use crate::semantics::Semantics;
 use dwell_scene::{
-    AgentId, Entity, EntityId, House, IdVec, ObjectId, Pose, RoomId, State, StructureId,
+    AgentId, Entity, EntityId, Holding, House, IdVec, ObjectId, Pose, Receptacle, RoomId, State,
+    StructureId,
 };
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -125,6 +126,15 @@ impl<'a> Scene<'a> {
     /// What the object rests on, the largest share first.
     pub fn supports(&self, object: ObjectId) -> &[Support] {
         self.supports[object].get_or_init(|| supports_of(self, object))
+    }
+
+    /// Whether people say of things that they lie on it, never in it: a book between the arms of a sofa lies on the sofa.
+    pub(crate) fn is_lain_upon(&self, object: ObjectId) -> bool {
+        let seats = ["chair", "sofa", "bed"];
+        let row = self.facts(object).category;
+        let inside = |place: &Receptacle| place.object == object && place.holding == Holding::In;
+        row.is_some_and(|row| seats.contains(&row.nyu40_name) && !row.contains)
+            && !self.house().receptacles.iter().any(inside)
     }
 
     /// Who holds the object.

@@ -7,6 +7,8 @@ use crate::geometry::{Extent, Hull};
 use crate::predicates;
 use crate::rooms::RoomFacts;
 use crate::scene::{Scene, Term, Viewer};
+use crate::seen::seen_surfaces;
+use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, IdVec, MaterialId, ObjectId, RoomId, State, StructureId};
 use glam::Vec2;
 use std::sync::Arc;
@@ -33,15 +35,22 @@ impl Semantics {
             let outline = mesh.positions.iter().map(|p| Vec2::new(p.x, p.z));
             (mesh.bounds(), Hull::around(outline))
         });
+        let rest_extents: IdVec<ObjectId, Extent> = objects()
+            .map(|id| Extent::measure(house, &state, id))
+            .collect();
+        let rays = RayScene::new(house.clone());
+        let bounds = rest_extents.iter().map(|extent| extent.bounds).collect();
+        let seen = seen_surfaces(&rays, &bounds);
+        let facts: IdVec<ObjectId, Facts> = objects()
+            .map(|id| Facts::gather(house, &colors, &seen[id], id))
+            .collect();
+        let doors = facts.iter_ids().filter(|(_, facts)| facts.is_door());
+        let doors: Vec<Aabb> = doors.map(|(id, _)| bounds[id]).collect();
         Self {
-            facts: objects()
-                .map(|id| Facts::gather(house, &colors, id))
-                .collect(),
-            rest_extents: objects()
-                .map(|id| Extent::measure(house, &state, id))
-                .collect(),
             structure: structure.collect(),
-            rooms: RoomFacts::gather(house, &colors),
+            rooms: RoomFacts::gather(&rays, &colors, &doors),
+            facts,
+            rest_extents,
             colors,
             house: house.clone(),
         }

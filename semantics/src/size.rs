@@ -5,10 +5,13 @@ use dwell_scene::math;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Whether a box says nothing about the size of such things: doors swing, cloth is folded.
-fn changes(row: &CategoryRow) -> bool {
-    let classes = ["door", "curtain", "blinds", "towel", "clothes"];
-    classes.contains(&row.nyu40_name) || ["blanket", "umbrella"].contains(&row.name)
+/// Whether a box says nothing about the size of such things: doors swing, cloth is folded, and what is built in has the size
+/// of its room.
+fn has_no_usual_size(row: &CategoryRow) -> bool {
+    let classes = ["door", "curtain", "blinds", "towel", "clothes", "counter"];
+    row.structure
+        || classes.contains(&row.nyu40_name)
+        || ["blanket", "umbrella"].contains(&row.name)
 }
 
 /// How large a thing is beside a usual specimen of its category.
@@ -34,9 +37,9 @@ pub enum Size {
 
 impl Size {
     /// The size of a box of `extents_m` beside the usual one of `row`; [`Size::Normal`] for an unknown category
-    /// and for what folds or swings.
+    /// and for what folds, swings or is built in.
     pub fn of(extents_m: Vec3, row: Option<&CategoryRow>) -> Self {
-        let Some(row) = row.filter(|row| !changes(row)) else {
+        let Some(row) = row.filter(|row| !has_no_usual_size(row)) else {
             return Self::Normal;
         };
         let face = |m: Vec3| {
@@ -75,7 +78,7 @@ mod tests {
         for row in categories().rows() {
             let usual = Vec3::from(row.size_m);
             assert_eq!(Size::of(usual, Some(row)), Size::Normal, "{}", row.name);
-            if changes(row) {
+            if has_no_usual_size(row) {
                 assert_eq!(Size::of(usual * 3.0, Some(row)), Size::Normal);
                 continue;
             }

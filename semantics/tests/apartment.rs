@@ -56,6 +56,52 @@ fn every_room_and_thing_has_its_words() {
     }
 }
 
+/// The kitchen has orange fronts on grey boards, and no door to the living room.
+#[test]
+fn words_say_what_one_sees() {
+    let house = &*HOUSE;
+    let semantics = Semantics::new(house);
+    let state = State::new(house);
+    let scene = semantics.scene(&state);
+    let room = |kind: &str| {
+        let found = house.rooms.iter_ids().find(|(_, room)| room.kind() == kind);
+        found.map(|(id, _)| id).unwrap()
+    };
+    let (kitchen, living_room) = (room("kitchen"), room("living room"));
+    let words_of = |category: &str| -> Vec<&str> {
+        let facts = house.objects.ids().map(|id| semantics.facts(id));
+        let known = facts.filter(|facts| facts.category.is_some_and(|row| row.name == category));
+        known.map(|facts| facts.colors[0].0).collect()
+    };
+    let units = [
+        words_of("kitchen_set"),
+        words_of("hanging_kitchen_cabinet"),
+        words_of("kitchen_cabinet"),
+    ]
+    .concat();
+    assert!(
+        units.len() >= 6 && units.iter().all(|word| *word == "orange"),
+        "{units:?}"
+    );
+
+    assert_eq!(semantics.room(kitchen).passages, [living_room]);
+    assert_eq!(semantics.room(living_room).passages, [kitchen]);
+    assert!(semantics.room(room("hallway")).passages.is_empty());
+    let graph = scene_graph(&scene, None);
+    assert_eq!(graph.rooms[kitchen.0 as usize].passages, [living_room.0]);
+    let text = describe_house(&scene);
+    assert!(text.contains("an open passage to the kitchen."), "{text}");
+    for wrong in [
+        "n the sofa are",
+        "clothes",
+        "small kitchen",
+        "large kitchen",
+    ] {
+        let right = wrong == "n the sofa are" && text.contains("On the sofa are");
+        assert!(right || !text.contains(wrong), "{wrong}: {text}");
+    }
+}
+
 /// The description of the house names as many things as there are.
 #[test]
 fn every_thing_is_mentioned_once() {

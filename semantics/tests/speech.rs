@@ -152,6 +152,40 @@ fn descriptions_read_aloud() {
     );
 }
 
+/// What stands in the room says the colour, not what is behind a front or before a wall.
+#[test]
+fn the_colour_is_that_of_what_is_seen() {
+    let mut b = common::Builder::new("fronts");
+    b.room("kitchen", [0.05, 0.05], [3.95, 3.95]);
+    let gray = b.material("particle_board", [128, 128, 128]);
+    let orange = b.material("particle_board", [240, 130, 20]);
+    // Boards one behind another, and a front before them all, against the wall at z 0.05.
+    let boards: Vec<common::Corners> = (0..8)
+        .map(|k| 0.06 + 0.07 * k as f32)
+        .map(|z| ([1.0, 0.0, z], [2.2, 2.0, z + 0.02]))
+        .collect();
+    let cabinet = b.thing("wardrobe_cabinet", &boards, gray);
+    let part = &mut b.data.parts.as_mut_slice()[0];
+    part.materials.push(orange);
+    let middle = part.world_from_part.position;
+    let front = dwell_scene::Mesh::cuboid(
+        Vec3::new(1.0, 0.0, 0.58) - middle,
+        Vec3::new(2.2, 2.0, 0.6) - middle,
+    );
+    let mesh = part.mesh;
+    let mut whole = (*b.data.meshes[mesh]).clone();
+    whole.append(&front, 1);
+    b.data.meshes[mesh] = std::sync::Arc::new(whole);
+    let house = b.build();
+    let semantics = Semantics::new(&house);
+    let colors = &semantics.facts(cabinet).colors;
+    assert_eq!(colors[0].0, "orange", "{colors:?}");
+    assert!(colors[0].1 > 0.5, "{colors:?}");
+    let state = State::new(&house);
+    let text = describe_house(&semantics.scene(&state));
+    assert!(text.contains("an orange and gray wardrobe"), "{text}");
+}
+
 #[test]
 fn texts_are_the_same_every_time() {
     let s = small_house();

@@ -31,7 +31,7 @@ const HEADS: &[(&str, &[&str])] = &[
         &["beige", "tan", "cream", "sand", "ivory", "khaki"],
     ),
     ("red", &["red", "maroon"]),
-    ("orange", &["orange"]),
+    ("orange", &["orange", "terracotta"]),
     ("yellow", &["yellow", "gold", "golden", "mustard", "ochre"]),
     ("green", &["green", "olive", "lime"]),
     (
@@ -100,6 +100,9 @@ const GILT: [&str; 3] = ["yellow", "gold", "mustard"];
 /// the survey's tan 0.093, light oak up to 0.09.
 const HUED: f32 = 0.035;
 const GILDED: f32 = 0.105;
+/// Lightness from which a colour of such chroma is no brown either: brown is dark orange. Terracotta lacquer has 0.62, cherry
+/// wood 0.54.
+const LIT: f32 = 0.57;
 
 /// "Very dark brown" counts for brown. Names of very light colours are left out: people call them after the tint, a room
 /// calls them white or beige; and so are tinted greys and yellow browns, which lie between two words.
@@ -189,7 +192,8 @@ impl Vocabulary {
     /// The nearest entry in `OKLab`, the first of equals. CIEDE2000 is a formula for small differences (it is no metric
     /// and jumps at opposite hues); names lie far apart, and `OKLab` is uniform there and cheap. Plain words: nearly
     /// grey colours are black, gray or white by lightness, the others take the word of the nearest survey colour that is not
-    /// of an opposite hue; clear hues are never gray, and clear yellows never beige.
+    /// of an opposite hue; clear hues are never gray, clear yellows never beige, and
+    /// clear light oranges never brown.
     pub fn word(self, linear: [f32; 3]) -> &'static str {
         let color = Oklab::from_linear(linear);
         if self == Self::Plain {
@@ -209,6 +213,7 @@ impl Vocabulary {
                 let excluded = match entry.name {
                     "gray" => chroma >= HUED,
                     "beige" if chroma >= GILDED => true,
+                    "brown" if chroma >= GILDED && q.l >= LIT => true,
                     _ => p.a * q.a + p.b * q.b <= 0.0,
                 };
                 if excluded {
@@ -319,6 +324,11 @@ mod tests {
             ([170, 20, 25], "red"),
             ([240, 220, 60], "yellow"),
             ([240, 130, 20], "orange"),
+            // Fronts of a kitchen, a terracotta pot; cherry wood and a loaf stay brown.
+            ([190, 112, 82], "orange"),
+            ([186, 104, 76], "orange"),
+            ([160, 82, 45], "brown"),
+            ([178, 118, 62], "brown"),
             ([230, 150, 180], "pink"),
             ([110, 40, 140], "purple"),
             ([236, 228, 212], "white"),

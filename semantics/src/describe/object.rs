@@ -78,6 +78,7 @@ fn first_related(scene: &Scene<'_>, object: ObjectId, name: &str) -> Option<Obje
     // A thing is placed by something larger than itself; the largest is the easiest to find.
     let marks = |id: ObjectId| scene.facts(id).category.is_some() && !scene.facts(id).is_opening();
     found.retain(|other| name != "next_to" || marks(*other));
+    found.retain(|other| name != "in" || !scene.is_lain_upon(*other));
     let volume = |id: ObjectId| scene.extent(id).bounds.volume();
     let largest = found
         .into_iter()

@@ -12,9 +12,6 @@ use std::collections::BTreeMap;
 /// How far beyond a door's box its other side is looked for, m.
 const DOORSTEP_M: f32 = 0.35;
 
-/// The categories that belong to a room's shell.
-const DOORS: [&str; 3] = ["door", "garage_door", "arch"];
-
 fn is_a(scene: &Scene<'_>, object: ObjectId, names: &[&str]) -> bool {
     scene
         .facts(object)
@@ -75,7 +72,7 @@ fn openings(scene: &Scene<'_>, room: RoomId) -> Option<String> {
     let doors: Vec<ObjectId> = house
         .objects
         .ids()
-        .filter(|object| is_a(scene, *object, &DOORS))
+        .filter(|object| scene.facts(*object).is_door())
         .filter(|object| {
             scene.room_of(*object) == Some(room) || rooms_beside(scene, *object).contains(&room)
         })
@@ -112,6 +109,15 @@ fn openings(scene: &Scene<'_>, room: RoomId) -> Option<String> {
         let what = if inner.is_empty() { "" } else { "further" };
         parts.push(counted(further.len(), what, "door", "doors"));
     }
+    let open = &scene.semantics.room(room).passages;
+    if !open.is_empty() {
+        let names: Vec<String> = open
+            .iter()
+            .map(|other| format!("the {}", scene.semantics.room(*other).label))
+            .collect();
+        let count = counted(open.len(), "open", "passage", "passages");
+        parts.push(format!("{count} to {}", list(&names)));
+    }
     (!parts.is_empty()).then(|| format!("It has {}.", list(&parts)))
 }
 
@@ -131,6 +137,7 @@ fn placed(scene: &Scene<'_>, room: RoomId, objects: &[ObjectId]) -> Placed {
             let carrier = house.objects.ids().find(|other| {
                 other != object
                     && scene.room_of(*other) == Some(room)
+                    && !(name == "in" && scene.is_lain_upon(*other))
                     && predicate.holds(scene, Term::Object(*object), Term::Object(*other), None)
             })?;
             Some((name, carrier))
@@ -169,7 +176,7 @@ pub fn describe_room(scene: &Scene<'_>, room: RoomId) -> String {
     let objects: Vec<ObjectId> = scene
         .objects_in(room)
         .into_iter()
-        .filter(|object| !is_a(scene, *object, &DOORS) && !is_a(scene, *object, &["window"]))
+        .filter(|object| !scene.facts(*object).is_door() && !is_a(scene, *object, &["window"]))
         .filter(|object| scene.holder(*object).is_none())
         .collect();
     let Placed {

@@ -70,6 +70,7 @@ fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
         {
             if scene.facts(landmark).category.is_none()
                 || scene.facts(landmark).is_opening()
+                || (name == "in" && scene.is_lain_upon(landmark))
                 || !predicate.holds(scene, Term::Object(target), Term::Object(landmark), None)
             {
                 continue;

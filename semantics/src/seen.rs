@@ -1,0 +1,95 @@
+//! What of things is seen: their surfaces as they show where the things stand at the start.
+
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::math;
+use dwell_scene::parallel::Threads;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{Aabb, IdVec, MaterialId, ObjectId, SurfaceOwner};
+use glam::Vec3;
+
+/// From how many sides a thing is looked at.
+const SIDES: usize = 8;
+/// How many parallel rays look from each side.
+const RAYS: usize = 32;
+/// How far before the thing's box they start, m: what lies closer to a wall on one side is not seen from there.
+const START_M: f32 = 0.3;
+/// How steeply they look down (or up, at what hangs): rise over run.
+const SLOPE: f32 = 0.35;
+/// The height of eyes above the floor, m. Things whose middle is higher are seen from below.
+const EYES_M: f32 = 1.7;
+/// How many rays must meet a thing for it to count as seen.
+const LEAST_HITS: usize = 12;
+
+/// For each object the area that shows of each of its materials, summed over the sides, m²; nothing for what is hidden, as a
+/// plate in a cupboard is. `bounds`: the box of each object.
+///
+/// Walls behind things, and other things before them, hide what they hide in the house: the back of a cupboard counts for
+/// nothing.
+pub(crate) fn seen_surfaces(
+    rays: &RayScene,
+    bounds: &IdVec<ObjectId, Aabb>,
+) -> IdVec<ObjectId, Vec<(MaterialId, f32)>> {
+    let ids: Vec<ObjectId> = bounds.ids().collect();
+    Threads::resolve(None)
+        .map(ids.len(), |k| seen(rays, &bounds[ids[k]], ids[k]))
+        .into()
+}
+
+fn seen(rays: &RayScene, bounds: &Aabb, id: ObjectId) -> Vec<(MaterialId, f32)> {
+    let house = rays.house();
+    let object = &house.objects[id];
+    let floor_y = object
+        .room
+        .map_or(house.levels[object.level].bounds.min.y, |room| {
+            house.rooms[room].floor_y
+        });
+    let (middle, half) = (bounds.center(), bounds.size() * 0.5);
+    let rise = if middle.y > floor_y + EYES_M {
+        SLOPE
+    } else {
+        -SLOPE
+    };
+    let mut areas: Vec<(MaterialId, f32)> = Vec::new();
+    let mut hits = 0;
+    for side in 0..SIDES {
+        // An eighth of a step aside, so that no ray runs along the faces of furniture that stands straight.
+        let turn = std::f32::consts::TAU * (side as f32 + 0.125) / SIDES as f32;
+        let (sine, cosine) = math::sin_cos(turn);
+        let along = Vec3::new(sine, rise, cosine).normalize();
+        let right = Vec3::new(cosine, 0.0, -sine);
+        let up = right.cross(along);
+        let reach = [right, up, along].map(|axis| axis.abs().dot(half));
+        let area_m2 = 4.0 * reach[0] * reach[1] / RAYS as f32;
+        for k in 0..RAYS {
+            // The R2 sequence spreads points evenly.
+            let place = |step: f32| 2.0 * (step * (k + 1) as f32).fract() - 1.0;
+            let from = middle
+                + right * (reach[0] * place(0.754_877_7))
+                + up * (reach[1] * place(0.569_840_3))
+                - along * (reach[2] + START_M);
+            let ray = Ray::new(from, along).between(0.0, 2.0 * reach[2] + START_M);
+            let Some(hit) = rays.closest(&ray, RayMask::EYE) else {
+                continue;
+            };
+            let surface = rays.surface(&hit);
+            let SurfaceOwner::Part(part) = surface.owner else {
+                continue;
+            };
+            if house.parts[part].object != id {
+                continue;
+            }
+            hits += 1;
+            match areas
+                .iter_mut()
+                .find(|(known, _)| *known == surface.material)
+            {
+                Some((_, sum)) => *sum += area_m2,
+                None => areas.push((surface.material, area_m2)),
+            }
+        }
+    }
+    if hits < LEAST_HITS {
+        areas.clear();
+    }
+    areas
+}
