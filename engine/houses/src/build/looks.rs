@@ -110,6 +110,13 @@ impl LookTable {
         id
     }
 
+    /// Changes a material that was added.
+    pub(crate) fn refine(&mut self, id: MaterialId, change: impl FnOnce(&mut Material)) {
+        if let Some(material) = self.materials.get_mut(id) {
+            change(material);
+        }
+    }
+
     /// All materials.
     pub(crate) fn into_materials(self) -> IdVec<MaterialId, Material> {
         self.materials

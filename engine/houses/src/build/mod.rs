@@ -1,6 +1,7 @@
 //! What several formats need to make a [`HouseData`](dwell_scene::HouseData) out of their files.
 
 mod components;
+mod given;
 mod joined;
 mod lamps;
 mod looks;
@@ -12,6 +13,7 @@ mod textures;
 pub(crate) use components::{Component, components, submesh};
 pub(crate) use dwell_furniture::shapes::triangulate;
 pub(crate) use dwell_furniture::tables::{CategoryRow, category, room_kind, substance_of};
+pub(crate) use given::{GivenLight, GivenObject, GivenPart};
 pub(crate) use joined::joined;
 pub(crate) use lamps::FileLamp;
 pub(crate) use looks::{Look, LookTable};

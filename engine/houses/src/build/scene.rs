@@ -7,12 +7,13 @@
 use std::sync::Arc;
 
 use dwell_scene::{
-    Aabb, Category, Collider, House, HouseData, Id, Level, LevelId, Mesh, Mobility, Object,
+    Aabb, Category, Collider, House, HouseData, Id, Level, LevelId, Mesh, MeshId, Mobility, Object,
     ObjectId, Part, PartId, Room, RoomId, Sky, Structure, StructureKind, Texture, space,
 };
 use glam::{Affine3A, Vec2, Vec3};
 
 use super::CategoryRow;
+use super::given::{GivenObject, Ready};
 use super::lamps::{self, FileLamp};
 use super::{LookTable, Names, category, convex_pieces};
 use crate::damage::Damage;
@@ -32,6 +33,8 @@ pub(crate) struct Thing {
     pub(crate) level: Option<usize>,
     pub(crate) room: Option<usize>,
     pub(crate) role: Role,
+    /// The object and its part, as positions in [`Scene::objects`], whose look this is.
+    pub(crate) part_of: Option<(usize, usize)>,
 }
 
 /// What a file says of a thing.
@@ -81,6 +84,8 @@ pub(crate) struct Scene {
     pub(crate) rooms: Vec<FileRoom>,
     pub(crate) sky: Option<Sky>,
     pub(crate) lamps: Vec<FileLamp>,
+    /// Objects of which the file says more than shapes and names.
+    pub(crate) objects: Vec<GivenObject>,
 }
 
 impl Scene {
@@ -124,25 +129,71 @@ impl Scene {
         for room in self.rooms {
             builder.named_room(room);
         }
-        let (structure, objects): (Vec<_>, Vec<_>) = self
-            .things
+        let (given, things) = given_objects(self.objects, self.things, at, report);
+        let (structure, objects): (Vec<_>, Vec<_>) = things
             .into_iter()
             .filter(|thing| !thing.mesh.triangles.is_empty())
             .partition(|thing| thing.structure_kind().is_some());
-        let alone = structure.is_empty() && objects.len() == 1;
+        let alone = structure.is_empty() && given.is_empty() && objects.len() == 1;
         for thing in structure {
             builder.structure(thing);
         }
         if !named {
             room_over_floors(&mut builder.data);
         }
+        for object in given {
+            builder.given(object);
+        }
+        let known = builder.data.objects.len();
         for thing in objects {
             builder.object(thing, alone, at, report);
         }
-        builder.settle(alone);
+        builder.settle(alone, known);
         lamps::hang(self.lamps, &mut builder.data, &builder.bounds);
         House::new(builder.data).map_err(HousesError::scene(at))
     }
+}
+
+/// Objects with the looks of their parts, in the order of the house that was written, and the things that are left: those of
+/// objects that were scaled are things like any other.
+fn given_objects(
+    objects: Vec<GivenObject>,
+    things: Vec<Thing>,
+    at: &At,
+    report: &mut Report,
+) -> (Vec<Ready>, Vec<Thing>) {
+    let mut looks: Vec<Vec<Option<Thing>>> = objects
+        .iter()
+        .map(|object| object.parts.iter().map(|_| None).collect())
+        .collect();
+    let mut left = Vec::new();
+    for thing in things {
+        match thing.part_of {
+            Some((object, part)) => looks[object][part] = Some(thing),
+            None => left.push(thing),
+        }
+    }
+    let mut ready = Vec::new();
+    for (object, own) in objects.into_iter().zip(looks) {
+        let shapes = own.iter().map(|thing| {
+            thing
+                .as_ref()
+                .map(|t| (t.mesh.clone(), t.materials.clone()))
+        });
+        match Ready::new(object, shapes.collect()) {
+            Ok(object) => ready.push(object),
+            Err(name) => {
+                let what = "it was scaled, so that what extras say of its joints, masses and shapes is not read";
+                let damage = Damage::Simplified {
+                    what: what.to_owned(),
+                };
+                report.warn(at.field(name), damage);
+                left.extend(own.into_iter().flatten());
+            }
+        }
+    }
+    ready.sort_by_key(Ready::order);
+    (ready, left)
 }
 
 /// What part of a building a name means, if it means one: `Wall_3`, `WallInside#0_0_1`, `floor`; not `wall_lamp_1`.
@@ -282,6 +333,33 @@ impl Builder {
         });
     }
 
+    /// The id of an object's mesh, which several may share.
+    fn mesh(meshes: &mut Vec<Arc<Mesh>>, data: &mut HouseData, mesh: Arc<Mesh>) -> MeshId {
+        let known = meshes.iter().position(|other| Arc::ptr_eq(other, &mesh));
+        known.map_or_else(
+            || {
+                meshes.push(mesh.clone());
+                data.meshes.push(mesh)
+            },
+            // Structure meshes come first and are never shared.
+            |k| MeshId((data.structure.len() + k) as u32),
+        )
+    }
+
+    fn given(&mut self, object: Ready) {
+        let (level, _) = object.home();
+        let level = level.filter(|k| *k < self.data.levels.len());
+        let level = level.map_or(LEVEL, |k| LevelId(k as u32));
+        let bounds = object.bounds();
+        self.grow(level, &bounds);
+        self.bounds.push(bounds);
+        let name = self.names.unique(object.name());
+        let meshes = &mut self.meshes;
+        object.put(&mut self.data, name, level, |data, mesh| {
+            Self::mesh(meshes, data, mesh)
+        });
+    }
+
     fn object(&mut self, thing: Thing, alone: bool, at: &At, report: &mut Report) {
         let Some((pose, part_from_mesh)) = space::split_affine(&thing.world_from_mesh) else {
             let reason = "it flattens space or is not finite".to_owned();
@@ -305,18 +383,7 @@ impl Builder {
         } else {
             vec![Collider::ExactMesh]
         };
-        let known = self
-            .meshes
-            .iter()
-            .position(|mesh| Arc::ptr_eq(mesh, &thing.mesh));
-        let mesh = known.map_or_else(
-            || {
-                self.meshes.push(thing.mesh.clone());
-                self.data.meshes.push(thing.mesh.clone())
-            },
-            // Structure meshes come first and are never shared.
-            |k| dwell_scene::MeshId((self.data.structure.len() + k) as u32),
-        );
+        let mesh = Self::mesh(&mut self.meshes, &mut self.data, thing.mesh.clone());
         let id = ObjectId(self.data.objects.len() as u32);
         let density_kg_m3 = row
             .map_or(300.0, CategoryRow::box_density_kg_m3)
@@ -365,15 +432,15 @@ impl Builder {
         });
     }
 
-    /// Fixes movable things that hang in the air: they would only fall.
-    fn settle(&mut self, alone: bool) {
+    /// Fixes movable things that hang in the air: they would only fall. The first `known` objects are as their file says.
+    fn settle(&mut self, alone: bool, known: usize) {
         let floor_of = |level: LevelId| {
             let rooms = self.data.rooms.iter().filter(|room| room.level == level);
             let floor_y = rooms.map(|room| room.floor_y).reduce(f32::max);
             floor_y.unwrap_or(self.data.levels[level].bounds.min.y)
         };
         let grounds: Vec<f32> = self.data.levels.ids().map(floor_of).collect();
-        for (k, object) in self.data.objects.iter_mut().enumerate() {
+        for (k, object) in self.data.objects.iter_mut().enumerate().skip(known) {
             let own = self.bounds[k];
             let foot = own.center().with_y(own.min.y);
             let stands = self.bounds.iter().enumerate().any(|(other, b)| {

@@ -25,6 +25,7 @@ pub(super) fn convert(
     buffers: &Buffers<'_>,
     root: &DataRoot,
     name: &str,
+    trusted: bool,
     threads: Threads,
     report: &mut Report,
 ) -> Result<Scene, HousesError> {
@@ -52,11 +53,11 @@ pub(super) fn convert(
     }
     let mut looks = LookTable::default();
     let images = images(json, buffers, root, &at, threads, report);
-    let material_ids = materials(json, &images, &mut looks);
+    let material_ids = materials(json, &images, trusted, &mut looks, &at, report);
     let mut meshes: Vec<Option<(Arc<Mesh>, Vec<MaterialId>)>> = vec![None; json.meshes.len()];
     let (mut read, mut shown) = (Corners::default(), Corners::default());
     let mut things = Vec::new();
-    let tree = tree(json, &at, report);
+    let tree = tree(json, trusted, &at, report);
     for instance in tree.instances {
         let Some(mesh) = json.meshes.get(instance.mesh) else {
             continue;
@@ -101,6 +102,7 @@ pub(super) fn convert(
             level: instance.level,
             room: instance.room,
             role: instance.role,
+            part_of: instance.part_of,
         });
     }
     Ok(Scene {
@@ -113,6 +115,7 @@ pub(super) fn convert(
         rooms: tree.rooms,
         sky: tree.sky,
         lamps: tree.lamps,
+        objects: tree.objects,
     })
 }
 

@@ -21,6 +21,7 @@ use dwell_scene::House;
 use dwell_scene::parallel::Threads;
 
 use crate::build::Scene;
+use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::MAX_BUFFER_BYTES;
 use crate::report::{At, Report};
@@ -36,7 +37,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// Opens a `.glb` or `.gltf` file. Every node with a mesh is a thing; names mean structure or a category.
 ///
 /// Points and spots of light hang on the nearest object. Animations, skins, cameras and directional lights are not read and
-/// reported; of `extras.dwell` all is passed over but rooms, what is the building, lamps, and the sky.
+/// reported. What `extras.dwell` says is read, so that a file of [`write`](write()) is the house that was written; where it breaks a
+/// rule of the scene it is reported, and objects and materials are read as in a file of anybody.
 ///
 /// # Errors
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no valid glTF 2.0,
@@ -65,9 +67,19 @@ pub fn open_bytes(
     name: &str,
     threads: Threads,
 ) -> Result<(House, Report), HousesError> {
+    let at = At::file(name);
     let mut report = Report::new();
-    let scene = read_scene(bytes, root, name, threads, &mut report)?;
-    Ok((scene.into_house(&At::file(name), &mut report)?, report))
+    let scene = read(bytes, root, name, true, threads, &mut report)?;
+    match scene.into_house(&at, &mut report) {
+        Err(HousesError::Scene { source, .. }) => {
+            let mut report = Report::new();
+            let what = format!("what extras say of objects and materials is not read: {source}");
+            report.warn(at.field("extras.dwell"), Damage::Simplified { what });
+            let scene = read(bytes, root, name, false, threads, &mut report)?;
+            Ok((scene.into_house(&at, &mut report)?, report))
+        }
+        house => Ok((house?, report)),
+    }
 }
 
 /// The named meshes of a file with their materials and images; files beside it are read from `root`.
@@ -78,6 +90,18 @@ pub(crate) fn read_scene(
     bytes: &[u8],
     root: &DataRoot,
     name: &str,
+    threads: Threads,
+    report: &mut Report,
+) -> Result<Scene, HousesError> {
+    read(bytes, root, name, true, threads, report)
+}
+
+/// `trusted`: whether what `extras` say of objects and materials counts.
+fn read(
+    bytes: &[u8],
+    root: &DataRoot,
+    name: &str,
+    trusted: bool,
     threads: Threads,
     report: &mut Report,
 ) -> Result<Scene, HousesError> {
@@ -93,7 +117,7 @@ pub(crate) fn read_scene(
         .map_err(|error| syntax(format!("no valid glTF 2.0: {error}")))?;
     let json = document.into_json();
     let buffers = buffers::Buffers::load(&json, blob, root, &at, report)?;
-    convert::convert(&json, &buffers, root, name, threads, report)
+    convert::convert(&json, &buffers, root, name, trusted, threads, report)
 }
 
 /// Whether the positions of all primitives are accessors that exist: the `gltf` crate (1.4) looks them up before it checks them, which

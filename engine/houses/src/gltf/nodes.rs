@@ -4,9 +4,10 @@ use ::gltf::json::{Index, Node, Root};
 use dwell_scene::{Sky, StructureKind};
 use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 
 use super::lights::{self, Said};
-use crate::build::{FileLamp, FileRoom, Role};
+use crate::build::{FileLamp, FileRoom, GivenLight, GivenObject, GivenPart, Role};
 use crate::damage::Damage;
 use crate::report::{At, Report};
 
@@ -19,6 +20,8 @@ pub(super) struct Instance {
     pub(super) level: Option<usize>,
     pub(super) room: Option<usize>,
     pub(super) role: Role,
+    /// The object and its part, as positions in [`Tree::objects`], whose look this is.
+    pub(super) part_of: Option<(usize, usize)>,
 }
 
 /// All that nodes say.
@@ -30,13 +33,14 @@ pub(super) struct Tree {
     pub(super) rooms: Vec<FileRoom>,
     pub(super) sky: Option<Sky>,
     pub(super) lamps: Vec<FileLamp>,
+    /// Objects of which the file says more than shapes and names.
+    pub(super) objects: Vec<GivenObject>,
 }
 
 /// A node's `extras`.
-#[derive(Default, Deserialize)]
-struct Extras {
-    #[serde(default)]
-    dwell: Known,
+#[derive(Deserialize)]
+struct Extras<T> {
+    dwell: T,
 }
 
 /// A node's `extras.dwell`, as far as it is read; `docs/formats/glb.md` has all of it.
@@ -57,6 +61,10 @@ struct Known {
     #[serde(default)]
     object: Option<String>,
     #[serde(default)]
+    part: Option<String>,
+    #[serde(default)]
+    light: Option<GivenLight>,
+    #[serde(default)]
     sky: Option<Sky>,
     #[serde(default)]
     power_w: Option<f32>,
@@ -75,10 +83,13 @@ struct Open {
     room: Option<usize>,
     /// Whether it is a part of an object.
     of_object: bool,
+    /// The object, as a position in [`Tree::objects`], when it says all that one needs.
+    object: Option<usize>,
 }
 
-/// All nodes of the default scene (of all scenes when none is the default), parents first.
-pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
+/// All nodes of the default scene (of all scenes when none is the default), parents first. `trusted`: whether what `extras` say
+/// of objects counts.
+pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> Tree {
     let scenes: Vec<_> = match json.scene.and_then(|scene| json.scenes.get(scene.value())) {
         Some(scene) => vec![scene],
         None => json.scenes.iter().collect(),
@@ -92,6 +103,7 @@ pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
         top: None,
         room: None,
         of_object: false,
+        object: None,
     };
     let mut open: Vec<Open> = roots.map(root).collect();
     if json.scenes.is_empty() {
@@ -108,6 +120,7 @@ pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
         top,
         room,
         of_object,
+        object,
     }) = open.pop()
     {
         let Some(node) = json.nodes.get(index) else {
@@ -146,8 +159,12 @@ pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
             light_of: known.light_of.clone(),
             sky: known.sky.is_some(),
         };
-        let lamp = lights::lamp(json, node, world_from_mesh, said, &node_at, report);
-        found.lamps.extend(lamp);
+        if let (Some(object), Some(light)) = (object, known.light.clone()) {
+            found.objects[object].lights.push(light);
+        } else {
+            let lamp = lights::lamp(json, node, world_from_mesh, said, &node_at, report);
+            found.lamps.extend(lamp);
+        }
         found.sky = found.sky.or(known.sky);
         let own = file_room(
             known.room.as_deref(),
@@ -158,6 +175,24 @@ pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
         );
         let top = top.unwrap_or(index);
         let of_object = of_object || known.object.is_some();
+        let begun = (trusted && known.object.is_some())
+            .then(|| given::<GivenObject>(node, &node_at, report))
+            .flatten();
+        let object = begun.map_or(object, |mut own| {
+            (own.level, own.room) = (Some(top), room);
+            found.objects.push(own);
+            Some(found.objects.len() - 1)
+        });
+        let part = (object.is_some() && known.part.is_some())
+            .then(|| given::<GivenPart>(node, &node_at, report))
+            .flatten();
+        let part_of = object.zip(part).map(|(object, mut part)| {
+            part.world_from_node = world_from_mesh;
+            part.shown = node.mesh.is_some();
+            let parts = &mut found.objects[object].parts;
+            parts.push(part);
+            (object, parts.len() - 1)
+        });
         let room = own.map_or(room, |mut own| {
             own.level = tops
                 .iter()
@@ -196,6 +231,7 @@ pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
                     None if of_object => Role::Object,
                     None => Role::Unsaid,
                 },
+                part_of,
             });
         }
         if node.skin.is_some() {
@@ -209,12 +245,28 @@ pub(super) fn tree(json: &Root, at: &At, report: &mut Report) -> Tree {
             top: Some(top),
             room,
             of_object,
+            object,
         }));
+    }
+    for object in &mut found.objects {
+        object.level = tops.iter().position(|top| Some(*top) == object.level);
     }
     for instance in &mut found.instances {
         instance.level = tops.iter().position(|top| Some(*top) == instance.level);
     }
     found
+}
+
+/// What a node says of an object or part; what cannot be read is reported and counts for nothing.
+fn given<T: DeserializeOwned>(node: &Node, at: &At, report: &mut Report) -> Option<T> {
+    let text = node.extras.as_ref()?.get();
+    let read: Result<Extras<T>, _> = serde_json::from_str(text);
+    read.map(|extras| extras.dwell)
+        .map_err(|error| {
+            let what = format!("what extras.dwell says of an object is not read: {error}");
+            report.warn(at.field("extras"), Damage::Simplified { what });
+        })
+        .ok()
 }
 
 /// What a node says of itself in our words; nothing where `extras` are not ours.
@@ -231,7 +283,7 @@ fn known(node: &Node, at: &At, report: &mut Report) -> Known {
             report.warn(at.field("extras"), Damage::Simplified { what });
             Known::default()
         },
-        |extras: Extras| extras.dwell,
+        |extras: Extras<Known>| extras.dwell,
     )
 }
 

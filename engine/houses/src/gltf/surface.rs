@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use ::gltf::json::{Root, material::AlphaMode, validation::Checked};
-use dwell_scene::material::library;
+use dwell_scene::material::{Bands, library};
 use dwell_scene::parallel::Threads;
-use dwell_scene::{MaterialId, Texture, TextureId, units};
+use dwell_scene::{Material, MaterialId, Texture, TextureId, units};
+use serde::Deserialize;
 
 use super::buffers::{Buffers, read_uri};
 use crate::build::{Look, LookTable, PixelBudget, decode, pixels, substance_of, texture_name};
@@ -116,8 +117,71 @@ fn image_of(json: &Root, material: &::gltf::json::Material) -> Option<usize> {
     Some(json.textures.get(texture.value())?.source.value())
 }
 
-/// The materials of the file, and after them the one that primitives without a material show.
-pub(super) fn materials(json: &Root, images: &Images, looks: &mut LookTable) -> Vec<MaterialId> {
+/// A material's `extras`.
+#[derive(Deserialize)]
+struct Extras {
+    dwell: Known,
+}
+
+/// A material's `extras.dwell`: what it is beyond its looks.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Known {
+    substance: Option<String>,
+    emission: Option<[f32; 3]>,
+    density_kg_m3: Option<f32>,
+    friction: Option<f32>,
+    restitution: Option<f32>,
+    absorption: Option<Bands>,
+    scattering: Option<Bands>,
+    transmission_loss_db: Option<Bands>,
+}
+
+impl Known {
+    fn read(material: &::gltf::json::Material, at: &At, report: &mut Report) -> Self {
+        let text = material.extras.as_ref().map(|extras| extras.get());
+        let Some(text) = text.filter(|text| text.contains("\"dwell\"")) else {
+            return Self::default();
+        };
+        serde_json::from_str(text).map_or_else(
+            |error| {
+                let what = format!("extras.dwell is not read: {error}");
+                report.warn(at.field("extras"), Damage::Simplified { what });
+                Self::default()
+            },
+            |extras: Extras| extras.dwell,
+        )
+    }
+
+    /// Puts its numbers in place of those of the substance.
+    fn refine(self, material: &mut Material) {
+        fn set<T>(to: &mut T, value: Option<T>) {
+            if let Some(value) = value {
+                *to = value;
+            }
+        }
+        set(&mut material.emission, self.emission);
+        set(&mut material.density_kg_m3, self.density_kg_m3);
+        set(&mut material.friction, self.friction);
+        set(&mut material.restitution, self.restitution);
+        set(&mut material.absorption, self.absorption);
+        set(&mut material.scattering, self.scattering);
+        set(
+            &mut material.transmission_loss_db,
+            self.transmission_loss_db,
+        );
+    }
+}
+
+/// The materials of the file, and after them the one that primitives without a material show, if there are such.
+pub(super) fn materials(
+    json: &Root,
+    images: &Images,
+    trusted: bool,
+    looks: &mut LookTable,
+    at: &At,
+    report: &mut Report,
+) -> Vec<MaterialId> {
     let mut ids = Vec::new();
     for (k, material) in json.materials.iter().enumerate() {
         let name = material
@@ -146,8 +210,15 @@ pub(super) fn materials(json: &Root, images: &Images, looks: &mut LookTable) -> 
             };
             library().get_or_default(of_look)
         };
-        let substance = named.unwrap_or_else(usual);
-        ids.push(looks.add(&Look {
+        let known = if trusted {
+            Known::read(material, &at.field(format_args!("materials[{k}]")), report)
+        } else {
+            Known::default()
+        };
+        let said = known.substance.as_deref();
+        let said = said.and_then(|name| library().get(name));
+        let substance = said.or(named).unwrap_or_else(usual);
+        let id = looks.add(&Look {
             srgb: [r, g, b].map(units::srgb_from_linear),
             texture,
             opacity,
@@ -155,11 +226,23 @@ pub(super) fn materials(json: &Root, images: &Images, looks: &mut LookTable) -> 
             roughness: Some(pbr.roughness_factor.0),
             metallic: Some(pbr.metallic_factor.0),
             ..Look::plain(&name, substance)
+        });
+        looks.refine(id, |material| {
+            // The colour of the file goes before one that was rounded on the way.
+            if trusted && said.is_some() {
+                material.base_color = [r, g, b].map(|c| c.clamp(0.0, 1.0));
+            }
+            known.refine(material);
+        });
+        ids.push(id);
+    }
+    let mut primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let without = primitives.any(|primitive| primitive.material.is_none());
+    if without || ids.is_empty() {
+        ids.push(looks.add(&Look {
+            srgb: [1.0; 3],
+            ..Look::plain("default", library().default_substance())
         }));
     }
-    ids.push(looks.add(&Look {
-        srgb: [1.0; 3],
-        ..Look::plain("default", library().default_substance())
-    }));
     ids
 }

@@ -111,6 +111,7 @@ pub(crate) fn read_scene(
                 level: None,
                 room: None,
                 role: Role::Unsaid,
+                part_of: None,
             }
         })
         .collect();
@@ -125,6 +126,7 @@ pub(crate) fn read_scene(
         rooms: Vec::new(),
         sky: None,
         lamps: Vec::new(),
+        objects: Vec::new(),
     };
     Ok((scene, at))
 }

@@ -1,6 +1,6 @@
 //! What nodes mean: `extras.dwell`, in our names and SI units.
 
-use dwell_scene::{Articulation, HouseData, Object, ObjectId, Part, PartId, Room, Structure};
+use dwell_scene::{Articulation, HouseData, Id, Object, ObjectId, Part, PartId, Room, Structure};
 use serde_json::{Value, json};
 
 /// A room: its kinds, heights and floor. The floor is triangles of `[x, z]`.
@@ -26,7 +26,7 @@ pub(super) fn object(house: &HouseData, id: ObjectId, object: &Object) -> Value 
         .joints
         .iter()
         .filter(|joint| joint.object == id)
-        .map(|joint| self::joint(joint, part_name))
+        .map(|joint| self::joint(house, joint, part_name))
         .collect();
     let places: Vec<Value> = house
         .receptacles
@@ -42,16 +42,18 @@ pub(super) fn object(house: &HouseData, id: ObjectId, object: &Object) -> Value 
     let sounds: Vec<Value> = house
         .emitters
         .iter()
-        .filter(|emitter| emitter.object == id)
+        .filter(|emitter| emitter.object == id && emitter.sound_file.is_none())
         .map(|emitter| {
             json!({
                 "signal": emitter.signal, "part": part_name(emitter.part), "position": emitter.position,
                 "level_db": emitter.level_db,
+                "loops": emitter.loops, "start_s": emitter.start_s,
             })
         })
         .collect();
     let mut known = json!({
         "object": object.name,
+        "index": id.index(),
         "model": object.model,
         "category": object.category,
         "mobility": object.mobility,
@@ -77,13 +79,27 @@ pub(super) fn part(part: &Part) -> Value {
         "fixed": part.fixed,
         "mass_kg": part.mass_kg,
         "density_kg_m3": part.density_kg_m3,
+        "inertial": part.inertial,
         "world_from_part": part.world_from_part,
+        "part_from_mesh": part.part_from_mesh,
         "colliders": part.colliders,
     }})
 }
 
-/// A joint: its axis through its frame on the parent, its range and its place at the start, rad or m.
-fn joint<'a>(joint: &Articulation, part_name: impl Fn(PartId) -> &'a str) -> Value {
+/// A joint: its axis through its frame on the parent, its range and its place at the start, rad or m; its motor, and by name
+/// the joint that it follows.
+fn joint<'a>(
+    house: &HouseData,
+    joint: &Articulation,
+    part_name: impl Fn(PartId) -> &'a str,
+) -> Value {
+    let mimic = joint.mimic.map(|mimic| {
+        json!({
+            "leader": house.joints[mimic.leader].name,
+            "multiplier": mimic.multiplier,
+            "offset": mimic.offset,
+        })
+    });
     json!({
         "name": joint.name,
         "kind": joint.kind,
@@ -96,5 +112,11 @@ fn joint<'a>(joint: &Articulation, part_name: impl Fn(PartId) -> &'a str) -> Val
         "closed": joint.closed,
         "open": joint.open,
         "initial": joint.initial,
+        "friction": joint.friction,
+        "damping": joint.damping,
+        "armature": joint.armature,
+        "servo": joint.servo,
+        "mimic": mimic,
+        "switches": joint.switches,
     })
 }

@@ -58,7 +58,13 @@ pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> Lamp {
         "translation": at.to_array(),
         "rotation": turn.to_array(),
         "extensions": {EXTENSION: {"light": index}},
-        "extras": {"dwell": {"light_of": object.name, "power_w": light.power_w, "on": shines}},
+        "extras": {"dwell": {
+            "light_of": object.name, "power_w": light.power_w, "on": shines,
+            "light": {
+                "part": part.name, "position": light.position, "shape": light.shape, "color": light.color,
+                "power_w": light.power_w, "attenuation": light.attenuation,
+            },
+        }},
     });
     Lamp { light: value, node }
 }
@@ -82,7 +88,7 @@ pub(super) fn sun(sky: &Sky, index: usize) -> Lamp {
     }
 }
 
-/// What the extension cannot say of lights.
+/// What the extension cannot say of lights; extras say it.
 pub(super) fn losses(house: &HouseData, losses: &mut Losses) {
     let count = |is: fn(&Light) -> bool| house.lights.iter().filter(|light| is(light)).count();
     losses.add(

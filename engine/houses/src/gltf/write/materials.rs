@@ -3,8 +3,8 @@
 use dwell_scene::{Id, Material};
 use serde_json::{Value, json};
 
-/// A material of the file. `extras.dwell` holds its substance and what physics and sound know of it, in SI units;
-/// absorption and scattering of energy, and transmission loss in dB, by band.
+/// A material of the file. `extras.dwell` holds its substance, what physics and sound know of it, in SI units, and
+/// emission, which the format caps; absorption and scattering of energy, and transmission loss in dB, by band.
 pub(super) fn material(material: &Material) -> Value {
     let [r, g, b] = material.base_color;
     let mut pbr = json!({
@@ -19,6 +19,7 @@ pub(super) fn material(material: &Material) -> Value {
     }
     let known = json!({
         "substance": material.substance,
+        "emission": material.emission,
         "density_kg_m3": material.density_kg_m3,
         "friction": material.friction,
         "restitution": material.restitution,

@@ -53,15 +53,15 @@ pub fn write(house: &House, path: &Path) -> Result<Vec<Loss>, HousesError> {
     Ok(losses(house))
 }
 
-/// What a viewer, or our own reader, does not get back. Much of it stands in the file as `extras`, which nobody must read.
+/// What viewers do not get to know: they may pass over `extras`, which our own reader reads.
 fn losses(house: &HouseData) -> Vec<Loss> {
     let mut losses = Losses::default();
     losses.add(
-        "rooms; named nodes, listed in extras, which our reader reads",
+        "rooms; named nodes, told in extras, which our reader reads",
         house.rooms.len(),
     );
     losses.add(
-        "joints; parts stand as they start, joints are listed in extras",
+        "joints; parts stand as they start, joints are told in extras, which our reader reads",
         house.joints.len(),
     );
     let moving = house
@@ -69,15 +69,27 @@ fn losses(house: &HouseData) -> Vec<Loss> {
         .iter()
         .filter(|object| object.mobility != Mobility::Fixed)
         .count();
-    losses.add("masses and colliders; listed in extras", moving);
     losses.add(
-        "sound, friction and density of materials; listed in extras",
+        "masses and colliders; told in extras, which our reader reads",
+        moving,
+    );
+    losses.add(
+        "sound, friction and density of materials; told in extras, which our reader reads",
         house.materials.len(),
     );
     lights::losses(house, &mut losses);
-    losses.add("sound emitters; listed in extras", house.emitters.len());
-    losses.add("receptacles; listed in extras", house.receptacles.len());
-    losses.add("sound files", house.sound_files.len());
+    losses.add(
+        "sound emitters; told in extras, which our reader reads",
+        house.emitters.len(),
+    );
+    losses.add(
+        "receptacles; told in extras, which our reader reads",
+        house.receptacles.len(),
+    );
+    losses.add(
+        "sound files, and emitters that play them",
+        house.sound_files.len(),
+    );
     losses.add("agents' starts", house.agent_starts.len());
     losses.into_vec()
 }
