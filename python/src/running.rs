@@ -6,6 +6,9 @@ use dwell_physics::ActionOutcome;
 use dwell_scene::{AgentId, Entity, Id, ObjectId, PartId};
 use serde_json::json;
 
+/// How many names an error lists, the nearest first.
+const NAMES: usize = 12;
+
 /// A guide, and the bits of the goal that it leads to.
 pub(crate) type GuideTo = Option<([u32; 3], Guide)>;
 
@@ -28,14 +31,10 @@ impl Running<'_> {
             _ => named.as_str().and_then(|name| house.object_named(name)),
         };
         found.ok_or_else(|| {
-            let first: Vec<_> = house
-                .objects
-                .iter()
-                .take(12)
-                .map(|object| object.name.as_str())
-                .collect();
+            let known = house.objects.iter().map(|object| object.name.as_str());
+            let near = dwell_houses::nearest(named.as_str().unwrap_or_default(), known, NAMES);
             Fault::Config(format!(
-                "no object {named}; there are {} such as {first:?}",
+                "no object {named}; of the {} the nearest are {near:?}",
                 house.objects.len()
             ))
         })

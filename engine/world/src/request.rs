@@ -23,7 +23,7 @@ const KINDS: [(&str, &[&str]); 12] = [
     ("toggle", &["target"]),
     ("point", &["target"]),
 ];
-/// How many names an error lists.
+/// How many names an error lists, the nearest first.
 const NAMES: usize = 12;
 
 /// A thing by its name in the house, or by the sensors' id.
@@ -233,16 +233,20 @@ impl ActionRequest {
     }
 }
 
+/// The names that may have been meant.
+fn near<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let near = dwell_houses::nearest(name, known, NAMES);
+    near.into_iter().map(str::to_owned).collect()
+}
+
 fn object_named(house: &House, name: &str) -> Result<ObjectId, WorldError> {
     house.object_named(name).ok_or_else(|| WorldError::Unknown {
         kind: "object",
         name: name.to_owned(),
-        known: house
-            .objects
-            .iter()
-            .take(NAMES)
-            .map(|object| object.name.clone())
-            .collect(),
+        known: near(
+            name,
+            house.objects.iter().map(|object| object.name.as_str()),
+        ),
     })
 }
 
@@ -253,11 +257,12 @@ fn part_named(house: &House, object: ObjectId, name: &str) -> Result<PartId, Wor
         .ok_or_else(|| WorldError::Unknown {
             kind: "part",
             name: name.to_owned(),
-            known: house.objects[object]
-                .parts()
-                .take(NAMES)
-                .map(|part| house.parts[part].name.clone())
-                .collect(),
+            known: near(
+                name,
+                house.objects[object]
+                    .parts()
+                    .map(|part| house.parts[part].name.as_str()),
+            ),
         })
 }
 

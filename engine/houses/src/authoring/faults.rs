@@ -5,11 +5,10 @@ use std::fmt::Display;
 use dwell_scene::material::{Substance, library};
 
 use crate::error::HousesError;
+use crate::nearest::nearest;
 
 /// Names that are offered in place of an unknown one.
 const OFFERED: usize = 6;
-/// Letters of a name that are compared; longer ones are cut.
-const COMPARED: usize = 64;
 
 /// A field that cannot be.
 pub(super) fn fault(
@@ -43,22 +42,16 @@ pub(super) fn unknown<'a>(
     of: &str,
     known: impl Iterator<Item = &'a str>,
 ) -> HousesError {
-    let mut ranked: Vec<(usize, &str)> =
-        known.map(|other| (distance(name, other), other)).collect();
-    let count = ranked.len();
-    ranked.sort_unstable();
-    ranked.dedup();
-    let nearest: Vec<&str> = ranked.iter().take(OFFERED).map(|(_, name)| *name).collect();
-    let possible = match (count, nearest.len()) {
-        (0, _) => format!("nothing: there is no {of}"),
-        (_, offered) if offered < ranked.len() => {
-            format!(
-                "one of {} {of}; the nearest are {}",
-                ranked.len(),
-                nearest.join(", ")
-            )
-        }
-        _ => format!("a {of}: {}", nearest.join(", ")),
+    let known: Vec<&str> = known.collect();
+    let near = nearest(name, known.iter().copied(), OFFERED + 1);
+    let possible = match near.len() {
+        0 => format!("nothing: there are no {of}"),
+        few if few <= OFFERED => format!("one of the {of}: {}", near.join(", ")),
+        _ => format!(
+            "one of {} {of}; the nearest are {}",
+            known.len(),
+            near[..OFFERED].join(", ")
+        ),
     };
     fault(field, format_args!("{name:?}"), possible)
 }
@@ -102,26 +95,6 @@ pub(super) fn substance(field: &str, name: &str) -> Result<&'static Substance, H
         .ok_or_else(|| unknown(field, name, "substances", known()))
 }
 
-/// How many letters must be written, struck or changed to make one name of the other (V. I. Levenshtein, 1966).
-fn distance(a: &str, b: &str) -> usize {
-    let letters = |text: &str| -> Vec<char> {
-        let lower = text.chars().flat_map(char::to_lowercase);
-        lower.take(COMPARED).collect()
-    };
-    let (a, b) = (letters(a), letters(b));
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.iter().enumerate() {
-        let mut corner = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let kept = corner + usize::from(x != y);
-            corner = row[j + 1];
-            row[j + 1] = kept.min(corner + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,6 +116,10 @@ mod tests {
             "{told}"
         );
         assert!(told.contains("nearest are chair_1, chair_2"), "{told}");
-        assert_eq!((distance("kitten", "Sitting"), distance("", "abc")), (3, 3));
+        let few = unknown("on", "tabel", "objects", ["table", "cup"].into_iter()).to_string();
+        assert_eq!(
+            few,
+            "on: found \"tabel\"; possible: one of the objects: table, cup"
+        );
     }
 }

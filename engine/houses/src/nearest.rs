@@ -1,0 +1,50 @@
+//! The names that somebody who wrote an unknown one may have meant.
+
+/// Letters of a name that are compared; longer ones are cut.
+const COMPARED: usize = 64;
+
+/// Of the `known` names those nearest to `name`, at most `count`, each once: by the letters that differ, then by the alphabet.
+pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>, count: usize) -> Vec<&'a str> {
+    let mut ranked: Vec<(usize, &str)> =
+        known.map(|other| (distance(name, other), other)).collect();
+    ranked.sort_unstable();
+    ranked.dedup();
+    ranked
+        .into_iter()
+        .take(count)
+        .map(|(_, name)| name)
+        .collect()
+}
+
+/// How many letters must be written, struck or changed to make one name of the other (V. I. Levenshtein, 1966).
+fn distance(a: &str, b: &str) -> usize {
+    let letters = |text: &str| -> Vec<char> {
+        let lower = text.chars().flat_map(char::to_lowercase);
+        lower.take(COMPARED).collect()
+    };
+    let (a, b) = (letters(a), letters(b));
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.iter().enumerate() {
+        let mut corner = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let kept = corner + usize::from(x != y);
+            corner = row[j + 1];
+            row[j + 1] = kept.min(corner + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_letters_apart_is_near() {
+        let known = ["sofa_1", "table_1", "stable", "lamp", "table_1"];
+        let near = nearest("tabel_1", known.into_iter(), 2);
+        assert_eq!(near, ["table_1", "stable"]);
+        assert_eq!((distance("kitten", "Sitting"), distance("", "abc")), (3, 3));
+    }
+}
