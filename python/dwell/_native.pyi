@@ -117,6 +117,17 @@ class House:
         """Agents of worlds over this house may wear it; ``sound_head`` in their config names it."""
     @property
     def name(self) -> str: ...
+    @property
+    def has_rooms(self) -> bool: ...
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Rooms and objects."""
+    def room_at(self, point: tuple[float, float, float]) -> str | None:
+        """The name of the room around a point."""
+    def same(self, other: House) -> bool:
+        """Whether the other holds the same in all tables, meshes and images."""
+    def fingerprint(self) -> int:
+        """The same number for houses that hold the same; 64 bits."""
     def info_json(self) -> str:
         """Counts, rooms, objects, categories, report of damage: one JSON object."""
     def describe(self, level: str, key: int | None = ...) -> list[str]:
@@ -233,7 +244,7 @@ class Batch:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor."""
     def reset(self, seeds: Sequence[int | None]) -> None: ...
     def step(self, actions: NDArray[np.int64]) -> dict[str, NDArray[Any] | list[str]]:
-        """-1: that environment is not stepped. Keys: reward, terminated, success, action_success, collision, distance_to_goal, spl, soft_spl, path_length, collisions (arrays of n) and action_error (list)."""
+        """-1: that environment is not stepped. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of n) and action_error (list)."""
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:
         """``outs``: one C-contiguous array (n, *shape) for each sensor, None for text."""
     def texts(self, sensor: int) -> list[str]: ...
@@ -245,7 +256,7 @@ class Batch:
     def ask(self, env: int, instruction: str | None = ..., distance_m: float | None = ...) -> None:
         """Asks something else (``None``: the same) of the episode that has just begun; the agent starts where it stands."""
     def rule(self, env: int, ruling_json: str) -> str:
-        """Judges the latest step anew: ``{reward, terminated, success, distance_m}``; gives ``{distance_to_goal, spl, soft_spl}``."""
+        """Judges the latest step anew: ``{reward, terminated, success, distance_m}``; gives ``{distance_to_goal, spl, soft_spl}``; null without a goal."""
     def expert_actions(self) -> NDArray[np.int64]: ...
     def state_hash(self, env: int) -> int: ...
     def snapshot(self, env: int) -> bytes:

@@ -5,18 +5,23 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
 from dwell.arguments import point, to_json, whole
+from dwell.configs import AcousticSettings, checked
 from dwell.echogram import Echogram
 from dwell.heads import Head
 from dwell.house import House
 from dwell.listening import Receiver, Source, source_of
+from dwell.outside import tell_outside
 from dwell.settings import Laws, found
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class AcousticScene:
@@ -27,7 +32,7 @@ class AcousticScene:
         house: House | str,
         *,
         laws: Laws = None,
-        **config: Any,  # noqa: ANN401 - fields of the native AcousticConfig
+        **config: Unpack[AcousticSettings],
     ) -> None:
         """Prepares a house.
 
@@ -44,15 +49,20 @@ class AcousticScene:
         """
         self.house = house if isinstance(house, House) else House.open(house)
         rows, values = found(laws)
+        settings = checked(AcousticSettings, config)
         self._native = _native.AcousticScene(
-            self.house.native, to_json(config), to_json(rows), to_json(values)
+            self.house.native, to_json(settings), to_json(rows), to_json(values)
         )
-        self._config = config
+        self._config = settings
         self._laws = {"laws": rows, "parameters": values}
 
     def __reduce__(self) -> tuple[Any, tuple[House, dict[str, Any], dict[str, Any]]]:
         """House, laws and settings."""
         return _again, (self.house, self._laws, self._config)
+
+    def __repr__(self) -> str:
+        """The house and the rate."""
+        return f"AcousticScene({self.house.name!r}, rate_hz={self.rate_hz})"
 
     @property
     def rate_hz(self) -> int:
@@ -111,6 +121,7 @@ class AcousticScene:
         Returns:
             One array of shape (channels, samples) for each receiver; their lengths differ.
         """
+        self._tell_outside(source, receivers)
         return self._native.impulse_responses(
             to_json(source_of(source).to_json()),
             to_json([receiver.to_json() for receiver in receivers]),
@@ -118,6 +129,13 @@ class AcousticScene:
             seed=whole("seed", seed),
             threads=_threads(threads),
         )
+
+    def _tell_outside(
+        self, source: Source | Sequence[float], receivers: Sequence[Receiver]
+    ) -> None:
+        tell_outside(self.house, "a source", source_of(source).position)
+        for receiver in receivers:
+            tell_outside(self.house, "a microphone", receiver.pose["position"])
 
     def metrics(
         self,
@@ -150,6 +168,7 @@ class AcousticScene:
     ) -> list[list[dict[str, Any]]]:
         """As :meth:`metrics` at many places, which share the source's rays."""
         receivers = [mic if isinstance(mic, Receiver) else Receiver.omni(mic) for mic in mics]
+        self._tell_outside(source, receivers)
         rows = self._native.metrics_json(
             to_json(source_of(source).to_json()),
             to_json([receiver.to_json() for receiver in receivers]),

@@ -58,6 +58,11 @@ class HouseBuilder(Edits):
         }
         self._storeys: list[dict[str, Any]] = [_storey(2.6)]
 
+    def __repr__(self) -> str:
+        """The name, and how much was noted."""
+        storeys, edits = len(self._storeys), len(self._edits)
+        return f"HouseBuilder({self._name!r}, storeys={storeys}, edits={edits})"
+
     def storey(self, height_m: float = 2.6) -> Self:
         """Begins the next storey, or says how high the first is while it has no rooms.
 

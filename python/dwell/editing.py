@@ -496,6 +496,10 @@ class HouseEdit(Edits):
         self._base = house
         self._made: House | None = None
 
+    def __repr__(self) -> str:
+        """The house, and how much was noted."""
+        return f"HouseEdit({self._base.name!r}, edits={len(self._edits)})"
+
     def done(self) -> House:
         """The edited house; it shares meshes and images with the one it was made from.
 

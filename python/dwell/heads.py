@@ -122,6 +122,12 @@ class Head:
         about: dict[str, Any] | None = json.loads(self._native.about_json())
         return about
 
+    def __repr__(self) -> str:
+        """A sphere, or from how many directions it was measured."""
+        about = self.about
+        what = "sphere" if about is None else f"{about['directions']} directions"
+        return f"Head({what}, id={self.id:016x})"
+
     def __eq__(self, other: object) -> bool:
         """Whether it is the same head."""
         return isinstance(other, Head) and self.id == other.id

@@ -13,6 +13,9 @@ from dwell.arguments import file_name, finite, flag, point, text, whole
 from dwell.navigation import Navigation, Walker, walker_json
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from dwell.configs import GeneratorSettings
     from dwell.editing import HouseEdit
 
 Level = Literal["object", "room", "house", "graph", "instructions"]
@@ -36,8 +39,11 @@ class House:
         """
         self._native = native
         self._again = again
+        self._hash: int | None = None
         #: Where somebody stands and looks best takes a while to find.
         self._rooms_json: str | None = None
+        #: Kinds of things of which it was told that they stand outside of every room.
+        self._told_outside: set[str] = set()
 
     @classmethod
     def open(
@@ -81,11 +87,12 @@ class House:
     @staticmethod
     def builtins() -> list[str]:
         """The houses that come with dwell, as HOUSE strings."""
-        names: list[str] = json.loads(_native.doctor_json())["houses"]
-        return [f"builtin:{name}" for name in names]
+        from dwell.machine import facts_of_machine
+
+        return [f"builtin:{name}" for name in facts_of_machine()["houses"]]
 
     @classmethod
-    def generate(cls, seed: int, **spec: object) -> House:
+    def generate(cls, seed: int, **spec: Unpack[GeneratorSettings]) -> House:
         """Makes the furnished house of a seed; the same seed and spec give the same house.
 
         Args:
@@ -263,6 +270,18 @@ class House:
         """Writes what a folder of :meth:`write_into` holds once: after the last house, or again."""
         _native.House.finish_folder(arguments.path("root", root), text("form", form))
 
+    def __eq__(self, other: object) -> bool:
+        """Whether both hold the same: rooms, things, materials, meshes, images."""
+        return isinstance(other, House) and (
+            self._native is other._native or self._native.same(other._native)
+        )
+
+    def __hash__(self) -> int:
+        """Equal for equal houses; reckoned at first use."""
+        if self._hash is None:
+            self._hash = self._native.fingerprint()
+        return self._hash
+
     def __copy__(self) -> House:
         """The same: a house never changes."""
         return self
@@ -281,8 +300,9 @@ class House:
         return self._again
 
     def __repr__(self) -> str:
-        """The name."""
-        return f"House({self.name!r})"
+        """The name, and how much there is."""
+        rooms, objects = self._native.counts
+        return f"House({self.name!r}, rooms={rooms}, objects={objects})"
 
 
 def split_of_seed(seed: int) -> Literal["train", "val", "test"]:

@@ -84,6 +84,10 @@ class Navigation:
         """Wraps a native grid; use ``House.navigation`` or ``World.navigation``."""
         self._native = native
 
+    def __repr__(self) -> str:
+        """How many places there are to stand."""
+        return f"Navigation(places={len(self.points())})"
+
     def points(self, start: Sequence[float] | None = None) -> NDArray[np.float32]:
         """Places to stand (n, 3), m; with ``start`` those to which a way leads from there."""
         return self._native.points(None if start is None else point("start", start))

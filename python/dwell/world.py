@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +30,14 @@ from dwell.guiding import Guiding
 from dwell.heads import Head
 from dwell.house import House
 from dwell.navigation import Navigation, Walker, walker_json
+from dwell.outside import tell_outside
 from dwell.playing import Sounds
 from dwell.settings import Laws, with_head, world_settings
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from dwell.configs import WorldSettings
 
 #: Ids have 32 bits.
 _MOST_IDS = 2**32 - 1
@@ -53,7 +59,7 @@ class World(Guiding, Sounds):
         seed: int = 0,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
-        **config: Any,  # noqa: ANN401 - further fields of the native WorldConfig
+        **config: Unpack[WorldSettings],
     ) -> None:
         """Makes a world.
 
@@ -114,6 +120,11 @@ class World(Guiding, Sounds):
         """House, settings, heads and a snapshot."""
         again = (self.house, self._config, self._seed, self._heads, self.snapshot())
         return World._again, again
+
+    def __repr__(self) -> str:
+        """The house, the time, and how many agents there are."""
+        agents = len(self.agents())
+        return f"World({self.house.name!r}, time_s={self.time_s:g}, agents={agents})"
 
     @property
     def native(self) -> _native.World:
@@ -290,6 +301,7 @@ class World(Guiding, Sounds):
             "wheel_rad_s": None if wheel_rad_s is None else pair("wheel_rad_s", wheel_rad_s),
         }
         self._native.place_agent(whole("agent", agent), to_json(row))
+        tell_outside(self.house, "an agent", position)
 
     def agents(self) -> list[dict[str, Any]]:
         """The agents' states."""
@@ -351,6 +363,7 @@ class World(Guiding, Sounds):
             view["agent"] = 0 if agent is None else whole("agent", agent)
         else:
             view["position"] = list(point("position", position))
+            tell_outside(self.house, "a camera", view["position"])
             view["yaw_deg"] = finite("yaw_deg", yaw_deg)
             view["pitch_deg"] = finite("pitch_deg", pitch_deg)
         return self._native.render(to_json(view), texts("channels", channels))

@@ -188,7 +188,7 @@ impl PyBatch {
         out.set_item("collision", is(|info| info.collision))?;
         out.set_item(
             "distance_to_goal",
-            of(|info| info.progress.distance_m.unwrap_or(-1.0)),
+            of(|info| info.progress.distance_m.unwrap_or(f64::NAN)),
         )?;
         out.set_item("spl", of(|info| info.progress.spl(info.verdict.success)))?;
         out.set_item("soft_spl", of(|info| info.progress.soft_spl()))?;
@@ -263,7 +263,7 @@ impl PyBatch {
         })
     }
 
-    /// Gives back `{distance_to_goal, spl, soft_spl}`.
+    /// Gives back `{distance_to_goal, spl, soft_spl}`; a task without a goal has no distance.
     fn rule(&self, py: Python<'_>, env: usize, ruling_json: &str) -> PyResult<String> {
         self.with(py, |batch| {
             let ruling: Ruling = serde_json::from_str(ruling_json)?;
@@ -274,7 +274,7 @@ impl PyBatch {
             };
             let progress = batch.env_mut(env)?.rule(verdict, ruling.distance_m)?;
             Ok(serde_json::json!({
-                "distance_to_goal": progress.distance_m.unwrap_or(-1.0),
+                "distance_to_goal": progress.distance_m,
                 "spl": progress.spl(verdict.success),
                 "soft_spl": progress.soft_spl(),
             })

@@ -218,6 +218,6 @@ impl From<CalibrationError> for Fault {
 
 impl From<serde_json::Error> for Fault {
     fn from(error: serde_json::Error) -> Self {
-        Self::Config(error.to_string())
+        Self::Config(dwell::plain_json_error(&error))
     }
 }

@@ -140,6 +140,39 @@ impl PyHouse {
         })
     }
 
+    /// The name of the room around a point; nothing outside of every room.
+    fn room_at(&self, py: Python<'_>, point: [f32; 3]) -> PyResult<Option<String>> {
+        py.engine(|| {
+            let house = self.house();
+            let room = house.room_at(Vec3::from_array(point));
+            Ok::<_, Fault>(room.map(|room| house.rooms[room].name.clone()))
+        })
+    }
+
+    #[getter]
+    fn has_rooms(&self, py: Python<'_>) -> PyResult<bool> {
+        py.engine(|| Ok::<_, Fault>(!self.house().rooms.is_empty()))
+    }
+
+    /// How many rooms and objects there are.
+    #[getter]
+    fn counts(&self, py: Python<'_>) -> PyResult<(usize, usize)> {
+        py.engine(|| Ok::<_, Fault>((self.house().rooms.len(), self.house().objects.len())))
+    }
+
+    /// Whether the other house holds the same in all its tables, meshes and images.
+    fn same(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        py.engine(|| {
+            let (a, b) = (self.house(), other.house());
+            Ok::<_, Fault>(std::ptr::eq(a, b) || a.data() == b.data())
+        })
+    }
+
+    /// The same number for houses that hold the same.
+    fn fingerprint(&self, py: Python<'_>) -> PyResult<u64> {
+        py.engine(|| Ok::<_, Fault>(self.house().fingerprint()))
+    }
+
     #[getter]
     fn name(&self) -> &str {
         &self.house().name

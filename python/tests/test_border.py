@@ -262,16 +262,16 @@ CALLS = [
     ('DwellEnv(sensors={"smell": {}})', 'no sensor "smell"'),
     (
         'DwellEnv(sensors={"rgb": 5})',
-        "sensor settings: 5 cannot be read: invalid type: integer `5`",
+        "sensor settings: 5: found integer `5`, expected values by name",
     ),
     (
         'DwellEnv(sensors={"rgb": {"width": "x"}})',
-        'sensor settings: {"width":"x"} cannot be read: invalid type:',
+        'sensor settings: width is "x": found string "x", expected a whol',
     ),
     ('DwellEnv(sensors={"rgb": {"width": nan}})', "sensors[0].settings.width is nan"),
     (
         'DwellEnv(sensors={"rgb": {"nope": 1}})',
-        'sensor settings: {"nope":1} cannot be read: unknown field `n',
+        "sensor settings: nope is 1: unknown field `nope`, expected one o",
     ),
     ("DwellEnv(stride=5)", "stride is 5"),
     ('DwellEnv(stride={"nope": 1})', "stride: no field 'nope'"),

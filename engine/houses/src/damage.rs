@@ -17,6 +17,9 @@ pub enum Damage {
         /// What.
         what: String,
     },
+    /// A thing that was put outside of every room; it stays there.
+    #[error("stands outside of every room")]
+    OutsideRooms,
     /// A mesh file that does not exist; the thing has no shape from it.
     #[error("mesh {path:?} does not exist; left out")]
     MissingMesh {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
-import json
 import platform
 import sys
 from typing import Any
@@ -28,9 +27,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Prints what is there, what is missing, and how to get it."""
-    from dwell import _native
+    from dwell.machine import facts_of_machine
 
-    facts: dict[str, Any] = json.loads(_native.doctor_json())
+    facts = facts_of_machine()
     facts["python"] = platform.python_version()
     facts["extras"] = {name: importlib.util.find_spec(name) is not None for name in _EXTRAS}
     if args.json:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -176,7 +177,7 @@ class Play:
             reward=float(answer["reward"][k]),
             terminated=bool(answer["terminated"][k]),
             success=bool(answer["success"][k]),
-            distance_m=None if distance_m < 0.0 else distance_m,
+            distance_m=None if math.isnan(distance_m) else distance_m,
         )
         if self._task is not None:
             verdict = _checked(self._name(), self._task.judge(self._world, action, verdict))
@@ -192,7 +193,7 @@ class Play:
         ruled = {**ruling, **json.loads(self._batch.rule(k, to_json(ruling)))}
         for key, value in ruled.items():
             if key in answer:
-                answer[key][k] = value
+                answer[key][k] = math.nan if value is None else value
         if taken := sorted(set(verdict.info) & {*answer, "scene_id", "episode_id"}):
             raise ConfigError(f"{self._name()}.judge: info has {taken[0]!r}, which exists already")
         return mapping("info", verdict.info)

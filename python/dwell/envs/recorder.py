@@ -47,7 +47,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         if not isinstance(env.unwrapped, DwellEnv):
             raise ConfigError(f"env is {env!r}; expected an environment of dwell")
         self._env = env.unwrapped
-        self._env.refuse_what_files_cannot_name()
+        self._env._refuse_what_files_cannot_name()
         self._folder = Path(path("folder", folder))
         self._running: Replay | None = None
         self._actions: list[str] = []
@@ -63,8 +63,8 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         self._running = Replay(
             house=str(info["scene_id"]),
             seed=int(str(info["episode_id"]).rpartition("#")[2]),
-            config=self._env.config_json,
-            parts=tuple(self._env.part_names()),
+            config=self._env._config,
+            parts=tuple(self._env._part_names()),
             actions=(),
             hashes=(),
             instruction=self._env.instruction(),

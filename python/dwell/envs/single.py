@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -174,10 +175,15 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def step(
         self, action: np.int64 | int
     ) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
-        """Makes one control step; ``action``: a number of :meth:`actions`."""
+        """Makes one control step; ``action``: a number of :meth:`actions`.
+
+        ``info`` has no ``distance_to_goal`` where the task has no goal.
+        """
         number = whole("action", action, high=len(self.actions()) - 1)
         answer, further = self._runner.step(np.array([number], np.int64))
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
+        if math.isnan(info["distance_to_goal"]):
+            del info["distance_to_goal"]
         info["action_error"] = answer["action_error"][0]
         terminated = bool(answer["terminated"][0])
         observation = self._observation()
@@ -246,12 +252,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._house, self._seed = house, seed
         return self._observation(), self._info()
 
-    @property
-    def config_json(self) -> str:
-        """What the native side was told: task, sensors, laws, parameters and rates."""
-        return self._config
-
-    def part_names(self) -> list[str]:
+    def _part_names(self) -> list[str]:
         """The names of the classes of task and reward, where they are written in Python."""
         makers = (self._custom.task, self._custom.reward)
         return [type(make()).__name__ for make in makers if make is not None]
@@ -260,7 +261,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """What the episode asks for."""
         return self._runner.batch.instruction(0)
 
-    def refuse_what_files_cannot_name(self) -> None:
+    def _refuse_what_files_cannot_name(self) -> None:
         """For those who write down what is played here.
 
         Raises:

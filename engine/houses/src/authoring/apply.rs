@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use dwell_scene::parallel::Threads;
-use dwell_scene::{Aabb, House, HouseData, Level, ObjectId, Pose};
+use dwell_scene::{Aabb, House, HouseData, Level, ObjectId, Pose, State};
 use glam::{Quat, Vec3};
 
 use super::edits::{AddRobot, Edit, Move, Remove, Rename};
@@ -13,6 +13,7 @@ use super::files::Files;
 use super::mesh_file::Loaded;
 use super::{add, agent_starts, describe, doors, fixtures, place, prune, surfaces};
 use crate::build::room_kind;
+use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::report::{At, Report};
 
@@ -23,7 +24,7 @@ const MAX_EDITS: usize = 10_000;
 /// changes the number of anything that was there; taking out closes the gap, so that what stood behind moves up. Names stay
 /// in any case.
 ///
-/// The report holds what was wrong with files that were read.
+/// The report holds what was wrong with files that were read, and names what was added or moved to where no room is.
 ///
 /// # Errors
 /// [`HousesError::Spec`] names the edit and the field, what was found and what is possible, with the nearest names for an
@@ -58,8 +59,39 @@ pub fn edit(house: &House, edits: &[Edit], files: &Files) -> Result<(House, Repo
         let place = format!("edits[{k}].{}", edit.word());
         desk.apply(edit).map_err(inside(place))?;
     }
-    let house = House::new(desk.data).map_err(HousesError::scene(&At::file("edits")))?;
-    Ok((house, desk.report))
+    let at = At::file("edits");
+    let edited = House::new(desk.data).map_err(HousesError::scene(&at))?;
+    let mut report = desk.report;
+    for name in put_outside(house, &edited, edits) {
+        report.warn(at.field(name), Damage::OutsideRooms);
+    }
+    Ok((edited, report))
+}
+
+/// The objects that were added or moved to where no room is, in a house that has rooms.
+fn put_outside<'a>(before: &House, after: &'a House, edits: &[Edit]) -> Vec<&'a str> {
+    if after.rooms.is_empty() {
+        return Vec::new();
+    }
+    let known: BTreeSet<&str> = before.objects.iter().map(|o| o.name.as_str()).collect();
+    let moved: BTreeSet<&str> = edits
+        .iter()
+        .filter_map(|edit| match edit {
+            Edit::Move(change) => Some(change.object.as_str()),
+            _ => None,
+        })
+        .collect();
+    let state = State::new(after);
+    let put = |name: &str| !known.contains(name) || moved.contains(name);
+    let outside = |id: ObjectId| {
+        let bounds = after.object_bounds(&state, id);
+        !bounds.is_empty() && after.room_at(bounds.center()).is_none()
+    };
+    let objects = after.objects.iter_ids();
+    objects
+        .filter(|(id, object)| put(&object.name) && outside(*id))
+        .map(|(_, object)| object.name.as_str())
+        .collect()
 }
 
 /// A house that is being edited, and what was read for it.

@@ -215,11 +215,7 @@ pub(crate) fn settings<T: serde::de::DeserializeOwned + Default>(
     if value.is_null() {
         return Ok(T::default());
     }
-    serde_json::from_value(value.clone()).map_err(|error| WorldError::Settings {
-        of: "sensor settings",
-        found: value.to_string(),
-        error,
-    })
+    crate::settings::read("sensor settings", value)
 }
 
 /// The settings of a sensor that has none.

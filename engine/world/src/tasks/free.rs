@@ -54,15 +54,10 @@ enum StartFrom {
 const NEAR_M: f32 = 0.3;
 
 fn build(value: &serde_json::Value, _: Stride) -> Result<Box<dyn Task>, WorldError> {
-    let refuse = |error| WorldError::Settings {
-        of: "task_settings",
-        found: value.to_string(),
-        error,
-    };
     let settings = if value.is_null() {
         Settings::default()
     } else {
-        serde_json::from_value(value.clone()).map_err(refuse)?
+        crate::settings::read("task_settings", value)?
     };
     Ok(Box::new(Free { settings }))
 }

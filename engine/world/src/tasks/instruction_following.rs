@@ -69,11 +69,7 @@ fn build(value: &serde_json::Value, stride: Stride) -> Result<Box<dyn Task>, Wor
     let settings: Settings = if value.is_null() {
         Settings::default()
     } else {
-        serde_json::from_value(value.clone()).map_err(|error| WorldError::Settings {
-            of: "task_settings",
-            found: value.to_string(),
-            error,
-        })?
+        crate::settings::read("task_settings", value)?
     };
     if settings.kinds.is_empty() {
         let allowed = "at least one of go_to_room, find_object".to_owned();

@@ -1,0 +1,84 @@
+//! Settings from JSON, refused in people's words: the field, what was found, what is allowed.
+
+use crate::error::WorldError;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+/// Reads settings whose fields all have defaults.
+///
+/// # Errors
+/// [`WorldError::Settings`] names the field that cannot be read.
+pub(crate) fn read<T: DeserializeOwned>(of: &'static str, value: &Value) -> Result<T, WorldError> {
+    serde_json::from_value(value.clone()).map_err(|error| {
+        // Whoever reads all says not where it stopped; who reads one field alone says it.
+        let mut alone = value
+            .as_object()
+            .into_iter()
+            .flatten()
+            .filter_map(|(key, part)| {
+                let error = serde_json::from_value::<T>(json!({ key.as_str(): part })).err()?;
+                Some((format!("{key} is {part}"), error))
+            });
+        let (found, error) = alone.next().unwrap_or_else(|| (value.to_string(), error));
+        WorldError::Settings { of, found, error }
+    })
+}
+
+/// What a reader of JSON says, in people's words and without the place in a text that nobody wrote.
+pub fn plain_json_error(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let text = text.split(" at line ").next().unwrap_or_default();
+    let Some((found, expected)) = text
+        .strip_prefix("invalid type: ")
+        .or_else(|| text.strip_prefix("invalid value: "))
+        .and_then(|rest| rest.split_once(", expected "))
+    else {
+        return text.to_owned();
+    };
+    let expected = match expected {
+        "f32" | "f64" => "a number",
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0",
+        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
+        "a boolean" => "true or false",
+        "a string" => "text",
+        "a map" => "values by name",
+        "a sequence" => "a list",
+        // Names of types of ours say nothing to anybody else.
+        other if other.starts_with("struct ") => "values by name",
+        other => other,
+    };
+    format!("found {found}, expected {expected}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::Deserialize;
+
+    #[derive(Debug, Default, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    struct Some {
+        width: u32,
+        gain: f32,
+    }
+
+    #[test]
+    fn the_field_is_named_and_what_it_may_be() {
+        let told = |value: Value| read::<Some>("settings", &value).unwrap_err().to_string();
+        assert_eq!(
+            told(json!({"gain": 1.0, "width": "x"})),
+            "settings: width is \"x\": found string \"x\", expected a whole number from 0"
+        );
+        assert_eq!(
+            told(json!({"gain": {}})),
+            "settings: gain is {}: found map, expected a number"
+        );
+        assert_eq!(
+            told(json!(5)),
+            "settings: 5: found integer `5`, expected values by name"
+        );
+        assert!(
+            told(json!({"nope": 1})).contains("unknown field `nope`, expected `width` or `gain`")
+        );
+    }
+}

@@ -1,0 +1,33 @@
+"""What stands outside of every room is told once: it is allowed, and mostly a mistake."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+
+from dwell.arguments import point
+from dwell.house import House
+
+_LOG = logging.getLogger("dwell.outside")
+
+
+def tell_outside(house: House, what: str, position: Sequence[float]) -> None:
+    """Logs a warning when a point lies in no room of a house that has rooms.
+
+    Once for a house and a kind of thing: cameras that fly around a house would fill the log.
+    """
+    told = house._told_outside
+    if what in told:
+        return
+    x, y, z = point("position", position)
+    if house.native.room_at((x, y, z)) is None and house.native.has_rooms:
+        told.add(what)
+        _LOG.warning(
+            "%s stands outside of every room of %r, at (%g, %g, %g) m; heights count from the "
+            "ground floor, and house.rooms() has a place to stand in each room. This is said once.",
+            what,
+            house.name,
+            x,
+            y,
+            z,
+        )

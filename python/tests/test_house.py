@@ -1,0 +1,111 @@
+"""Houses as values: equal by content, told by a short text, and what stands outside of them."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+
+import dwell
+
+SIZE = (4.0, 2.5, 3.0)
+
+
+def test_houses_are_equal_by_content() -> None:
+    one, two = dwell.House.shoebox(SIZE), dwell.House.shoebox(SIZE)
+    other = dwell.House.shoebox((4.0, 2.5, 3.5))
+    assert one == two
+    assert hash(one) == hash(two)
+    assert one != other
+    assert one != "shoebox"
+    assert len({one, two, other}) == 2
+    chair = one.edit().add("dining_chair", (2.0, 0.0, 1.0), srgb=(10, 20, 30)).done()
+    again = one.edit().add("dining_chair", (2.0, 0.0, 1.0), srgb=(10, 20, 31)).done()
+    assert chair != one
+    assert chair != again
+
+
+def test_texts_are_short_and_tell() -> None:
+    house = dwell.House.open("builtin:studio")
+    things = [
+        house,
+        dwell.World(house),
+        dwell.AcousticScene(house),
+        house.edit().add("mug", on="dining_table_1"),
+        dwell.HouseBuilder("flat"),
+        house.navigation(),
+        dwell.Head.sphere(),
+    ]
+    for thing in things:
+        text = repr(thing)
+        assert text.startswith(type(thing).__name__ + "(")
+        assert " at 0x" not in text
+        assert len(text) < 100
+    assert f"rooms={len(house.rooms())}" in repr(house)
+
+
+def test_a_glb_of_our_own_is_the_same_house(tmp_path: Path) -> None:
+    house = dwell.House.open("builtin:studio")
+    house.write(tmp_path / "studio.glb", "glb")
+    again = dwell.House.open(tmp_path / "studio.glb")
+    keys = ("rooms", "objects", "joints", "categories")
+    before, after = house.info(), again.info()
+    assert {key: before.get(key) for key in keys} == {key: after.get(key) for key in keys}
+    assert again.describe("object") == house.describe("object")
+
+
+def test_what_stands_outside_is_told_once(caplog: pytest.LogCaptureFixture) -> None:
+    house = dwell.House.shoebox(SIZE)
+    world = dwell.World(house)
+    with caplog.at_level(logging.WARNING, "dwell"):
+        world.render(position=(2.0, 1.0, 1.5))
+        world.place_agent((2.0, 0.0, 1.5))
+        assert not caplog.records
+        for _ in range(3):
+            world.render(position=(9.0, 1.0, 1.5))
+        world.place_agent((9.0, 0.0, 1.5))
+        scene = dwell.AcousticScene(house, rays=100, max_duration_s=0.1)
+        scene.impulse_response((2.0, 1.0, 1.5), (2.0, 1.0, 9.0))
+    told = [record.getMessage().split(" stands")[0] for record in caplog.records]
+    assert told == ["a camera", "an agent", "a microphone"]
+    assert "at (9, 1, 1.5) m" in caplog.records[0].getMessage()
+
+
+def test_things_outside_stand_in_the_report() -> None:
+    house = dwell.House.shoebox(SIZE)
+    edit = house.edit().add("dining_chair", (9.0, 0.0, 1.0), name="lost")
+    edited = edit.add("dining_chair", (2.0, 0.0, 1.0), name="chair").done()
+    rows = [row["sentence"] for row in edited.info()["report"]["warnings"]]
+    assert len(rows) == 1
+    assert "lost" in rows[0]
+    assert "outside of every room" in rows[0]
+    moved = edited.edit().move("chair", (2.0, 0.0, 9.0)).done()
+    assert any("chair" in row["sentence"] for row in moved.info()["report"]["warnings"][1:])
+
+
+def test_no_goal_has_no_distance() -> None:
+    env = gymnasium.make("dwell/Free-v0", sensors=["gps"])
+    env.reset(seed=1)
+    _, _, _, _, info = env.step(1)
+    assert "distance_to_goal" not in info
+    assert info["path_length"] > 0.0
+    env.close()
+    many = gymnasium.make_vec("dwell/Free-v0", num_envs=2, sensors=["gps"])
+    many.reset(seed=1)
+    _, _, _, _, infos = many.step(np.ones(2, np.int64))
+    assert np.isnan(infos["distance_to_goal"]).all()
+    many.close()
+
+
+def test_wrong_names_are_answered_with_the_nearest() -> None:
+    house = dwell.House.open("builtin:studio")
+    with pytest.raises(dwell.HouseError, match=r"the nearest are single_bed_1"):
+        house.edit().add("mug", on="single_bde_1").done()
+    room = dwell.House.shoebox(SIZE).edit().add("desk", (2.0, 0.0, 1.0), name="table").done()
+    with pytest.raises(dwell.HouseError, match=r"'?tabel.*one of the objects: table"):
+        room.edit().add("mug", on="tabel").done()
+    with pytest.raises(dwell.ConfigError, match=r"single_bed_1"):
+        dwell.World(house).act("pick", "single_bde_1")
