@@ -5,7 +5,9 @@
 mod common;
 
 use common::{Hall, box_sides, dry, material, pieces, rectangle};
-use dwell_acoustics::{AcousticConfig, Receiver, Source, metrics};
+use dwell_acoustics::{
+    AcousticConfig, ActiveSource, Echogram, Receiver, Source, Stream, StreamConfig, metrics,
+};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
@@ -160,6 +162,61 @@ fn a_closed_door_silences_and_an_open_one_does_not() {
     let (ajar, open) = (level_at(-0.35, 0.0), level_at(-1.5, 0.0));
     assert!(ajar > 0.0 && open > 1.5 * ajar, "{ajar} {open}");
     assert!(level_at(0.0, 0.0) <= 0.0);
+}
+
+/// While a door swings, a stream remembers much of the tail, and is close to what all rays tell; when the door has come to rest, it
+/// is what a stream that begins then hears, to the bit.
+#[test]
+fn a_door_that_swings_is_heard_on_its_way_and_exactly_where_it_rests() {
+    let wall = material(0.1, 0.3);
+    let mut hall = Hall::new(two_rooms(&wall, &wall), dry(4000));
+    let mut state = State::new(&hall.house);
+    let new = |hall: &Hall| {
+        let config = StreamConfig::rl();
+        Stream::new(hall.scene.clone(), config, Key::root(8), Threads::ONE).unwrap()
+    };
+    let receiver = Receiver::omni(EAR);
+    let signal = vec![1.0; 800];
+    let source = ActiveSource {
+        id: 5,
+        position: SOURCE,
+        signal: &signal,
+    };
+    let hear = |stream: &mut Stream, hall: &Hall, state: &State| -> (usize, Echogram) {
+        let mut out = vec![0.0; 800];
+        let sources = [source];
+        let report = stream.block(&hall.rays, state, &sources, &receiver, &mut out);
+        let (_, echogram) = stream.echograms().next().unwrap();
+        (report.unwrap().traced, echogram)
+    };
+    let mut stream = new(&hall);
+    let mut traced = 0;
+    // Open, shut, and open once more, by 4 degrees a block, and a while of rest each time.
+    let turns = [(0.0, -1.5), (-1.5, 0.0), (0.0, -0.75)];
+    for (from, to) in turns {
+        for k in 0..28 {
+            let angle: f32 = from + (to - from) * (k as f32 / 22.0).min(1.0);
+            let hinge = Vec3::new(4.0, 0.0, 1.5);
+            state.part_pose[PartId(0)] = Pose::from_position_yaw(hinge, angle);
+            hall.rays.update(&state);
+            hall.scene.update(&state);
+            let (rays, found) = hear(&mut stream, &hall, &state);
+            traced += rays;
+            if k < 25 && angle.abs() < 0.5 {
+                continue;
+            }
+            let (_, fresh) = hear(&mut new(&hall), &hall, &state);
+            let (found, fresh) = (found.total()[4], fresh.total()[4]);
+            if k < 25 {
+                let off_db = 10.0 * (found / fresh).log10();
+                assert!(off_db.abs() < 3.0, "{angle}: {off_db} dB");
+            } else {
+                assert_eq!(found.to_bits(), fresh.to_bits(), "{angle}: {found} {fresh}");
+            }
+        }
+    }
+    // Every third block of 66 that swing, and once for each rest.
+    assert!((10..40).contains(&traced), "{traced}");
 }
 
 /// Mirrors move with the parts that carry them.

@@ -1,6 +1,18 @@
 //! Energy over time, and the numbers of ISO 3382-1 that follow from it.
 
 use serde::Serialize;
+use std::f64::consts::LN_10;
+
+/// The time between two samples of a decay curve, s.
+const STEP_S: f64 = 1e-3;
+/// Windows in the last third of a response, whose levels tell how it goes on.
+const WINDOWS: usize = 8;
+/// Slots that a window must have, for less is no decay.
+const SLOTS_A_WINDOW: usize = 4;
+/// A last third that falls by less than this may be noise, dB.
+const FALL_DB: f64 = 2.0;
+/// The first third of a response that ends in noise has at least so many times the energy of the last.
+const RANGE: f64 = 10.0;
 
 /// Energies of one band over time: pulses and stretches of constant power.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -9,7 +21,8 @@ pub struct EnergyCurve {
     pieces: Vec<(f64, f64, f64)>,
 }
 
-/// Room-acoustic parameters of one band. `None` where the decay is too short for one, or nothing is heard.
+/// Room-acoustic parameters of one band. `None` where nothing is heard, or the decay is too short for one: a response that ends
+/// before it has fallen by 25 dB has no T20, one that ends before 35 dB no T30.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BandMetrics {
     /// Early decay time (0 to -10 dB), s for 60 dB.
@@ -67,17 +80,22 @@ impl EnergyCurve {
         self.pieces.iter().map(part).sum()
     }
 
-    /// Time from which `arrival_s` on the energy is left in dB re all, sampled every millisecond until it ends.
+    /// The energy that is left from a time on, in dB re all, sampled every millisecond from `arrival_s` until it ends.
     /// Shape (time,): time since `arrival_s`, s, and level, dB.
+    ///
+    /// A response that ends while it still decays is taken to go on at the rate of its last third, so that the curve does not dive
+    /// where it was cut. What does not fall there is the noise of a recording: it is left as it is. Nothing where neither can be
+    /// told, since all of the response falls too little.
+    ///
+    /// # Source
+    /// ISO 3382-1:2009, clause 5.3.3 (the constant C).
     pub fn decay_db(&self, arrival_s: f64) -> Vec<(f64, f64)> {
-        const STEP_S: f64 = 1e-3;
         let end = self
             .pieces
             .iter()
             .map(|piece| piece.1)
             .fold(arrival_s, f64::max);
         let count = ((end - arrival_s) / STEP_S).ceil() as usize;
-        let all = self.after(arrival_s);
         // One backward sweep over pieces cut at the grid, instead of a sum for every time.
         let mut slots = vec![0.0; count + 1];
         for (start, stop, energy) in &self.pieces {
@@ -96,13 +114,21 @@ impl EnergyCurve {
                 *slot += energy * shared / (stop - start);
             }
         }
-        let mut left = 0.0;
+        slots.truncate(
+            slots
+                .iter()
+                .rposition(|slot| *slot > 0.0)
+                .map_or(0, |last| last + 1),
+        );
+        let Some(beyond) = energy_beyond(&slots) else {
+            return Vec::new();
+        };
+        let all = slots.iter().sum::<f64>() + beyond;
+        let mut left = beyond;
         let mut curve = Vec::with_capacity(count);
         for (k, slot) in slots.iter().enumerate().rev() {
             left += slot;
-            if left > 0.0 {
-                curve.push((k as f64 * STEP_S, 10.0 * libm::log10(left / all)));
-            }
+            curve.push((k as f64 * STEP_S, 10.0 * libm::log10(left / all)));
         }
         curve.reverse();
         curve
@@ -141,6 +167,40 @@ impl EnergyCurve {
                 .then(|| 10.0 * libm::log10(direct / (all - direct))),
         }
     }
+}
+
+/// The energy that a response of these energies, shape (slot,), the last above 0, would still have after its end; `None` where that
+/// can't be told.
+fn energy_beyond(slots: &[f64]) -> Option<f64> {
+    let end = slots.len();
+    let width = end / (3 * WINDOWS);
+    if width < SLOTS_A_WINDOW {
+        return Some(0.0);
+    }
+    let window = |back: usize| -> f64 { slots[end - back * width..][..width].iter().sum() };
+    let last: Vec<f64> = (1..=WINDOWS).rev().map(window).collect();
+    if last.contains(&0.0) {
+        // Single reflections, not a decay.
+        return Some(0.0);
+    }
+    // The straight line through the levels, in nepers of energy a window.
+    let n = WINDOWS as f64;
+    let middle = 0.5 * (n - 1.0);
+    let level: Vec<f64> = last.iter().map(|energy| libm::log(*energy)).collect();
+    let mean = level.iter().sum::<f64>() / n;
+    let (mut up, mut down) = (0.0, 0.0);
+    for (k, level) in level.iter().enumerate() {
+        let x = k as f64 - middle;
+        up += x * (level - mean);
+        down += x * x;
+    }
+    let fall = -up / down;
+    if fall * n >= FALL_DB * LN_10 / 10.0 {
+        let end = libm::exp(mean - fall * (middle + 1.0));
+        return Some(end / -libm::expm1(-fall));
+    }
+    let third = |k: usize| -> f64 { slots[k * end / 3..][..end / 3].iter().sum() };
+    (third(0) >= RANGE * third(2)).then_some(0.0)
 }
 
 /// Time for 60 dB along the straight line through the levels between `high` and `low` (least squares), s.
@@ -202,6 +262,65 @@ mod tests {
         assert!((found.ts_s.unwrap() - 0.018).abs() < 1e-12);
         assert!((found.g_db.unwrap() - 10.0 * libm::log10(500.0)).abs() < 1e-9);
         assert_eq!(found.t30_s, None);
+    }
+
+    fn exponential(t60: f64, end_s: f64) -> EnergyCurve {
+        let rate = 6.0 * std::f64::consts::LN_10 / t60;
+        let mut curve = EnergyCurve::new();
+        let width = 0.004;
+        for k in 0..(end_s / width) as usize {
+            let (start, end) = (k as f64 * width, (k + 1) as f64 * width);
+            curve.add(
+                start,
+                end,
+                libm::exp(-rate * start) - libm::exp(-rate * end),
+            );
+        }
+        curve
+    }
+
+    /// However early an exponential decay is cut: its own time, or none.
+    #[test]
+    fn a_decay_that_is_cut_has_its_own_time_or_none() {
+        let t60 = 10.0;
+        for (end_s, has_edt, has_t20, has_t30) in [
+            (0.5, false, false, false),
+            (1.0, false, false, false),
+            (2.0, true, false, false),
+            (4.0, true, false, false),
+            (4.5, true, true, false),
+            (6.1, true, true, true),
+            (20.0, true, true, true),
+        ] {
+            let found = exponential(t60, end_s).metrics(0.0, 0.0);
+            for (time, has) in [
+                (found.edt_s, has_edt),
+                (found.t20_s, has_t20),
+                (found.t30_s, has_t30),
+            ] {
+                assert_eq!(time.is_some(), has, "{end_s}: {found:?}");
+                assert!(
+                    time.is_none_or(|time| (time / t60 - 1.0).abs() < 5e-3),
+                    "{end_s}: {time:?}"
+                );
+            }
+        }
+    }
+
+    /// Steady noise at the end of a recording is no decay that goes on.
+    #[test]
+    fn noise_at_the_end_stays_noise() {
+        let mut curve = exponential(0.5, 2.0);
+        let quiet = curve.decay_db(0.0).len();
+        curve.add(0.0, 2.0, 1e-6);
+        let found = curve.decay_db(0.0);
+        assert_eq!(found.len(), quiet);
+        assert!(found.last().is_some_and(|(_, level)| *level < -80.0));
+        let t30 = curve.metrics(0.0, 0.0).t30_s;
+        assert!(
+            t30.is_some_and(|t30| (t30 / 0.5 - 1.0).abs() < 0.02),
+            "{t30:?}"
+        );
     }
 
     #[test]

@@ -16,6 +16,7 @@ use crate::microphones::{self, Microphones};
 use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
 use crate::scene::AcousticScene;
+use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
@@ -30,7 +31,11 @@ use xxhash_rust::xxh3::xxh3_64;
 const LARGE_PART_M: f32 = 0.7;
 /// What does not glide is computed anew after movements so many times smaller.
 const STIFF: f32 = 5.0;
-const VERSION: u32 = 4;
+/// A source that begins so close to another, counted with the listener's way since, begins with its tail, m.
+const BESIDE_M: f64 = 2.0;
+/// Large parts that move less than this in a block stand still, m.
+const STILL_M: f32 = 5e-3;
+const VERSION: u32 = 5;
 
 /// A source that sounds during a block.
 #[derive(Clone, Copy, Debug)]
@@ -79,6 +84,8 @@ pub struct Stream {
     block: u64,
     /// By id.
     voices: Vec<Voice>,
+    /// Where the large parts were at the end of the last block. Shape (large part,); empty before the first.
+    parts: Vec<Pose>,
     microphones: Microphones,
 }
 
@@ -102,6 +109,7 @@ struct Snapshot {
     partitions: u64,
     block: u64,
     voices: Vec<voice::Memory>,
+    parts: Vec<Pose>,
     microphones: microphones::Memory,
 }
 
@@ -134,6 +142,7 @@ impl Stream {
             threads,
             block: 0,
             voices: Vec::new(),
+            parts: Vec::new(),
         })
     }
 
@@ -179,6 +188,7 @@ impl Stream {
     /// Silence, and block 0 again.
     pub fn reset(&mut self) {
         self.voices.clear();
+        self.parts.clear();
         self.microphones.reset();
         self.block = 0;
     }
@@ -307,8 +317,15 @@ impl Stream {
         let own = self.key.child("microphone").child(self.block);
         let listener = self.scene.listener(receiver, self.room, own);
         self.microphones.hear(&state.laws, &listener, out);
+        self.parts = self.poses(state);
         self.block += 1;
         Ok(report)
+    }
+
+    /// Where the large parts are. Shape (large part,).
+    fn poses(&self, state: &State) -> Vec<Pose> {
+        let parts = self.large_parts.iter();
+        parts.map(|part| state.part_pose[*part]).collect()
     }
 
     /// The sources that are heard in this block, by id, with new impulse responses where they need them.
@@ -362,6 +379,11 @@ impl Stream {
             angle_rad: self.config.update_angle_rad,
             part_m: self.config.update_part_m,
         };
+        let parts = self.poses(state);
+        // Nothing is remembered where all rays are traced anyway.
+        let remembers = self.config.update_share < 1.0;
+        let passing = remembers && voice::furthest(&self.parts, &parts) > STILL_M;
+        let mut settled = false;
         let mut planned = Vec::with_capacity(ids.len());
         for (id, position) in ids {
             let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
@@ -373,29 +395,38 @@ impl Stream {
             let Some(position) = position.or(last.map(|(source, _)| source)) else {
                 continue;
             };
-            let now = Situation {
+            let mut now = Situation {
                 source: position,
                 receiver: receiver.clone(),
-                parts: self
-                    .large_parts
-                    .iter()
-                    .map(|part| state.part_pose[*part])
-                    .collect(),
+                parts: parts.clone(),
                 overrides: state.overrides.clone(),
                 effects: *self.scene.effects(),
+                passing: false,
             };
             let changed = |then: &Situation| then.change(&now, &threshold);
-            let change = heard.map_or(Change::Moved, |(then, _)| changed(then));
+            let change = heard.map_or(Change::Moved, |(then, _)| {
+                if named {
+                    changed(then)
+                } else {
+                    then.change_while_ringing(&now, &threshold)
+                }
+            });
             let key = self.key.child("source").child(id);
             // A blow on the table is heard as the one before it was: other sources' impulse responses serve as well.
             let known = || {
                 let others = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
-                let mut close = others.filter(|(then, _)| changed(then) == Change::None);
+                let usable = |then: &Situation| passing || !then.passing;
+                let mut close =
+                    others.filter(|(then, _)| usable(then) && changed(then) == Change::None);
                 close.next().cloned()
             };
             let (scene, threads) = (&self.scene, self.threads);
+            // When a door has come to rest, all rays tell what is heard now: one source in a block.
+            let stale = heard.is_some_and(|(then, _)| then.passing && named && !passing);
+            let settles = stale && !settled;
+            settled |= settles;
             let news = match (change, heard) {
-                (Change::None, _) => None,
+                (Change::None, _) if !settles => None,
                 (Change::Turned, Some((then, response))) => {
                     report.turned += 1;
                     let echogram = response.echogram.clone();
@@ -410,9 +441,14 @@ impl Stream {
                 } else {
                     report.traced += 1;
                     let source = Source::at(position);
-                    let again =
-                        heard.filter(|(then, _)| then.differs_by_places_only(&now, &threshold));
+                    let alike = |then: &Situation| {
+                        !settles && then.differs_by_places_only(&now, &threshold, passing)
+                    };
+                    let again = heard
+                        .filter(|(then, _)| alike(then))
+                        .or_else(|| self.heard_near(rays, &now, alike));
                     let response = if let Some((then, response)) = again {
+                        now.passing = passing || then.passing;
                         let memory = Memory {
                             before: &response.echogram,
                             moved_m: then.moved_m(&now),
@@ -452,6 +488,24 @@ impl Stream {
         Ok(planned)
     }
 
+    /// What another source is heard as, close to where one begins and with nothing in between: a step sounds much like the last one.
+    fn heard_near(
+        &self,
+        rays: &RayScene,
+        now: &Situation,
+        alike: impl Fn(&Situation) -> bool,
+    ) -> Option<&(Situation, ImpulseResponse)> {
+        let heard = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
+        let close = heard.filter(|(then, _)| then.moved_m(now) <= BESIDE_M && alike(then));
+        let nearest = close.min_by(|(a, _), (b, _)| a.moved_m(now).total_cmp(&b.moved_m(now)));
+        nearest.filter(|(then, _)| {
+            let way = |from, to| Ray::segment(from, to, 0.0);
+            let sources = way(then.source, now.source);
+            let receivers = way(then.receiver.position(), now.receiver.position());
+            !rays.occluded(&sources, RayMask::EAR) && !rays.occluded(&receivers, RayMask::EAR)
+        })
+    }
+
     fn bytes(&self) -> Vec<u8> {
         let snapshot = Snapshot {
             version: VERSION,
@@ -459,6 +513,7 @@ impl Stream {
             partitions: self.partitions as u64,
             block: self.block,
             voices: self.voices.iter().map(Voice::memory).collect(),
+            parts: self.parts.clone(),
             microphones: self.microphones.memory(),
         };
         postcard::to_stdvec(&snapshot)
@@ -519,6 +574,7 @@ impl Stream {
                 voice
             })
             .collect();
+        self.parts = snapshot.parts;
         self.block = snapshot.block;
         Ok(())
     }

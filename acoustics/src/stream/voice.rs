@@ -20,6 +20,8 @@ pub(super) struct Situation {
     pub(super) parts: Vec<Pose>,
     pub(super) overrides: BTreeMap<Address, f64>,
     pub(super) effects: Effects,
+    /// Whether large parts were on their way, so that the tail is partly remembered from where they were before.
+    pub(super) passing: bool,
 }
 
 /// How a situation differs from another.
@@ -41,25 +43,57 @@ pub(super) struct Threshold {
     pub(super) part_m: f32,
 }
 
+/// The tail that is heard beside a door changes with its way so many times faster than with one's own: a quarter of a turn changes all.
+const PART_WAYS: f32 = 25.0;
+
+/// How far the one that moved furthest did, m, or turned, rad: a part that turns by an angle moves its far edge about as many metres.
+/// Shape of both: (large part,).
+pub(super) fn furthest(before: &[Pose], now: &[Pose]) -> f32 {
+    let ways = before.iter().zip(now).filter(|(a, b)| a != b);
+    ways.map(|(a, b)| {
+        a.position
+            .distance(b.position)
+            .max(angle(a.rotation, b.rotation))
+    })
+    .fold(0.0, f32::max)
+}
+
 fn angle(a: glam::Quat, b: glam::Quat) -> f32 {
     2.0 * dwell_scene::math::acos(a.dot(b).abs().min(1.0))
 }
 
 impl Situation {
-    /// How far source and receiver are from where they are `now`, m.
+    /// How far source and receiver are from where they are `now`, m; large parts' ways count [`PART_WAYS`] times.
     pub(super) fn moved_m(&self, now: &Self) -> f64 {
         let receivers = self.receiver.position().distance(now.receiver.position());
-        f64::from(self.source.distance(now.source) + receivers)
+        let parts = PART_WAYS * furthest(&self.parts, &now.parts);
+        f64::from(self.source.distance(now.source) + receivers + parts)
     }
 
-    /// Whether only source and receiver moved.
-    pub(super) fn differs_by_places_only(&self, now: &Self, threshold: &Threshold) -> bool {
-        let there = Self {
+    /// Whether only source and receiver moved, and large parts if they are `passing`.
+    pub(super) fn differs_by_places_only(
+        &self,
+        now: &Self,
+        threshold: &Threshold,
+        passing: bool,
+    ) -> bool {
+        let mut there = Self {
             source: now.source,
             receiver: now.receiver.clone(),
             ..self.clone()
         };
+        if passing && self.parts.len() == now.parts.len() {
+            there.parts.clone_from(&now.parts);
+        }
         self.receiver.kind == now.receiver.kind && there.change(now, threshold) == Change::None
+    }
+
+    /// As [`Self::change`], for a source that is over: what still rings is heard from where it was heard last.
+    pub(super) fn change_while_ringing(&self, now: &Self, threshold: &Threshold) -> Change {
+        let mut there = now.clone();
+        there.source = self.source;
+        there.receiver.pose.position = self.receiver.pose.position;
+        self.change(&there, threshold)
     }
 
     pub(super) fn change(&self, now: &Self, threshold: &Threshold) -> Change {

@@ -1,6 +1,7 @@
 //! What touches, swings and walks becomes sound here, and nowhere else: physics knows no sounds, the acoustics no physics.
 
 use super::Sound;
+use super::clear::clear_of_surfaces;
 use super::gait::{Stride, mass_kg};
 use dwell_acoustics::contact::{
     ContactSound, CreakSound, FootstepSound, ImpactSound, Partner, RubKind, RubSound,
@@ -49,6 +50,8 @@ const LATCH_M_S: f32 = 0.5;
 pub(super) struct Touch {
     pub(super) id: u64,
     pub(super) sound: ContactSound,
+    /// The place in the air beside where it was, m.
+    pub(super) heard_from: Vec3,
     /// The sample, since the world's start, at which it begins.
     pub(super) start: u64,
     /// Samples.
@@ -98,7 +101,7 @@ impl Sound {
         self.take_steps(step);
     }
 
-    fn add(&mut self, id: u64, late_s: f64, sound: ContactSound) {
+    fn add(&mut self, step: &Step<'_>, id: u64, late_s: f64, sound: ContactSound) {
         let late = ((late_s.max(0.0) * f64::from(self.rate_hz)) as u64).min(self.block as u64 - 1);
         let length = (sound.duration_s() * f64::from(self.rate_hz)).ceil() as u64;
         if self.touches.len() == MOST_RINGING {
@@ -106,17 +109,18 @@ impl Sound {
         }
         self.touches.push(Touch {
             id,
-            sound,
             start: self.blocks * self.block as u64 + late,
             length,
             rendered: OnceLock::new(),
+            heard_from: clear_of_surfaces(step.rays, sound.position()),
+            sound,
         });
     }
 
-    fn add_blow(&mut self, late_s: f64, sound: ImpactSound) {
+    fn add_blow(&mut self, step: &Step<'_>, late_s: f64, sound: ImpactSound) {
         let id = FIRST_BLOW_ID + self.next_blow % FIRST_BLOW_ID;
         self.next_blow += 1;
-        self.add(id, late_s, ContactSound::Impact(sound));
+        self.add(step, id, late_s, ContactSound::Impact(sound));
     }
 
     fn take_blows(&mut self, step: &Step<'_>) {
@@ -132,7 +136,7 @@ impl Sound {
                 partners: partners(step, event),
                 key: step.key.child("blow").child(self.next_blow),
             };
-            self.add_blow(event.time_s - step.start_s, sound);
+            self.add_blow(step, event.time_s - step.start_s, sound);
         }
     }
 
@@ -160,7 +164,7 @@ impl Sound {
                 place,
             };
             let id = FIRST_RUB_ID + (a.rotate_left(20) ^ b) % FIRST_BLOW_ID;
-            self.add(id, 0.0, ContactSound::Rub(sound));
+            self.add(step, id, 0.0, ContactSound::Rub(sound));
         }
     }
 
@@ -209,7 +213,7 @@ impl Sound {
             }),
         };
         if friction > 0.0 {
-            self.add(FIRST_JOINT_ID + u64::from(joint.0), 0.0, sound);
+            self.add(step, FIRST_JOINT_ID + u64::from(joint.0), 0.0, sound);
         }
         let shut = |position: f32| (position - of.closed).abs() <= closed_within(of.kind);
         let hits = speed.max(speed_before.abs());
@@ -238,9 +242,9 @@ impl Sound {
         let blow = slam(impulse_n_s, speed_m_s, partners, "slam");
         let tongue = Partner::body("steel", LATCH_KG, LATCH_M);
         let latch = slam(LATCH_KG * LATCH_M_S, LATCH_M_S, [tongue, leaf], "latch");
-        self.add_blow(0.0, blow);
+        self.add_blow(step, 0.0, blow);
         if of.kind == JointKind::Hinge && of.parent.is_none() {
-            self.add_blow(0.01, latch);
+            self.add_blow(step, 0.01, latch);
         }
     }
 
@@ -297,7 +301,7 @@ impl Sound {
                     }),
                 ),
             };
-            self.add(FIRST_FOOT_ID + u64::from(id.0), late_s, sound);
+            self.add(step, FIRST_FOOT_ID + u64::from(id.0), late_s, sound);
         }
     }
 }

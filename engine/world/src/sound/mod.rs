@@ -2,8 +2,10 @@
 //!
 //! - `emitters`: the sounds of the house's own objects; `playing`: what was told to play; `control`: how both are told.
 //! - `events`: the one file that turns what touches, swings and walks into sounds; `gait`: when feet come down.
+//! - `clear`: from where in the air what lies on a surface is heard.
 //! - `ears`: a stream for each agent that listens; `fade`: levels without clicks; `memory`: all of it as bytes.
 
+mod clear;
 mod control;
 mod ears;
 mod emitters;
@@ -20,6 +22,7 @@ pub use playing::{PlayRequest, SoundName, SoundPlace, usual_level_db};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
+use clear::clear_of_surfaces;
 use dwell_acoustics::{AcousticConfig, HeadId, Stream, StreamConfig};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
@@ -118,7 +121,7 @@ impl Sound {
             playing.told.fade.go(target);
         }
         if !self.ears.is_empty() {
-            let sources = self.sources(engines, state, self.blocks)?;
+            let sources = self.sources(engines, rays, state, self.blocks)?;
             for ears in &mut self.ears {
                 ears.hear(engines.house(), rays, state, &sources)?;
             }
@@ -155,7 +158,7 @@ impl Sound {
                 window: vec![0.0; 2 * length],
                 length,
             };
-            let sources = self.sources(engines, state, self.blocks - 1)?;
+            let sources = self.sources(engines, rays, state, self.blocks - 1)?;
             ears.hear(engines.house(), rays, state, &sources)?;
             // In the order of agents, whoever began first.
             let place = self.ears.partition_point(|other| other.agent < *agent);
@@ -190,6 +193,7 @@ impl Sound {
     fn sources(
         &self,
         engines: &Engines,
+        rays: &RayScene,
         state: &State,
         block: u64,
     ) -> Result<Vec<Sounding>, WorldError> {
@@ -217,7 +221,7 @@ impl Sound {
             playing.told.fade.apply(self.rate_hz, &mut signal);
             sources.push(Sounding {
                 id: playing.told.id,
-                position: playing.position(house, state),
+                position: clear_of_surfaces(rays, playing.heard_from(house, state)),
                 signal,
             });
         }
@@ -226,7 +230,7 @@ impl Sound {
             touch.read(self.rate_hz, start, &mut signal);
             sources.push(Sounding {
                 id: touch.id,
-                position: touch.sound.position(),
+                position: touch.heard_from,
                 signal,
             });
         }

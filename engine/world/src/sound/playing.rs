@@ -183,6 +183,19 @@ impl Playing {
     }
 
     /// Where it sounds now, m.
+    /// From where it is heard: of an object, not from within it, but from above.
+    pub(super) fn heard_from(&self, house: &House, state: &State) -> Vec3 {
+        let SoundPlace::Object(object) = self.told.request.place else {
+            return self.position(house, state);
+        };
+        let part = house.objects[object].first_part;
+        let shape = &house.parts[part];
+        let world_from_mesh = state.part_pose[part].to_affine() * shape.part_from_mesh;
+        let bounds = house.meshes[shape.mesh].bounds();
+        let bounds = bounds.transformed(&world_from_mesh);
+        bounds.center().with_y(bounds.max.y)
+    }
+
     pub(super) fn position(&self, house: &House, state: &State) -> Vec3 {
         match self.told.request.place {
             SoundPlace::Point(point) => point,
