@@ -375,7 +375,7 @@ fn an_agent_carries_several_cameras() {
         ("depth", settings)
     };
     let fisheye = json!({"projection": {"kind": "fisheye", "fx": 8, "fy": 8, "cx": 12, "cy": 8}});
-    let down = json!({"projection": {"kind": "orthographic", "width_m": 3, "height_m": 2}, "pitch_deg": -90});
+    let down = json!({"projection": {"kind": "orthographic", "width_m": 0.6, "height_m": 0.4}, "pitch_deg": -90});
     let sensors = [
         small("left", -0.05, json!({})),
         small("right", 0.05, json!({})),
