@@ -182,12 +182,12 @@ CALLS = [
     ('dwell.House.generate("x")', "seed is 'x'"),
     (
         'dwell.House.generate(1, home="castle")',
-        "spec: found unknown variant `castle`, expected one of `studi",
+        "home: found unknown variant `castle`, expected one of `studi",
     ),
     ("dwell.House.generate(1, storeys=nan)", "storeys is nan"),
     (
         "dwell.House.generate(1, nope=1)",
-        "spec: found unknown field `nope`, expected one of `home`, `s",
+        "nope: found unknown field `nope`, expected one of `home`, `s",
     ),
     ("dwell.House.shoebox(None)", "size_m: expected three numbers (x, y, z) in metres, found None"),
     (
