@@ -25,7 +25,8 @@ pub enum SoundName {
 pub enum SoundPlace {
     /// At a point, m.
     Point(Vec3),
-    /// In the middle of an object's first part, wherever that goes.
+    /// At the middle of an object's first part, wherever that goes. It is heard from above the part, since meshes are closed around
+    /// their middles.
     Object(ObjectId),
     /// At an agent's mouth.
     Agent(AgentId),
