@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
+from typing import ClassVar
+
+import gymnasium
 import pytest
 
 import dwell
@@ -12,6 +16,8 @@ from dwell.configs import (
     GeneratorSettings,
     WorldSettings,
 )
+from dwell.envs import DwellEnv
+from dwell.envs.config import EnvSettings
 
 #: What World has as arguments of their own.
 _OWN = {"agents", "laws", "parameters"}
@@ -33,6 +39,58 @@ def test_the_names_are_those_of_the_engine() -> None:
     with pytest.raises(dwell.HouseError) as spec:
         dwell.House.open('seed:1?nope="x"')
     assert _allowed(str(spec.value).split("; ")[0]) == set(GeneratorSettings.__annotations__)
+
+
+def test_a_task_is_registered_with_what_environments_know() -> None:
+    arguments = set(inspect.signature(DwellEnv).parameters)
+    assert set(EnvSettings.__annotations__) == arguments - {"task"}
+    room = dwell.House.shoebox((4.0, 2.5, 3.0))
+    with pytest.raises(dwell.ConfigError) as env:
+        _native.Batch([room.native], '{"nope": 1}')
+    # Laws and parameters are the world's there; the others are of Python alone.
+    own = {"houses", "reward", "laws", "parameters", "threads", "render_mode"}
+    assert _allowed(str(env.value)) == arguments - own
+
+
+class Stand(dwell.Task):
+    """A task that notes how it is played."""
+
+    seen: ClassVar[list[tuple[float, float, float]]] = []
+
+    def __init__(self, far_m: float = 1.0) -> None:
+        self.far_m = far_m
+
+    def reset(self, world: dwell.World, rng: object) -> None:
+        del rng
+        gravity = world.parameter("world/gravity_m_s2")["value"]
+        world.step()
+        self.seen.append((self.far_m, gravity, world.time_s))
+
+
+def test_every_setting_of_a_registered_task_arrives() -> None:
+    house = dwell.House.shoebox((4.0, 2.5, 3.0))
+    dwell.register_task(
+        "tests/Stand-v0",
+        Stand,
+        houses=house,
+        sensors=["depth"],
+        reward=None,
+        laws=None,
+        parameters={"world/gravity_m_s2": 9.0},
+        task_settings={"far_m": 2.5},
+        stride={"forward_m": 0.5},
+        world={"control_rate_hz": 10},
+        threads=1,
+        render_mode="rgb_array",
+    )
+    env = gymnasium.make("tests/Stand-v0")
+    observation, _ = env.reset(seed=0)
+    assert (list(observation), env.render_mode) == (["depth"], "rgb_array")
+    gymnasium.make_vec("tests/Stand-v0", num_envs=2, render_mode=None).reset(seed=0)
+    assert Stand.seen == [(2.5, 9.0, 0.1)] * 3
+    with pytest.raises(dwell.ConfigError, match=r"no field 'house'; allowed are houses, sensors"):
+        dwell.register_task("tests/Stand-v1", Stand, house=house)  # type: ignore[call-arg]
+    assert "tests/Stand-v1" not in gymnasium.registry
 
 
 @pytest.mark.parametrize(

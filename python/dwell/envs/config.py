@@ -5,17 +5,33 @@ from __future__ import annotations
 import functools
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypedDict
 
 from dwell import ConfigError
 from dwell.arguments import fields, finite, mapping, text, texts, to_json
-from dwell.envs.custom import Native
+from dwell.envs.custom import Native, RewardChoice, Sensors
 from dwell.house import House
 from dwell.settings import Laws, world_settings
 
 Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | House]
 
 _STRIDE = {"forward_m": finite, "turn_deg": finite, "look_deg": finite}
+
+
+class EnvSettings(TypedDict, total=False):
+    """What :class:`dwell.envs.DwellEnv` may be told beside its task, and explains."""
+
+    houses: Houses
+    sensors: Sensors
+    reward: RewardChoice
+    laws: Laws
+    parameters: Mapping[str, float] | None
+    task_settings: Mapping[str, Any] | None
+    #: ``forward_m``, ``turn_deg``, ``look_deg``.
+    stride: Mapping[str, float] | None
+    world: Mapping[str, Any] | None
+    threads: int | None
+    render_mode: str | None
 
 
 #: Houses, with their environments, that are kept for the next episode in them: enough for those

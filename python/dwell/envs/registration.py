@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING
 
 import gymnasium
 
 from dwell import ConfigError, _native
 from dwell.arguments import text
+from dwell.envs.config import EnvSettings
 from dwell.envs.custom import TaskChoice
 from dwell.parts import factory
 from dwell.tasks import Task
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 def env_ids() -> list[str]:
@@ -34,20 +38,24 @@ def register_envs() -> None:
         )
 
 
-def register_task(env_id: str, task: TaskChoice, **kwargs: Any) -> None:  # noqa: ANN401 - DwellEnv's
+def register_task(env_id: str, task: TaskChoice, **settings: Unpack[EnvSettings]) -> None:
     """Registers a task of one's own with gymnasium.
 
     Args:
         env_id: What ``gymnasium.make`` and ``make_vec`` will know it by, such as ``"me/Fetch-v0"``.
         task: A subclass of :class:`dwell.Task`, or its ``"module:Name"``, by which other processes
             find it, too.
-        **kwargs: Further arguments of :class:`dwell.envs.DwellEnv`.
+        **settings: Further arguments of :class:`dwell.envs.DwellEnv`.
 
     Raises:
-        ConfigError: The id is of no form that gymnasium knows, or taken.
+        ConfigError: The id is of no form that gymnasium knows, or taken; an argument that
+            ``DwellEnv`` does not have.
     """
-    settings = kwargs.get("task_settings")
-    steps = factory("task", task, Task, settings)().max_steps
+    for name in settings:
+        if name not in EnvSettings.__annotations__:
+            known = ", ".join(EnvSettings.__annotations__)
+            raise ConfigError(f"register_task: no field {name!r}; allowed are {known}")
+    steps = factory("task", task, Task, settings.get("task_settings"))().max_steps
     if text("env_id", env_id) in gymnasium.registry:
         raise ConfigError(f"env_id is {env_id!r}, which is registered already")
     try:
@@ -56,7 +64,7 @@ def register_task(env_id: str, task: TaskChoice, **kwargs: Any) -> None:  # noqa
             entry_point="dwell.envs:DwellEnv",
             vector_entry_point="dwell.envs:DwellVectorEnv",
             max_episode_steps=steps,
-            kwargs={"task": task, **kwargs},
+            kwargs={"task": task, **settings},
         )
     except gymnasium.error.Error as error:
         raise ConfigError(f"env_id is {env_id!r}: {error}") from None
