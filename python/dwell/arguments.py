@@ -187,16 +187,6 @@ def file_name(name: str, value: object) -> str:
     return value
 
 
-def bodies(agents: object) -> list[dict[str, Any]]:
-    """A body for each agent, from a count or from mappings of what differs from the default."""
-    if isinstance(agents, str | bytes) or not isinstance(agents, Sequence):
-        return [{} for _ in range(whole("agents", agents, high=64))]
-    for k, body in enumerate(agents):
-        if not isinstance(body, Mapping):
-            raise ConfigError(f"agents[{k}] is {body!r}; expected a mapping")
-    return [dict(body) for body in agents]
-
-
 def _plain(at: str, value: object) -> Any:  # noqa: ANN401 - any JSON value
     """``value`` as JSON knows it; ``at``: its place, for the error."""
     if isinstance(value, np.ndarray | np.generic):

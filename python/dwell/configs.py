@@ -6,16 +6,17 @@ The engine has the last word on ranges; here wrong types are refused by the sett
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
 from dwell._native import ConfigError
-from dwell.arguments import fields, finite, flag, text, whole
+from dwell.arguments import fields, finite, flag, mapping, text, whole
 from dwell.heads import Head
 
 Home = Literal["studio", "apartment", "house", "office"]
 Doors = Literal["open", "closed", "ajar", "mixed"]
 Split = Literal["train", "val", "test", "all"]
+Locomotion = str | Mapping[str, Mapping[str, float]]
 
 
 class WorldSettings(TypedDict, total=False):
@@ -35,6 +36,36 @@ class WorldSettings(TypedDict, total=False):
     sound_root: str | os.PathLike[str] | None
     #: ``"cpu"``, ``"gpu"`` or ``"gpu:NAME"``.
     renderer: str
+
+
+class BodySettings(TypedDict, total=False):
+    """In what an agent's body differs from the default."""
+
+    #: Radius of the capsule, m, 0.05 to 1.
+    radius_m: float
+    #: Height of the capsule, m, at least twice the radius, at most 3.
+    height_m: float
+    #: Height of eyes and ears above the feet, m, at most the height.
+    eye_height_m: float
+    #: The highest step it climbs, m, 0 to 1.
+    step_height_m: float
+    #: The steepest slope it walks up, rad, 0 to 1.4.
+    max_slope_rad: float
+    #: The heaviest thing it lifts, kg, 0 to 500.
+    lift_kg: float
+    #: How far from its eye its hand reaches, m, 0.1 to 5.
+    reach_m: float
+    #: The force with which it pushes, N, 0 to 10,000.
+    push_force_n: float
+    #: The strongest pull of its hand on a door or drawer, N m or N, 0 to 10,000.
+    hand_effort: float
+    #: The largest edge of what it carries, m, 0.05 to 5.
+    max_carry_size_m: float
+    #: What its cameras see across, degrees, 1 to 170.
+    camera_fov_deg: float
+    #: How it gets about: ``"walking"``, ``"differential_drive"`` or ``"holonomic"``, or one of them
+    #: with its numbers.
+    locomotion: Locomotion
 
 
 class AirSettings(TypedDict, total=False):
@@ -119,6 +150,19 @@ def _air(name: str, value: object) -> dict[str, Any]:
     return fields(name, value, known)
 
 
+def _locomotion(name: str, value: object) -> object:
+    if isinstance(value, str):
+        return value
+    kinds = mapping(name, value, "the name of a locomotion, or its numbers by that name")
+    return {
+        kind: {
+            field: finite(f"{name}.{kind}.{field}", number)
+            for field, number in mapping(f"{name}.{kind}", numbers).items()
+        }
+        for kind, numbers in kinds.items()
+    }
+
+
 #: What a setting must be, by the annotation that it has above.
 _CHECKS: dict[str, _Check] = {
     "float": finite,
@@ -126,7 +170,24 @@ _CHECKS: dict[str, _Check] = {
     "bool": flag,
     "str": text,
     "AirSettings": _air,
+    "Locomotion": _locomotion,
 }
+
+
+def bodies(agents: object) -> list[dict[str, Any]]:
+    """A body for each agent, from a count or from mappings of what differs from the default."""
+    if isinstance(agents, str | bytes) or not isinstance(agents, Sequence):
+        return [{} for _ in range(whole("agents", agents, high=64))]
+    known = {
+        name: _CHECKS[getattr(annotation, "__forward_arg__", str(annotation))]
+        for name, annotation in BodySettings.__annotations__.items()
+    }
+    rows = []
+    for k, body in enumerate(agents):
+        if not isinstance(body, Mapping):
+            raise ConfigError(f"agents[{k}] is {body!r}; expected a mapping")
+        rows.append(fields(f"agents[{k}]", body, known))
+    return rows
 
 
 def checked(kind: type, settings: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from dwell._native import ConfigError
 from dwell.arguments import fields, finite, mapping, path, text, whole
-from dwell.configs import WorldSettings, checked
+from dwell.configs import WorldSettings, bodies, checked
 from dwell.heads import Head, head_of
 
 #: Laws to install; or what calibration found (laws and parameters), as a mapping or by path.
@@ -109,6 +109,8 @@ def world_settings(
     for name in sorted(_FOUND & set(further)):
         raise ConfigError(f"world: holds {name!r}; give it as the argument {name}= instead")
     further = checked(WorldSettings, further)
+    if "agents" in further:
+        further = {**further, "agents": bodies(further["agents"])}
     if (head := further.get("sound_head")) is not None:
         if not isinstance(head, Head):
             raise ConfigError(f"sound_head is {head!r}; allowed is a dwell.Head")

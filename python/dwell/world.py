@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from dwell import ConfigError, _native
 from dwell.actions import Outcome, action_json
 from dwell.arguments import (
-    bodies,
     finite,
     mapping,
     pair,
@@ -25,6 +24,7 @@ from dwell.arguments import (
     whole,
 )
 from dwell.camera import Camera, Channel, camera_settings
+from dwell.configs import bodies
 from dwell.controls import controls_of
 from dwell.guiding import Guiding
 from dwell.heads import Head
@@ -37,7 +37,7 @@ from dwell.settings import Laws, with_head, world_settings
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from dwell.configs import WorldSettings
+    from dwell.configs import BodySettings, WorldSettings
 
 #: Ids have 32 bits.
 _MOST_IDS = 2**32 - 1
@@ -55,7 +55,7 @@ class World(Guiding, Sounds):
         self,
         house: House | str,
         *,
-        agents: int | Sequence[Mapping[str, Any]] = 1,
+        agents: int | Sequence[BodySettings] = 1,
         seed: int = 0,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,

@@ -152,7 +152,18 @@ CALLS = [
     ('dwell.World(H, agents=[{"radius_m": -1}])', "agent body: radius_m is -1"),
     (
         'dwell.World(H, agents=[{"nope": 1}])',
-        "unknown field `nope`, expected one of `radius_m`, `height_m`",
+        "agents[0]: no field 'nope'; allowed are radius_m, height_m",
+    ),
+    ('dwell.World(H, agents=[{}, {"reach_m": "a"}])', "agents[1].reach_m is 'a'"),
+    ('dwell.World(H, agents=[{"reach_m": 9}])', "agent body: reach_m is 9 (range 0.1 to 5 m)"),
+    ('dwell.World(H, agents=[{"locomotion": 5}])', "agents[0].locomotion is 5"),
+    (
+        'dwell.World(H, agents=[{"locomotion": {"holonomic": {"max_forward_m_s": "a"}}}])',
+        "agents[0].locomotion.holonomic.max_forward_m_s is 'a'",
+    ),
+    (
+        'dwell.World(H, agents=[{"locomotion": {"holonomic": {"max_forward_m_s": -1}}}])',
+        "agent body, holonomic base: max_forward_m_s is -1",
     ),
     ('dwell.World(H, seed="x")', "seed is 'x'"),
     ("dwell.World(H, seed=1.5)", "seed is 1.5"),

@@ -13,6 +13,7 @@ from dwell import _native
 from dwell.configs import (
     AcousticSettings,
     AirSettings,
+    BodySettings,
     GeneratorSettings,
     WorldSettings,
 )
@@ -33,6 +34,9 @@ def test_the_names_are_those_of_the_engine() -> None:
     with pytest.raises(dwell.ConfigError) as world:
         _native.World(room.native, '{"nope": 1}', 0)
     assert _allowed(str(world.value)) - _OWN == set(WorldSettings.__annotations__)
+    with pytest.raises(dwell.ConfigError) as body:
+        _native.World(room.native, '{"agents": [{"nope": 1}]}', 0)
+    assert _allowed(str(body.value)) == set(BodySettings.__annotations__)
     scene = dwell.AcousticScene(room)
     assert set(scene.config) == set(AcousticSettings.__annotations__)
     assert set(scene.config["air"]) == set(AirSettings.__annotations__)
