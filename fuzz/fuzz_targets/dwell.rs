@@ -1,4 +1,6 @@
-//! The first file of the sample `dwell`.
+//! The files of the sample `dwell`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("dwell", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("dwell"), |bytes: &[u8]| fuzz("dwell", bytes));

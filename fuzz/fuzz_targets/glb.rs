@@ -1,4 +1,6 @@
-//! The first file of the sample `glb`.
+//! The files of the sample `glb`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("glb", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("glb"), |bytes: &[u8]| fuzz("glb", bytes));

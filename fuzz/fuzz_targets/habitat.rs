@@ -1,4 +1,6 @@
-//! The first file of the sample `habitat`.
+//! The files of the sample `habitat`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("habitat", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("habitat"), |bytes: &[u8]| fuzz("habitat", bytes));

@@ -1,4 +1,6 @@
-//! The first file of the sample `images`.
+//! The files of the sample `images`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("images", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("images"), |bytes: &[u8]| fuzz("images", bytes));

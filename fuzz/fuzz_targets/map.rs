@@ -1,4 +1,6 @@
-//! The first file of the sample `map`.
+//! The files of the sample `map`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("map", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("map"), |bytes: &[u8]| fuzz("map", bytes));

@@ -1,4 +1,6 @@
-//! The first file of the sample `measured`.
+//! The files of the sample `measured`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("measured", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("measured"), |bytes: &[u8]| fuzz("measured", bytes));

@@ -1,4 +1,6 @@
-//! The first file of the sample `mjcf`.
+//! The files of the sample `mjcf`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("mjcf", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("mjcf"), |bytes: &[u8]| fuzz("mjcf", bytes));

@@ -1,4 +1,6 @@
-//! The first file of the sample `obj`.
+//! The files of the sample `obj`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("obj", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("obj"), |bytes: &[u8]| fuzz("obj", bytes));

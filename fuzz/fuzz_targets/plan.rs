@@ -1,4 +1,6 @@
-//! The first file of the sample `plan`.
+//! The files of the sample `plan`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("plan", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("plan"), |bytes: &[u8]| fuzz("plan", bytes));

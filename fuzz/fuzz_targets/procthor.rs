@@ -1,4 +1,6 @@
-//! The first file of the sample `procthor`.
+//! The files of the sample `procthor`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("procthor", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("procthor"), |bytes: &[u8]| fuzz("procthor", bytes));

@@ -1,4 +1,6 @@
-//! The first file of the sample `robot`.
+//! The files of the sample `robot`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("robot", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("robot"), |bytes: &[u8]| fuzz("robot", bytes));

@@ -1,4 +1,6 @@
-//! The first file of the sample `suncg`.
+//! The files of the sample `suncg`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("suncg", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("suncg"), |bytes: &[u8]| fuzz("suncg", bytes));

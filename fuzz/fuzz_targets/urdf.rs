@@ -1,4 +1,6 @@
-//! The first file of the sample `urdf`.
+//! The files of the sample `urdf`.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dwell_tests::hostile::fuzz("urdf", bytes));
+use dwell_tests::hostile::{fuzz, plant};
+
+libfuzzer_sys::fuzz_target!(init: plant("urdf"), |bytes: &[u8]| fuzz("urdf", bytes));

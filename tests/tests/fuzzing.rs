@@ -1,9 +1,10 @@
 //! Mutated files of houses in every format: an error or a house, never a panic, and houses that one can live in.
 
+use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use dwell_scene::random::Key;
-use dwell_tests::hostile::{NAMES, live_in, mutated, read, sample};
+use dwell_tests::hostile::{NAMES, OTHERS, live_in, mutated, read, sample, seeds};
 
 /// Of how many houses that opened one is lived in.
 const LIVED_IN: usize = 4;
@@ -78,5 +79,31 @@ fn every_sample_opens_as_it_is() {
         let opened = read(&sample, 0, sample.bytes(0));
         let (house, _) = opened.unwrap_or_else(|error| panic!("{name}: {error}"));
         live_in(house);
+    }
+}
+
+/// What cargo-fuzz begins with: undamaged inputs, whose first byte tells which file they are.
+#[test]
+fn every_fuzz_target_has_seeds_and_an_entry() {
+    let manifest = include_str!("../../fuzz/Cargo.toml");
+    for name in NAMES.into_iter().chain(OTHERS) {
+        assert!(
+            manifest.contains(&format!("path = \"fuzz_targets/{name}.rs\"")),
+            "{name}"
+        );
+        let seeds = seeds(name);
+        assert!(
+            !seeds.is_empty() && seeds.iter().all(|(_, input)| input.len() > 1),
+            "{name}"
+        );
+        let names: BTreeSet<_> = seeds.iter().map(|(file, _)| file).collect();
+        assert_eq!(names.len(), seeds.len(), "{name}");
+    }
+    for name in NAMES {
+        let sample = sample(name);
+        for (file, input) in seeds(name) {
+            let which = usize::from(input[0]);
+            assert!(input[1..] == *sample.bytes(which), "{name}: {file}");
+        }
     }
 }

@@ -1,7 +1,6 @@
 //! What is done with every input.
 
 use std::sync::Arc;
-use std::sync::{Mutex, OnceLock, PoisonError};
 
 use dwell::{DiscreteAction, Engines, PictureRequest, Place, Stride, World, WorldConfig};
 use dwell_houses::{HousesError, Report};
@@ -10,16 +9,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::{AgentId, House, Pose};
 
-use super::samples::{Sample, sample};
-
-/// How the reading of an input ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
-    /// In an error of [`HousesError`].
-    Refused,
-    /// In a house, with that many entries of the report.
-    Opened(usize),
-}
+use super::samples::Sample;
 
 /// Reads the sample with one of its files changed. The error's sentence, or the report's, is made too.
 ///
@@ -63,17 +53,4 @@ pub fn live_in(house: House) {
         ..Channels::default()
     };
     let _ = world.picture(&request, channels, Threads::ONE);
-}
-
-/// The body of a cargo-fuzz target: the input stands for the first file of the sample of that name.
-///
-/// # Panics
-/// When something is wrong: that is what a fuzzer looks for.
-pub fn fuzz(name: &'static str, bytes: &[u8]) {
-    static SAMPLE: OnceLock<Mutex<Sample>> = OnceLock::new();
-    let sample = SAMPLE.get_or_init(|| Mutex::new(sample(name)));
-    let sample = sample.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Ok((house, _)) = read(&sample, 0, bytes) {
-        live_in(house);
-    }
 }

@@ -1,11 +1,14 @@
 //! Fuzzing of everything that reads a house: samples in every format, mutations of their files, and what has to hold of each.
 //!
-//! The bodies are used by `tests/tests/fuzzing.rs` with mutations of its own, and by the targets of cargo-fuzz in `fuzz/`.
+//! The bodies are used by `tests/tests/fuzzing.rs` with mutations of its own, and by the targets of cargo-fuzz in `fuzz/`, which
+//! also read the files beside houses.
 
 mod bodies;
 mod mutate;
 mod samples;
+mod targets;
 
-pub use bodies::{Ended, fuzz, live_in, read};
+pub use bodies::{live_in, read};
 pub use mutate::mutated;
 pub use samples::{NAMES, Sample, sample};
+pub use targets::{OTHERS, fuzz, plant, seeds};

@@ -234,7 +234,7 @@ const OBJ: &str = "mtllib a.mtl\no floor\nv 0 0 0\nv 0 0 4\nv 4 0 4\nv 4 0 0\nv 
     usemtl a\nf 1/1/1 2/2/1 3/3/1 4/1/1\no wall_1\ng b\nusemtl b\nf -6 -3 -2 -1\nf 1//1 4//1 5//1\no chair\nf 1 2 5\nf 1/1 2/2 6/3\n";
 
 /// All files below a folder, in order.
-fn files_below(folder: &Path) -> Vec<PathBuf> {
+pub(super) fn files_below(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];
     while let Some(folder) = open.pop() {
