@@ -101,10 +101,18 @@ impl PhysicsWorld {
             }
             let pose = to_rapier(&state.part_pose[plan.root()]);
             let velocity = state.part_velocity[plan.root()];
-            let Some(rigid) = self.engine.bodies.get_mut(self.bodies[index].handle) else {
+            let handle = self.bodies[index].handle;
+            let Some(rigid) = self.engine.bodies.get(handle) else {
                 continue;
             };
             let moved = *rigid.position() != pose;
+            let moving = velocity != Velocity::default();
+            if moved || moving && self.engine.laid.has(handle) {
+                self.engine.disturb(handle);
+            }
+            let Some(rigid) = self.engine.bodies.get_mut(handle) else {
+                continue;
+            };
             let mut disturbed = moved;
             if moved {
                 self.holds[index] = Hold::Free;
@@ -151,6 +159,7 @@ impl PhysicsWorld {
             let there = joints::read(&self.engine, joint, position.into());
             let put = !stand.shut && !joints::says_the_same(&self.engine, joint, &stand, there);
             if put {
+                self.engine.disturb(body.handle);
                 for installed in &mut self.laws {
                     installed.law.placed(joint.id, position);
                 }

@@ -2,6 +2,7 @@
 
 use crate::config::Settings;
 use crate::contact::Kept;
+use crate::laid::Laid;
 use crate::laws::Compliance;
 use crate::softness;
 use crate::workspace::Workspace;
@@ -39,9 +40,10 @@ pub(crate) struct Engine {
     runs: u32,
     /// Whether contacts give.
     soft: bool,
-    workspace: Workspace,
+    pub(crate) workspace: Workspace,
     /// Bodies that rapier took out since they were asked for, because their place or speed is no number.
     lost: Vec<RigidBodyHandle>,
+    pub(crate) laid: Laid,
     pub(crate) islands: IslandManager,
     pub(crate) broad_phase: BroadPhaseBvh,
     pub(crate) narrow_phase: NarrowPhase,
@@ -59,6 +61,7 @@ impl Engine {
             soft: false,
             workspace: Workspace::new(),
             lost: Vec::new(),
+            laid: Laid::default(),
             islands: IslandManager::new(),
             broad_phase: BroadPhaseBvh::new(),
             narrow_phase: NarrowPhase::new(),
@@ -84,6 +87,11 @@ impl Engine {
     /// Length of one run of rapier, s: the time over which it keeps impulses.
     pub(crate) fn run_s(&self) -> f32 {
         self.parameters.dt
+    }
+
+    /// Length of a physics step, s.
+    pub(crate) fn step_s(&self) -> f32 {
+        self.parameters.dt * self.runs as f32
     }
 
     /// How rapier keeps friction in contact points.

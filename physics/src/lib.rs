@@ -33,6 +33,7 @@ mod engine;
 mod error;
 mod inertia;
 mod joints;
+mod laid;
 pub mod laws;
 mod lost;
 mod model;

@@ -111,6 +111,9 @@ impl PhysicsWorld {
         self.weights = weights;
         self.applied.clone_from(&state.overrides);
         self.laws = laws;
+        if changed || longer || acts_anew {
+            self.engine.wake_laid();
+        }
         if changed {
             self.flush();
         }
@@ -130,9 +133,7 @@ impl PhysicsWorld {
             let rigid = self.engine.bodies.get(body.handle);
             // rapier sorts its islands anew when it wakes what is awake, and solves in another order.
             if all || rigid.is_some_and(RigidBody::is_sleeping) {
-                self.engine
-                    .islands
-                    .wake_up(&mut self.engine.bodies, body.handle, true);
+                self.engine.wake(body.handle);
             }
         }
     }

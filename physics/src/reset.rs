@@ -223,9 +223,7 @@ impl PhysicsWorld {
         for part in parts {
             if let Some(body) = self.model.body_of_part[part] {
                 let handle = self.bodies[body as usize].handle;
-                self.engine
-                    .islands
-                    .wake_up(&mut self.engine.bodies, handle, true);
+                self.engine.wake(handle);
             }
         }
     }

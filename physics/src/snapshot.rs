@@ -14,6 +14,7 @@ use crate::contact::{ContactTable, Dress, Excluded, Hooks, MergedEvents, Ongoing
 use crate::engine::Engine;
 use crate::error::PhysicsError;
 use crate::joints::{self, Drives, Pull};
+use crate::laid::Laid;
 use crate::laws::{self, Installed};
 use crate::world::{Assembly, PhysicsWorld, Weights, assemble, pose_of};
 use dwell_scene::columns;
@@ -29,7 +30,7 @@ use xxhash_rust::xxh3::xxh3_64;
 /// What a snapshot begins with, and what a moment begins with, which is not packed.
 const MAGIC: &[u8; 4] = b"dwph";
 const MAGIC_OF_MOMENTS: &[u8; 4] = b"dwpm";
-const VERSION: u32 = 12;
+const VERSION: u32 = 13;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.
@@ -45,6 +46,7 @@ struct Memory {
     shoves: Vec<Shove>,
     pulls: Vec<Option<Pull>>,
     ongoing: Ongoing,
+    laid: Laid,
     laws: Vec<Vec<f32>>,
 }
 
@@ -96,7 +98,8 @@ impl PhysicsWorld {
         self.with_header(MAGIC, &pack_within(&self.body(), &[], most))
     }
 
-    /// What a snapshot should take at most: 256 KiB and 2 KiB for each body that can move. What would be larger is packed harder.
+    /// What a snapshot should take at most: 256 KiB and 2 KiB for each body that can move. What would be larger is packed harder; a
+    /// heap in motion may pass it.
     pub fn largest_snapshot(&self) -> usize {
         (256 + 2 * self.bodies.len()) * 1024
     }
@@ -123,6 +126,7 @@ impl PhysicsWorld {
                 shoves: self.shoves.clone(),
                 pulls: self.pulls.clone(),
                 ongoing: self.ongoing.clone(),
+                laid: self.engine.laid.clone(),
                 laws: self
                     .laws
                     .iter()
@@ -224,7 +228,8 @@ impl PhysicsWorld {
             (place, Hold::Frozen)
         };
         let gravity = state.gravity_m_s2();
-        let mut built = assemble(&model, &self.settings, values, gravity, place, &weights);
+        let sizes = (gravity, state.agents.len());
+        let mut built = assemble(&model, &self.settings, values, sizes, place, &weights);
         let mut agents = Vec::with_capacity(state.agents.len());
         for (id, agent) in state.agents.iter_ids() {
             let force = self.settings.event_force_n();
@@ -246,6 +251,7 @@ impl PhysicsWorld {
         engine.broad_phase = shot.broad_phase.0.into_owned();
         engine.narrow_phase = shot.narrow_phase.0.into_owned();
         engine.bodies = bodies;
+        engine.laid = memory.laid;
         engine.joints = shot.joints.0.into_owned();
         engine.colliders = scaffold.colliders;
         for (plan, body) in model.bodies.iter().zip(&self.bodies) {

@@ -43,6 +43,7 @@ impl PhysicsWorld {
         }
         self.notices.clear();
         let first_event = events.len();
+        let began = self.tick;
         let asleep = self.engine.islands.num_active_bodies() == 0;
         let joints = self.joints.iter();
         self.near = joints.map(|joint| said(state, joint.id)).collect();
@@ -57,6 +58,7 @@ impl PhysicsWorld {
             placed = self.physics_step(state, events);
             self.keep_held_inside();
         }
+        self.lay_aside(began);
         if placed {
             // Colliders follow what was placed, so that a snapshot continues with the same bits.
             self.flush();
@@ -85,6 +87,8 @@ impl PhysicsWorld {
     /// Returns whether a tree of joints was put on its course at the end of the step.
     fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) -> bool {
         self.drive_motors(state);
+        let led = self.agents.iter().map(|agent| agent.handle);
+        self.engine.wake_ahead(led);
         self.follow_joints();
         for joint in &self.joints {
             joints::relax(&mut self.engine, joint);

@@ -5,9 +5,9 @@ use rapier3d::dynamics::{CCDSolver, MultibodyJointSet, SoftBodySet};
 use rapier3d::pipeline::PhysicsPipeline;
 
 /// Bodies whose memory is not worth giving back.
-const FEW_BODIES: usize = 64;
+const FEW_BODIES: usize = 4;
 /// Steps for which less than a quarter of the memory was asked for before it is given back.
-const PATIENCE_STEPS: u32 = 128;
+const PATIENCE_STEPS: u32 = 32;
 
 /// The parts of rapier that need not be kept between steps. They are made anew in a copy.
 pub(crate) struct Workspace {

@@ -5,7 +5,7 @@ use crate::agents::{Agent, Grip, Loose};
 use crate::body::{self, Body, BodyPlace, Hold};
 use crate::config::{PhysicsConfig, Settings};
 use crate::contact::{
-    ContactTable, Dress, Entry, Excluded, Hooks, MergedEvents, Motion, Ongoing, Toucher, touching,
+    ContactTable, Dress, Entry, Excluded, Hooks, MergedEvents, Motion, Ongoing, Toucher,
 };
 use crate::convert::{from_rapier, to_rapier};
 use crate::engine::Engine;
@@ -18,7 +18,8 @@ use crate::report::StartReport;
 use crate::start::Start;
 use dwell_scene::material::PairContact;
 use dwell_scene::{Address, AgentId, AgentState, House, JointId, State};
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::ColliderSet;
 use rapier3d::math::Pose as RapierPose;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -94,16 +95,24 @@ pub(crate) struct Assembly {
     pub(crate) anchor: RigidBodyHandle,
 }
 
+/// The bodies that never move: the house, and what joints hang on.
+const STANDING: usize = 2;
+
 /// Inserts the pieces of a house: statics, then bodies in order, at the given places.
 pub(crate) fn assemble(
     model: &PhysicsModel,
     settings: &Settings,
     values: Dress<'_>,
-    gravity_m_s2: f32,
+    (gravity_m_s2, agents): (f32, usize),
     places: impl Fn(usize) -> (RapierPose, Hold),
     weights: &Weights,
 ) -> Assembly {
     let mut engine = Engine::new(settings, gravity_m_s2);
+    // rapier doubles its lists when they are full.
+    let pieces = model.bodies.iter().map(|plan| plan.pieces.len());
+    let pieces: usize = pieces.sum::<usize>() + model.statics.len();
+    engine.colliders = ColliderSet::with_capacity(pieces + agents);
+    engine.bodies = RigidBodySet::with_capacity(model.bodies.len() + STANDING + agents);
     engine.soften(settings, laws::compliance(values.laws));
     let mut entries = body::insert_statics(&mut engine, model, values);
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
@@ -180,7 +189,8 @@ impl PhysicsWorld {
             table: &table,
             laws: &laws,
         };
-        let assembly = assemble(&model, &settings, values, gravity, places, &weights);
+        let sizes = (gravity, state.agents.len());
+        let assembly = assemble(&model, &settings, values, sizes, places, &weights);
         let mut world = Self {
             holds: vec![Hold::Free; model.bodies.len()],
             model,
@@ -270,6 +280,7 @@ impl PhysicsWorld {
                 }
             }
         }
+        self.forget_pairs_of_what_stands();
         report
     }
 
@@ -379,16 +390,6 @@ impl PhysicsWorld {
             state.joint_velocity[joint.id] = if shut { 0.0 } else { velocity };
         }
         state.follow_switches(&self.model.house);
-    }
-
-    pub(crate) fn write_contacts(&self, state: &mut State) {
-        touching(
-            &self.engine.narrow_phase,
-            &self.engine.colliders,
-            &self.entries,
-            self.settings.config.touch_distance_m,
-            &mut state.contacts,
-        );
     }
 }
 

@@ -104,6 +104,7 @@ impl PhysicsWorld {
             self.clear_between(body, &holder, &place, &target)
         };
         let gravity_scale = self.gravity_scale(body);
+        self.engine.disturb(self.bodies[body].handle);
         if let Some(rigid) = self.engine.bodies.get_mut(self.bodies[body].handle) {
             rigid.set_gravity_scale(gravity_scale, true);
             rigid.set_linvel(Vec3::ZERO, true);

@@ -171,9 +171,7 @@ impl PhysicsWorld {
                 && !shove.left
                 && let Some(point) = point
             {
-                self.engine
-                    .islands
-                    .wake_up(&mut self.engine.bodies, handle, true);
+                self.engine.wake(handle);
                 if let Some(rigid) = self.engine.bodies.get_mut(handle) {
                     rigid.apply_impulse_at_point(shove.force * dt_s, point, false);
                 }

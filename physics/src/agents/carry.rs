@@ -106,9 +106,7 @@ pub(crate) fn carry(
     dt_s: f32,
 ) -> bool {
     let target = hand_pose(grip, holder);
-    engine
-        .islands
-        .wake_up(&mut engine.bodies, body.handle, true);
+    engine.wake(body.handle);
     let gravity = engine.gravity.length();
     let Some(rigid) = engine.bodies.get_mut(body.handle) else {
         return true;

@@ -217,9 +217,7 @@ impl PhysicsWorld {
         if impulse <= 0.0 {
             return;
         }
-        self.engine
-            .islands
-            .wake_up(&mut self.engine.bodies, handle, true);
+        self.engine.wake(handle);
         if let Some(rigid) = self.engine.bodies.get_mut(handle) {
             rigid.apply_impulse_at_point(push.direction * impulse, point, false);
         }

@@ -2,20 +2,21 @@
 
 use super::entry::{Entry, Toucher, entry_index};
 use dwell_scene::{Contact, Rest};
+use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::{ColliderSet, NarrowPhase};
 
 /// How much a normal must face up to carry: the cosine of 60 degrees.
 const CARRIES: f32 = 0.5;
 
-/// All pairs of parts, and of parts with the structure, that stand at most `distance_m` apart; each once, sorted.
+/// All pairs of parts, and of parts with the structure, that stand at most `distance_m` apart, with their bodies; for each pair
+/// of pieces that touch.
 pub(crate) fn touching(
     narrow_phase: &NarrowPhase,
     colliders: &ColliderSet,
     entries: &[Entry],
     distance_m: f32,
-    out: &mut Vec<Contact>,
-) {
-    out.clear();
+) -> Vec<([RigidBodyHandle; 2], Contact)> {
+    let mut out = Vec::new();
     for pair in narrow_phase.contact_pairs() {
         let (mut near, mut rest) = (false, Rest::Beside);
         for manifold in pair.solver_manifolds() {
@@ -57,11 +58,12 @@ pub(crate) fn touching(
             },
             b => Contact { a: first, b, rest },
         };
-        out.push(contact);
+        let bodies = [pair.collider1, pair.collider2].map(|handle| colliders[handle].parent());
+        if let [Some(one), Some(two)] = bodies {
+            out.push(([one, two], contact));
+        }
     }
-    // A pair of parts may touch with several pieces: it is listed once, as carrying if any of them carries.
-    out.sort_unstable_by_key(|contact| (contact.a, contact.b, contact.rest == Rest::Beside));
-    out.dedup_by_key(|contact| (contact.a, contact.b));
+    out
 }
 
 /// The same seen from the other side.

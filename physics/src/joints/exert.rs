@@ -169,6 +169,9 @@ pub(crate) fn settle(
         follow(engine, joints, &course, near);
         return true;
     }
+    if standing.rests(engine, tree, joints) {
+        return false;
+    }
     let ends = course.iter().zip(&came_true);
     let ends: Vec<Option<f64>> = ends
         .map(|(going, came)| {

@@ -232,7 +232,5 @@ pub(crate) fn child_at(engine: &Engine, joint: &Joint, position: f32) -> RapierP
 
 /// Wakes the body that a joint moves.
 pub(crate) fn wake(engine: &mut Engine, joint: &Joint) {
-    engine
-        .islands
-        .wake_up(&mut engine.bodies, joint.child_handle, true);
+    engine.wake(joint.child_handle);
 }

@@ -1,10 +1,16 @@
 //! The joints of a tree that may move, as a step finds them and as it leaves them.
 
-use super::Joint;
 use super::chain::Chain;
 use super::reading::{Coordinate, Reading};
 use super::tree::Tree;
+use super::{Joint, child_at};
 use crate::engine::Engine;
+
+/// How fast something moves that stands, m/s and rad/s: a tenth of a millimetre in the half second after which rapier lets it
+/// sleep.
+const STILL: f32 = 2e-4;
+/// How far from where its joint says a body stands that is in its place, m and rad.
+const IN_PLACE: f32 = 2e-5;
 
 /// A tree in a step: made before it, and used again after it.
 #[derive(Clone, Debug)]
@@ -50,6 +56,33 @@ impl Standing {
         let now = pairs.map(|(k, reading)| reading.later(engine, &joints[tree.joints[*k]]));
         let now: Vec<Reading> = now.collect();
         std::mem::replace(&mut self.readings, now)
+    }
+
+    /// Whether nothing of a tree moves and its bodies are where its joints say. It is then left to rapier, which lets it sleep:
+    /// whatever is put somewhere, however near, it keeps awake.
+    pub(super) fn rests(&self, engine: &Engine, tree: &Tree, joints: &[Joint]) -> bool {
+        let still = |handle| {
+            let body = engine.bodies.get(handle);
+            body.is_none_or(|body| body.linvel().length() < STILL && body.angvel().length() < STILL)
+        };
+        let stands = |(joint, now): (&&Joint, &Reading)| {
+            let Some(body) = engine.bodies.get(joint.child_handle) else {
+                return true;
+            };
+            let (place, says) = (
+                body.position(),
+                child_at(engine, joint, now.position as f32),
+            );
+            let off = (place.translation - says.translation).length();
+            let turn = (place.rotation.inverse() * says.rotation).xyz().length();
+            still(joint.child_handle) && off < IN_PLACE && turn < IN_PLACE
+        };
+        still(tree.root())
+            && self
+                .joints(tree, joints)
+                .iter()
+                .zip(&self.readings)
+                .all(stands)
     }
 
     /// rad or m. Shape (freedom,).

@@ -191,7 +191,8 @@ impl Stage<'_> {
     /// A body that moves, freely or with a joint; `None` for one that is shut, frozen or has no mass.
     pub(crate) fn movable(&mut self, body: u32) -> Option<&RigidBody> {
         let rigid = self.engine.bodies.get(self.bodies[body as usize].handle)?;
-        (rigid.is_dynamic() && rigid.mass() > 0.0).then_some(rigid)
+        let moves = rigid.is_dynamic() || self.engine.laid.has(self.bodies[body as usize].handle);
+        (moves && rigid.mass() > 0.0).then_some(rigid)
     }
 
     /// A body that is awake and that moves without joints.
@@ -199,7 +200,7 @@ impl Stage<'_> {
         let handle = self.bodies[body as usize].handle;
         let on_joint = self.plans[body as usize].joint.is_some();
         let answers = self.answering.contains(&body);
-        if on_joint || answers || self.movable(body)?.is_sleeping() {
+        if on_joint || answers || self.movable(body).is_none() || self.engine.sleeps(handle) {
             return None;
         }
         self.engine.bodies.get_mut(handle)
@@ -208,9 +209,7 @@ impl Stage<'_> {
     /// Wakes a body and keeps it awake for as long as one that was just woken.
     pub(crate) fn wake(&mut self, body: u32) {
         let handle = self.bodies[body as usize].handle;
-        self.engine
-            .islands
-            .wake_up(&mut self.engine.bodies, handle, true);
+        self.engine.wake(handle);
     }
 }
 

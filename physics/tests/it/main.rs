@@ -26,6 +26,7 @@ mod grippers;
 mod havoc;
 mod houses;
 mod joints;
+mod laid;
 mod landing;
 mod laws;
 mod letting_go;
