@@ -16,6 +16,7 @@ use crate::laws::{self, Installed};
 use crate::model::PhysicsModel;
 use crate::report::StartReport;
 use crate::start::Start;
+use dwell_scene::interrupt;
 use dwell_scene::material::PairContact;
 use dwell_scene::{Address, AgentId, AgentState, House, JointId, State};
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
@@ -118,6 +119,7 @@ pub(crate) fn assemble(
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut bodies = Vec::with_capacity(model.bodies.len());
     for (index, plan) in model.bodies.iter().enumerate() {
+        interrupt::check();
         let (world_from_body, hold) = places(index);
         let place = BodyPlace {
             index: index as u32,

@@ -10,12 +10,16 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import dwell
+from dwell import _native
 from dwell.envs import DwellVectorEnv
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals are sent by kill")
@@ -99,6 +103,75 @@ def test_a_batch_that_was_stopped_wants_a_reset_and_then_plays_as_ever(threads: 
     envs.reset(seed=5)
     assert (envs.step(forward)[0]["depth"] == expected).all()
     assert envs.state_hashes() == twin.state_hashes()
+
+
+@pytest.mark.usefixtures("raising")
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_first_reset_that_was_stopped_wants_another_and_then_plays_as_ever(threads: int) -> None:
+    def new() -> DwellVectorEnv:
+        house = dwell.House.generate(3, home="house")
+        return DwellVectorEnv(4, houses=house, sensors=["gps", "audio"], threads=threads)
+
+    forward = np.full(4, 3)
+    twin = new()
+    twin.reset(seed=5)
+    expected = twin.step(forward)[0]
+    # Grids, planes and sounds are made in the first reset: each time something else is cut off.
+    for after_s in (0.01, 0.08, 0.2):
+        envs = new()
+        start = time.monotonic()
+        soon(after_s)
+        with pytest.raises(Raised):
+            envs.reset(seed=0)
+        assert time.monotonic() - start < after_s + MOST_S
+        with pytest.raises(dwell.UsageError):
+            envs.step(forward)
+        envs.reset(seed=5)
+        found = envs.step(forward)[0]
+        assert all((found[name] == expected[name]).all() for name in ("gps", "audio"))
+        assert envs.state_hashes() == twin.state_hashes()
+
+
+@pytest.mark.usefixtures("raising")
+def test_an_environment_whose_restoring_was_stopped_is_restored_the_next_time() -> None:
+    def new() -> _native.Batch:
+        house = dwell.House.generate(4, home="house")
+        return _native.Batch([house.native], '{"sensors": [{"kind": "gps"}]}')
+
+    twin, env = new(), new()
+    twin.reset([1])
+    saved = twin.snapshot(0)
+    soon(0.02)
+    with pytest.raises(Raised):
+        env.restore(0, saved)
+    with pytest.raises(dwell.UsageError):
+        env.snapshot(0)
+    env.restore(0, saved)
+    assert env.state_hash(0) == twin.state_hash(0)
+
+
+@pytest.mark.usefixtures("raising")
+@pytest.mark.parametrize("after_s", [0.01, 0.06])
+@pytest.mark.parametrize(
+    "look",
+    [
+        lambda world: world.map(1500),
+        lambda world: world.navigation(dwell.Walker(cell_m=0.02)).occupancy().free,
+        lambda world: world.listen(16_000),
+        lambda world: world.render(agent=0, camera=dwell.Camera(width=1500, height=1500))["rgb"],
+    ],
+    ids=["map", "navigation", "listen", "render"],
+)
+def test_what_was_stopped_while_it_was_prepared_is_prepared_again(
+    look: Callable[[dwell.World], NDArray[Any]], after_s: float
+) -> None:
+    world, twin = (dwell.World("builtin:apartment") for _ in range(2))
+    soon(after_s)
+    with pytest.raises(Raised):
+        while True:
+            look(world)
+    assert (look(world) == look(twin)).all()
+    assert world.state_hash() == twin.state_hash()
 
 
 def test_a_handler_that_does_not_raise_leaves_the_call_alone() -> None:

@@ -1,6 +1,8 @@
 //! Coplanar triangles become one plane.
 
+use super::TRIANGLES_PER_CHECK;
 use dwell_scene::Aabb;
+use dwell_scene::interrupt::Pace;
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
@@ -48,7 +50,9 @@ impl Plane {
 /// Equal input, equal output: larger triangles come first, equal ones in order.
 pub(super) fn cluster(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
     let mut order: Vec<(usize, f64, DVec3)> = Vec::with_capacity(corners.len());
+    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
     for (index, [a, b, c]) in corners.iter().enumerate() {
+        pace.turn();
         let (ab, ac) = ((*b - *a).as_dvec3(), (*c - *a).as_dvec3());
         let cross = ab.cross(ac);
         let longest = ab.length().max(ac.length()).max((ac - ab).length());
@@ -63,6 +67,7 @@ pub(super) fn cluster(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
     let mut of_triangle = vec![super::NO_PLANE; corners.len()];
     let mut finder = Finder::default();
     for (index, area_m2, normal) in order {
+        pace.turn();
         // One of two opposite normals stands for both.
         let first = normal.to_array().into_iter().find(|x| x.abs() > 1e-9);
         let normal = if first.is_some_and(|x| x < 0.0) {

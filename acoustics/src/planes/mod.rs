@@ -16,6 +16,8 @@ use glam::Vec3;
 
 /// The plane of a triangle that has none: it reflects rays, but has no images.
 pub const NO_PLANE: u32 = u32::MAX;
+/// Triangles between looks at whether the planes are still wanted.
+const TRIANGLES_PER_CHECK: usize = 512;
 
 /// The planes of one moving part.
 #[derive(Clone, Debug)]

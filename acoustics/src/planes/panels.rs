@@ -1,8 +1,9 @@
 //! How large the pieces of a plane are: triangles that touch make one panel.
 
-use super::NO_PLANE;
 use super::sets::Sets;
+use super::{NO_PLANE, TRIANGLES_PER_CHECK};
 use dwell_scene::Aabb;
+use dwell_scene::interrupt::Pace;
 use glam::Vec3;
 
 /// Triangles of one plane whose boxes come this near are one panel, m.
@@ -26,7 +27,9 @@ pub(super) fn areas(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<f32> {
             .then(a.cmp(b))
     });
     let mut sets = Sets::new(corners.len());
+    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
     for (place, &a) in order.iter().enumerate() {
+        pace.turn();
         // Boxes are sorted by where they begin: those further on overlap until one begins after this one's end.
         for &b in &order[place + 1..] {
             if of_triangle[b] != of_triangle[a] || boxes[b].min.x > boxes[a].max.x {

@@ -1,8 +1,9 @@
 //! Which edges of triangles are sharp.
 
-use super::NO_PLANE;
 use super::edges::Edge;
 use super::sets::Sets;
+use super::{NO_PLANE, TRIANGLES_PER_CHECK};
+use dwell_scene::interrupt::{self, Pace};
 use glam::{DVec3, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -23,6 +24,9 @@ const ON_LINE_M: f32 = 2e-3;
 const CELL_M: f32 = 0.5;
 /// How far around each of these points its rim is to be found, m: so that none of its points is missed.
 const PADDING_M: f32 = 0.25 * CELL_M + ON_LINE_M;
+
+/// Sides that are sorted in one go.
+const SIDES_PER_CHECK: usize = 1 << 14;
 
 /// A side of a triangle.
 struct Side {
@@ -56,7 +60,9 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Edge> {
     let sides = sides(corners, of_triangle);
     let cover = Cover::new(corners, of_triangle);
     let (mut rims, mut edges) = (Vec::new(), Vec::new());
+    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
     for group in sides.chunk_by(|a, b| a.key == b.key) {
+        pace.turn();
         let folds = |side: &Side| {
             let mut others = group.iter();
             !others.any(|other| other.plane == side.plane && other.into.dot(side.into) < 0.0)
@@ -92,19 +98,26 @@ fn join(rims: &[Rim]) -> Vec<Edge> {
         });
         corners.map(|p| (p / CELL_M).floor().to_array().map(|x| x as i32))
     };
+    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
     let mut places = Vec::new();
+    let mut own = Vec::new();
     for (k, rim) in rims.iter().enumerate() {
+        pace.turn();
         let [a, b] = rim.ends;
         let steps = (2.0 * a.distance(b) / CELL_M).ceil().max(1.0) as usize;
         for step in 0..=steps {
             let point = a.lerp(b, step as f32 / steps as f32);
-            places.extend(cells(point).map(|cell| (cell, k)));
+            own.extend(cells(point));
         }
+        // Mostly a few, told many times.
+        own.sort_unstable();
+        own.dedup();
+        places.extend(own.drain(..).map(|cell| (cell, k)));
     }
     places.sort_unstable();
-    places.dedup();
     let mut edges = Vec::new();
     for (k, rim) in rims.iter().enumerate() {
+        pace.turn();
         let middle = rim.ends[0].lerp(rim.ends[1], 0.5);
         let cell = (middle / CELL_M).floor().to_array().map(|x| x as i32);
         let first = places.partition_point(|place| place.0 < cell);
@@ -152,7 +165,9 @@ impl Rim {
 /// All sides of triangles, those of equal ends together.
 fn sides(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Side> {
     let mut sides = Vec::with_capacity(3 * corners.len());
+    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
     for (triangle, plane) in corners.iter().zip(of_triangle) {
+        pace.turn();
         if *plane == NO_PLANE {
             continue;
         }
@@ -177,7 +192,12 @@ fn sides(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Side> {
             });
         }
     }
-    // Stable, so that triangles of one edge stay in order.
+    // Stable, so that triangles of one edge stay in order. First in parts, which only need to be joined then, so that a large house
+    // is not sorted in one go.
+    for part in sides.chunks_mut(SIDES_PER_CHECK) {
+        interrupt::check();
+        part.sort_by_key(|side| side.key);
+    }
     sides.sort_by_key(|side| side.key);
     sides
 }

@@ -111,7 +111,9 @@ impl Canvas {
                 );
             }
         }
+        interrupt::check();
         let samples = fft.inverse(&mut spectrum);
+        interrupt::check();
         let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();
         let scale = (samples.len() as f64 / power.max(1e-300)).sqrt();
         (0..length)
@@ -130,6 +132,9 @@ impl Canvas {
         let length = self.samples.len().min(noise.len());
         let (rate, first) = (self.rate_hz, (start_s * self.rate_hz).ceil() as i64);
         for k in 0..(duration_s * rate) as i64 {
+            if k % SAMPLES_PER_CHECK as i64 == 0 {
+                interrupt::check();
+            }
             let place = (first + k).rem_euclid(length as i64) as usize;
             self.samples[place] += noise[place] * value((first + k) as f64 / rate - start_s);
         }

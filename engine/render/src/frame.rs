@@ -256,13 +256,17 @@ pub struct Frame {
 impl Frame {
     /// Black images of the right size.
     pub fn new(camera: &Camera, channels: Channels) -> Self {
+        Self::of_pixels(camera.pixels(), channels)
+    }
+
+    /// Black images of so many pixels, such as those of some rows.
+    pub(crate) fn of_pixels(pixels: usize, channels: Channels) -> Self {
         let mut frame = Self::default();
         macro_rules! fill {
             ($image:ident, $parts:expr) => {
                 if channels.$image {
-                    frame
-                        .$image
-                        .resize(camera.pixels() * $parts, Default::default());
+                    // Zeros that the system gives when they are touched: nothing to wait for here.
+                    frame.$image = vec![Default::default(); pixels * $parts];
                 }
             };
         }

@@ -2,10 +2,14 @@
 
 use crate::look::Look;
 use dwell_scene::bvh::flat::Row;
+use dwell_scene::interrupt::Pace;
 use dwell_scene::rays::{BODY_PIECES, body_meshes};
 use dwell_scene::{House, Id, Mesh, PartId, Placed, Pose, State, SurfaceOwner};
 use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 use std::collections::BTreeMap;
+
+/// Triangles between looks at whether the tables are still wanted.
+const TRIANGLES_PER_CHECK: usize = 1 << 12;
 
 /// One triangle; a cache line.
 #[derive(Clone, Copy, Debug)]
@@ -112,7 +116,9 @@ impl Surfaces {
             movable: geometry.movable.clone(),
             bodies: [0; BODY_PIECES],
         };
+        let mut pace = Pace::new(TRIANGLES_PER_CHECK);
         for source in &geometry.static_triangles {
+            pace.turn();
             let placed = &geometry.placed[source.placed as usize];
             all.add(
                 house,
@@ -137,6 +143,7 @@ impl Surfaces {
                 continue;
             }
             for triangle in 0..house.meshes[placed.mesh].triangles.len() {
+                pace.turn();
                 all.add(house, placed, &placed.part_from_mesh, triangle, looks);
             }
         }

@@ -7,9 +7,13 @@
 
 use crate::color::Srgb;
 use dwell_scene::bvh::flat::Row;
+use dwell_scene::interrupt::{self, Pace};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Id, Texture, TextureId};
 use glam::{Vec2, Vec4};
+
+/// Texels between looks at whether the house's textures are still wanted.
+const TEXELS_PER_CHECK: usize = 1 << 14;
 
 /// All images of a house, side by side.
 #[derive(Debug)]
@@ -71,8 +75,11 @@ impl Textures {
         let (width, height) = (size.0 as u32, size.1 as u32);
         loop {
             self.offsets.push(self.texels.len() as u32);
-            self.texels
-                .extend(current.iter().map(|texel| linear(srgb, *texel)));
+            for texels in current.chunks(TEXELS_PER_CHECK) {
+                interrupt::check();
+                self.texels
+                    .extend(texels.iter().map(|texel| linear(srgb, *texel)));
+            }
             if size == (1, 1) {
                 break;
             }
@@ -269,7 +276,9 @@ fn halve(texels: &[[u8; 4]], (width, height): (usize, usize)) -> (Vec<[u8; 4]>, 
     // An odd edge gives its last row to its neighbours.
     let covers =
         |k: usize, from: usize, to: usize| (k * from / to, ((k + 1) * from).div_ceil(to).min(from));
+    let mut pace = Pace::new(TEXELS_PER_CHECK);
     for y in 0..size.1 {
+        pace.turns(width);
         let (top, bottom) = covers(y, height, size.1);
         for x in 0..size.0 {
             let (left, right) = covers(x, width, size.0);

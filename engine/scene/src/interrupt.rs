@@ -5,7 +5,8 @@
 //! calling thread. When the answer is yes, `check` unwinds the stack, of pool threads too, with [`Interrupted`], and
 //! `stoppable` returns it. That is no panic: no hook sees it. (salsa cancels its queries in the same way.)
 //!
-//! What must not stop half-way runs in [`whole`]; what holds a lock or half a result meanwhile uses [`attempt`].
+//! What must not stop half-way runs in [`whole`]; what holds a lock or half a result meanwhile uses [`attempt`]. What a
+//! `LazyLock` makes must not meet a `check`: stopped once, it is lost for good. A `OnceLock` stays empty, and is filled the next time.
 
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -99,6 +100,36 @@ pub fn check() {
     }
     if TOKEN.with_borrow(|token| token.as_ref().is_some_and(is_set)) {
         Interrupted(()).resume();
+    }
+}
+
+/// Looks by [`check`] once in so many turns: for loops whose turns are hardly longer than a look.
+#[derive(Debug)]
+pub struct Pace {
+    every: usize,
+    left: usize,
+}
+
+impl Pace {
+    /// Looks at the first turn, and again after `every` turns, at least one.
+    pub fn new(every: usize) -> Self {
+        Self { every, left: 0 }
+    }
+
+    /// One turn.
+    #[inline]
+    pub fn turn(&mut self) {
+        self.turns(1);
+    }
+
+    /// So many turns at once: those of a loop within.
+    #[inline]
+    pub fn turns(&mut self, count: usize) {
+        if self.left < count.max(1) {
+            self.left = self.every;
+            check();
+        }
+        self.left = self.left.saturating_sub(count);
     }
 }
 
@@ -198,6 +229,28 @@ mod tests {
         });
         assert!(stopped.is_err());
         assert_eq!(turns, 120);
+    }
+
+    #[test]
+    fn a_pace_looks_at_once_and_then_every_so_often() {
+        static ASKED: AtomicUsize = AtomicUsize::new(0);
+        fn note() -> bool {
+            ASKED.fetch_add(1, Ordering::Relaxed);
+            false
+        }
+        let looks = |turns: &[usize]| {
+            ASKED.store(0, Ordering::Relaxed);
+            let mut pace = Pace::new(10);
+            for count in turns {
+                // Every look is one that asks.
+                ASK.set(Some((note, Instant::now())));
+                pace.turns(*count);
+            }
+            ASK.set(None);
+            ASKED.load(Ordering::Relaxed)
+        };
+        assert_eq!([looks(&[1]), looks(&[1; 10]), looks(&[1; 11])], [1, 1, 2]);
+        assert_eq!([looks(&[6; 4]), looks(&[25; 3]), looks(&[0; 5])], [4, 3, 1]);
     }
 
     #[test]

@@ -101,10 +101,14 @@ impl Batch {
 
     /// Goes to a snapshot of one environment.
     ///
+    /// Stopped by [`interrupt`], its episode is over.
+    ///
     /// # Errors
     /// [`WorldError::Usage`] for an environment that does not exist, and those of [`Env::restore`].
     pub fn restore(&mut self, index: usize, bytes: &[u8]) -> Result<(), WorldError> {
-        self.env_mut(index)?.restore(bytes)
+        self.env(index)?;
+        let active: Vec<bool> = (0..self.envs.len()).map(|k| k == index).collect();
+        self.or_over(&active, |batch| batch.env_mut(index)?.restore(bytes))
     }
 
     /// What the scripted expert would do now in each environment.

@@ -6,6 +6,7 @@ use super::shapes::{self, Shaped};
 use super::substance;
 use crate::contact::rolling;
 use crate::convert::to_rapier;
+use dwell_scene::interrupt;
 use dwell_scene::{
     Aabb, Collider, House, Id, IdVec, Inertial, JointId, MaterialId, MeshId, Mobility, ObjectId,
     Part, PartId, Pose, State, StructureId,
@@ -245,6 +246,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
     let mut body_of_part = IdVec::filled(None, house.parts.len());
     let mut stand_ins = Vec::new();
     for (object_id, object) in house.objects.iter_ids() {
+        interrupt::check();
         let mut root: Option<usize> = None;
         let first_body = bodies.len();
         for id in object.parts() {
@@ -333,6 +335,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
 fn structure_pieces(house: &House, meshes: &mut Meshes) -> Vec<Piece> {
     let mut pieces = Vec::new();
     for (id, structure) in house.structure.iter_ids() {
+        interrupt::check();
         let exact = meshes.exact(house, structure.mesh, &Affine3A::IDENTITY);
         if let Some((shape, triangles)) = exact {
             pieces.push(Piece {

@@ -3,6 +3,7 @@
 use super::{Placed, Start};
 use crate::contact::{Toucher, entry_index};
 use crate::model::{BodyPlan, Owner, Piece, shapes};
+use dwell_scene::interrupt;
 use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
 use rapier3d::parry::query;
@@ -25,6 +26,7 @@ impl Start<'_> {
         place: &RapierPose,
         placed: &[Placed],
     ) -> Option<Overlap> {
+        interrupt::check();
         let mut found = Vec::new();
         let is_static = |_, collider: &rapier3d::geometry::Collider| {
             self.entries[entry_index(collider)].body.is_none()

@@ -5,6 +5,7 @@ use super::{CLEARANCE_M, Start};
 use crate::contact::{Entry, Excluded, Toucher, entry_index};
 use crate::model::{BodyPlan, Owner, shapes};
 use crate::report::{PassingJoint, StartReport};
+use dwell_scene::interrupt;
 use dwell_scene::{Mobility, ObjectId};
 use rapier3d::parry::query;
 use rapier3d::pipeline::QueryFilter;
@@ -20,6 +21,7 @@ impl Start<'_> {
         let mut pairs: BTreeSet<(u32, u32)> = BTreeSet::new();
         for (index, plan) in self.model.bodies.iter().enumerate() {
             let Some(joint) = plan.joint else { continue };
+            interrupt::check();
             let robot = self.is_robot(plan.object);
             let mut through = BTreeSet::new();
             let place = self.place(index);

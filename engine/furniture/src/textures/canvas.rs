@@ -1,5 +1,7 @@
 //! A picture under construction.
 
+use dwell_scene::interrupt;
+
 /// A colour while it is mixed: sRGB-encoded, each 0 to 1.
 pub(super) type Color = [f32; 3];
 
@@ -54,6 +56,7 @@ impl Canvas {
             .chunks_exact_mut(self.width as usize)
             .enumerate()
         {
+            interrupt::check();
             let v = 1.0 - (row as f32 + 0.5) * dv;
             for (column, pixel) in pixels.iter_mut().enumerate() {
                 *pixel = color((column as f32 + 0.5) * du, v, *pixel);

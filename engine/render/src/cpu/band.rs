@@ -8,7 +8,11 @@ use crate::frame::{Before, FrameMut};
 use crate::light::{Exposure, Lighting};
 use dwell_scene::State;
 use dwell_scene::bvh::SceneBvh;
+use dwell_scene::interrupt::Pace;
 use glam::Vec3;
+
+/// Packets between looks at whether the picture is still wanted.
+const PACKETS_PER_CHECK: usize = 32;
 
 /// Rows of a picture, with the memory they go to.
 pub(super) struct Band<'a> {
@@ -58,8 +62,15 @@ impl<'a> Band<'a> {
     pub(super) fn render(&mut self, renderer: &CpuRenderer) {
         let (mut packet, mut palette) = (Packet::new(), Palette::new());
         let end = (self.size.0, self.first_row + self.rows);
+        // All light of a packet takes milliseconds.
+        let mut pace = Pace::new(if self.rays.is_full() {
+            1
+        } else {
+            PACKETS_PER_CHECK
+        });
         for top in (0..self.rows).step_by(ROWS) {
             for left in (0..self.size.0).step_by(COLUMNS) {
+                pace.turn();
                 let corner = (left, self.first_row + top);
                 self.rays.cast(self.scene, corner, end, &mut packet);
                 self.write(renderer, &mut packet, &mut palette, (left, top));

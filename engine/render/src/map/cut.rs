@@ -5,7 +5,7 @@ use crate::camera::Camera;
 use crate::color::Srgb;
 use crate::cpu::{CpuRenderer, Job};
 use crate::error::RenderError;
-use crate::frame::{Channels, Frame, View};
+use crate::frame::{Channels, Frame, FrameMut, View};
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -14,6 +14,9 @@ use glam::{Vec2, Vec3};
 
 /// Between looks at whether the map is still wanted.
 const PIXELS_PER_CHECK: usize = 1 << 14;
+/// Pixels of a strip of rows that is drawn at a time: what it takes to colour a large picture would fill the memory, and to give
+/// that back takes its time.
+const PIXELS_PER_STRIP: usize = 1 << 20;
 /// Where nothing is.
 const PAPER: [u8; 3] = [250, 249, 246];
 /// Where light comes from in the camera's frame: from above, the left, and the viewer.
@@ -21,8 +24,8 @@ const LIGHT: Vec3 = Vec3::new(-0.35, 0.72, 0.6);
 /// Light that comes from everywhere, as a share of that on what faces the light.
 const AMBIENT: f32 = 0.5;
 
-const WANTED: Channels = Channels {
-    rgb: true,
+/// What colours are made from.
+const BESIDE: Channels = Channels {
     depth: true,
     instance: true,
     normals: true,
@@ -51,10 +54,35 @@ impl Cut<'_> {
         state: &State,
         threads: Threads,
     ) -> Result<Vec<u8>, RenderError> {
-        let mut frame = self.frame(renderer, scene, state, threads)?;
-        self.shade(renderer, &mut frame);
-        self.fill_walls(renderer, &mut frame.rgb);
-        Ok(frame.rgb)
+        self.in_strips(PIXELS_PER_STRIP, renderer, (scene, state), threads)
+    }
+
+    fn in_strips(
+        &self,
+        pixels: usize,
+        renderer: &CpuRenderer,
+        world: (&RayScene, &State),
+        threads: Threads,
+    ) -> Result<Vec<u8>, RenderError> {
+        let camera = &self.view.camera;
+        let mut walls = vec![0; self.plan.view.camera.pixels() * 3];
+        self.plan.draw_walls(renderer.house(), &mut walls);
+        let mut rgb = vec![0; camera.pixels() * 3];
+        let width = camera.width() as usize;
+        let rows = (pixels / width).max(1);
+        for (strip, rgb) in rgb.chunks_mut(rows * width * 3).enumerate() {
+            let first = (strip * rows) as u32;
+            let end = camera.height().min(first + rows as u32);
+            let mut beside = Frame::of_pixels(rgb.len() / 3, BESIDE);
+            let images = FrameMut {
+                rgb: Some(&mut *rgb),
+                ..beside.as_mut()
+            };
+            self.draw((first, end), images, renderer, world, threads)?;
+            self.shade(first, renderer, &beside, rgb);
+            self.fill_walls(first, &walls, rgb);
+        }
+        Ok(rgb)
     }
 
     /// The depth at which a row meets the cut; nothing for one that looks level or up.
@@ -71,22 +99,22 @@ impl Cut<'_> {
         (direction.y < -1e-3).then(|| ((self.level_y - start.y) / direction.y).max(0.0))
     }
 
-    fn frame(
+    /// Draws rows, the first and the one behind the last, as they are without light.
+    fn draw(
         &self,
+        rows: (u32, u32),
+        mut rest: FrameMut<'_>,
         renderer: &CpuRenderer,
-        scene: &RayScene,
-        state: &State,
+        (scene, state): (&RayScene, &State),
         threads: Threads,
-    ) -> Result<Frame, RenderError> {
+    ) -> Result<(), RenderError> {
         let camera = self.view.camera;
-        let mut frame = Frame::new(&camera, WANTED);
-        let mut rest = frame.as_mut();
         let mut jobs = Vec::new();
-        let mut first = 0;
-        while first < camera.height() {
+        let (mut first, last) = rows;
+        while first < last {
             let near = self.near_m(first);
             let mut end = first + 1;
-            while end < camera.height() && self.near_m(end) == near {
+            while end < last && self.near_m(end) == near {
                 end += 1;
             }
             let pixels = (end - first) as usize * camera.width() as usize;
@@ -103,13 +131,11 @@ impl Cut<'_> {
             }
             first = end;
         }
-        renderer.render_batch(&mut jobs, threads)?;
-        drop(jobs);
-        Ok(frame)
+        renderer.render_batch(&mut jobs, threads)
     }
 
     /// Colours by how surfaces stand to the light; paper where nothing of the storey is.
-    fn shade(&self, renderer: &CpuRenderer, frame: &mut Frame) {
+    fn shade(&self, first_row: u32, renderer: &CpuRenderer, beside: &Frame, rgb: &mut [u8]) {
         let srgb = Srgb::tables();
         let house = renderer.house();
         let pose = &self.view.world_from_camera;
@@ -121,16 +147,17 @@ impl Cut<'_> {
             Some(Entity::Structure(piece)) => house.structure[piece].kind == StructureKind::Ground,
             found => found.is_none(),
         };
-        for (k, rgb) in frame.rgb.chunks_exact_mut(3).enumerate() {
+        let first = first_row as usize * self.view.camera.width() as usize;
+        for (k, rgb) in rgb.chunks_exact_mut(3).enumerate() {
             if k % PIXELS_PER_CHECK == 0 {
                 interrupt::check();
             }
-            let point = self.point(k, frame.depth[k]);
-            if frame.instance[k] == 0 || point.y < self.floor_y || ground(frame.instance[k]) {
+            let point = self.point(first + k, beside.depth[k]);
+            if beside.instance[k] == 0 || point.y < self.floor_y || ground(beside.instance[k]) {
                 rgb.copy_from_slice(&PAPER);
                 continue;
             }
-            let normal = Vec3::from_slice(&frame.normals[k * 3..k * 3 + 3]);
+            let normal = Vec3::from_slice(&beside.normals[k * 3..k * 3 + 3]);
             let share = facing(normal) / level;
             for byte in rgb {
                 *byte = srgb.encode(srgb.decode(*byte) * share);
@@ -148,16 +175,14 @@ impl Cut<'_> {
         self.view.world_from_camera.transform_point(in_camera)
     }
 
-    /// Paints the places where rays pass the cut inside walls.
-    fn fill_walls(&self, renderer: &CpuRenderer, rgb: &mut [u8]) {
-        let mut plan = vec![0; self.plan.view.camera.pixels() * 3];
-        self.plan.draw_walls(renderer.house(), &mut plan);
+    /// Paints the places where rays pass the cut inside walls: where `plan`, a picture of the map, is not black.
+    fn fill_walls(&self, first_row: u32, plan: &[u8], rgb: &mut [u8]) {
         let (width, height) = (
             self.plan.view.camera.width(),
             self.plan.view.camera.height(),
         );
         let across = self.view.camera.width() as usize;
-        for (row, rgb) in rgb.chunks_exact_mut(across * 3).enumerate() {
+        for (row, rgb) in (first_row as usize..).zip(rgb.chunks_exact_mut(across * 3)) {
             interrupt::check();
             let Some(near_m) = self.near_m(row as u32) else {
                 continue;
@@ -174,6 +199,47 @@ impl Cut<'_> {
                 if plan[byte] != 0 {
                     rgb.copy_from_slice(&walls::SRGB);
                 }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::{House, LevelId, Pose, ShoeboxMaterials, space};
+    use std::sync::Arc;
+
+    /// Rows that meet the cut at one depth, and rows that all meet it at another.
+    #[test]
+    fn strips_of_any_size_make_the_same_picture() {
+        let house = House::shoebox([8.0, 3.0, 4.0], &ShoeboxMaterials::default()).unwrap();
+        let house = Arc::new(house);
+        let (scene, state) = (RayScene::new(house.clone()), State::new(&house));
+        let renderer = CpuRenderer::new(&house);
+        let map = Map::new(&house, LevelId(0), 90).unwrap();
+        let turned = space::rotation_from_yaw_pitch(0.4, -0.9);
+        let eye = Vec3::new(4.0, 2.0, 2.0) - turned * Vec3::NEG_Z * 12.0;
+        let beside = View::new(
+            Camera::from_fov(80, 61, 50.0).unwrap(),
+            Pose::new(eye, turned),
+        );
+        for view in [map.view, beside] {
+            let cut = Cut {
+                view,
+                level_y: map.cut_y,
+                floor_y: -0.5,
+                plan: &map,
+            };
+            let drawn = |pixels: usize| {
+                cut.in_strips(pixels, &renderer, (&scene, &state), Threads::ONE)
+                    .unwrap()
+            };
+            let whole = drawn(usize::MAX);
+            let papers = whole.chunks_exact(3).filter(|rgb| **rgb == PAPER).count();
+            assert!(papers > 0 && papers * 10 < 9 * (whole.len() / 3), "{papers}");
+            for pixels in [1, 500, 1000] {
+                assert!(drawn(pixels) == whole, "{pixels}");
             }
         }
     }

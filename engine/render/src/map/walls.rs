@@ -1,12 +1,14 @@
 //! Walls on maps: a camera that starts inside a wall sees nothing of it.
 
 use super::Map;
-use dwell_scene::interrupt;
+use dwell_scene::interrupt::Pace;
 use dwell_scene::{House, Mesh, StructureKind};
 use glam::Vec2;
 
 /// Width of the lines around walls, m: the skins of a wall are about so thick.
 const LINE_M: f32 = 0.06;
+/// Pixels between looks at whether the map is still wanted.
+const PIXELS_PER_CHECK: usize = 1 << 16;
 /// The colour of walls.
 pub(super) const SRGB: [u8; 3] = [40, 40, 44];
 
@@ -20,7 +22,6 @@ impl Map {
             .iter()
             .filter(|piece| piece.kind == StructureKind::Wall)
         {
-            interrupt::check();
             let lines = self.cut(&house.meshes[piece.mesh]);
             self.fill(&lines, rgb);
         }
@@ -66,11 +67,14 @@ impl Map {
                 pixel.copy_from_slice(&SRGB);
             }
         };
+        let mut pace = Pace::new(PIXELS_PER_CHECK);
         // Each line in its own box: walls of scanned houses have thousands.
         for [a, b] in lines {
             let (low, high) = (a.min(*b) - half_m, a.max(*b) + half_m);
             for y in first(low.y)..last(high.y, height) {
-                for x in first(low.x)..last(high.x, width) {
+                let columns = first(low.x)..last(high.x, width);
+                pace.turns(columns.len());
+                for x in columns {
                     if distance(Vec2::new(middle(x), middle(y)), *a, *b) <= half_m {
                         paint(x, y);
                     }
@@ -95,7 +99,9 @@ impl Map {
         for (y, meets) in meets.iter_mut().enumerate() {
             meets.sort_by(f32::total_cmp);
             for pair in meets.chunks_exact(2) {
-                for x in first(pair[0])..last(pair[1], width) {
+                let columns = first(pair[0])..last(pair[1], width);
+                pace.turns(columns.len());
+                for x in columns {
                     if (pair[0]..pair[1]).contains(&middle(x)) {
                         paint(x, y);
                     }

@@ -3,6 +3,7 @@
 use super::data::HouseData;
 use crate::bvh::{TriangleBvh, TriangleTag};
 use crate::ids::{EntityId, Id, IdVec, MaterialId, MeshId, PartId, StructureId};
+use crate::interrupt;
 use crate::mesh::Mesh;
 use glam::{Affine3A, Mat3A, Vec3};
 use std::sync::Arc;
@@ -84,6 +85,7 @@ impl Geometry {
                 movable.push(id);
                 let mesh = &data.meshes[part.mesh];
                 mesh_bvh[part.mesh].get_or_insert_with(|| {
+                    interrupt::check();
                     Arc::new(TriangleBvh::build(&mesh.positions, &mesh.triangles))
                 });
             }
@@ -96,6 +98,7 @@ impl Geometry {
             {
                 continue;
             }
+            interrupt::check();
             let mesh = &data.meshes[thing.mesh];
             let base = baked.positions.len() as u32;
             baked.positions.extend(

@@ -3,11 +3,14 @@
 use super::clip::Polygon;
 use super::config::NavConfig;
 use crate::bounds::Aabb;
+use crate::interrupt::Pace;
 use crate::math;
 use glam::{Vec2, Vec3};
 
 /// Surfaces nearer than this on top of each other are one, m.
 const TOUCHING_M: f32 = 1e-3;
+/// Columns between looks at whether the grid is still wanted.
+const COLUMNS_PER_CHECK: usize = 1 << 12;
 
 /// What fills a column between two heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,9 +21,23 @@ pub(super) struct Span {
     pub(super) flat: f32,
 }
 
+impl Span {
+    const NONE: Self = Self {
+        low: 0.0,
+        high: 0.0,
+        flat: f32::NEG_INFINITY,
+    };
+}
+
 /// Sorts spans and joins those that touch. The result depends on the set of them only, and joining what was joined before
 /// changes nothing.
 pub(super) fn join(spans: &mut Vec<Span>) {
+    let kept = join_first(spans);
+    spans.truncate(kept);
+}
+
+/// As [`join`]; what is joined comes first, and so many are left.
+fn join_first(spans: &mut [Span]) -> usize {
     spans.sort_by(|a, b| a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)));
     let mut kept = 0_usize;
     for k in 0..spans.len() {
@@ -36,7 +53,7 @@ pub(super) fn join(spans: &mut Vec<Span>) {
             }
         }
     }
-    spans.truncate(kept);
+    kept
 }
 
 /// The grid seen from above.
@@ -149,19 +166,40 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// Joins the spans of each column.
-    pub(super) fn new(mut raw: Vec<Vec<Span>>) -> Self {
-        let mut columns = Self {
-            first: Vec::with_capacity(raw.len() + 1),
-            spans: Vec::new(),
-        };
-        columns.first.push(0);
-        for spans in &mut raw {
-            join(spans);
-            columns.spans.extend_from_slice(spans);
-            columns.first.push(columns.spans.len() as u32);
+    /// Joins what fills each of `count` columns; `raw`: columns and spans in any order.
+    pub(super) fn new(count: usize, raw: &[(u32, Span)]) -> Self {
+        let mut pace = Pace::new(COLUMNS_PER_CHECK);
+        // Sorted by counting.
+        let mut ends = vec![0_usize; count + 1];
+        for (column, _) in raw {
+            pace.turn();
+            ends[*column as usize + 1] += 1;
         }
-        columns
+        for column in 0..count {
+            ends[column + 1] += ends[column];
+        }
+        let mut spans = vec![Span::NONE; raw.len()];
+        // Where the next one of each column goes: in the end, where the column ends.
+        for (column, span) in raw {
+            pace.turn();
+            let next = &mut ends[*column as usize];
+            spans[*next] = *span;
+            *next += 1;
+        }
+        let mut first = Vec::with_capacity(count + 1);
+        let (mut start, mut kept) = (0, 0);
+        for end in &ends[..count] {
+            pace.turn();
+            first.push(kept as u32);
+            let joined = join_first(&mut spans[start..*end]);
+            spans.copy_within(start..start + joined, kept);
+            kept += joined;
+            start = *end;
+        }
+        first.push(kept as u32);
+        spans.truncate(kept);
+        spans.shrink_to_fit();
+        Self { first, spans }
     }
 
     /// What fills a column, from below.
@@ -202,9 +240,9 @@ mod tests {
                 corner(&mut stream),
             ];
             let frame = frame();
-            let mut raw = vec![Vec::new(); frame.count()];
-            frame.cross(corners, |column, span| raw[column].push(span));
-            let columns = Columns::new(raw);
+            let mut raw = Vec::new();
+            frame.cross(corners, |column, span| raw.push((column as u32, span)));
+            let columns = Columns::new(frame.count(), &raw);
             let steps = 200;
             for i in 0..=steps {
                 for j in 0..=steps - i {
@@ -233,6 +271,33 @@ mod tests {
         frame.cross(beside, |column, _| panic!("column {column}"));
         let above = beside.map(|p| p + Vec3::new(-8.5, 9.0, 0.0));
         frame.cross(above, |column, _| panic!("column {column}"));
+    }
+
+    #[test]
+    fn columns_hold_what_fills_them_in_whatever_order_it_comes() {
+        let mut stream = Key::root(5).stream();
+        let span = |stream: &mut Stream| {
+            let low = stream.range(0.0, 3.0);
+            let high = low + stream.range(0.0, 0.5);
+            let flat = high - stream.range(0.0, 0.1);
+            Span { low, high, flat }
+        };
+        let count = 9;
+        // The first and the last column stay empty.
+        let raw: Vec<(u32, Span)> = (0..60)
+            .map(|_| (1 + stream.below(count - 2) as u32, span(&mut stream)))
+            .collect();
+        let columns = Columns::new(count, &raw);
+        for column in 0..count {
+            let own = raw.iter().filter(|(at, _)| *at as usize == column);
+            let mut own: Vec<Span> = own.map(|(_, span)| *span).collect();
+            join(&mut own);
+            assert_eq!(columns.at(column), own, "{column}");
+        }
+        let backwards: Vec<(u32, Span)> = raw.into_iter().rev().collect();
+        let again = Columns::new(count, &backwards);
+        assert_eq!((again.first, again.spans), (columns.first, columns.spans));
+        assert!(Columns::new(0, &[]).is_empty() && Columns::new(3, &[]).at(2).is_empty());
     }
 
     #[test]

@@ -179,8 +179,7 @@ pub(super) fn leaf_at(state: &State, joint: &Articulation, position: f32) -> Aff
 
 /// The columns of all that never moves, and of floors alone.
 fn fixed_columns(house: &House, frame: &Frame) -> (Columns, Columns) {
-    let mut fixed: Vec<Vec<Span>> = vec![Vec::new(); frame.count()];
-    let mut floors = fixed.clone();
+    let (mut fixed, mut floors) = (Vec::new(), Vec::new());
     for placed in &house.geometry().placed {
         if matches!(placed.owner, SurfaceOwner::Part(part) if !house.parts[part].fixed) {
             continue;
@@ -196,12 +195,13 @@ fn fixed_columns(house: &House, frame: &Frame) -> (Columns, Columns) {
         for triangle in &mesh.triangles {
             interrupt::check();
             frame.cross(triangle.map(|v| points[v as usize]), |column, span| {
-                fixed[column].push(span);
+                fixed.push((column as u32, span));
                 if is_floor {
-                    floors[column].push(span);
+                    floors.push((column as u32, span));
                 }
             });
         }
     }
-    (Columns::new(fixed), Columns::new(floors))
+    let columns = |raw: Vec<(u32, Span)>| Columns::new(frame.count(), &raw);
+    (columns(fixed), columns(floors))
 }

@@ -3,8 +3,11 @@
 use super::columns::{Frame, Span};
 use super::config::NavConfig;
 use super::ground::{around, standing};
-use crate::interrupt;
+use crate::interrupt::{self, Pace};
 use glam::Vec3;
+
+/// Surfaces between looks at whether the islands are still wanted.
+const SURFACES_PER_CHECK: usize = 1 << 14;
 
 /// No cell.
 pub(super) const NOWHERE: u32 = u32::MAX;
@@ -209,6 +212,7 @@ impl Layers {
         let mut island = vec![NOWHERE; self.height.len()];
         let mut found: Vec<(usize, usize, bool)> = Vec::new();
         let mut stack = Vec::new();
+        let mut pace = Pace::new(SURFACES_PER_CHECK);
         for start in 0..self.height.len() {
             if island[start] != NOWHERE || !self.is_free(start) {
                 continue;
@@ -219,6 +223,7 @@ impl Layers {
             island[start] = label;
             stack.push(start as u32);
             while let Some(cell) = stack.pop() {
+                pace.turn();
                 let flags = self.flags[cell as usize];
                 indoors += usize::from(flags & INDOORS != 0);
                 kept |= flags & ON_FLOOR != 0;

@@ -5,12 +5,16 @@ use super::config::{Doors, NavConfig};
 use super::ground::{Ground, leaf_at};
 use crate::house::House;
 use crate::ids::PartId;
+use crate::interrupt::Pace;
 use crate::state::State;
 use glam::{Affine3A, Vec3};
 use std::collections::BTreeMap;
 
 /// A door counts as open from this openness on.
 const STANDS_OPEN: f32 = 0.8;
+
+/// Triangles between looks at whether the grid is still wanted.
+const TRIANGLES_PER_CHECK: usize = 64;
 
 /// A part that moves.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,7 +165,9 @@ pub(super) fn raster(
         .map(|p| world_from_mesh.transform_point3(*p))
         .collect();
     let mut crossed: Vec<(u32, Span)> = Vec::new();
+    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
     for triangle in &mesh.triangles {
+        pace.turn();
         frame.cross(triangle.map(|v| points[v as usize]), |column, span| {
             crossed.push((column as u32, span));
         });
