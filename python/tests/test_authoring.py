@@ -131,6 +131,11 @@ def test_a_sound_file_and_starts_travel_with_the_house(tmp_path: Path) -> None:
         agent = env.unwrapped.agents()[0]
         assert agent["position"] == pytest.approx([5.05, 0.0, 1.5], abs=0.1)
     env.close()
+    (tmp_path / "a.dwell" / "sound_0.wav").write_bytes(b"RIFFnothing")
+    broken = dwell.House.open(tmp_path / "a.dwell")
+    for _ in range(2):
+        with pytest.raises(dwell.DwellError, match=r'kettle\.wav, played by "desk": data: found'):
+            dwell.World(broken)
 
 
 def test_sounds_that_cannot_be_are_refused(apartment: dwell.House, tmp_path: Path) -> None:

@@ -149,13 +149,13 @@ CALLS = [
     ("dwell.World(H, agents=1e6)", "agents is 1000000.0"),
     ("dwell.World(H, agents=[5])", "agents[0] is 5"),
     ('dwell.World(H, agents=[{"radius_m": nan}])', "agents[0].radius_m is nan"),
-    ('dwell.World(H, agents=[{"radius_m": -1}])', "agent body: radius_m is -1"),
+    ('dwell.World(H, agents=[{"radius_m": -1}])', "agents[0]: radius_m is -1"),
     (
         'dwell.World(H, agents=[{"nope": 1}])',
         "agents[0]: no field 'nope'; allowed are radius_m, height_m",
     ),
     ('dwell.World(H, agents=[{}, {"reach_m": "a"}])', "agents[1].reach_m is 'a'"),
-    ('dwell.World(H, agents=[{"reach_m": 9}])', "agent body: reach_m is 9 (range 0.1 to 5 m)"),
+    ('dwell.World(H, agents=[{"reach_m": 9}])', "agents[0]: reach_m is 9 (range 0.1 to 5 m)"),
     ('dwell.World(H, agents=[{"locomotion": 5}])', "agents[0].locomotion is 5"),
     (
         'dwell.World(H, agents=[{"locomotion": {"holonomic": {"max_forward_m_s": "a"}}}])',
@@ -163,7 +163,7 @@ CALLS = [
     ),
     (
         'dwell.World(H, agents=[{"locomotion": {"holonomic": {"max_forward_m_s": -1}}}])',
-        "agent body, holonomic base: max_forward_m_s is -1",
+        "agents[0], holonomic base: max_forward_m_s is -1",
     ),
     ('dwell.World(H, seed="x")', "seed is 'x'"),
     ("dwell.World(H, seed=1.5)", "seed is 1.5"),

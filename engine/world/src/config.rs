@@ -3,7 +3,7 @@
 use crate::error::WorldError;
 use dwell_acoustics::HeadId;
 use dwell_render::BackEnd;
-use dwell_scene::{AgentBody, LawSpec};
+use dwell_scene::{AgentBody, LawSpec, SceneError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -108,8 +108,8 @@ impl WorldConfig {
         if self.agents.len() > 64 {
             return fault("agents", self.agents.len().to_string(), "at most 64".into());
         }
-        for body in &self.agents {
-            body.check()?;
+        for (k, body) in self.agents.iter().enumerate() {
+            body.check().map_err(|error| of_agent(k, error))?;
         }
         Ok(())
     }
@@ -122,5 +122,56 @@ impl WorldConfig {
     /// Sound samples a control step.
     pub fn samples_per_step(&self) -> usize {
         (f64::from(self.sound_rate_hz) / self.control_rate_hz) as usize
+    }
+}
+
+/// What is wrong with the body of one of the agents, with its place among them.
+fn of_agent(number: usize, error: SceneError) -> SceneError {
+    match error {
+        SceneError::Range {
+            at,
+            field,
+            found,
+            allowed,
+        } => SceneError::Range {
+            at: at.replacen("agent body", &format!("agents[{number}]"), 1),
+            field,
+            found,
+            allowed,
+        },
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::{DifferentialDrive, Locomotion};
+
+    #[test]
+    fn a_body_out_of_range_is_named_by_agent_and_field() {
+        let refused = |body: AgentBody| {
+            let config = WorldConfig {
+                agents: vec![AgentBody::default(), body],
+                ..WorldConfig::default()
+            };
+            config.check().unwrap_err().to_string()
+        };
+        let flat = AgentBody {
+            radius_m: f32::NAN,
+            ..AgentBody::default()
+        };
+        assert_eq!(
+            refused(flat),
+            "agents[1]: radius_m is NaN (range 0.05 to 0.75 m); allowed is a value within its range"
+        );
+        let narrow = AgentBody {
+            locomotion: Locomotion::DifferentialDrive(DifferentialDrive {
+                wheel_base_m: 0.0,
+                ..DifferentialDrive::default()
+            }),
+            ..AgentBody::default()
+        };
+        assert!(refused(narrow).starts_with("agents[1], differential drive: wheel_base_m is 0 ("));
     }
 }

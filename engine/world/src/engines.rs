@@ -163,6 +163,14 @@ impl Engines {
         self.recordings.of_house(&self.house, id, rate_hz)
     }
 
+    /// Refuses a house with a sound file that is none, before somebody hears it.
+    ///
+    /// # Errors
+    /// [`WorldError::Acoustics`] with the file and what plays it.
+    pub(crate) fn check_sounds(&self) -> Result<(), WorldError> {
+        self.recordings.check_house(&self.house)
+    }
+
     /// Where a body can walk in the house as it starts, with all doors open. The first body's grid is shared.
     ///
     /// # Errors

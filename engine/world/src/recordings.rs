@@ -5,9 +5,9 @@ use dwell_acoustics::recordings::MOST_BYTES;
 use dwell_acoustics::signals::Signal;
 use dwell_acoustics::{AcousticsError, Recording};
 use dwell_houses::{At, DataRoot, HousesError};
-use dwell_scene::{House, SoundFileId};
-use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use dwell_scene::{House, SoundFileId, interrupt};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use xxhash_rust::xxh3::Xxh3;
 
 /// Samples that are kept; beyond it all are forgotten, and those that are played again are read again: 256 MiB.
@@ -28,6 +28,8 @@ struct Own {
 pub(crate) struct Recordings {
     known: Mutex<Known>,
     own: Mutex<Own>,
+    /// Whether the house's own sounds were found to be some.
+    are_sounds: OnceLock<()>,
 }
 
 fn print(samples: &[f32]) -> u64 {
@@ -73,6 +75,28 @@ impl Recordings {
         }
         known.insert(key, found.clone());
         Ok(found)
+    }
+
+    /// Decodes every sound file that something in the house plays; once, where none is refused.
+    ///
+    /// # Errors
+    /// [`WorldError::Acoustics`] for what is no sound, with the file and what plays it.
+    pub(crate) fn check_house(&self, house: &House) -> Result<(), WorldError> {
+        if self.are_sounds.get().is_some() {
+            return Ok(());
+        }
+        let mut seen = BTreeSet::new();
+        for emitter in &house.emitters {
+            let Some(id) = emitter.sound_file.filter(|id| seen.insert(*id)) else {
+                continue;
+            };
+            interrupt::check();
+            let (file, object) = (&house.sound_files[id], &house.objects[emitter.object]);
+            let name = format!("{}, played by {:?}", file.name, object.name);
+            Recording::decode(&name, &file.bytes)?;
+        }
+        self.are_sounds.get_or_init(|| ());
+        Ok(())
     }
 
     /// A sound file of the house at `rate_hz`.

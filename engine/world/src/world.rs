@@ -44,7 +44,7 @@ impl World {
     /// Makes a world; its agents stand at the first room's floor until they are placed.
     ///
     /// # Errors
-    /// [`WorldError`] names the setting, parameter or law that is wrong.
+    /// [`WorldError`] names the setting, parameter or law that is wrong, or a sound file of the house that is none.
     pub fn new(engines: Arc<Engines>, config: &WorldConfig) -> Result<Self, WorldError> {
         config.check()?;
         if config.renderer != BackEnd::Cpu {
@@ -53,6 +53,7 @@ impl World {
         if let Some(head) = config.sound_head {
             engines.head(head)?;
         }
+        engines.check_sounds()?;
         let start = engines.start(config)?;
         let (state, physics) = (start.state.clone(), start.physics.clone());
         let mut rays = RayScene::new(engines.house().clone());
