@@ -69,7 +69,7 @@ impl Cut<'_> {
         self.plan.draw_walls(renderer.house(), &mut walls);
         let mut rgb = vec![0; camera.pixels() * 3];
         let width = camera.width() as usize;
-        let rows = (pixels / width).max(1);
+        let rows = (pixels / width).clamp(1, camera.height() as usize);
         for (strip, rgb) in rgb.chunks_mut(rows * width * 3).enumerate() {
             let first = (strip * rows) as u32;
             let end = camera.height().min(first + rows as u32);
@@ -237,7 +237,10 @@ mod tests {
             };
             let whole = drawn(usize::MAX);
             let papers = whole.chunks_exact(3).filter(|rgb| **rgb == PAPER).count();
-            assert!(papers > 0 && papers * 10 < 9 * (whole.len() / 3), "{papers}");
+            assert!(
+                papers > 0 && papers * 10 < 9 * (whole.len() / 3),
+                "{papers}"
+            );
             for pixels in [1, 500, 1000] {
                 assert!(drawn(pixels) == whole, "{pixels}");
             }
