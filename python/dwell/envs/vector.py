@@ -109,6 +109,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._streams: list[np.random.Generator | None] = [None] * num_envs
         self._steps = np.zeros(num_envs, np.int64)
         self._done = np.ones(num_envs, np.bool_)
+        #: Whose latest reset did not come to its end.
+        self._stopped = np.zeros(num_envs, np.bool_)
         self.single_observation_space = self._runner.space
         self.single_action_space = action_space()
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -127,9 +129,11 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             int(stream.integers(2**63)) if start and stream is not None else None
             for stream, start in zip(self._streams, which, strict=True)
         ]
+        self._stopped[which] = True
         self._runner.reset(seeds)
         self._steps[which] = 0
         self._done[which] = False
+        self._stopped[which] = False
 
     def reset(
         self,
@@ -179,6 +183,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._refuse_closed()
         if any(stream is None for stream in self._streams):
             raise UsageError("step: no episode has begun; call reset first")
+        if self._stopped.any():
+            which = np.flatnonzero(self._stopped).tolist()
+            raise UsageError(f"step: no episode of environments {which} has begun; reset them")
         try:
             numbers = np.asarray(actions)
         except ValueError:

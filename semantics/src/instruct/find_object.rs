@@ -3,6 +3,7 @@
 use super::task::{FOUND_M, Goal, Instruction, InstructionKind};
 use crate::refer::refer;
 use crate::scene::Scene;
+use dwell_scene::interrupt;
 
 /// What is part of the building, stands between rooms, or has no name of its own, is not looked for.
 const NOT_SOUGHT: [&str; 11] = [
@@ -28,6 +29,8 @@ pub(super) fn candidates(scene: &Scene<'_>) -> Vec<Instruction> {
                 && scene.room_of(*object).is_some()
         })
         .filter_map(|object| {
+            // Some milliseconds each.
+            interrupt::check();
             let expression = refer(scene, object)?;
             let goal = Goal {
                 rooms: Vec::new(),

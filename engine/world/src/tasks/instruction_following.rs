@@ -12,6 +12,7 @@ use crate::expert::{Guide, face};
 use crate::metrics::Progress;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::interrupt::Pace;
 use dwell_scene::navigation::{Cell, NavGrid};
 use dwell_scene::random::Key;
 use dwell_scene::{AgentId, Pose, State};
@@ -25,6 +26,8 @@ const SUCCESS_REWARD: f64 = 2.5;
 const SLACK_REWARD: f64 = -0.01;
 /// Goals nearer than this to where the expert looked in vain are not tried again, m.
 const ELSEWHERE_M: f32 = 0.3;
+/// Cells between looks at whether the goals are still wanted.
+const CELLS_PER_CHECK: usize = 256;
 
 pub(super) const KIND: TaskKind = TaskKind {
     name: NAME,
@@ -134,7 +137,9 @@ struct InstructionFollowing {
 }
 
 impl InstructionFollowing {
-    fn find_offers(&mut self, world: &World, grid: &NavGrid) {
+    /// All at once: who is stopped on the way has found nothing.
+    fn find_offers(&self, world: &World, grid: &NavGrid) -> Vec<Offer> {
+        let mut offers = Vec::new();
         let engines = world.engines().clone();
         let state: &State = world.state();
         let scene = engines.semantics().scene(state);
@@ -142,10 +147,11 @@ impl InstructionFollowing {
             for instruction in instruct::candidates(&scene, *kind) {
                 let goals = goal_cells(world, grid, &instruction);
                 if !goals.is_empty() {
-                    self.offers.push(Offer { instruction, goals });
+                    offers.push(Offer { instruction, goals });
                 }
             }
         }
+        offers
     }
 }
 
@@ -158,8 +164,10 @@ fn goal_cells(world: &World, grid: &NavGrid, instruction: &Instruction) -> Vec<C
         .get(AgentId(0))
         .map_or(1.25, |agent| agent.body.eye_height_m);
     let on_island = grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
+    let mut pace = Pace::new(CELLS_PER_CHECK);
     on_island
         .filter(|cell| {
+            pace.turn();
             let at = grid.position(*cell);
             let in_room = |dx: f32, dz: f32| {
                 let room = house.room_at(at + Vec3::new(dx, 0.1, dz));
@@ -207,7 +215,7 @@ impl Task for InstructionFollowing {
         };
         let grid = world.engines().navigation(&body)?;
         if self.offers.is_empty() {
-            self.find_offers(world, &grid);
+            self.offers = self.find_offers(world, &grid);
         }
         let unplayable = |why: &str| WorldError::Unplayable {
             task: NAME,
