@@ -41,8 +41,8 @@ fn a_restored_world_continues_with_the_same_bits() {
     assert_eq!(walk(&mut other, 12), first);
 }
 
-/// 256 KiB and 2 KiB a body. A head remembers the response of the house, a second for each ear, to each of four sources and what they
-/// played, samples that do not pack: 512 KiB.
+/// 256 KiB and 2 KiB a body. A head remembers, of each of four sources, the energies that arrive of a second and what it played,
+/// samples that do not pack: 320 KiB.
 #[test]
 fn snapshots_of_worlds_stay_within_their_size() {
     let mut world = world();
@@ -69,7 +69,7 @@ fn snapshots_of_worlds_stay_within_their_size() {
         sizes.iter().all(|size| *size <= bound),
         "{sizes:?} of {bound}"
     );
-    assert!(sizes[1] <= sizes[0] + 512 * 1024, "{sizes:?}");
+    assert!(sizes[1] <= sizes[0] + 320 * 1024, "{sizes:?}");
 }
 
 /// The most that a snapshot takes for a pair of pieces near each other of a heap in motion, bytes.

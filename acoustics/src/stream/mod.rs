@@ -30,7 +30,7 @@ use xxhash_rust::xxh3::xxh3_64;
 
 /// Parts whose box is smaller than this from corner to corner do not change what is heard, m.
 const LARGE_PART_M: f32 = 0.7;
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// A source that sounds during a block.
 #[derive(Clone, Copy, Debug)]
@@ -364,23 +364,39 @@ impl Stream {
         let rate_hz = f64::from(self.scene.config().rate_hz);
         self.microphones = Microphones::restore(rate_hz, snapshot.microphones)?;
         let voices = snapshot.voices.into_iter();
-        self.voices = voices
-            .map(|memory| {
-                let mut voice = Voice::restore(&mut self.fft, memory, self.partitions);
-                if let Some((situation, response)) = &voice.heard {
-                    let most = voice.moved.followed.as_ref();
-                    let most = most.map(|_| self.config.moving_paths);
-                    let scene = self.scene.as_heard(situation.effects);
-                    let samples = without_followed(&scene, situation, response, most);
-                    let channels = response.channels;
-                    voice.filter_with(&mut self.fft, &samples, channels, self.partitions);
-                }
-                voice
-            })
-            .collect();
+        self.voices = voices.map(|memory| self.voice(memory)).collect();
         self.parts = snapshot.parts;
         self.block = snapshot.block;
         Ok(())
+    }
+
+    /// A voice as it was remembered.
+    fn voice(&mut self, memory: voice::Memory) -> Voice {
+        let mut voice = Voice::restore(&mut self.fft, memory, self.partitions);
+        let Some((situation, mut response)) = voice.heard.take() else {
+            return voice;
+        };
+        let scene = self.scene.as_heard(situation.effects);
+        let receiver = &situation.receiver;
+        if receiver.microphone_positions().is_none() {
+            response = scene.arrive(
+                response.echogram,
+                receiver,
+                None,
+                self.noise(situation.noise),
+            );
+        }
+        let most = voice.moved.followed.as_ref();
+        let most = most.map(|_| self.config.moving_paths);
+        let samples = without_followed(&scene, &situation, &response, most);
+        voice.filter_with(&mut self.fft, &samples, response.channels, self.partitions);
+        voice.heard = Some((situation, response));
+        voice
+    }
+
+    /// What is random in how a source is heard.
+    fn noise(&self, source: u64) -> Key {
+        self.key.child("source").child(source)
     }
 
     /// A number that changes with anything that will be heard of what was played so far.

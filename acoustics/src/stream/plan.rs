@@ -41,36 +41,7 @@ impl Stream {
         receiver: &Receiver,
         report: &mut BlockReport,
     ) -> Result<Vec<Planned>, AcousticsError> {
-        let mut ids: Vec<(u64, Option<Vec3>)> = Vec::new();
-        let mut seen = 0;
-        for source in sources {
-            if ids.iter().any(|(id, _)| *id == source.id) {
-                continue;
-            }
-            let sounds = sources
-                .iter()
-                .filter(|other| other.id == source.id)
-                .any(|other| other.signal.iter().any(|x| *x != 0.0));
-            let rings = self
-                .voices
-                .iter()
-                .any(|voice| voice.id == source.id && !voice.input.is_silent());
-            if sounds || rings {
-                seen += 1;
-                if seen <= self.config.max_sources {
-                    ids.push((source.id, Some(source.position)));
-                } else {
-                    report.left_out += 1;
-                }
-            }
-        }
-        for voice in &self.voices {
-            if !voice.input.is_silent() && !ids.iter().any(|(id, _)| *id == voice.id) {
-                ids.push((voice.id, None));
-            }
-        }
-        ids.sort_by_key(|(id, _)| *id);
-        report.heard = ids.len();
+        let ids = self.sounding(sources, report);
         // The microphones of an array hear early paths of their own.
         let glides = self.config.moving_paths > 0 && receiver.microphone_positions().is_none();
         let distance_m = self.config.update_distance_m;
@@ -106,6 +77,7 @@ impl Stream {
                 overrides: state.overrides.clone(),
                 effects: *self.scene.effects(),
                 passing: false,
+                noise: id,
             };
             let changed = |then: &Situation| then.change(&now, &threshold);
             let change = heard.map_or(Change::Moved, |(then, _)| {
@@ -115,7 +87,7 @@ impl Stream {
                     then.change_while_ringing(&now, &threshold)
                 }
             });
-            let key = self.key.child("source").child(id);
+            let key = self.noise(id);
             // A blow on the table is heard as the one before it was: other sources' impulse responses serve as well.
             let known = || {
                 let others = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
@@ -137,6 +109,7 @@ impl Stream {
                     // The echogram stays that of the place where it was traced.
                     let mut turned = then.clone();
                     turned.receiver.pose.rotation = receiver.pose.rotation;
+                    turned.noise = id;
                     let response = scene.arrive(echogram, &turned.receiver, None, key);
                     Some((turned, response))
                 }
@@ -190,6 +163,45 @@ impl Stream {
             });
         }
         Ok(planned)
+    }
+
+    /// The sources that sound or ring, by id, and where they are; `None` for what is no longer named.
+    fn sounding(
+        &self,
+        sources: &[ActiveSource<'_>],
+        report: &mut BlockReport,
+    ) -> Vec<(u64, Option<Vec3>)> {
+        let mut ids: Vec<(u64, Option<Vec3>)> = Vec::new();
+        let mut seen = 0;
+        for source in sources {
+            if ids.iter().any(|(id, _)| *id == source.id) {
+                continue;
+            }
+            let sounds = sources
+                .iter()
+                .filter(|other| other.id == source.id)
+                .any(|other| other.signal.iter().any(|x| *x != 0.0));
+            let rings = self
+                .voices
+                .iter()
+                .any(|voice| voice.id == source.id && !voice.input.is_silent());
+            if sounds || rings {
+                seen += 1;
+                if seen <= self.config.max_sources {
+                    ids.push((source.id, Some(source.position)));
+                } else {
+                    report.left_out += 1;
+                }
+            }
+        }
+        for voice in &self.voices {
+            if !voice.input.is_silent() && !ids.iter().any(|(id, _)| *id == voice.id) {
+                ids.push((voice.id, None));
+            }
+        }
+        ids.sort_by_key(|(id, _)| *id);
+        report.heard = ids.len();
+        ids
     }
 
     /// What another source is heard as, close to where one begins and with nothing in between: a step sounds much like the last one.

@@ -22,6 +22,8 @@ pub(super) struct Situation {
     pub(super) effects: Effects,
     /// Whether large parts were on their way, so that the tail is partly remembered from where they were before.
     pub(super) passing: bool,
+    /// The source whose noise the tail has.
+    pub(super) noise: u64,
 }
 
 /// How a situation differs from another.
@@ -170,9 +172,22 @@ impl Voice {
     }
 
     pub(super) fn memory(&self) -> Memory {
+        let heard = self.heard.as_ref().map(|(situation, response)| {
+            // Samples follow from the echogram, but for an array: each of its microphones has early paths of its own.
+            let samples = match situation.receiver.microphone_positions() {
+                Some(_) => response.samples.clone(),
+                None => Vec::new(),
+            };
+            let response = ImpulseResponse {
+                samples,
+                echogram: response.echogram.clone(),
+                ..*response
+            };
+            (situation.clone(), response)
+        });
         Memory {
             id: self.id,
-            heard: self.heard.clone(),
+            heard,
             history: self.input.history().to_vec(),
             moved: self.moved.clone(),
         }
