@@ -3,6 +3,7 @@
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use crate::recordings::Recordings;
+use crate::sound::emitter_places;
 use crate::start::Start;
 use dwell_acoustics::signals::Signal;
 use dwell_acoustics::{AcousticConfig, AcousticScene, Head, HeadId};
@@ -11,6 +12,7 @@ use dwell_render::{BackEnd, CpuRenderer, Renderer};
 use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
 use dwell_scene::{House, SoundFileId, State};
 use dwell_semantics::Semantics;
+use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
@@ -27,6 +29,8 @@ pub struct Engines {
     acoustics: Mutex<BTreeMap<(String, u32), AcousticScene>>,
     heads: Mutex<BTreeMap<HeadId, Head>>,
     recordings: Recordings,
+    /// From where the house's own sounds are heard. Shape (emitter,).
+    emitter_places: OnceLock<Vec<Vec3>>,
     /// For the walker whose radius, height and step these are; others get a grid of their own.
     navigation: OnceLock<(NavConfig, Arc<NavGrid>)>,
     /// Of the latest config, as long as a world of it is left.
@@ -45,6 +49,7 @@ impl Engines {
             acoustics: Mutex::default(),
             heads: Mutex::default(),
             recordings: Recordings::default(),
+            emitter_places: OnceLock::new(),
             navigation: OnceLock::new(),
             start: Mutex::default(),
         })
@@ -156,6 +161,12 @@ impl Engines {
         rate_hz: u32,
     ) -> Result<(Signal, u64), WorldError> {
         self.recordings.open(root, name, rate_hz)
+    }
+
+    /// From where the house's own sounds are heard, in the frames of their parts, m. Shape (emitter,).
+    pub(crate) fn emitter_places(&self) -> &[Vec3] {
+        self.emitter_places
+            .get_or_init(|| emitter_places(&self.house))
     }
 
     /// A sound file of the house at a sample rate; decoded once.

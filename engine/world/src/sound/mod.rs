@@ -15,6 +15,7 @@ mod gait;
 mod memory;
 mod playing;
 
+pub(crate) use clear::emitter_places;
 pub use control::SoundNow;
 pub(crate) use events::Step;
 pub use playing::{PlayRequest, SoundName, SoundPlace, usual_level_db};
@@ -201,6 +202,7 @@ impl Sound {
         let start = block * self.block as u64;
         let mut sources = Vec::new();
         let fades = self.emitters.fades(house, state);
+        let places = engines.emitter_places();
         for (k, (emitter, fade)) in house.emitters.iter().zip(fades).enumerate() {
             if fade.is_silent() {
                 continue;
@@ -211,7 +213,7 @@ impl Sound {
             fade.apply(self.rate_hz, &mut signal);
             sources.push(Sounding {
                 id: k as u64,
-                position: state.part_pose[emitter.part].transform_point(emitter.position),
+                position: state.part_pose[emitter.part].transform_point(places[k]),
                 signal,
             });
         }
