@@ -43,6 +43,7 @@ mod placement;
 mod report;
 mod reset;
 mod resting;
+mod settling;
 mod snapshot;
 mod softness;
 mod start;

@@ -83,7 +83,9 @@ class World(Guiding, Sounds):
                 those that calibration found.
             **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``,
                 ``sound_root`` (the folder below which sound files are), ``sound_head`` (a
-                :class:`dwell.Head` or the path of its SOFA file: on it are all ears), and
+                :class:`dwell.Head` or the path of its SOFA file: on it are all ears), ``settle_s``
+                (how long things may come to rest before the world begins; else they fall by the
+                hair that is between them within its first second), and
                 ``renderer``, who makes pictures: ``"cpu"`` (default, or what the variable
                 DWELL_RENDERER says), ``"gpu"``, or ``"gpu:NAME"`` with a part of an adapter's name.
         """

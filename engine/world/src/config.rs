@@ -33,6 +33,10 @@ pub struct WorldConfig {
     pub agents: Vec<AgentBody>,
     /// Laws to install.
     pub laws: Vec<LawSpec>,
+    /// How long things may come to rest before the world begins, s, 0 to 60; less where all rest sooner. Without it nothing is moved
+    /// in advance in a world, and 2 s pass before an environment's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settle_s: Option<f64>,
     /// Parameters that differ from the house's, by address.
     pub parameters: BTreeMap<String, f64>,
 }
@@ -54,6 +58,7 @@ impl Default for WorldConfig {
             renderer: BackEnd::Cpu,
             agents: vec![AgentBody::default()],
             laws: Vec::new(),
+            settle_s: None,
             parameters: BTreeMap::new(),
         }
     }

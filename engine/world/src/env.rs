@@ -14,6 +14,10 @@ use dwell_scene::{AgentId, Id, Pose};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// How long things come to rest before an environment's world begins, s. Else each episode's first second would cost ten times what
+/// the others do.
+const SETTLE_S: f64 = 2.0;
+
 /// What an environment is made of. Every field has a default; unknown fields are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -160,6 +164,7 @@ impl Env {
             }
         }
         let mut world_config = config.world.clone();
+        world_config.settle_s.get_or_insert(SETTLE_S);
         // What `agent/N/camera/fov_deg` reads is what the agent sees with: its first camera with a field of view.
         for (k, body) in world_config.agents.iter_mut().enumerate() {
             let eyes = sensors.iter().filter_map(|sensor| sensor.eye());
@@ -435,6 +440,32 @@ mod tests {
             ..EnvConfig::default()
         };
         Env::new(Engines::new(Arc::new(house)), &config).unwrap()
+    }
+
+    /// Nothing has yet to fall in an episode's first moment, in any episode; whoever wants that says so.
+    #[test]
+    fn episodes_begin_when_things_have_come_to_rest() {
+        let mut env = env();
+        assert_eq!(env.world.config().settle_s, Some(SETTLE_S));
+        let awake = env.world.physics.awake_count();
+        assert!(awake < 20, "{awake}");
+        assert_eq!(env.world.state().time_s, 0.0);
+        let start = env.world.state().part_pose.clone();
+        env.reset(5).unwrap();
+        env.step(DiscreteAction::TurnLeft).unwrap();
+        env.reset(6).unwrap();
+        assert_eq!(env.world.state().part_pose, start);
+        let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
+        let config = EnvConfig {
+            sensors: Some(Vec::new()),
+            world: WorldConfig {
+                settle_s: Some(0.0),
+                ..WorldConfig::default()
+            },
+            ..EnvConfig::default()
+        };
+        let falling = Env::new(Engines::new(Arc::new(house)), &config).unwrap();
+        assert!(falling.world.physics.awake_count() > 100);
     }
 
     /// A task that starts nothing.

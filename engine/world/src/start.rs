@@ -9,8 +9,8 @@ use dwell_scene::{Address, AgentStart, AgentState, House, State};
 use glam::Vec3;
 use std::sync::OnceLock;
 
-/// The first moment of a world: nothing overlaps, doors are shut, agents stand where the house has them start, or on the first
-/// room's floor. Worlds begin with a copy of it, and go back to one.
+/// The first moment of a world: nothing overlaps, things have come to rest where that was asked for, doors are shut, agents stand
+/// where the house has them start, or on the first room's floor. Worlds begin with a copy of it, and go back to one.
 #[derive(Debug)]
 pub(crate) struct Start {
     pub(crate) state: State,
@@ -53,8 +53,9 @@ impl Start {
             physics_rate_hz: config.physics_rate_hz as f32,
             ..PhysicsConfig::default()
         };
-        let (physics, report) =
+        let (mut physics, report) =
             PhysicsWorld::over(engines.physics().clone(), &physics_config, &mut state)?;
+        physics.settle(&mut state, config.settle_s.unwrap_or_default())?;
         Ok(Self {
             state,
             physics,

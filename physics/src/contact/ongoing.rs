@@ -70,6 +70,13 @@ pub(crate) struct Ongoing {
 }
 
 impl Ongoing {
+    /// Nothing has begun that would still be told.
+    pub(crate) fn forget_events(&mut self) {
+        self.impacts.clear();
+        self.touching.clear();
+        self.moving.clear();
+    }
+
     /// Notes which bodies the last step stopped on their way: rapier moves what is fast no further than a little into a
     /// surface, and the rest of its step is lost.
     pub(crate) fn note_held_back(&mut self, engine: &Engine, before: &[Motion], dt_s: f32) {

@@ -40,6 +40,7 @@ mod refusals;
 mod reset;
 mod resting;
 mod set_agents;
+mod settling;
 mod snapshot;
 mod standing;
 mod start;
