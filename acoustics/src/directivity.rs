@@ -8,9 +8,11 @@ use std::f64::consts::{PI, TAU};
 
 /// Angles in the table of a sphere: every 3 degrees.
 const ANGLES: usize = 61;
+/// The most angles that a measured one may have: every half degree.
+const MOST_ANGLES: f64 = 361.0;
 
 /// A directivity that is symmetric about an axis: the forward axis (-Z) of what has it. Its gain on the axis is 1 in every band.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Directivity {
     /// Equal on all sides.
@@ -31,6 +33,12 @@ pub enum Directivity {
     Sphere {
         /// 0.01 to 1 m.
         radius_m: f32,
+    },
+    /// As it was measured: amplitudes at angles to the axis.
+    Polar {
+        /// Over that on the axis, from there (0 degrees) to behind (180) at equal steps; between them amplitudes are interpolated. At
+        /// most 2. Shape (angle, band), 2 to 361 angles.
+        gain: Vec<Banded>,
     },
 }
 
@@ -76,14 +84,25 @@ impl Directivity {
                 (0.01, 1.0),
                 "0.01 to 1",
             ),
+            Self::Polar { gain } => {
+                let angles = gain.len() as f64;
+                range(AT, "angles", angles, (2.0, MOST_ANGLES), "2 to 361")?;
+                for on_axis in gain.iter().take(1).flatten() {
+                    let allowed = "1 on the axis";
+                    range(AT, "gain", f64::from(*on_axis), (0.999, 1.001), allowed)?;
+                }
+                let mut all = gain.iter().flatten();
+                all.try_for_each(|g| range(AT, "gain", f64::from(*g), (-2.0, 2.0), "-2 to 2"))
+            }
         }
     }
 
     /// Ready for many directions, in air with `speed_m_s`.
     pub(crate) fn pattern(&self, speed_m_s: f64) -> Pattern {
-        match *self {
+        match self {
             Self::Omni => Pattern::Omni,
-            Self::FirstOrder { gradient } => Pattern::FirstOrder(gradient),
+            Self::FirstOrder { gradient } => Pattern::FirstOrder(*gradient),
+            Self::Polar { gain } => Pattern::Table(gain.clone()),
             Self::Sphere { radius_m } => {
                 let cosines: Vec<f64> = (0..ANGLES)
                     .map(|k| libm::cos(PI * k as f64 / (ANGLES - 1) as f64))
@@ -91,7 +110,7 @@ impl Directivity {
                 let mut table = vec![[0.0; BAND_COUNT]; ANGLES];
                 for band in 0..BAND_COUNT {
                     let omega = TAU * bands::exact_centre_hz(band);
-                    let found = sphere_response(omega * f64::from(radius_m) / speed_m_s, &cosines);
+                    let found = sphere_response(omega * f64::from(*radius_m) / speed_m_s, &cosines);
                     let size = |value: &realfft::num_complex::Complex<f64>| {
                         libm::hypot(value.re, value.im)
                     };
@@ -171,6 +190,35 @@ mod tests {
         );
         assert!(Directivity::named("laser").is_none());
         assert!(Directivity::Sphere { radius_m: f32::NAN }.check().is_err());
+    }
+
+    /// A cardioid that was measured at 37 angles is one, between them too, and passes its bounds as any other does.
+    #[test]
+    fn a_measured_pattern_is_what_was_measured() {
+        let cosine = |k: u16| (f32::from(k) * 5.0).to_radians().cos();
+        let gain = (0..37).map(|k| [0.5 + 0.5 * cosine(k); BAND_COUNT]);
+        let measured = Directivity::Polar {
+            gain: gain.collect(),
+        };
+        measured.check().unwrap();
+        let (found, wanted) = (measured.pattern(343.2), Directivity::CARDIOID.pattern(343.2));
+        for degrees in 0..=180_u16 {
+            let cosine = f32::from(degrees).to_radians().cos();
+            let off = found.gain(cosine)[3] - wanted.gain(cosine)[3];
+            assert!(off.abs() < 1e-3, "{degrees}: {off}");
+        }
+        let refused = |gain: Vec<Banded>| Directivity::Polar { gain }.check().unwrap_err();
+        let one = [1.0; BAND_COUNT];
+        for gain in [
+            vec![],
+            vec![one],
+            vec![one; 362],
+            vec![[0.5; BAND_COUNT], one],
+            vec![one, [f32::NAN; BAND_COUNT]],
+            vec![one, [3.0; BAND_COUNT]],
+        ] {
+            assert!(refused(gain).to_string().contains("directivity"));
+        }
     }
 
     /// Long waves go round a head; short ones leave its back faint.

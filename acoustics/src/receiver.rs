@@ -13,7 +13,7 @@ pub const MOST_MICROPHONES: usize = 128;
 const HIGHEST_ORDER: u8 = 3;
 
 /// What radiates sound.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Source {
     /// Where it is, and its axes (forward -Z), m.
     pub pose: Pose,
@@ -57,7 +57,7 @@ impl Source {
 }
 
 /// One microphone of an array.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Microphone {
     /// Where it is in the array, and its axes (forward -Z), m.
     pub array_from_microphone: Pose,

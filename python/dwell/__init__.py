@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from dwell.building import HouseBuilder
     from dwell.calibration import calibrate
     from dwell.camera import Camera
+    from dwell.directivity import Directivity
     from dwell.editing import HouseEdit
     from dwell.envs import register_envs, register_task
     from dwell.heads import Head
@@ -50,6 +51,7 @@ _LAZY = {
     "AcousticScene": "dwell.acoustics",
     "Ask": "dwell.tasks",
     "Camera": "dwell.camera",
+    "Directivity": "dwell.directivity",
     "Head": "dwell.heads",
     "House": "dwell.house",
     "HouseBuilder": "dwell.building",
@@ -77,6 +79,7 @@ __all__ = [
     "Ask",
     "Camera",
     "ConfigError",
+    "Directivity",
     "DwellError",
     "EngineBug",
     "Head",

@@ -36,7 +36,8 @@ class WorldSettings(TypedDict, total=False):
     sound_root: str | os.PathLike[str] | None
     #: ``"cpu"``, ``"gpu"`` or ``"gpu:NAME"``.
     renderer: str
-    #: How long things may come to rest before the world begins, s, 0 to 60; default 0, and 2 in environments.
+    #: How long things may come to rest before the world begins, s, 0 to 60; default 0, and 2 in
+    #: environments.
     settle_s: float
 
 

@@ -9,18 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from dwell.arguments import finite, point, whole
+from dwell.directivity import Directivity, directivity_json
 from dwell.heads import Head, head_of
 
 Point = tuple[float, float, float]
-
-#: Directivities by name; ``loudspeaker`` and ``talker`` are points on rigid spheres.
-DIRECTIVITIES: dict[str, Any] = {
-    "omni": "omni",
-    "cardioid": {"first_order": {"gradient": [0.5] * 8}},
-    "figure_of_eight": {"first_order": {"gradient": [1.0] * 8}},
-    "talker": {"sphere": {"radius_m": 0.0875}},
-    "loudspeaker": {"sphere": {"radius_m": 0.15}},
-}
 
 
 @dataclass(frozen=True)
@@ -31,19 +23,20 @@ class Source:
         position: Where it is, m.
         yaw_deg: Where its front points: 0 to -Z, 90 to -X.
         pitch_deg: How far its front is raised.
-        directivity: A name of :data:`DIRECTIVITIES`. Its level is that in front of it.
+        directivity: ``omni``, ``cardioid``, ``figure_of_eight``, ``talker``, ``loudspeaker``, or a
+            :class:`dwell.Directivity`. Its level is that in front of it.
     """
 
     position: Point
     yaw_deg: float = 0.0
     pitch_deg: float = 0.0
-    directivity: str = "omni"
+    directivity: str | Directivity = "omni"
 
     def to_json(self) -> dict[str, Any]:
         """As the engine takes it."""
         return {
             "pose": _pose(self.position, self.yaw_deg, self.pitch_deg),
-            "directivity": _directivity(self.directivity),
+            "directivity": directivity_json(self.directivity),
         }
 
 
@@ -55,13 +48,13 @@ class Microphone:
         position: Where it is in the array's axes (forward -Z, left -X, up +Y), m.
         yaw_deg: Where its front points, in the array.
         pitch_deg: How far its front is raised, in the array.
-        directivity: A name of :data:`DIRECTIVITIES`.
+        directivity: As that of a :class:`Source`.
     """
 
     position: Point
     yaw_deg: float = 0.0
     pitch_deg: float = 0.0
-    directivity: str = "omni"
+    directivity: str | Directivity = "omni"
 
 
 @dataclass(frozen=True)
@@ -125,7 +118,7 @@ class Receiver:
                     "array_from_microphone": _pose(
                         point("microphones", item.position), item.yaw_deg, item.pitch_deg
                     ),
-                    "directivity": _directivity(item.directivity),
+                    "directivity": directivity_json(item.directivity),
                 }
                 for item in items
             ]
@@ -156,12 +149,6 @@ class Receiver:
 def source_of(source: Source | Sequence[float]) -> Source:
     """A point is a source that radiates equally on all sides."""
     return source if isinstance(source, Source) else Source(point("source", source))
-
-
-def _directivity(name: str) -> Any:  # noqa: ANN401 - a name or a table with numbers
-    if name not in DIRECTIVITIES:
-        raise ValueError(f"directivity: no {name!r}; there are {', '.join(DIRECTIVITIES)}")
-    return DIRECTIVITIES[name]
 
 
 def _pose(position: Sequence[float], yaw_deg: float, pitch_deg: float) -> dict[str, Any]:
