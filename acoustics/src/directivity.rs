@@ -201,7 +201,10 @@ mod tests {
             gain: gain.collect(),
         };
         measured.check().unwrap();
-        let (found, wanted) = (measured.pattern(343.2), Directivity::CARDIOID.pattern(343.2));
+        let (found, wanted) = (
+            measured.pattern(343.2),
+            Directivity::CARDIOID.pattern(343.2),
+        );
         for degrees in 0..=180_u16 {
             let cosine = f32::from(degrees).to_radians().cos();
             let off = found.gain(cosine)[3] - wanted.gain(cosine)[3];

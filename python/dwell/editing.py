@@ -49,6 +49,16 @@ class Edits:
         self._edits.append({word: {key: row for key, row in fields.items() if row is not None}})
         return self
 
+    @staticmethod
+    def kinds() -> dict[str, str]:
+        """What :meth:`add` knows: the catalogue's kinds, each with its category.
+
+        >>> import dwell
+        >>> dwell.HouseBuilder.kinds()["mug"]
+        'cup'
+        """
+        return _native.furniture_kinds()
+
     def add(
         self,
         kind: str,
@@ -66,10 +76,10 @@ class Edits:
         """Adds a thing of the catalogue that generated houses are furnished from.
 
         Args:
-            kind: ``"sofa"``, ``"dining_chair"``, ``"mug"``, ...; an unknown one is answered with
-                the nearest.
-            at: Where it goes, m.
-            on: The object on which it goes.
+            kind: ``"sofa"``, ``"dining_chair"``, ``"mug"``, ...: one of :meth:`kinds`; an unknown
+                one is answered with the nearest.
+            at: Where it goes, m. What it meets there is told by the report, and stays.
+            on: The object on which it goes: without ``at`` to the free place nearest to its middle.
             yaw_deg: Where it faces.
             anchor: Which of its points ``at`` is.
             name: Its name; without one its category with a number.

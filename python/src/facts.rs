@@ -45,6 +45,12 @@ pub(crate) fn laws_json() -> PyResult<String> {
     serde_json::to_string(&laws).map_err(|error| crate::errors::to_python(error.into()))
 }
 
+/// The kinds of furniture with their categories: `{kind: category}`.
+#[pyfunction]
+pub(crate) fn furniture_kinds() -> std::collections::BTreeMap<&'static str, &'static str> {
+    dwell_houses::authoring::kinds()
+}
+
 /// The words of instructions; token k is word k - 1, 0 is padding.
 #[pyfunction]
 pub(crate) fn vocabulary() -> Vec<&'static str> {

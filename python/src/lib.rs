@@ -45,6 +45,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(facts::tasks_json, module)?)?;
     module.add_function(wrap_pyfunction!(facts::sensors_json, module)?)?;
     module.add_function(wrap_pyfunction!(facts::laws_json, module)?)?;
+    module.add_function(wrap_pyfunction!(facts::furniture_kinds, module)?)?;
     module.add_function(wrap_pyfunction!(facts::vocabulary, module)?)?;
     module.add_function(wrap_pyfunction!(facts::charset, module)?)?;
     module.add_function(wrap_pyfunction!(facts::max_text_length, module)?)?;

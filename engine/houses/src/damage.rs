@@ -20,6 +20,15 @@ pub enum Damage {
     /// A thing that was put outside of every room; it stays there.
     #[error("stands outside of every room")]
     OutsideRooms,
+    /// A thing that was put into another one; it stays there, and physics pushes them apart.
+    #[error("stands in {other:?}")]
+    Overlap {
+        /// The other thing.
+        other: String,
+    },
+    /// A thing that was put into a wall, or through it; it stays there.
+    #[error("reaches into a wall")]
+    InWall,
     /// A mesh file that does not exist; the thing has no shape from it.
     #[error("mesh {path:?} does not exist; left out")]
     MissingMesh {

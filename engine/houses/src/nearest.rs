@@ -3,16 +3,19 @@
 /// Letters of a name that are compared; longer ones are cut.
 const COMPARED: usize = 64;
 
-/// Of the `known` names those nearest to `name`, at most `count`, each once: by the letters that differ, then by the alphabet.
+/// Of the `known` names those nearest to `name`, at most `count`, each once: those with it as one of their words (`floor_lamp` for
+/// `lamp`), then by the letters that differ, then by the alphabet.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>, count: usize) -> Vec<&'a str> {
-    let mut ranked: Vec<(usize, &str)> =
-        known.map(|other| (distance(name, other), other)).collect();
+    let has_word = |other: &str| other.split(['_', ' ']).any(|word| word == name);
+    let mut ranked: Vec<(bool, usize, &str)> = known
+        .map(|other| (!has_word(other), distance(name, other), other))
+        .collect();
     ranked.sort_unstable();
     ranked.dedup();
     ranked
         .into_iter()
         .take(count)
-        .map(|(_, name)| name)
+        .map(|(.., name)| name)
         .collect()
 }
 
@@ -43,6 +46,8 @@ mod tests {
     #[test]
     fn few_letters_apart_is_near() {
         let known = ["sofa_1", "table_1", "stable", "lamp", "table_1"];
+        let kinds = ["tablet", "cake", "dining_table", "safe"];
+        assert_eq!(nearest("table", kinds.into_iter(), 1), ["dining_table"]);
         let near = nearest("tabel_1", known.into_iter(), 2);
         assert_eq!(near, ["table_1", "stable"]);
         assert_eq!((distance("kitten", "Sitting"), distance("", "abc")), (3, 3));

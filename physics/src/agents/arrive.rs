@@ -11,9 +11,21 @@ use glam::{Vec2, Vec3};
 const SPACING_M: f32 = 0.1;
 const MOST_PLACES: f32 = 20_000.0;
 
+/// Between the bodies of agents that begin beside each other, m.
+const GAP_M: f32 = 0.1;
+
+/// Where one body may begin, the nearest first; agents that begin alike go on where the one before them found its place.
+struct Search {
+    body: AgentBody,
+    from: Vec3,
+    places: Vec<Vec3>,
+    next: usize,
+}
+
 impl PhysicsWorld {
-    /// Puts each agent that would stand in what does not give way at the nearest place on a room's floor that has room for it;
-    /// agents may share a place. A house without rooms does not say where its floors are: there agents stay.
+    /// Puts each agent that would stand in what does not give way, or in an agent before it, at the nearest place on a room's floor
+    /// that has room for it; where only agents are in the way and no place is left, they share one. A house without rooms does not say
+    /// where its floors are: there agents stay.
     ///
     /// # Errors
     /// [`PhysicsError::Range`] for a body that no room has room for.
@@ -23,17 +35,20 @@ impl PhysicsWorld {
     ) -> Result<Vec<MovedAgent>, PhysicsError> {
         let house = self.model.house.clone();
         let mut moved = Vec::new();
-        // Many agents begin with one body at one place.
-        let mut last: Option<(AgentBody, Vec3, Vec3)> = None;
+        let mut search: Option<Search> = None;
         for index in 0..state.agents.len() {
             let id = AgentId::from_index(index);
             let (body, from) = (as_it_stands(&state.agents[id]), state.agents[id].position);
-            let known = last.filter(|(known, place, _)| (*known, *place) == (body, from));
-            let place = match known {
-                Some((.., place)) => place,
-                None => self.place_with_room(&house, id, body, from)?,
+            let taken = |place: Vec3| {
+                let others = state.agents.iter().take(index);
+                others.into_iter().any(|other| {
+                    let near_m = other.body.radius_m + body.radius_m + GAP_M;
+                    let beside = (other.position - place).with_y(0.0).length() < near_m;
+                    let height_m = other.body.height_m.max(body.height_m);
+                    beside && (other.position.y - place.y).abs() < height_m
+                })
             };
-            last = Some((body, from, place));
+            let place = self.place_with_room(&house, (id, body, from), taken, &mut search)?;
             if place == from {
                 continue;
             }
@@ -52,21 +67,44 @@ impl PhysicsWorld {
     fn place_with_room(
         &self,
         house: &House,
-        id: AgentId,
-        body: AgentBody,
-        from: Vec3,
+        (id, body, from): (AgentId, AgentBody, Vec3),
+        taken: impl Fn(Vec3) -> bool,
+        search: &mut Option<Search>,
     ) -> Result<Vec3, PhysicsError> {
         let probe = self.probe_with(body, id, &[]);
-        if house.rooms.is_empty() || !probe.is_cramped(from) {
+        let cramped = |place: Vec3| probe.is_cramped(place);
+        if house.rooms.is_empty() || (!taken(from) && !cramped(from)) {
             return Ok(from);
         }
-        let mut places = floor_places(house);
-        let order = |place: &Vec3| place.distance_squared(from);
-        places.sort_by(|a, b| order(a).total_cmp(&order(b)));
-        let fits = |place: &Vec3| !probe.is_cramped(*place) && probe.is_above_something(*place);
-        places
-            .into_iter()
-            .find(fits)
+        let again = search
+            .take()
+            .filter(|last| (last.body, last.from) == (body, from));
+        let search = search.insert(again.unwrap_or_else(|| {
+            let mut places = floor_places(house);
+            let order = |place: &Vec3| place.distance_squared(from);
+            places.sort_by(|a, b| order(a).total_cmp(&order(b)));
+            Search {
+                body,
+                from,
+                places,
+                next: 0,
+            }
+        }));
+        let fits = |place: Vec3| !cramped(place) && probe.is_above_something(place);
+        let left = search.places.iter().skip(search.next).copied();
+        let found = left
+            .enumerate()
+            .find(|(_, place)| !taken(*place) && fits(*place));
+        if let Some((k, place)) = found {
+            search.next += k;
+            return Ok(place);
+        }
+        search.next = search.places.len();
+        if !cramped(from) {
+            return Ok(from);
+        }
+        let mut all = search.places.iter().copied();
+        all.find(|place| fits(*place))
             .ok_or_else(|| PhysicsError::Range {
                 at: format!("agent {}", id.index()),
                 field: "body",

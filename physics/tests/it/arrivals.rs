@@ -99,3 +99,32 @@ fn an_agent_that_begins_in_a_table_stands_beside_it() {
     assert_eq!(run.state.agents[AgentId(0)].position, free);
     assert!(run.report.agents.is_empty());
 }
+
+/// Agents that are told one place stand beside each other, the first where it was told; more than the room has place for share it.
+#[test]
+fn agents_that_are_told_one_place_stand_beside_each_other() {
+    let at = Vec3::new(3.0, 0.0, 1.0);
+    let beside = |house: &Arc<House>, count: usize| {
+        let mut state = State::new(house);
+        for _ in 0..count {
+            let agent = AgentState::new(AgentBody::default(), at, 0.0);
+            state.agents.push(agent);
+        }
+        let made = PhysicsWorld::new(house.clone(), PhysicsConfig::default(), &mut state);
+        let moved = made.unwrap().1.agents.len();
+        let places: Vec<Vec3> = state.agents.iter().map(|agent| agent.position).collect();
+        (places, moved)
+    };
+    let near_m = 2.0 * AgentBody::default().radius_m;
+    let apart = |places: &[Vec3]| {
+        let pairs = (0..places.len()).flat_map(|k| (0..k).map(move |j| (k, j)));
+        let mut gaps = pairs.map(|(k, j)| places[k].distance(places[j]));
+        gaps.all(|gap_m| gap_m > near_m)
+    };
+    let (places, moved) = beside(&room(), 5);
+    assert_eq!(places[0], at);
+    assert!(apart(&places), "{places:?}");
+    assert_eq!(moved, 4);
+    let (places, _) = beside(&room(), 64);
+    assert!(!apart(&places));
+}

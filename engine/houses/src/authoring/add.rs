@@ -1,5 +1,6 @@
 //! Objects from the catalogue, from files, from houses, and boxes.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use dwell_furniture::catalogue::entries;
@@ -16,12 +17,13 @@ use glam::{Affine3A, Vec3};
 
 use super::apply::Desk;
 use super::edits::{Add, Placing, Traits, Up, What};
-use super::faults::{fault, inside, unknown, within};
+use super::faults::{OFFERED, fault, inside, unknown, within};
 use super::graft::graft;
 use super::{describe, fixtures, mesh_file, place, surfaces};
 use crate::build::{CategoryRow, category, convex_pieces};
 use crate::building::assembly::Assembly;
 use crate::error::HousesError;
+use crate::nearest::nearest;
 
 /// Longest edge and volume of what a hand can take, m and m³.
 const HANDY: (f32, f32) = (0.6, 0.05);
@@ -107,6 +109,27 @@ pub(super) fn style(name: Option<&str>, seed: u64) -> Result<&'static Style, Hou
     })
 }
 
+/// The kinds of the catalogue with their categories, by the alphabet.
+pub fn kinds() -> BTreeMap<&'static str, &'static str> {
+    let entries = entries().iter();
+    entries.map(|entry| (entry.kind, entry.category)).collect()
+}
+
+/// Who asks for a cup is offered what is one: mugs; then what is spelled alike.
+fn unknown_kind(kind: &str) -> HousesError {
+    let kinds = kinds();
+    let is_one = kinds.iter().filter(|(_, category)| **category == kind);
+    let mut near: Vec<&str> = is_one.map(|(kind, _)| *kind).collect();
+    near.extend(nearest(kind, kinds.keys().copied(), OFFERED));
+    let mut seen = BTreeSet::new();
+    near.retain(|kind| seen.insert(*kind));
+    near.truncate(OFFERED);
+    let offer = near.join(", ");
+    let count = kinds.len();
+    let possible = format!("one of {count} kinds of the catalogue; the nearest are {offer}");
+    fault("kind", format_args!("{kind:?}"), possible)
+}
+
 /// A model of the catalogue.
 pub(super) fn model(
     kind: &str,
@@ -114,9 +137,8 @@ pub(super) fn model(
     seed: u64,
 ) -> Result<Arc<Model>, HousesError> {
     let style = style(style_name, seed)?;
-    let known = || entries().iter().map(|entry| entry.kind);
     let made = stock(kind, style, Key::root(seed).child("authored").child(kind));
-    let made = made.ok_or_else(|| unknown("kind", kind, "kinds of the catalogue", known()))?;
+    let made = made.ok_or_else(|| unknown_kind(kind))?;
     Ok(made.model.clone())
 }
 

@@ -11,6 +11,7 @@ use super::edits::{AddRobot, Edit, Move, Remove, Rename};
 use super::faults::{fault, inside, point, unknown, within};
 use super::files::Files;
 use super::mesh_file::Loaded;
+use super::overlaps::{overlaps, reaches_into_a_wall};
 use super::{add, agent_starts, describe, doors, fixtures, place, prune, surfaces};
 use crate::build::room_kind;
 use crate::damage::Damage;
@@ -24,7 +25,8 @@ const MAX_EDITS: usize = 10_000;
 /// changes the number of anything that was there; taking out closes the gap, so that what stood behind moves up. Names stay
 /// in any case.
 ///
-/// The report holds what was wrong with files that were read, and names what was added or moved to where no room is.
+/// The report holds what was wrong with files that were read, and names what was added or moved to where no room is, into a wall or into
+/// another thing.
 ///
 /// # Errors
 /// [`HousesError::Spec`] names the edit and the field, what was found and what is possible, with the nearest names for an
@@ -62,17 +64,24 @@ pub fn edit(house: &House, edits: &[Edit], files: &Files) -> Result<(House, Repo
     let at = At::file("edits");
     let edited = House::new(desk.data).map_err(HousesError::scene(&at))?;
     let mut report = desk.report;
-    for name in put_outside(house, &edited, edits) {
-        report.warn(at.field(name), Damage::OutsideRooms);
+    let put = put(house, &edited, edits);
+    let named = |id: ObjectId| &edited.objects[id].name;
+    for id in &put {
+        if is_outside(&edited, *id) {
+            report.warn(at.field(named(*id)), Damage::OutsideRooms);
+        } else if reaches_into_a_wall(&edited, *id) {
+            report.warn(at.field(named(*id)), Damage::InWall);
+        }
+    }
+    for (one, other) in overlaps(&edited, &put) {
+        let other = named(other).clone();
+        report.warn(at.field(named(one)), Damage::Overlap { other });
     }
     Ok((edited, report))
 }
 
-/// The objects that were added or moved to where no room is, in a house that has rooms.
-fn put_outside<'a>(before: &House, after: &'a House, edits: &[Edit]) -> Vec<&'a str> {
-    if after.rooms.is_empty() {
-        return Vec::new();
-    }
+/// The objects that were added or moved.
+fn put(before: &House, after: &House, edits: &[Edit]) -> Vec<ObjectId> {
     let known: BTreeSet<&str> = before.objects.iter().map(|o| o.name.as_str()).collect();
     let moved: BTreeSet<&str> = edits
         .iter()
@@ -81,17 +90,16 @@ fn put_outside<'a>(before: &House, after: &'a House, edits: &[Edit]) -> Vec<&'a 
             _ => None,
         })
         .collect();
-    let state = State::new(after);
     let put = |name: &str| !known.contains(name) || moved.contains(name);
-    let outside = |id: ObjectId| {
-        let bounds = after.object_bounds(&state, id);
-        !bounds.is_empty() && after.room_at(bounds.center()).is_none()
-    };
     let objects = after.objects.iter_ids();
-    objects
-        .filter(|(id, object)| put(&object.name) && outside(*id))
-        .map(|(_, object)| object.name.as_str())
-        .collect()
+    let new = objects.filter(|(_, object)| put(&object.name));
+    new.map(|(id, _)| id).collect()
+}
+
+/// Whether a thing is where no room is, in a house that has rooms.
+fn is_outside(house: &House, id: ObjectId) -> bool {
+    let bounds = house.object_bounds(&State::new(house), id);
+    !house.rooms.is_empty() && !bounds.is_empty() && house.room_at(bounds.center()).is_none()
 }
 
 /// A house that is being edited, and what was read for it.

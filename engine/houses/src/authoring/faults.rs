@@ -8,7 +8,7 @@ use crate::error::HousesError;
 use crate::nearest::nearest;
 
 /// Names that are offered in place of an unknown one.
-const OFFERED: usize = 6;
+pub(super) const OFFERED: usize = 6;
 
 /// A field that cannot be.
 pub(super) fn fault(

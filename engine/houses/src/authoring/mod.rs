@@ -14,17 +14,20 @@ mod edits;
 mod faults;
 mod files;
 mod fixtures;
+mod free_place;
 mod graft;
 mod hinge;
 mod map;
 mod mesh_file;
 mod open;
+mod overlaps;
 mod place;
 mod prune;
 mod sound_file;
 mod surfaces;
 mod unmapped;
 
+pub use add::kinds;
 pub use apply::edit;
 pub use building::{
     Building, Compass, Covering, Door, Hinge, Leaf, OUTSIDE, Room, StairsPlan, Storey, Window,

@@ -9,6 +9,7 @@ use glam::{Quat, Vec2, Vec3};
 
 use super::edits::{Anchor, Placing};
 use super::faults::{fault, point, within};
+use super::free_place::{FreePlace, Top};
 use crate::error::HousesError;
 
 /// How far a thing may hover above what it stands on, m.
@@ -17,11 +18,22 @@ const GAP_M: f32 = 0.03;
 const ROOM_M: f32 = 0.3;
 
 /// The boxes that physics and eyes know of a part, as points in the world.
-fn points(data: &HouseData, part: PartId) -> impl Iterator<Item = Vec3> {
+pub(super) fn points(data: &HouseData, part: PartId) -> impl Iterator<Item = Vec3> {
     let part = &data.parts[part];
     let map = part.world_from_part.to_affine() * part.part_from_mesh;
     let positions = data.meshes[part.mesh].positions.iter();
     positions.map(move |p| map.transform_point3(*p))
+}
+
+/// The surfaces of an object in the world, m.
+pub(super) fn triangles(data: &HouseData, object: ObjectId) -> Vec<[Vec3; 3]> {
+    let mut all = Vec::new();
+    for part in data.objects[object].parts() {
+        let world: Vec<Vec3> = points(data, part).collect();
+        let mesh = &data.meshes[data.parts[part].mesh];
+        all.extend(mesh.triangles.iter().map(|t| t.map(|k| world[k as usize])));
+    }
+    all
 }
 
 /// The box around an object, m, world space.
@@ -96,23 +108,28 @@ pub(super) fn movement(
         }
         None => old_yaw,
     };
-    let at = target(data, object, placing)?;
     let old = root.position + upright(old_yaw) * own;
-    let target = at.unwrap_or(old);
     // An exact turn by nothing, so that what does not turn keeps its bits.
     let turn = if placing.yaw_deg.is_some() {
         upright(yaw - old_yaw)
     } else {
         Quat::IDENTITY
     };
+    let parts = data.objects[object].parts();
+    let around = parts
+        .flat_map(|part| points(data, part))
+        .map(|p| turn * (p - old));
+    let around = Aabb::from_points(around);
+    let target = target(data, object, placing, &around)?.unwrap_or(old);
     Ok(Pose::new(target - turn * old, turn))
 }
 
-/// Where the anchor goes; `None`: it stays.
+/// Where the anchor goes; `None`: it stays. `around`: the box of the thing around its anchor as it will be turned, m.
 fn target(
     data: &HouseData,
     object: ObjectId,
     placing: &Placing,
+    around: &Aabb,
 ) -> Result<Option<Vec3>, HousesError> {
     let at = placing.at.map(|at| point("place.at", at)).transpose()?;
     let Some(on) = &placing.on else {
@@ -126,10 +143,20 @@ fn target(
             "another object",
         ));
     }
-    let bounds = world_box(data, carrier);
-    let place = at.unwrap_or_else(|| bounds.center());
-    let (x, z) = (place.x, place.z);
-    let top = top_of(data, carrier, Vec2::new(x, z)).ok_or_else(|| {
+    let Some(Vec3 { x, z, .. }) = at else {
+        let free = FreePlace::on(data, carrier, object, around).find();
+        let [wide, deep] = [around.size().x, around.size().z];
+        return free.map(Some).ok_or_else(|| {
+            fault(
+                "place.on",
+                format_args!("{on:?}, where nothing of {wide:.2} x {deep:.2} m is free"),
+                "`at`, or something with more room on it",
+            )
+        });
+    };
+    let top = Top::of(data, carrier).height_m(Vec2::new(x, z));
+    let top = top.ok_or_else(|| {
+        let bounds = world_box(data, carrier);
         let [low, high] = [bounds.min, bounds.max];
         let possible = format!(
             "a place over {on:?}: x {:.3} to {:.3} m, z {:.3} to {:.3} m",
@@ -144,23 +171,8 @@ fn target(
     Ok(Some(Vec3::new(x, top, z)))
 }
 
-/// The highest point of an object on an upright line, m.
-fn top_of(data: &HouseData, object: ObjectId, xz: Vec2) -> Option<f32> {
-    let mut top: Option<f32> = None;
-    for part in data.objects[object].parts() {
-        let world: Vec<Vec3> = points(data, part).collect();
-        let mesh = &data.meshes[data.parts[part].mesh];
-        for triangle in &mesh.triangles {
-            let corners = triangle.map(|k| world[k as usize]);
-            let height = height_over(corners, xz);
-            top = top.into_iter().chain(height).reduce(f32::max);
-        }
-    }
-    top
-}
-
 /// The height of a triangle on an upright line that meets it.
-fn height_over([a, b, c]: [Vec3; 3], xz: Vec2) -> Option<f32> {
+pub(super) fn height_over([a, b, c]: [Vec3; 3], xz: Vec2) -> Option<f32> {
     let flat = |p: Vec3| Vec2::new(p.x, p.z);
     let (u, v, w) = (flat(b) - flat(a), flat(c) - flat(a), xz - flat(a));
     let area = u.perp_dot(v);
@@ -217,14 +229,10 @@ pub(super) fn with_things(house: &House, object: ObjectId) -> BTreeSet<ObjectId>
 
 /// Whether an object has a surface at about this height on an upright line.
 fn surface_near(data: &HouseData, object: ObjectId, xz: Vec2, height_m: f32) -> bool {
-    data.objects[object].parts().any(|part| {
-        let world: Vec<Vec3> = points(data, part).collect();
-        let mesh = &data.meshes[data.parts[part].mesh];
-        mesh.triangles.iter().any(|triangle| {
-            let corners = triangle.map(|k| world[k as usize]);
-            height_over(corners, xz).is_some_and(|y| (y - height_m).abs() < GAP_M)
-        })
-    })
+    let mut heights = triangles(data, object)
+        .into_iter()
+        .filter_map(|corners| height_over(corners, xz));
+    heights.any(|y| (y - height_m).abs() < GAP_M)
 }
 
 /// The room and the storey of a box: the smallest room that holds its middle.

@@ -9,6 +9,7 @@
 mod buildings;
 mod edits;
 mod files;
+mod free_places;
 mod maps;
 mod sounds;
 mod starts;

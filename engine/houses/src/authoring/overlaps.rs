@@ -1,0 +1,125 @@
+//! What was put into something else.
+
+use dwell_scene::{Aabb, House, Id, ObjectId, RoomId};
+use glam::{Vec2, Vec3};
+
+use super::place::{points, triangles, world_box};
+
+/// How deep things must be in each other to be told, m: less is touch.
+const DEEP_M: f32 = 0.01;
+/// Points of a thing that are looked at, at most.
+const LOOKED_AT: usize = 64;
+/// Ways out: what is inside is left through a surface an odd number of times on each of them. Askew, so that they meet no edge.
+const WAYS: [Vec3; 6] = [
+    Vec3::new(0.98, 0.13, 0.15),
+    Vec3::new(-0.97, 0.17, -0.16),
+    Vec3::new(0.12, 0.98, 0.14),
+    Vec3::new(0.14, -0.98, 0.11),
+    Vec3::new(0.16, 0.11, 0.98),
+    Vec3::new(-0.13, 0.15, -0.98),
+];
+
+/// The things that any of `put` is in, or that are in it: pairs, the one that was put first.
+pub(super) fn overlaps(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, ObjectId)> {
+    let data = house.data();
+    let ids = data.objects.ids();
+    let boxes: Vec<Aabb> = ids.map(|id| world_box(data, id)).collect();
+    let mut found = Vec::new();
+    // What came later was put into what was there.
+    for one in put.iter().rev() {
+        let own = boxes[one.index()];
+        for other in data.objects.ids().filter(|other| other != one) {
+            let theirs = boxes[other.index()];
+            // A building is around what stands in it.
+            let encloses = theirs.min.cmple(own.min).all() && theirs.max.cmpge(own.max).all();
+            let known = found.contains(&(other, *one));
+            let deep = Vec3::splat(DEEP_M);
+            let near =
+                own.min.cmplt(theirs.max - deep).all() && own.max.cmpgt(theirs.min + deep).all();
+            let structure = encloses && is_around_rooms(house, &theirs);
+            if !near || known || structure {
+                continue;
+            }
+            if any_inside(house, *one, other) || any_inside(house, other, *one) {
+                found.push((*one, other));
+            }
+        }
+    }
+    found
+}
+
+fn is_around_rooms(house: &House, bounds: &Aabb) -> bool {
+    let mut rooms = house.rooms.iter().map(|room| room.bounds.center());
+    rooms.any(|middle| bounds.min.cmple(middle).all() && bounds.max.cmpge(middle).all())
+}
+
+/// Whether a point of `one`, a little inside of it, is inside of `other`.
+fn any_inside(house: &House, one: ObjectId, other: ObjectId) -> bool {
+    let data = house.data();
+    let middle = world_box(data, one).center();
+    let all: Vec<Vec3> = data.objects[one]
+        .parts()
+        .flat_map(|part| points(data, part))
+        .collect();
+    let triangles = triangles(data, other);
+    let bounds = world_box(data, other);
+    let stride = all.len().div_ceil(LOOKED_AT).max(1);
+    let looked = all.into_iter().step_by(stride);
+    let mut inner = looked.map(|p| p + (middle - p).clamp_length_max(DEEP_M));
+    inner.any(|p| {
+        let within = p.cmpge(bounds.min).all() && p.cmple(bounds.max).all();
+        within
+            && WAYS
+                .iter()
+                .all(|way| crossings(&triangles, p, *way) % 2 == 1)
+    })
+}
+
+/// How many triangles a ray meets.
+///
+/// # Source
+/// T. Moeller, B. Trumbore, *Fast, minimum storage ray/triangle intersection*, J. Graphics Tools 2(1), 21 (1997).
+fn crossings(triangles: &[[Vec3; 3]], from: Vec3, way: Vec3) -> usize {
+    let meets = |[a, b, c]: &&[Vec3; 3]| {
+        let (u, v) = (*b - *a, *c - *a);
+        let p = way.cross(v);
+        let det = u.dot(p);
+        if det.abs() < 1e-12 {
+            return false;
+        }
+        let t = from - *a;
+        let s = t.dot(p) / det;
+        let q = t.cross(u);
+        let r = way.dot(q) / det;
+        s >= 0.0 && r >= 0.0 && s + r <= 1.0 && v.dot(q) / det > 0.0
+    };
+    triangles.iter().filter(meets).count()
+}
+
+/// Whether a corner of what a thing stands on is in no room, though its middle is: in a wall, or through it.
+pub(super) fn reaches_into_a_wall(house: &House, object: ObjectId) -> bool {
+    let bounds = world_box(house.data(), object);
+    let middle = bounds.center();
+    let rooms = || house.rooms.ids();
+    let at_height = |room: &RoomId| {
+        let room = &house.rooms[*room];
+        middle.y > room.floor_y && middle.y < room.ceiling_y
+    };
+    let holds = |at: Vec2| {
+        let mut rooms = rooms().filter(at_height);
+        rooms.any(|room| house.rooms[room].contains_xz(at))
+    };
+    let deep = Vec2::splat(2.0 * DEEP_M);
+    let low = Vec2::new(bounds.min.x, bounds.min.z) + deep;
+    let high = Vec2::new(bounds.max.x, bounds.max.z) - deep;
+    if bounds.is_empty() || low.cmpge(high).any() || !holds(Vec2::new(middle.x, middle.z)) {
+        return false;
+    }
+    let corners = [
+        low,
+        Vec2::new(low.x, high.y),
+        Vec2::new(high.x, low.y),
+        high,
+    ];
+    corners.into_iter().any(|corner| !holds(corner))
+}
