@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
-from dwell import ConfigError, UsageError, arguments
+from dwell import ConfigError, UsageError, _native, arguments
 from dwell.arguments import choice, finite, flag, path, point, text, whole
 from dwell.house import House
 from dwell.playing import emitter_sound
