@@ -20,7 +20,7 @@ CALLS = [
     ('W.step("abc")', "controls is 'abc'"),
     ("W.step(5)", "controls is 5"),
     ("W.step([[1,2,3]])", "controls has the shape (1, 3)"),
-    ("W.step([[nan,0,0,0]])", "control of agent 0 (walking): velocities is AgentControl { f"),
+    ("W.step([[nan,0,0,0]])", "control of agent 0 (walking): forward_m_s is NaN; allowed is"),
     ('W.step([["a",0,0,0]])', "controls is [['a', 0, 0, 0]]"),
     ('W.step([{"forward_m_s": "x"}])', "controls[0].forward_m_s is 'x'"),
     ('W.step([{"nope": 1}])', "controls[0]: no field 'nope'"),

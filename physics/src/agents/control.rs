@@ -34,19 +34,17 @@ pub struct AgentControl {
 }
 
 impl AgentControl {
-    /// Whether all numbers are finite.
-    pub fn is_finite(&self) -> bool {
-        let wheels = self.wheel_rad_s.unwrap_or_default();
+    /// All numbers by their fields.
+    fn numbers(&self) -> [(&'static str, f32); 6] {
+        let [left, right] = self.wheel_rad_s.unwrap_or_default();
         [
-            self.forward_m_s,
-            self.right_m_s,
-            self.yaw_rate_rad_s,
-            self.pitch_rate_rad_s,
-            wheels[0],
-            wheels[1],
+            ("forward_m_s", self.forward_m_s),
+            ("right_m_s", self.right_m_s),
+            ("yaw_rate_rad_s", self.yaw_rate_rad_s),
+            ("pitch_rate_rad_s", self.pitch_rate_rad_s),
+            ("wheel_rad_s", left),
+            ("wheel_rad_s", right),
         ]
-        .iter()
-        .all(|x| x.is_finite())
     }
 
     /// Checks that a body that gets about like this can do it.
@@ -59,23 +57,12 @@ impl AgentControl {
                 allowed,
             })
         };
-        if !self.is_finite() {
-            return refuse("velocities", format!("{self:?}"), "finite numbers");
-        }
-        let wheels = self.wheel_rad_s.unwrap_or_default();
-        let fastest = [
-            self.forward_m_s,
-            self.right_m_s,
-            self.yaw_rate_rad_s,
-            self.pitch_rate_rad_s,
-            wheels[0],
-            wheels[1],
-        ]
-        .iter()
-        .fold(0.0, |most: f32, speed| most.max(speed.abs()));
-        if fastest > FASTEST {
-            let allowed = "at most 1e6 m/s or rad/s either way";
-            return refuse("velocities", format!("{self:?}"), allowed);
+        for (field, speed) in self.numbers() {
+            // Not "above", so that NaN is none of it.
+            if !(-FASTEST..=FASTEST).contains(&speed) {
+                let allowed = "finite numbers, at most 1e6 m/s or rad/s either way";
+                return refuse(field, speed.to_string(), allowed);
+            }
         }
         let drive = matches!(locomotion, Locomotion::DifferentialDrive(_));
         if let Some(rates) = self.wheel_rad_s {
