@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import pickle
 import wave
+from collections.abc import Callable
 from pathlib import Path
 
 import gymnasium
@@ -198,3 +200,27 @@ def test_one_sees_what_was_built() -> None:
     depth = view["depth"]
     assert np.nanmax(depth) > 3.2
     assert np.isclose(depth, 1.5, atol=0.01).sum() > 500
+
+
+def test_a_kettle_is_as_loud_as_its_sound_played_at_it() -> None:
+    """Its emitter is within its mesh, which is closed; it is heard from beside it."""
+    builder = dwell.HouseBuilder().room("kitchen", [(0, 0), (4, 0), (4, 3), (0, 3)])
+    builder.add("dining_table", (2, 0, 1.5), name="table")
+    builder.add("kettle", on="table", name="kettle")
+    house = builder.build()
+
+    def level_db(begin: Callable[[dwell.World], object]) -> float:
+        world = dwell.World(house)
+        world.place_agent((2, 0, 0.6), yaw_deg=180)
+        begin(world)
+        heard = []
+        for _ in range(20):
+            world.step()
+            heard.append(world.listen(800))
+        power = float(np.mean(np.concatenate(heard[5:], axis=1) ** 2))
+        return 10 * math.log10(power / 4e-10)
+
+    own = level_db(lambda world: world.act("toggle", "kettle"))
+    played = level_db(lambda world: world.play("kettle", at="kettle", level_db=64))
+    assert own == pytest.approx(played, abs=1.0)
+    assert own > 70  # 64 dB at 1 m, in a bare kitchen
