@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import json
 import math
 import operator
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -109,9 +110,29 @@ def fields(
     for key, part in mapping(name, value).items():
         if key not in known:
             at = f"{name}: " if name else ""
-            raise ConfigError(f"{at}no field {key!r}; allowed are {', '.join(known)}")
+            raise ConfigError(f"{at}no field {key!r}; {allowed_instead(key, known)}")
         checked[key] = known[key](f"{name}.{key}" if name else key, part)
     return checked
+
+
+def allowed_instead(name: str, known: Iterable[str]) -> str:
+    """What there is where ``name`` is not: the nearest names first, then all."""
+    names = [*known]
+    if not names:
+        return "there are none"
+    near = difflib.get_close_matches(name, names, 3)
+    meant = f"did you mean {' or '.join(near)}? " if near else ""
+    return f"{meant}allowed are {', '.join(names)}"
+
+
+def refuse_unknown(of: str, unknown: Iterable[str], known: Iterable[str]) -> None:
+    """Refuses arguments that something does not have.
+
+    Raises:
+        ConfigError: There is one; the message has the nearest names.
+    """
+    for name in unknown:
+        raise ConfigError(f"{of}: no argument {name!r}; {allowed_instead(name, known)}")
 
 
 def record(

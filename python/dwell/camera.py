@@ -30,17 +30,22 @@ Preset = Literal["flat", "lit", "full"]
 PRESETS: tuple[Preset, ...] = get_args(Preset)
 
 
+#: Most pixels along an edge, and the end of all depth, as the engine has them.
+_MOST_PIXELS = 16_384
+_FURTHEST_M = 1e6
+
+
 @dataclasses.dataclass(frozen=True)
 class Camera:
     """A camera: a pinhole of some field of view, unless ``projection`` says otherwise.
 
     Attributes:
-        width: Pixels across, 1 to 8192.
-        height: Pixels down.
-        fov_deg: Horizontal field of view, degrees; ``None``: at an agent's eyes what
+        width: Pixels across, 1 to 16384.
+        height: Pixels down, 1 to 16384.
+        fov_deg: Horizontal field of view, 1 to 175 degrees; ``None``: at an agent's eyes what
             ``agent/N/camera/fov_deg`` says, elsewhere 90.
-        near_m: Nearest distance that is seen, m.
-        far_m: Furthest distance, to which depth is clamped, m.
+        near_m: Nearest distance that is seen, 0 to 1e6 m.
+        far_m: Furthest distance, to which depth is clamped: more than ``near_m``, at most 1e6 m.
         preset: ``flat`` (texture times colour), ``lit`` (lamps and daylight with shadows) or
             ``full`` (all light, soft shadows; for pictures: 600 times as slow as ``lit``).
         projection: The kind of camera with its numbers, in pixels from the top left corner:
@@ -54,7 +59,11 @@ class Camera:
         yaw_deg: How it is turned there, to the left.
         pitch_deg: Then up.
         roll_deg: Then about its own axis, counter-clockwise as it looks.
-        max_objects: Rows of ``visible_objects``, ``boxes_2d`` and ``boxes_3d``.
+        max_objects: Rows of ``visible_objects``, ``boxes_2d`` and ``boxes_3d``, 1 to 4096.
+
+    Raises:
+        ConfigError: A field is of another type or out of its range; the numbers of a projection
+            are checked when a picture is taken.
     """
 
     width: int = 128
@@ -70,25 +79,41 @@ class Camera:
     roll_deg: float = 0.0
     max_objects: int = 64
 
+    def __post_init__(self) -> None:
+        """Checks the fields."""
+        camera_settings("camera", self)
+
 
 def camera_settings(name: str, camera: object) -> dict[str, Any]:
     """A camera's numbers, checked, as the native side takes them."""
     if not isinstance(camera, Camera):
         raise ConfigError(f"{name} is {camera!r}; expected a dwell.Camera")
     settings: dict[str, Any] = {
-        "width": whole(f"{name}.width", camera.width),
-        "height": whole(f"{name}.height", camera.height),
-        "max_objects": whole(f"{name}.max_objects", camera.max_objects),
+        "width": whole(f"{name}.width", camera.width, low=1, high=_MOST_PIXELS),
+        "height": whole(f"{name}.height", camera.height, low=1, high=_MOST_PIXELS),
+        "max_objects": whole(f"{name}.max_objects", camera.max_objects, low=1, high=4096),
         "preset": choice(f"{name}.preset", camera.preset, PRESETS),
         "position_m": list(triple(f"{name}.position_m", camera.position_m)),
     }
     for field in ("near_m", "far_m", "yaw_deg", "pitch_deg", "roll_deg"):
         settings[field] = finite(f"{name}.{field}", getattr(camera, field))
+    _within(f"{name}.near_m", settings["near_m"], 0.0, _FURTHEST_M, "m")
+    if not settings["near_m"] < settings["far_m"] <= _FURTHEST_M:
+        raise ConfigError(
+            f"{name}.far_m is {camera.far_m!r}; allowed is more than near_m, at most 1e6 m"
+        )
     if camera.fov_deg is not None:
-        settings["fov_deg"] = finite(f"{name}.fov_deg", camera.fov_deg)
+        fov_deg = finite(f"{name}.fov_deg", camera.fov_deg)
+        settings["fov_deg"] = _within(f"{name}.fov_deg", fov_deg, 1.0, 175.0, "degrees")
     if camera.projection is not None:
         settings["projection"] = _projection(f"{name}.projection", camera.projection)
     return settings
+
+
+def _within(name: str, value: float, low: float, high: float, unit: str) -> float:
+    if not low <= value <= high:
+        raise ConfigError(f"{name} is {value:g}; allowed are {low:g} to {high:g} {unit}")
+    return value
 
 
 def _projection(name: str, projection: object) -> dict[str, Any]:

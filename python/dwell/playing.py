@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from dwell import ConfigError, _native
+from dwell import ConfigError, UsageError, _native
 from dwell.arguments import choice, finite, flag, path, point, to_json, whole
+from dwell.telling import Telling
 
 #: What the names of sound files end with.
 _ENDINGS = (".wav", ".flac", ".ogg", ".oga")
@@ -81,10 +82,8 @@ def emitter_sound(
     return told
 
 
-class Sounds:
+class Sounds(Telling):
     """The sounds of a world."""
-
-    _native: _native.World
 
     def play(
         self,
@@ -136,8 +135,22 @@ class Sounds:
         self._native.stop_sound(whole("handle", handle))
 
     def start_sound(self, handle: int) -> None:
-        """Lets the sound of an object sound again that was stopped, while the object is on."""
-        self._native.start_sound(whole("handle", handle))
+        """Lets the sound of an object sound again that was stopped.
+
+        Raises:
+            UsageError: No sound has the handle, or its object is switched off and stays silent:
+                somebody must switch it on, as with ``act("toggle", object)``.
+        """
+        handle = whole("handle", handle)
+        switched_off = {row["name"] for row in self.objects() if row["on"] is False}
+        for row in self.sounds():
+            if row["handle"] == handle and row["object"] in switched_off:
+                name = row["object"]
+                raise UsageError(
+                    f"start_sound: {name} is switched off and stays silent; switch it on, as with "
+                    f"act('toggle', {name!r}) by an agent that reaches it"
+                )
+        self._native.start_sound(handle)
 
     def set_sound_level(self, handle: int, level_db: float) -> None:
         """Sets the level of a sound at 1 m, dB SPL, from the next step on."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.actions import Outcome, action_json
+from dwell.acting import Acting
 from dwell.arguments import (
     finite,
     mapping,
@@ -45,7 +45,7 @@ _MOST_IDS = 2**32 - 1
 JointCommand = Literal["off", "position", "velocity", "effort"]
 
 
-class World(Guiding, Sounds):
+class World(Acting, Guiding, Sounds):
     """A running world with its own state over a shared house.
 
     A copy, or what comes out of a pickle, goes on from the moment it was made.
@@ -65,16 +65,16 @@ class World(Guiding, Sounds):
 
         Args:
             house: A house or a HOUSE string.
-            agents: How many agents live in it, all of the default body; or a body for each, as a
-                mapping of what differs: ``radius_m``, ``height_m``, ``eye_height_m``,
-                ``step_height_m``, ``max_slope_rad``, ``lift_kg``, ``reach_m``, ``push_force_n``,
-                ``hand_effort``, ``max_carry_size_m``, ``camera_fov_deg`` and ``locomotion``, which
-                is ``{"walking": {...}}`` (``max_speed_m_s``, ``max_crouched_speed_m_s``,
-                ``crouched_height_m``),
-                ``{"differential_drive": {...}}`` (``wheel_base_m``, ``left_wheel_radius_m``,
-                ``right_wheel_radius_m``, ``max_wheel_speed_rad_s``,
-                ``max_wheel_acceleration_rad_s2``) or ``{"holonomic": {...}}``
-                (``max_forward_m_s``, ``max_sideways_m_s``, ``max_yaw_rate_rad_s``,
+            agents: How many agents live in it, all of the default body. Each is seen as a capsule
+                by others and by cameras that are not its own; pictures of a house want 0. Or a body
+                for each, as a mapping of what differs: ``radius_m``, ``height_m``,
+                ``eye_height_m``, ``step_height_m``, ``max_slope_rad``, ``lift_kg``, ``reach_m``,
+                ``push_force_n``, ``hand_effort``, ``max_carry_size_m``, ``camera_fov_deg`` and
+                ``locomotion``, which is ``{"walking": {...}}`` (``max_speed_m_s``,
+                ``max_crouched_speed_m_s``, ``crouched_height_m``), ``{"differential_drive":
+                {...}}`` (``wheel_base_m``, ``left_wheel_radius_m``, ``right_wheel_radius_m``,
+                ``max_wheel_speed_rad_s``, ``max_wheel_acceleration_rad_s2``) or ``{"holonomic":
+                {...}}`` (``max_forward_m_s``, ``max_sideways_m_s``, ``max_yaw_rate_rad_s``,
                 ``max_acceleration_m_s2``, ``max_yaw_acceleration_rad_s2``).
             seed: The seed of everything random.
             laws: Laws to install, as ``{"id", "version", "target", "params"}``; or what calibration
@@ -188,69 +188,6 @@ class World(Guiding, Sounds):
         else:
             self._native.step_json(to_json(rows))
 
-    def act(
-        self,
-        action: str | Mapping[str, Any],
-        object: str | int | None = None,
-        *,
-        agent: int = 0,
-        **details: Any,  # noqa: ANN401 - numbers, names and vectors, checked by the engine
-    ) -> Outcome:
-        """Lets an agent do something with its hand, without a step of time.
-
-        What takes time (doors, pushes) tells its end through :meth:`notices`.
-
-        Args:
-            action: ``pick``, ``drop``, ``place``, ``place_at``, ``put_in``, ``throw``, ``push``,
-                ``pull``, ``open``, ``close``, ``toggle`` or ``point``; or a mapping with ``kind``
-                and details.
-            object: The thing's name, or its id as instance images show it. Without it, and
-                without ``pixel`` and ``direction``, what the agent looks at is meant.
-            agent: Who does it.
-            **details: ``part`` (one drawer of several, by name); ``pixel`` (column, row) and
-                ``camera`` (a :class:`Camera` at the agent's eye) or ``origin`` and ``direction``
-                of a ray, instead of an object; ``grasp`` of ``pick`` (``"kinematic"`` or
-                ``{"spring": {"frequency_hz": 4, "damping_ratio": 1}}``); ``point`` of
-                ``place_at``, m; ``direction`` and ``speed_m_s`` of ``throw``; ``force_n`` of
-                ``push`` and ``pull``; ``fraction`` of ``open``.
-
-        Raises:
-            ConfigError: For a kind, name or detail that does not exist, or a number that is not
-                finite.
-
-        Examples:
-            >>> import dwell
-            >>> world = dwell.World("builtin:apartment")
-            >>> world.act("drop").sentence
-            'You hold nothing. Pick something first.'
-            >>> world.act("point", direction=(0.0, -1.0, 0.0)).pointed.kind
-            'structure'
-            >>> world.act({"kind": "pick", "object": -1}).code
-            'unknown_object'
-        """
-        request: dict[str, Any] = {"kind": action} if isinstance(action, str) else {}
-        if not isinstance(action, str):
-            request = mapping("action", action, "the name of an action, or a mapping with kind")
-        request |= details
-        if object is not None:
-            request["object"] = object
-        agent = whole("agent", agent)
-        return Outcome._of(json.loads(self._native.act(agent, action_json(request))))
-
-    def notices(self) -> list[tuple[int | None, Outcome]]:
-        """What became, in the last step, of actions that take time: who began it, and its end."""
-        notices = json.loads(self._native.notices_json())
-        return [(notice["agent"], Outcome._of(notice["outcome"])) for notice in notices]
-
-    def do(self, action: int | str, *, agent: int = 0) -> Outcome:
-        """Makes one control step of a discrete action, by number or name (see :func:`actions`)."""
-        names = _native.actions()
-        if isinstance(action, str) and action not in names:
-            raise ConfigError(f"no action {action!r}; there are {', '.join(names)}")
-        number = names.index(action) if isinstance(action, str) else action
-        number, agent = whole("action", number, high=len(names) - 1), whole("agent", agent)
-        return Outcome._of(json.loads(self._native.act_discrete(agent, number)))
-
     def place_agent(
         self,
         position: Sequence[float],
@@ -305,16 +242,6 @@ class World(Guiding, Sounds):
         self._native.place_agent(whole("agent", agent), to_json(row))
         tell_outside(self.house, "an agent", position)
 
-    def agents(self) -> list[dict[str, Any]]:
-        """The agents' states."""
-        agents: list[dict[str, Any]] = json.loads(self._native.agents_json())
-        return agents
-
-    def objects(self) -> list[dict[str, Any]]:
-        """For each object: id, name, category, center, size, room, held_by, on, openness, ..."""
-        objects: list[dict[str, Any]] = json.loads(self._native.objects_json())
-        return objects
-
     def events(self) -> list[dict[str, Any]]:
         """What touched in the last step: impacts, scrapes and rolling.
 
@@ -342,8 +269,8 @@ class World(Guiding, Sounds):
         Args:
             agent: Whose eyes; 0 when no position is given.
             position: Where the camera is instead, m.
-            yaw_deg: Where it looks there, positive to the left.
-            pitch_deg: Positive up.
+            yaw_deg: Where it looks there, positive to the left; only with a position.
+            pitch_deg: Positive up; only with a position.
             camera: Size, projection, mount.
             channels: What to take.
 
@@ -358,10 +285,22 @@ class World(Guiding, Sounds):
             (max_objects, 3) float32, id, pixels, part hidden by others; ``boxes_2d`` (max_objects,
             6) int32, id, first column and row, those behind the last, pixels; ``boxes_3d``
             (max_objects, 11) float32, id, middle and edges in m, rotation x, y, z, w.
+
+        Raises:
+            ConfigError: An agent and a position are given, or angles for an agent's eyes, which
+                :meth:`place_agent` turns; a camera, place or channel that there is not.
         """
         chosen = Camera() if camera is None else camera
         view: dict[str, Any] = {"camera": camera_settings("camera", chosen)}
+        if position is not None and agent is not None:
+            raise ConfigError("agent, position: found both; expected one of them")
         if position is None:
+            for name, angle_deg in (("yaw_deg", yaw_deg), ("pitch_deg", pitch_deg)):
+                if finite(name, angle_deg) != 0.0:
+                    raise ConfigError(
+                        f"{name} is {angle_deg:g} without a position; an agent's eyes look where "
+                        "it does: turn it (place_agent), or its camera (Camera.yaw_deg, pitch_deg)"
+                    )
             view["agent"] = 0 if agent is None else whole("agent", agent)
         else:
             view["position"] = list(point("position", position))

@@ -89,3 +89,42 @@ def test_a_door_tells_when_it_has_opened(world: dwell.World) -> None:
         world.step()
         told += world.notices()
     assert [(who, outcome.object) for who, outcome in told] == [(0, doors[0]["name"])]
+
+
+def test_what_is_held_may_be_named_when_it_is_dropped(world: dwell.World) -> None:
+    things = [t for t in world.objects() if t["pickable"] and 0.3 < t["center"][1] < 1.0]
+    before(world, things[0])
+    name, other = things[0]["name"], things[1]["name"]
+    with pytest.raises(dwell.ConfigError, match=f"does not hold: it holds '{name}'"):
+        world.act("drop", other)
+    with pytest.raises(dwell.ConfigError, match="agent 1 does not hold: it holds nothing"):
+        world.act("throw", name, agent=1)
+    assert world.act("drop", name).success
+    before(world, world.objects()[things[0]["id"] - world.objects()[0]["id"]])
+    assert world.act({"kind": "throw", "object": things[0]["id"]}).success
+    assert world.agents()[0]["holding"] is None
+
+
+def test_a_sound_of_what_is_switched_off_says_what_to_do(world: dwell.World) -> None:
+    rows = {row["object"]: row for row in world.sounds()}
+    with pytest.raises(dwell.UsageError, match=r"radio_1 is switched off .*act\('toggle'"):
+        world.start_sound(rows["radio_1"]["handle"])
+    clock = rows["clock_1"]["handle"]
+    world.stop_sound(clock)
+    world.start_sound(clock)
+    with pytest.raises(dwell.UsageError, match="no sound"):
+        world.start_sound(10**6)
+
+
+def test_objects_and_agents_have_the_fields_that_are_documented(world: dwell.World) -> None:
+    for told, about in (
+        (world.objects(), dwell.World.objects.__doc__),
+        (world.agents(), dwell.World.agents.__doc__),
+    ):
+        assert about is not None
+        assert [name for name in told[0] if f"``{name}``" not in about] == []
+    agent = world.agents()[0]
+    assert agent["yaw_deg"] == pytest.approx(math.degrees(agent["yaw_rad"]))
+    world.place_agent(agent["position"], 30.0, pitch_deg=-20.0)
+    turned = world.agents()[0]
+    assert (turned["yaw_deg"], turned["pitch_deg"]) == pytest.approx((30.0, -20.0), abs=1e-4)

@@ -129,3 +129,42 @@ def test_an_environment_carries_cameras_by_name() -> None:
     assert (seen["round"].shape, seen["boxes_3d"].shape) == ((12, 16, 3), (5, 11))
     with pytest.raises(dwell.ConfigError, match="smell"):
         DwellEnv(sensors={"nose": {"kind": "smell"}}).reset(seed=1)
+
+
+@pytest.mark.parametrize(
+    ("fields", "why"),
+    [
+        ({"width": 0}, r"camera.width is 0; allowed are whole numbers from 1 to 16384"),
+        ({"height": 16385}, r"camera.height is 16385; .* 1 to 16384"),
+        ({"fov_deg": 200.0}, r"camera.fov_deg is 200; allowed are 1 to 175 degrees"),
+        ({"near_m": -0.1}, r"camera.near_m is -0.1; allowed are 0 to"),
+        ({"near_m": 2.0, "far_m": 2.0}, r"camera.far_m is 2.0; allowed is more than near_m"),
+        ({"max_objects": 5000}, r"camera.max_objects is 5000; .* 1 to 4096"),
+        ({"preset": "dark"}, r"camera.preset is 'dark'"),
+    ],
+)
+def test_a_camera_is_refused_where_it_is_made(fields: dict[str, Any], why: str) -> None:
+    with pytest.raises(dwell.ConfigError, match=why):
+        dwell.Camera(**fields)
+
+
+def test_the_ends_of_a_cameras_ranges_are_the_engines() -> None:
+    world = dwell.World(dwell.House.shoebox((4.0, 2.5, 3.0)), agents=0)
+    for fields in (
+        {"fov_deg": 1.0},
+        {"fov_deg": 175.0},
+        {"near_m": 0.0, "far_m": 1e6},
+        {"max_objects": 1},
+        {"max_objects": 4096},
+    ):
+        camera = dwell.Camera(8, 8, **fields)
+        image = world.render(position=(2.0, 1.0, 1.5), camera=camera)["rgb"]
+        assert image.shape == (8, 8, 3)
+
+
+def test_eyes_and_a_place_are_not_rendered_from_together() -> None:
+    world = dwell.World(dwell.House.shoebox((4.0, 2.5, 3.0)))
+    with pytest.raises(dwell.ConfigError, match="agent, position: found both"):
+        world.render(agent=0, position=(2.0, 1.0, 1.5))
+    with pytest.raises(dwell.ConfigError, match="yaw_deg is 30 without a position"):
+        world.render(yaw_deg=30.0)

@@ -1,0 +1,96 @@
+"""What agents of a world do with their hands, and step by step."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from dwell import ConfigError, _native
+from dwell.actions import Outcome, action_json
+from dwell.arguments import mapping, to_json, whole
+from dwell.telling import Telling
+
+#: Actions about what is in the hand.
+_OF_THE_HELD = ("drop", "throw")
+
+
+class Acting(Telling):
+    """The actions of a world's agents."""
+
+    def act(
+        self,
+        action: str | Mapping[str, Any],
+        object: str | int | None = None,
+        *,
+        agent: int = 0,
+        **details: Any,  # noqa: ANN401 - numbers, names and vectors, checked by the engine
+    ) -> Outcome:
+        """Lets an agent do something with its hand, without a step of time.
+
+        What takes time (doors, pushes) tells its end through :meth:`notices`.
+
+        Args:
+            action: ``pick``, ``drop``, ``place``, ``place_at``, ``put_in``, ``throw``, ``push``,
+                ``pull``, ``open``, ``close``, ``toggle`` or ``point``; or a mapping with ``kind``
+                and details.
+            object: The thing's name, or its id as instance images show it. Without it, and
+                without ``pixel`` and ``direction``, what the agent looks at is meant; of ``drop``
+                and ``throw`` what it holds, and nothing else may be named.
+            agent: Who does it.
+            **details: ``part`` (one drawer of several, by name); ``pixel`` (column, row) and
+                ``camera`` (a :class:`Camera` at the agent's eye) or ``origin`` and ``direction``
+                of a ray, instead of an object; ``grasp`` of ``pick`` (``"kinematic"`` or
+                ``{"spring": {"frequency_hz": 4, "damping_ratio": 1}}``); ``point`` of
+                ``place_at``, m; ``direction`` and ``speed_m_s`` of ``throw``; ``force_n`` of
+                ``push`` and ``pull``; ``fraction`` of ``open``.
+
+        Raises:
+            ConfigError: For a kind, name or detail that does not exist, or a number that is not
+                finite.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment")
+            >>> world.act("drop").sentence
+            'You hold nothing. Pick something first.'
+            >>> world.act("point", direction=(0.0, -1.0, 0.0)).pointed.kind
+            'structure'
+            >>> world.act({"kind": "pick", "object": -1}).code
+            'unknown_object'
+        """
+        request: dict[str, Any] = {"kind": action} if isinstance(action, str) else {}
+        if not isinstance(action, str):
+            request = mapping("action", action, "the name of an action, or a mapping with kind")
+        request |= details
+        if object is not None:
+            request["object"] = object
+        agent = whole("agent", agent)
+        checked = json.loads(action_json(request))
+        if checked.get("kind") in _OF_THE_HELD and "object" in checked:
+            self._refuse_not_held(agent, checked["kind"], checked.pop("object"))
+        return Outcome._of(json.loads(self._native.act(agent, to_json(checked))))
+
+    def _refuse_not_held(self, agent: int, kind: str, named: str | int) -> None:
+        """Refuses to let go of what an agent does not hold; its own name is allowed."""
+        held = [row for row in self.objects() if row["held_by"] == agent]
+        if not any(named in (row["name"], row["id"]) for row in held):
+            holds = ", ".join(repr(row["name"]) for row in held) or "nothing"
+            raise ConfigError(
+                f"object is {named!r}, which agent {agent} does not hold: it holds {holds}; "
+                f"{kind} needs no name"
+            )
+
+    def notices(self) -> list[tuple[int | None, Outcome]]:
+        """What became, in the last step, of actions that take time: who began it, and its end."""
+        notices = json.loads(self._native.notices_json())
+        return [(notice["agent"], Outcome._of(notice["outcome"])) for notice in notices]
+
+    def do(self, action: int | str, *, agent: int = 0) -> Outcome:
+        """Makes one control step of a discrete action, by number or name (see :func:`actions`)."""
+        names = _native.actions()
+        if isinstance(action, str) and action not in names:
+            raise ConfigError(f"no action {action!r}; there are {', '.join(names)}")
+        number = names.index(action) if isinstance(action, str) else action
+        number, agent = whole("action", number, high=len(names) - 1), whole("agent", agent)
+        return Outcome._of(json.loads(self._native.act_discrete(agent, number)))

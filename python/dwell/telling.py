@@ -1,0 +1,67 @@
+"""What a world tells of its agents and things."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+from dwell import _native
+
+
+class Telling:
+    """The agents and objects of a world, as they are now."""
+
+    _native: _native.World
+
+    def agents(self) -> list[dict[str, Any]]:
+        """What agents are like now: a mapping for each, with angles in degrees and in radians.
+
+        Returns:
+            ``position``: the point between its feet, m. ``yaw_deg``, ``yaw_rad``: where it faces,
+            positive to the left, 0 along -Z. ``pitch_deg``, ``pitch_rad``: where it looks, positive
+            up. ``velocity``: m/s. ``grounded``: whether it stands on something. ``collided``:
+            whether something stopped it in the last step. ``holding``: the place in
+            :meth:`objects` of what is in its hand, or ``None``. ``crouched_by_m``: how much lower
+            than its height it is.
+            ``gyro_rad_s``: how fast it turns, positive to the left. ``body``: what its body can, as
+            ``agents`` of the constructor. ``base``: its wheels, as ``wheel_rad_s``,
+            ``wheel_turned_rad`` (left, right), ``twist`` and ``odometry``.
+        """
+        return told_agents(self._native.agents_json())
+
+    def objects(self) -> list[dict[str, Any]]:
+        """What there is, as it is now: a mapping for each object.
+
+        Returns:
+            ``id``: its number in instance images. ``name``: its name, for :meth:`act` and kin.
+            ``category``: its coarse class, as :meth:`House.semantic_classes` lists them.
+            ``center`` and ``size``: middle and edges (x, y, z) of the box around it along the
+            world's axes, m. ``room``: the name of the room around its middle, or ``None``.
+            ``pickable``: whether a hand can take it, as far as shape and use say. ``held_by``: the
+            number of the agent that holds it, or ``None``. ``on``: whether it is switched on;
+            ``None`` without a switch. ``openness``: how far it is open, 0 to 1; ``None`` without a
+            joint. ``rests_on``: the names of what carries it, ``"building"`` for floors and walls;
+            empty while it is held or flies, and of what never moves, such as heavy or built-in
+            furniture, where physics looks for no contacts. ``lies_in``: the names of what it lies
+            in; empty for what a hand cannot take. ``sounds``: whether it makes a sound of its own
+            while it is switched on or has no switch.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment", agents=0)
+            >>> radio = next(row for row in world.objects() if row["name"] == "radio_1")
+            >>> radio["on"], radio["sounds"], radio["held_by"]
+            (False, True, None)
+        """
+        objects: list[dict[str, Any]] = json.loads(self._native.objects_json())
+        return objects
+
+
+def told_agents(agents_json: str) -> list[dict[str, Any]]:
+    """The engine's states of agents, with their angles in degrees, too."""
+    agents: list[dict[str, Any]] = json.loads(agents_json)
+    for agent in agents:
+        for angle in ("yaw", "pitch"):
+            agent[f"{angle}_deg"] = math.degrees(agent[f"{angle}_rad"])
+    return agents
