@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from dwell import ConfigError
-from dwell.arguments import mapping, text
+from dwell.arguments import mapping, refuse_unknown, text
 
 _Part = TypeVar("_Part", bound="Part")
 
@@ -51,6 +52,8 @@ def factory(
     if missing := sorted(getattr(make, "__abstractmethods__", ())):
         raise ConfigError(f"{at}: {given!r} lacks the method {missing[0]}")
     fields = {} if settings is None else mapping(f"settings of {at}", settings)
+    if fields:
+        _refuse_unknown_settings(f"settings of {at}", make, fields)
 
     def made() -> _Part:
         part = make(**fields)
@@ -60,6 +63,22 @@ def factory(
         return part
 
     return made
+
+
+def _refuse_unknown_settings(
+    at: str, make: Callable[..., object], fields: Mapping[str, object]
+) -> None:
+    """Refuses settings that are no arguments of what they are for, where these can be known."""
+    try:
+        arguments = inspect.signature(make).parameters.values()
+    except (TypeError, ValueError):
+        return
+    if any(one.kind is one.VAR_KEYWORD for one in arguments):
+        return
+    known = [
+        one.name for one in arguments if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)
+    ]
+    refuse_unknown(at, [name for name in fields if name not in known], known)
 
 
 def _imported(at: str, given: str) -> object:

@@ -143,6 +143,35 @@ def test_a_task_judges_rewards_double_and_infos_tell() -> None:
         env.step(0)
 
 
+def test_without_a_way_to_go_there_are_no_measures_of_it() -> None:
+    class Stay(dwell.Task):
+        def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.Ask:
+            return dwell.Ask("Stay.")
+
+        def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
+            return dwell.Verdict(1.0, terminated=True, success=True)
+
+    measures = {"distance_to_goal", "spl", "soft_spl"}
+    for task, success in ((Stay, True), ("Free", False)):
+        env = DwellEnv(task, sensors=["gps"])
+        env.reset(seed=1)
+        info = env.step(1)[4]
+        assert not measures & set(info)
+        assert info["success"] is success
+        assert info["path_length"] > 0.05
+        many = DwellVectorEnv(2, task, sensors=["gps"])
+        many.reset(seed=1)
+        infos = many.step(np.array([1, 1]))[4]
+        assert all(np.isnan(infos[name]).all() for name in measures)
+
+
+def test_settings_that_a_task_does_not_take_are_answered_with_those_it_does() -> None:
+    with pytest.raises(dwell.ConfigError, match="no argument 'nearm'; did you mean near_m"):
+        DwellEnv(GoThere, task_settings={"nearm": 1.0})
+    with pytest.raises(dwell.ConfigError, match="'colour'; there are none"):
+        DwellEnv(dwell.Task, task_settings={"colour": 1})
+
+
 def test_seeds_and_snapshots_bring_the_same_episode_back() -> None:
     # Without an expert the actions are the same whatever happens.
     actions = [1, 1, 2, 1, 3, 1] * 4

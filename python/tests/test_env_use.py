@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gymnasium
 import numpy as np
 import pytest
 
@@ -72,6 +73,15 @@ def test_an_episode_id_plays_the_same_episode_again(apartment: dwell.House) -> N
         env.reset(options={"hose": 1})
 
 
+def test_arguments_that_there_are_not_are_answered_with_the_nearest_names() -> None:
+    with pytest.raises(dwell.ConfigError, match="no argument 'house'; did you mean houses"):
+        gymnasium.make("dwell/Free-v0", house="builtin:studio")
+    with pytest.raises(dwell.ConfigError, match="no argument 'house'; did you mean houses"):
+        gymnasium.make_vec("dwell/Free-v0", num_envs=2, house="builtin:studio")
+    with pytest.raises(dwell.ConfigError, match="did you mean forward_m"):
+        DwellEnv("Free", stride={"forward": 0.3})
+
+
 def test_houses_may_be_given_open(apartment: dwell.House) -> None:
     env = DwellEnv(sensors=SMALL, houses=apartment)
     _, info = env.reset(seed=3)
@@ -79,6 +89,100 @@ def test_houses_may_be_given_open(apartment: dwell.House) -> None:
     named.reset(seed=3)
     assert info["scene_id"] == "apartment"
     assert env.state_hash() == named.state_hash()
+
+
+def test_a_batch_tells_its_houses_and_episodes_which_play_again_alone() -> None:
+    houses = ["builtin:apartment", "builtin:studio"]
+    many = DwellVectorEnv(3, sensors=SMALL, houses=houses, autoreset_mode="SameStep")
+    _, infos = many.reset(seed=5)
+    assert infos["scene_id"].tolist() == [*houses, houses[0]]
+    assert infos["_scene_id"].all()
+    assert infos["_episode_id"].all()
+    one, first = DwellEnv(sensors=SMALL, houses=houses), infos["episode_id"].tolist()
+    for k, episode_id in enumerate(first):
+        _, info = one.reset(options={"episode_id": episode_id})
+        assert one.state_hash() == many.state_hashes()[k]
+        assert info == {"scene_id": infos["scene_id"][k], "episode_id": episode_id}
+    *_, infos = many.step(np.array([0, 1, 1]))
+    assert infos["episode_id"][1:].tolist() == first[1:]
+    assert infos["final_info"]["episode_id"][0] == first[0] != infos["episode_id"][0]
+    one.reset(options={"episode_id": infos["episode_id"][0]})
+    assert one.state_hash() == many.state_hashes()[0]
+    # And the other way: a batch plays episodes by their ids, too.
+    batch = DwellVectorEnv(3, sensors=SMALL, houses=houses)
+    _, again = batch.reset(seed=1, options={"episode_id": [first[0], None, first[2]]})
+    assert again["episode_id"][[0, 2]].tolist() == [first[0], first[2]]
+    for wrong, why in (
+        ([first[1], None, None], "environment 0 plays in 'builtin:apartment'"),
+        ([first[0]], "found 1"),
+        (first[0], "one for each"),
+        ([None, "castle#1", None], "HOUSE#NUMBER"),
+    ):
+        with pytest.raises(dwell.ConfigError, match=why):
+            batch.reset(options={"episode_id": wrong})
+    with pytest.raises(dwell.ConfigError, match="no 'episode'"):
+        batch.reset(options={"episode": first})
+
+
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
+def test_a_restored_batch_goes_on_as_before(mode: str) -> None:
+    def made() -> DwellVectorEnv:
+        return DwellVectorEnv(2, sensors=SMALL, max_episode_steps=5, autoreset_mode=mode, copy=True)
+
+    def go_on(env: DwellVectorEnv) -> list[object]:
+        seen: list[object] = []
+        # The first ends by its own step, the second at the limit; both begin anew.
+        for actions in ([1, 1], [0, 2], [3, 1], [1, 1], [1, 6]):
+            observation, rewards, terminated, truncated, infos = env.step(np.array(actions))
+            seen += [env.state_hashes(), rewards.tolist(), terminated.tolist()]
+            seen += [truncated.tolist(), infos["episode_id"].tolist(), observation["instruction"]]
+            seen.append(observation["rgb"].tobytes())
+        return seen
+
+    env = made()
+    with pytest.raises(dwell.UsageError, match="environment 0 has begun"):
+        env.snapshot()
+    env.reset(seed=6)
+    for actions in ([1, 3], [0, 1]):
+        looks, *_, infos = env.step(np.array(actions))
+    saved = env.snapshot()
+    first = go_on(env)
+    assert any(True in row for row in first[3::7])  # type: ignore[operator] # rows of flags
+    for again in (env, made()):
+        observation, told = again.restore(saved)
+        assert np.array_equal(observation["rgb"], looks["rgb"])
+        assert told["episode_id"].tolist() == infos["episode_id"].tolist()
+        assert go_on(again) == first
+
+
+def test_snapshots_of_something_else_are_refused_by_a_batch() -> None:
+    houses = ["builtin:apartment", "builtin:studio"]
+    env = DwellVectorEnv(2, sensors=SMALL, houses=houses)
+    env.reset(seed=2)
+    saved, before = env.snapshot(), env.state_hashes()
+    env.step(np.array([1, 1]))
+    after = env.state_hashes()
+    single = DwellEnv(sensors=SMALL)
+    single.reset(seed=2)
+    cut = saved[0].replace(b'"steps"', b'"stops"')
+    for wrong, why in (
+        (saved[0], "expected a list of 2"),
+        (saved[:1], "expected a list of 2"),
+        (saved[::-1], "environment 0 plays in"),
+        ([b"junk", None], r"snapshots\[0\]: snapshot refused"),
+        ([None, single.snapshot()], r"snapshots\[1\]: snapshot refused"),
+        ([cut, None], "steps"),
+        ([7, None], r"snapshots\[0\] is 7"),
+    ):
+        with pytest.raises(dwell.ConfigError, match=why):
+            env.restore(wrong)  # type: ignore[arg-type]
+        assert env.state_hashes() == after
+    env.restore([saved[0], None])
+    assert env.state_hashes() == [before[0], after[1]]
+    with pytest.raises(dwell.ConfigError, match="snapshot refused"):
+        env.restore([None, saved[1][:-5]])
+    with pytest.raises(dwell.UsageError, match=r"environments \[1\] has begun; reset them"):
+        env.step(np.array([1, 1]))
 
 
 def test_what_an_episode_ended_with_stands_in_final_info() -> None:

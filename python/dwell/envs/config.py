@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any, TypedDict
 
 from dwell import ConfigError
-from dwell.arguments import fields, finite, mapping, text, texts, to_json
+from dwell.arguments import fields, finite, mapping, text, texts, to_json, whole
 from dwell.envs.custom import Native, RewardChoice, Sensors
 from dwell.house import House
 from dwell.settings import Laws, world_settings
@@ -32,6 +33,12 @@ class EnvSettings(TypedDict, total=False):
     world: Mapping[str, Any] | None
     threads: int | None
     render_mode: str | None
+
+
+def arguments_of(env: type) -> list[str]:
+    """The names of the arguments that an environment takes."""
+    parameters = inspect.signature(env.__init__).parameters.values()  # type: ignore[misc] # of the class itself
+    return [one.name for one in parameters if one.kind is not one.VAR_KEYWORD][1:]
 
 
 #: Houses, with their environments, that are kept for the next episode in them: enough for those
@@ -77,6 +84,24 @@ class HouseShelf:
         """House ``index`` modulo their number."""
         name = self.names[index % len(self.names)]
         return self._given.get(name) or self._open(name)
+
+    def episode_id(self, index: int, seed: int) -> str:
+        """What an episode of a seed in house ``index`` modulo their number is called."""
+        return f"{self.names[index % len(self.names)]}#{seed}"
+
+    def episode(self, episode_id: object) -> tuple[int, int]:
+        """House and seed of what :meth:`episode_id` gave.
+
+        Raises:
+            ConfigError: It is none, or of a house that is not here.
+        """
+        name, mark, seed = str(episode_id).rpartition("#")
+        if not mark or not seed.isdecimal() or name not in self.names:
+            raise ConfigError(
+                f"episode_id is {episode_id!r}; expected HOUSE#NUMBER, as info has it, of a house "
+                f"of this environment: {self.names[:12]}"
+            )
+        return self.names.index(name), whole("episode_id", int(seed))
 
 
 def _expanded(row: object) -> list[object]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import gymnasium
 
 from dwell import ConfigError, _native
-from dwell.arguments import text
+from dwell.arguments import refuse_unknown, text
 from dwell.envs.config import EnvSettings
 from dwell.envs.custom import TaskChoice
 from dwell.parts import factory
@@ -51,10 +51,8 @@ def register_task(env_id: str, task: TaskChoice, **settings: Unpack[EnvSettings]
         ConfigError: The id is of no form that gymnasium knows, or taken; an argument that
             ``DwellEnv`` does not have.
     """
-    for name in settings:
-        if name not in EnvSettings.__annotations__:
-            known = ", ".join(EnvSettings.__annotations__)
-            raise ConfigError(f"register_task: no field {name!r}; allowed are {known}")
+    known = [*EnvSettings.__annotations__]
+    refuse_unknown("register_task", [name for name in settings if name not in known], known)
     steps = factory("task", task, Task, settings.get("task_settings"))().max_steps
     if text("env_id", env_id) in gymnasium.registry:
         raise ConfigError(f"env_id is {env_id!r}, which is registered already")

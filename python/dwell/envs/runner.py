@@ -15,7 +15,7 @@ from dwell.envs.spaces import specs
 from dwell.heads import Head
 from dwell.house import House
 
-#: Keys of a step's answer that become ``info``.
+#: Keys of a step's answer that become ``info``; those of :data:`GOAL_KEYS` are NaN without a goal.
 INFO_KEYS = (
     "success",
     "action_success",
@@ -26,6 +26,9 @@ INFO_KEYS = (
     "path_length",
     "collisions",
 )
+
+#: What there is only where a task has a goal to go to.
+GOAL_KEYS = ("distance_to_goal", "spl", "soft_spl")
 
 
 class Runner:
@@ -73,14 +76,28 @@ class Runner:
             if seed is not None:
                 play.begin(seed)
 
-    def restore(self, snapshot: bytes, parts: bytes, seed: int) -> None:
-        """Goes to a snapshot of the only environment, of an episode of ``seed``."""
-        checked = [play.loaded(parts) for play in self.plays]
-        if parts and not self.plays:
+    def loaded(self, env: int, parts: bytes) -> dict[str, dict[str, Any]] | None:
+        """What the parts of an environment remembered, out of its snapshot.
+
+        Raises:
+            ConfigError: They are of other parts, or were cut.
+        """
+        if self.plays:
+            return self.plays[env].loaded(parts)
+        if parts:
             raise ConfigError("snapshot refused: it is of an environment with parts in Python")
-        self.batch.restore(0, snapshot)
-        for play, states in zip(self.plays, checked, strict=True):
-            play.load(states, seed)
+        return None
+
+    def saved_parts(self, env: int) -> bytes:
+        """What the parts of an environment remember; nothing where there are none."""
+        return self.plays[env].save() if self.plays else b""
+
+    def restore(self, snapshot: bytes, parts: bytes, seed: int, *, env: int = 0) -> None:
+        """Lets an environment go to a snapshot, of an episode of ``seed``."""
+        states = self.loaded(env, parts)
+        self.batch.restore(env, snapshot)
+        if states is not None:
+            self.plays[env].load(states, seed)
 
     def step(self, numbers: NDArray[np.int64]) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
         """One control step by the numbers of actions, -1 for none.
@@ -94,6 +111,10 @@ class Runner:
             play.judge(names[number], answer) if number >= 0 else {}
             for play, number in zip(self.plays, numbers, strict=False)
         ]
+        # The engine's shares of a way that there is not are 0, as if it had been missed.
+        aimless = np.isnan(answer["distance_to_goal"])
+        for key in GOAL_KEYS:
+            answer[key][aimless] = np.nan
         return answer, further
 
     def expert_actions(self) -> NDArray[np.int64]:

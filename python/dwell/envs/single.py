@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import functools
-import json
-import math
 from collections.abc import Mapping
-from typing import Any
+from math import isnan
+from typing import Any, NoReturn
 
 import gymnasium
 import numpy as np
@@ -14,13 +13,14 @@ from gymnasium.utils import EzPickle
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, to_json, whole
+from dwell.arguments import mapping, refuse_unknown, to_json, whole
 from dwell.camera import Camera, camera_settings
-from dwell.envs.config import KEPT, Houses, HouseShelf, env_json
+from dwell.envs.config import KEPT, Houses, HouseShelf, arguments_of, env_json
 from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
-from dwell.envs.runner import INFO_KEYS, Runner
+from dwell.envs.runner import GOAL_KEYS, INFO_KEYS, Runner
 from dwell.envs.spaces import action_space
 from dwell.settings import Laws, with_head
+from dwell.telling import told_agents
 
 #: The image that ``render()`` gives.
 RENDER_CAMERA = Camera(width=320, height=240)
@@ -53,6 +53,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         world: Mapping[str, Any] | None = None,
         threads: int | None = None,
         render_mode: str | None = None,
+        **unknown: NoReturn,
     ) -> None:
         """Makes the environment.
 
@@ -71,7 +72,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
                 :class:`dwell.Head` or the path of its SOFA file.
             threads: How many threads to use; results do not depend on it.
             render_mode: ``rgb_array`` or ``None``.
+            **unknown: There are no others; such are refused with the nearest names.
         """
+        refuse_unknown("DwellEnv", unknown, arguments_of(DwellEnv))
         EzPickle.__init__(
             self,
             task,
@@ -131,18 +134,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def _info(self) -> dict[str, Any]:
         return {
             "scene_id": self._shelf.names[self._house],
-            "episode_id": f"{self._shelf.names[self._house]}#{self._seed}",
+            "episode_id": self._shelf.episode_id(self._house, self._seed),
         }
-
-    def _replayed(self, episode_id: object) -> tuple[int, int]:
-        """House and seed of an earlier ``info["episode_id"]``."""
-        name, mark, seed = str(episode_id).rpartition("#")
-        if not mark or not seed.isdecimal() or name not in self._shelf.names:
-            raise ConfigError(
-                f"episode_id is {episode_id!r}; expected HOUSE#NUMBER, as info has it, of a house "
-                f"of this environment: {self._shelf.names[:12]}"
-            )
-        return self._shelf.names.index(name), whole("episode_id", int(seed))
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -167,7 +160,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             )
         episode = int(self.np_random.integers(2**63))
         if "episode_id" in options:
-            house, episode = self._replayed(options["episode_id"])
+            house, episode = self._shelf.episode(options["episode_id"])
         self._house, self._seed = house, episode
         self._runner.reset([self._seed])
         return self._observation(), self._info()
@@ -177,13 +170,12 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     ) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Makes one control step; ``action``: a number of :meth:`actions`.
 
-        ``info`` has no ``distance_to_goal`` where the task has no goal.
+        ``info`` has no ``distance_to_goal``, ``spl`` and ``soft_spl`` where the task has no goal.
         """
         number = whole("action", action, high=len(self.actions()) - 1)
         answer, further = self._runner.step(np.array([number], np.int64))
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
-        if math.isnan(info["distance_to_goal"]):
-            del info["distance_to_goal"]
+        info = {k: value for k, value in info.items() if k not in GOAL_KEYS or not isnan(value)}
         info["action_error"] = answer["action_error"][0]
         terminated = bool(answer["terminated"][0])
         observation = self._observation()
@@ -226,8 +218,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def snapshot(self) -> bytes:
         """Episode and world as bytes."""
         episode_id = str(self._info()["episode_id"])
-        plays = self._runner.plays
-        parts = plays[0].save() if plays else b""
+        parts = self._runner.saved_parts(0)
         return b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0)))
 
     def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -243,7 +234,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         episode_id, _, rest = snapshot.partition(b"\0")
         parts, _, rest = rest.partition(b"\0")
         try:
-            house, seed = self._replayed(episode_id.decode(errors="replace"))
+            house, seed = self._shelf.episode(episode_id.decode(errors="replace"))
         except ConfigError as error:
             raise ConfigError(f"snapshot refused: {error}") from None
         # Nothing changes before it was accepted.
@@ -276,9 +267,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             raise ConfigError("world.sound_head: a file cannot hold a measured head")
 
     def agents(self) -> list[dict[str, Any]]:
-        """The agents' states."""
-        agents: list[dict[str, Any]] = json.loads(self._runner.batch.agents_json(0))
-        return agents
+        """The agents' states, as :meth:`dwell.World.agents` tells them."""
+        return told_agents(self._runner.batch.agents_json(0))
 
     def describe(self, level: str = "house") -> list[str]:
         """Sentences about the house as it starts; see :meth:`dwell.House.describe`."""

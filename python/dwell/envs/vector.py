@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from gymnasium.utils import EzPickle
@@ -12,10 +12,11 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, whole
-from dwell.envs.config import Houses, HouseShelf, env_json
+from dwell.arguments import mapping, refuse_unknown, whole
+from dwell.envs.config import Houses, HouseShelf, arguments_of, env_json
 from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.runner import INFO_KEYS, Runner
+from dwell.envs.saved import Saved
 from dwell.envs.spaces import action_space
 from dwell.settings import Laws, with_head
 
@@ -46,6 +47,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         copy: bool = False,
         overlap: bool = False,
         render_mode: str | None = None,
+        **unknown: NoReturn,
     ) -> None:
         """Makes the environments; arguments as :class:`dwell.envs.DwellEnv`.
 
@@ -68,7 +70,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
                 while others still step. Observations are the same, of the same step; without an
                 adapter nothing changes.
             render_mode: ``None``; single environments render.
+            **unknown: There are no others; such are refused with the nearest names.
         """
+        refuse_unknown("DwellVectorEnv", unknown, arguments_of(DwellVectorEnv))
         EzPickle.__init__(
             self,
             num_envs,
@@ -103,10 +107,13 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if not isinstance(overlap, bool):
             raise ConfigError(f"overlap: found {overlap!r}, allowed are True and False")
         rows = [shelf[k] for k in range(num_envs)]
+        self._shelf = shelf
         self._runner = Runner(rows, config, threads, custom=custom, overlap=overlap, heads=heads)
         self._limit = max_episode_steps if max_episode_steps and max_episode_steps > 0 else None
         self._copy = copy
         self._streams: list[np.random.Generator | None] = [None] * num_envs
+        #: The seed of every environment's episode, once it has one.
+        self._seeds: list[int | None] = [None] * num_envs
         self._steps = np.zeros(num_envs, np.int64)
         self._done = np.ones(num_envs, np.bool_)
         #: Whose latest reset did not come to its end.
@@ -124,13 +131,18 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             key: value if isinstance(value, tuple) else value.copy() for key, value in now.items()
         }
 
-    def _start(self, which: NDArray[np.bool_]) -> None:
+    def _start(self, which: NDArray[np.bool_], asked: Sequence[int | None] | None = None) -> None:
+        """Begins episodes: of the seeds in ``asked`` where there are some, else of drawn ones."""
         seeds = [
             int(stream.integers(2**63)) if start and stream is not None else None
             for stream, start in zip(self._streams, which, strict=True)
         ]
+        for k, seed in enumerate(asked or ()):
+            seeds[k] = seeds[k] if seed is None else seed
         self._stopped[which] = True
         self._runner.reset(seeds)
+        for k in np.flatnonzero(which).tolist():
+            self._seeds[k] = seeds[k]
         self._steps[which] = 0
         self._done[which] = False
         self._stopped[which] = False
@@ -146,9 +158,17 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         Args:
             seed: One seed (then environment k has ``seed + k``), or one for each environment.
             options: ``reset_mask``: which environments to reset, shape (num_envs,) bool.
+                ``episode_id``: an earlier ``info["episode_id"]`` for each environment, to play the
+                same episodes again; ``None`` where one is drawn.
+
+        Returns:
+            Observations and infos: ``scene_id`` and ``episode_id`` of every environment.
         """
         self._refuse_closed()
-        mask = ({} if options is None else mapping("options", options)).get("reset_mask")
+        options = {} if options is None else mapping("options", options)
+        if unknown := sorted(set(options) - {"reset_mask", "episode_id"}):
+            raise ConfigError(f"options: no {unknown[0]!r}; allowed are reset_mask and episode_id")
+        mask = options.get("reset_mask")
         which = np.ones(self.num_envs, np.bool_) if mask is None else np.asarray(mask)
         if which.shape != (self.num_envs,) or which.dtype != np.bool_ or not which.any():
             raise ConfigError(
@@ -167,19 +187,64 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             seeds = [None if one is None else whole("seed", one) for one in given]
             if len(seeds) != self.num_envs:
                 raise ConfigError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
+        asked = self._asked(options.get("episode_id"), which)
         for k in np.flatnonzero(which):
             if seeds[k] is not None or self._streams[k] is None:
                 self._streams[k] = np.random.default_rng(seeds[k])
-        self._start(which)
+        self._start(which, asked)
         self._runner.observe(which)
-        return self._observation(), {}
+        return self._observation(), self._ids()
+
+    def _asked(self, episodes: object, which: NDArray[np.bool_]) -> list[int | None]:
+        """The seeds of the episodes that are asked for by their ids."""
+        expected = f"expected one for each of {self.num_envs} environments, or None"
+        if episodes is None:
+            return [None] * self.num_envs
+        if isinstance(episodes, str) or not isinstance(episodes, Sequence | np.ndarray):
+            raise ConfigError(f"episode_id is {episodes!r}; {expected}")
+        if len(episodes) != self.num_envs:
+            raise ConfigError(f"episode_id: found {len(episodes)}; {expected}")
+        return [
+            None if one is None or not which[k] else self._seed_of(k, one)
+            for k, one in enumerate(episodes)
+        ]
+
+    def _seed_of(self, env: int, episode_id: object) -> int:
+        """The seed of an episode of an environment, by its id."""
+        house, seed = self._shelf.episode(episode_id)
+        if self._shelf.names[house] != self._scene(env):
+            raise ConfigError(
+                f"episode_id is {episode_id!r}; environment {env} plays in {self._scene(env)!r}"
+            )
+        return seed
+
+    def _scene(self, env: int) -> str:
+        return self._shelf.names[env % len(self._shelf.names)]
+
+    def _ids(self) -> dict[str, Any]:
+        """``scene_id`` and ``episode_id`` of every environment that has an episode, for infos."""
+        has = np.array([seed is not None for seed in self._seeds], np.bool_) & ~self._stopped
+        scenes, episodes = (np.full(self.num_envs, None, object) for _ in range(2))
+        for k in np.flatnonzero(has).tolist():
+            scenes[k] = self._scene(k)
+            episodes[k] = self._shelf.episode_id(k, self._seeds[k] or 0)
+        return {
+            "scene_id": scenes,
+            "_scene_id": has,
+            "episode_id": episodes,
+            "_episode_id": has.copy(),
+        }
 
     def step(
         self, actions: NDArray[np.int64]
     ) -> tuple[
         dict[str, Any], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]
     ]:
-        """Makes one control step in every environment."""
+        """Makes one control step in every environment.
+
+        ``infos`` hold what a single environment's ``info`` does; ``distance_to_goal``, ``spl`` and
+        ``soft_spl`` are NaN where the task has no goal.
+        """
         self._refuse_closed()
         if any(stream is None for stream in self._streams):
             raise UsageError("step: no episode has begun; call reset first")
@@ -223,12 +288,14 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         infos["_action_error"] = stepped
         infos["audio_clipped"] = np.array(self._runner.batch.clipped(), np.int64)
         infos["_audio_clipped"] = np.ones(self.num_envs, np.bool_)
+        infos |= self._ids()
         for k, row in enumerate(further):
             infos = self._add_info(infos, dict(row), k)
         self._done = terminated | truncated
         if self._done.any() and self.autoreset_mode is AutoresetMode.SAME_STEP:
             own = [key for key in infos if key not in (*INFO_KEYS, "action_error", "audio_clipped")]
             infos |= self._restart(infos, [key for key in own if not key.startswith("_")])
+            infos |= self._ids()
         return self._observation(), rewards, terminated, truncated, infos
 
     def _restart(self, infos: dict[str, Any], own: Sequence[str]) -> dict[str, Any]:
@@ -252,6 +319,68 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             "final_info": final_info,
             "_final_info": ended,
         }
+
+    def snapshot(self) -> list[bytes]:
+        """Every environment as bytes: world, episode, its steps, and the seeds that follow.
+
+        Raises:
+            UsageError: No episode has begun in one of them.
+        """
+        self._refuse_closed()
+        rows = []
+        for k, (seed, stream) in enumerate(zip(self._seeds, self._streams, strict=True)):
+            if seed is None or stream is None or self._stopped[k]:
+                raise UsageError(f"snapshot: no episode of environment {k} has begun; reset it")
+            saved = Saved(
+                episode_id=self._shelf.episode_id(k, seed),
+                steps=int(self._steps[k]),
+                done=bool(self._done[k]),
+                stream=stream,
+                parts=self._runner.saved_parts(k),
+                world=self._runner.batch.snapshot(k),
+            )
+            rows.append(saved.to_bytes())
+        return rows
+
+    def restore(self, snapshots: Sequence[bytes | None]) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Lets environments go to where snapshots were taken; the next steps give the same bits.
+
+        A snapshot may go to another environment of the same house, and to several.
+
+        Args:
+            snapshots: One for each environment; ``None`` leaves it where it is.
+
+        Returns:
+            Observations of that moment, and infos as :meth:`reset` gives.
+
+        Raises:
+            ConfigError: They are not one for each, or one is of something else. Nothing has changed
+                then, unless the engine refuses a damaged world: the environments that were given
+                snapshots want a reset afterwards.
+        """
+        self._refuse_closed()
+        given: object = snapshots
+        if not isinstance(given, list | tuple) or len(given) != self.num_envs:
+            raise ConfigError(
+                f"snapshots is {given!r:.60}; expected a list of {self.num_envs}: bytes, or None, "
+                "for each environment"
+            )
+        rows: dict[int, tuple[Saved, int]] = {}
+        for k, snapshot in enumerate(given):
+            if snapshot is None:
+                continue
+            saved = Saved.of_bytes(f"snapshots[{k}]", snapshot)
+            rows[k] = saved, self._seed_of(k, saved.episode_id)
+            self._runner.loaded(k, saved.parts)
+        which = np.array([k in rows for k in range(self.num_envs)], np.bool_)
+        self._stopped[which] = True
+        for k, (saved, seed) in rows.items():
+            self._runner.restore(saved.world, saved.parts, seed, env=k)
+            self._seeds[k], self._streams[k] = seed, saved.stream
+            self._steps[k], self._done[k] = saved.steps, saved.done
+        self._stopped[which] = False
+        self._runner.observe(which)
+        return self._observation(), self._ids()
 
     def _refuse_closed(self) -> None:
         if self.closed:

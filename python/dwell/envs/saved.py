@@ -1,0 +1,78 @@
+"""Snapshots of environments that step together: each with what its episode needs to go on."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from typing import Any
+
+import numpy as np
+
+from dwell import ConfigError
+from dwell.arguments import flag, mapping, text, to_json, whole
+
+#: What the bytes begin with, and the number of their form.
+_HEAD = b"dwvec1"
+
+
+@dataclasses.dataclass(frozen=True)
+class Saved:
+    """One environment of several as it was at a moment."""
+
+    episode_id: str
+    #: Steps of the episode.
+    steps: int
+    #: Whether the episode has ended.
+    done: bool
+    #: Whence the seeds of the following episodes come.
+    stream: np.random.Generator
+    #: What its parts in Python remember.
+    parts: bytes
+    #: World and episode, as the engine wrote them.
+    world: bytes
+
+    def to_bytes(self) -> bytes:
+        """All of it as bytes."""
+        told = {
+            "episode_id": self.episode_id,
+            "steps": self.steps,
+            "done": self.done,
+            "stream": self.stream.bit_generator.state,
+        }
+        return b"\0".join((_HEAD, to_json(told).encode(), self.parts, self.world))
+
+    @classmethod
+    def of_bytes(cls, name: str, snapshot: object) -> Saved:
+        """What :meth:`to_bytes` wrote; ``name``: what it is called, for errors.
+
+        Raises:
+            ConfigError: It is something else.
+        """
+        if not isinstance(snapshot, bytes):
+            raise ConfigError(f"{name} is {snapshot!r:.60}; expected bytes of snapshot()")
+        head, _, rest = snapshot.partition(b"\0")
+        about, _, rest = rest.partition(b"\0")
+        parts, _, world = rest.partition(b"\0")
+        at = f"{name}: snapshot refused"
+        if head != _HEAD:
+            raise ConfigError(f"{at}: it is none of a vector environment of this version")
+        try:
+            told = mapping(at, json.loads(about))
+            return cls(
+                episode_id=text(f"{at}: episode_id", told["episode_id"]),
+                steps=whole(f"{at}: steps", told["steps"], high=2**63 - 1),
+                done=flag(f"{at}: done", told["done"]),
+                stream=_stream(told["stream"]),
+                parts=parts,
+                world=world,
+            )
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
+            if isinstance(error, ConfigError):
+                raise
+            raise ConfigError(f"{at}: {error!r}") from None
+
+
+def _stream(state: Any) -> np.random.Generator:  # noqa: ANN401 - numpy says what it takes
+    stream = np.random.default_rng(0)
+    stream.bit_generator.state = state
+    return stream
