@@ -287,3 +287,23 @@ def test_measures_of_a_response_name_their_bands(two_points: tuple[str, str]) ->
     metrics = one_object(dwell("ir", HOUSE, *points, "--json"))["metrics"]
     assert [row["centre_hz"] for row in metrics][:3] == [62.5, 125, 250]  # type: ignore[attr-defined]
     assert "1000 Hz: " in dwell("ir", HOUSE, *points).stdout
+
+
+def test_sensors_maps_and_dolls_houses_are_all_written(
+    tmp_path: Path, two_points: tuple[str, str]
+) -> None:
+    at, size = ("--at", two_points[0]), ("--width", "40", "--height", "30")
+    out = ("--out", tmp_path / "all", "--json")
+    pictures = one_object(
+        dwell("render", HOUSE, "--sensors", "rgb,depth", *at, *size, "--map", "--dollhouse", *out)
+    )
+    names = {Path(str(file)).name for file in pictures["files"]}  # type: ignore[attr-defined]
+    assert {"view_rgb.png", "view_depth.npy", "map_0.png", "dollhouse.png"} <= names
+    assert all((tmp_path / "all" / name).exists() for name in names)
+    # Without --sensors and --at only what is asked for.
+    out = ("--out", tmp_path / "one", "--json")
+    alone = one_object(dwell("render", "builtin:studio", *size, "--map", *out))
+    assert [Path(str(file)).name for file in alone["files"]] == ["map_0.png"]  # type: ignore[attr-defined]
+    several = dwell("render", "seed:1", "seed:2", "--sheet", "--sensors", "rgb", "--out", tmp_path)
+    assert several.returncode != 0
+    assert "without --sensors" in several.stderr

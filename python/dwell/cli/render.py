@@ -45,7 +45,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="positive to the left; 0 looks along -Z (default 0, --dollhouse 25)",
     )
     parser.add_argument("--pitch-deg", type=number, default=0.0, help="positive up")
-    parser.add_argument("--sensors", default="rgb", help=f"some of {','.join(_SENSORS)}")
+    parser.add_argument(
+        "--sensors",
+        help=f"some of {','.join(_SENSORS)}; default rgb; beside --map, --dollhouse and --sheet "
+        "none, unless there is --at",
+    )
     parser.add_argument("--width", type=count, help="default 640; --map and --dollhouse 1200")
     parser.add_argument("--height", type=count, default=480)
     parser.add_argument("--fov-deg", type=number, default=90.0, help="horizontal field of view")
@@ -90,17 +94,26 @@ def run(args: argparse.Namespace) -> int:
     from dwell.house import House
     from dwell.world import World
 
-    channels, refused = [_sensor(name) for name in args.sensors.split(",")], 0
+    pictured, refused = args.map or args.dollhouse or args.sheet, 0
+    if args.sensors is None and not (pictured and args.at is None):
+        args.sensors = "rgb"
+    channels = [] if args.sensors is None else [_sensor(name) for name in args.sensors.split(",")]
     houses = [one for name in args.house for one in House.expand(name)]
     files: list[str] = []
     if args.sheet and len(houses) > 1:
+        if channels or args.map or args.dollhouse:
+            raise ValueError(
+                "several houses: --sheet takes their doll's houses alone, without --sensors, --at, "
+                "--map and --dollhouse"
+            )
         files, refused = _sheet(args, houses)
     elif len(houses) > 1:
         raise ValueError(f"{len(houses)} houses; several are taken by --sheet alone")
     else:
         world = World(House.open(houses[0]), agents=0, renderer=back_end(args))
-        pictured = args.map or args.dollhouse or args.sheet
-        files = _whole(args, world) if pictured else _views(args, world, channels)
+        files = _views(args, world, channels) if channels else []
+        if pictured:
+            files += _whole(args, world)
     if args.json:
         print_json({"files": files})
     else:
