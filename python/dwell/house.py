@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from dwell import UsageError, _native, arguments
+from dwell import ConfigError, UsageError, _native, arguments
 from dwell.arguments import file_name, finite, flag, point, text, whole
 from dwell.navigation import Navigation, Walker, walker_json
 
@@ -129,10 +129,22 @@ class House:
 
         Args:
             size_m: Edges, m, 0.1 to 1000 each.
-            substance: What all six sides are made of, by its name in the materials table.
-            absorption: Random-incidence absorption of energy, 0 to 1, at every frequency.
-            scattering: Random-incidence scattering, 0 to 1, at every frequency.
+            substance: What all six sides are made of, by its name in the materials table; it
+                absorbs and scatters as that table says.
+            absorption: Random-incidence absorption of energy, 0 to 1, at every frequency, instead
+                of a substance's. Without either the floor is ``parquet``, the rest ``plaster``.
+            scattering: Random-incidence scattering, 0 to 1, at every frequency; without it each
+                side scatters as its substance does: also beside ``absorption``, where the floor is
+                ``parquet`` and the rest ``plaster``.
+
+        Raises:
+            ConfigError: A substance and an absorption are given; a name or number that is refused.
         """
+        if substance is not None and absorption is not None:
+            raise ConfigError(
+                f"substance, absorption: found both, {substance!r} and {absorption!r}; expected "
+                "one of them, as a substance absorbs by its own table"
+            )
         again = (
             point("size_m", size_m),
             None if substance is None else text("substance", substance),

@@ -27,7 +27,9 @@ def of_response(
     arrives within 2.5 ms of that. Noise of a recording is not compensated for.
 
     Args:
-        response: The impulse response (samples,); for levels, re a pulse of 1 at 1 m.
+        response: The impulse response (samples,), or (1, samples) as
+            :meth:`dwell.AcousticScene.impulse_response` gives for one microphone; for levels, re a
+            pulse of 1 at 1 m.
         rate_hz: Samples a second.
         bands: How wide the bands are.
 
@@ -40,7 +42,9 @@ def of_response(
     Raises:
         ConfigError: The response is not one row of finite numbers, or the rate is out of range.
     """
-    samples, rate = _channel("response", response), _rate(rate_hz)
+    given = np.asarray(response)
+    samples = _channel("response", given[0] if given.ndim == 2 and len(given) == 1 else given)
+    rate = _rate(rate_hz)
     rows: list[dict[str, float | None]] = json.loads(
         _native.response_metrics_json(samples, rate, json.dumps(_width(bands)))
     )

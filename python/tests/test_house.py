@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 from pathlib import Path
 
 import gymnasium
@@ -109,3 +110,13 @@ def test_wrong_names_are_answered_with_the_nearest() -> None:
         room.edit().add("mug", on="tabel").done()
     with pytest.raises(dwell.ConfigError, match=r"single_bed_1"):
         dwell.World(house).act("pick", "single_bde_1")
+
+
+def test_a_shoebox_is_of_a_substance_or_absorbs_as_told() -> None:
+    size = (4.0, 2.5, 3.0)
+    with pytest.raises(dwell.ConfigError, match=r"found both, 'oak' and 0\.1"):
+        dwell.House.shoebox(size, substance="oak", absorption=0.1)
+    assert dwell.House.shoebox(size, substance="oak", scattering=0.1)
+    # What the documentation says of the default: parquet below, plaster around.
+    plain = dwell.AcousticScene(dwell.House.shoebox(size)).explain()
+    assert {"parquet", "plaster"} <= {word for word in re.findall(r"\w+", str(plain))}

@@ -111,3 +111,12 @@ def test_charts_show_decays_and_directions(scene: dwell.AcousticScene) -> None:
         picture = draw(echogram, width=400)
         assert picture.width == 400
         assert len(picture.getcolors(1 << 20) or []) > 50
+
+
+def test_a_response_may_be_one_row_as_one_microphone_gives_it(scene: dwell.AcousticScene) -> None:
+    response = scene.impulse_response(SOURCE, MIC)
+    assert response.shape[0] == 1
+    rate_hz = scene.rate_hz
+    assert measures.of_response(response, rate_hz) == measures.of_response(response[0], rate_hz)
+    with pytest.raises(dwell.ConfigError, match="one row"):
+        measures.of_response(np.zeros((2, 100), np.float32), rate_hz)
