@@ -74,6 +74,35 @@ _LAZY = {
     "register_task": "dwell.envs",
 }
 
+# The public modules themselves, by the names that the documentation gives them.
+_MODULES = {
+    "acoustics",
+    "actions",
+    "building",
+    "calibration",
+    "camera",
+    "charts",
+    "configs",
+    "directivity",
+    "echogram",
+    "editing",
+    "envs",
+    "heads",
+    "house",
+    "listening",
+    "measures",
+    "navigation",
+    "places",
+    "plans",
+    "replays",
+    "rewards",
+    "sensors",
+    "sound_maps",
+    "sounds",
+    "tasks",
+    "world",
+}
+
 __all__ = [
     "AcousticScene",
     "Ask",
@@ -112,6 +141,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the module holds under the name
+    if name in _MODULES:
+        return importlib.import_module(f"dwell.{name}")
     module = _LAZY.get(name)
     if module is None:
         raise AttributeError(f"module 'dwell' has no attribute {name!r}")
@@ -120,7 +151,7 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the module holds u
 
 def __dir__() -> list[str]:
     """What there is to import, also what is loaded at first use."""
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *__all__, *_MODULES})
 
 
 # Importing gymnasium takes longer than most commands: the command line does without.
