@@ -58,7 +58,9 @@ class Recording:
             UsageError: The Rerun SDK is not installed.
         """
         self._rr = sdk()
-        self._stream = self._rr.RecordingStream(application)
+        # The viewer keeps its layouts by an id, which may not hold what stands in names of houses.
+        self._stream = self._rr.RecordingStream("dwell")
+        self._stream.send_recording_name(application)
         if out is None:
             self._stream.spawn()
         else:
