@@ -21,6 +21,7 @@ import dwell.envs
 import dwell.world
 from dwell import _native
 from dwell.controls import CONTROL
+from dwell.envs.runner import INFO_KEYS
 
 ROOT = Path(__file__).resolve().parents[2]
 MARKDOWN = sorted(
@@ -239,3 +240,41 @@ def test_the_site_builds_strictly(tmp_path: Path) -> None:
     assert 'id="dwell.world.World.step"' in world
     assert ":meth:" not in world
     assert "InstructionFollowing" in (tmp_path / "index.html").read_text("utf-8")
+
+
+def test_the_page_for_who_begins_says_what_the_engine_does() -> None:
+    text = (ROOT / "docs/environments-at-a-glance.md").read_text("utf-8")
+
+    def named(cell: str) -> list[str]:
+        return cell.replace("`", "").split(", ")
+
+    actions = rows_of(text, "## Actions")
+    assert [row[:2] for row in actions] == [[str(k), a] for k, a in enumerate(_native.actions())]
+    assert "the episode ends" in actions[0][2]
+    tasks = json.loads(_native.tasks_json())
+    assert [(row[0], row[1], named(row[2])) for row in rows_of(text, "## Environments")] == [
+        (f"dwell/{task['name']}-v{task['version']}", task["about"], task["sensors"])
+        for task in tasks
+    ]
+    assert {task["max_steps"] for task in tasks} == {1000}
+    sensors = [name for row in rows_of(text, "## Sensors") for name in named(row[1])]
+    kinds = json.loads(_native.sensors_json())
+    assert sorted(sensors) == sorted(row["name"] for row in kinds)
+    info = text.split("## Info")[1].split("## Sensors")[0]
+    assert [key for key in INFO_KEYS if f"`{key}`" not in info] == []
+
+
+def test_the_wheel_for_this_machine_is_chosen_among_several(tmp_path: Path) -> None:
+    for machine in ("x86_64", "aarch64", "riscv64"):
+        (tmp_path / f"dwell-1.0-cp310-abi3-manylinux_2_28_{machine}.whl").touch()
+    told = re.search(r"^pip install (.+?\.whl) ", (ROOT / "README.md").read_text("utf-8"), re.M)
+    assert told is not None
+    done = subprocess.run(
+        ["sh", "-c", f"echo {told[1]}"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    own = os.uname().machine
+    assert done.stdout.split() == [f"dwell-1.0-cp310-abi3-manylinux_2_28_{own}.whl"]
