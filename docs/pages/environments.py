@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from dwell import _native
-from dwell.envs.runner import INFO_KEYS
+from dwell.envs.runner import GOAL_KEYS, INFO_KEYS
 from pages import rust
 from pages.observations import observation_table, settings_table, specifications
 from pages.sources import text
@@ -50,12 +50,14 @@ def page() -> str:
     tasks = json.loads(_native.tasks_json())
     sections = "\n".join(_section(task) for task in tasks)
     info = ", ".join(code(key) for key in (*INFO_KEYS, "action_error", "audio_clipped"))
+    goal = ", ".join(code(key) for key in GOAL_KEYS)
     return f"""# Environments
 
 `gymnasium.make(ID, houses=..., sensors=..., ...)` makes one, `gymnasium.make_vec` many that step
 together; [`DwellEnv`](api/envs.md) lists the arguments.
 
-Every step's `info` holds {info}, `scene_id` and `episode_id`.
+Every step's `info` holds {info}, `scene_id` and `episode_id`. Where a task has no goal there are no
+{goal}; in vector environments they are NaN.
 
 {sections}
 ## Settings of worlds

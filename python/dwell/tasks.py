@@ -24,7 +24,8 @@ class Ask:
             the marks ``. , ' -``. The sensor ``instruction_tokens`` knows the words of
             ``assets/vocabulary.txt`` only.
         distance_m: The way to the goal, m; ``None`` where there is no place to go to. From it come
-            ``distance_to_goal``, ``spl`` and ``soft_spl`` of ``info``.
+            ``distance_to_goal``, ``spl`` and ``soft_spl`` of ``info``, which has none of them
+            without.
     """
 
     instruction: str = "Explore."

@@ -106,3 +106,22 @@ def test_early_paths_lead_from_the_source_to_the_microphone(shoebox: dwell.House
         assert path["points"][-1] == pytest.approx(mic)
     with pytest.raises(dwell.DwellError, match="source"):
         scene.early_paths((float("nan"), 0.0, 0.0), mic)
+
+
+def test_the_viewer_takes_the_names_of_all_houses_without_a_warning(tmp_path: Path) -> None:
+    pytest.importorskip("rerun", reason="needs the Rerun SDK of `make demo`")
+    out = tmp_path / "named.rrd"
+    program = (
+        "import sys, pathlib\n"
+        "from dwell.recording import Recording\n"
+        "Recording('dwell seed:7?home=studio', pathlib.Path(sys.argv[1])).close()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(out)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert b"dwell seed:7?home=studio" in out.read_bytes()
