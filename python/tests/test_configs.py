@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from typing import ClassVar
 
 import gymnasium
@@ -18,7 +17,7 @@ from dwell.configs import (
     WorldSettings,
 )
 from dwell.envs import DwellEnv
-from dwell.envs.config import EnvSettings
+from dwell.envs.config import EnvSettings, arguments_of
 
 #: What World has as arguments of their own.
 _OWN = {"agents", "laws", "parameters"}
@@ -46,7 +45,7 @@ def test_the_names_are_those_of_the_engine() -> None:
 
 
 def test_a_task_is_registered_with_what_environments_know() -> None:
-    arguments = set(inspect.signature(DwellEnv).parameters)
+    arguments = set(arguments_of(DwellEnv))
     assert set(EnvSettings.__annotations__) == arguments - {"task"}
     room = dwell.House.shoebox((4.0, 2.5, 3.0))
     with pytest.raises(dwell.ConfigError) as env:
@@ -92,7 +91,7 @@ def test_every_setting_of_a_registered_task_arrives() -> None:
     assert (list(observation), env.render_mode) == (["depth"], "rgb_array")
     gymnasium.make_vec("tests/Stand-v0", num_envs=2, render_mode=None).reset(seed=0)
     assert Stand.seen == [(2.5, 9.0, 0.1)] * 3
-    with pytest.raises(dwell.ConfigError, match=r"no field 'house'; allowed are houses, sensors"):
+    with pytest.raises(dwell.ConfigError, match=r"no argument 'house'; did you mean houses"):
         dwell.register_task("tests/Stand-v1", Stand, house=house)  # type: ignore[call-arg]
     assert "tests/Stand-v1" not in gymnasium.registry
 
