@@ -177,7 +177,12 @@ fn a_body_that_begins_too_large_is_refused_and_one_in_the_way_put_aside() {
         .iter()
         .map(|a| a.agent)
         .collect();
-    assert_eq!(moved, [AgentId(0)]);
+    // The other one, that was told the same place, stands beside it.
+    assert_eq!(moved, [AgentId(0), AgentId(1)]);
+    let apart_m = agents[AgentId(0)]
+        .position
+        .distance(agents[AgentId(1)].position);
+    assert!((1.0..1.5).contains(&apart_m), "{apart_m}");
 }
 
 /// Every number that is listed, of the scene and of laws, set to another value and set back before anything moves: gone without a
