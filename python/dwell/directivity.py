@@ -37,7 +37,11 @@ class Directivity:
         """``1 - g + g cos(angle)``: 0 equal on all sides, 0.5 cardioid, 1 figure of eight.
 
         Args:
-            gradient: g, 0 to 1, or one for each octave from 63 Hz to 8 kHz.
+            gradient: g, 0 to 1, or one for each octave from 63 Hz to 8 kHz; the range is checked
+                where it is heard.
+
+        Raises:
+            ValueError: No finite numbers, or neither one nor eight.
         """
         return cls("first_order", tuple(_bands("gradient", gradient).tolist()))
 
@@ -81,6 +85,9 @@ class Directivity:
 
         Args:
             index_db: 0 to 20 dB, or one for each octave from 63 Hz to 8 kHz.
+
+        Raises:
+            ValueError: Out of that range, or neither one nor eight numbers.
         """
         index = _bands("index_db", index_db)
         if not ((index >= 0.0) & (index <= 20.0)).all():
