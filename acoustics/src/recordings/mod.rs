@@ -6,6 +6,7 @@
 mod flac;
 mod resample;
 mod vorbis;
+mod vorbis_headers;
 mod wav;
 
 pub use resample::resample;

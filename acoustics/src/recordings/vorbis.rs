@@ -1,6 +1,6 @@
 //! Ogg Vorbis, by `lewton`.
 
-use super::{Mix, damaged};
+use super::{Mix, damaged, vorbis_headers};
 use crate::error::AcousticsError;
 use lewton::inside_ogg::OggStreamReader;
 use lewton::samples::InterleavedSamples;
@@ -10,6 +10,7 @@ pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<Mix<'a>, Acousti
     let Some(length) = length(bytes) else {
         return Err(damaged(name, &"it breaks off before its last page"));
     };
+    vorbis_headers::check(bytes).map_err(|error| damaged(name, &error))?;
     let broken = |error: lewton::VorbisError| damaged(name, &error);
     let mut reader = OggStreamReader::new(Cursor::new(bytes)).map_err(broken)?;
     let (rate_hz, channels) = (
