@@ -121,7 +121,7 @@ impl AcousticScene {
                 .ids()
                 .map(|id| Surface::new(&house, None, id))
                 .collect(),
-            synthesizer: Arc::new(Synthesizer::new(&config)),
+            synthesizer: Synthesizer::shared(&config),
             heads: Arc::new(Heads::new(&config)),
             overrides: BTreeMap::new(),
             stated: config,

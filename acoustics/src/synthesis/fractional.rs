@@ -15,7 +15,8 @@ pub(crate) struct Taps {
 impl Taps {
     /// A windowed sinc around `delay_samples`, at least 1; shorter where less than 40 samples lie before it.
     pub(crate) fn new(delay_samples: f64) -> Self {
-        let delay = delay_samples.max(1.0);
+        // What would come after years is as far off as what comes later still.
+        let delay = delay_samples.clamp(1.0, 1e15);
         let whole = delay.floor();
         let fraction = delay - whole;
         let half = (whole as usize).clamp(1, HALF);

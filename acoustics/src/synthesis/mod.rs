@@ -17,7 +17,7 @@ use dwell_scene::random::Key;
 use fractional::Taps;
 use minimum_phase::PathFilters;
 use serde::{Deserialize, Serialize};
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 /// Paths whose filters are computed, the strongest first; fainter ones beyond these are left out.
 const MOST_PATHS: usize = 200;
@@ -30,6 +30,11 @@ const SHORT_S: f64 = 0.004;
 /// How early the filters of ears begin before the delay, s: room for their ringing.
 const EAR_LEAD_S: f64 = 0.001;
 
+/// Samples of the longest response.
+fn longest(config: &AcousticConfig) -> usize {
+    ((config.max_duration_s + 0.05) * f64::from(config.rate_hz)) as usize
+}
+
 /// Tables for one sample rate, shared by all worlds.
 #[derive(Debug)]
 pub(crate) struct Synthesizer {
@@ -41,12 +46,45 @@ pub(crate) struct Synthesizer {
     banks: [OnceLock<FilterBank>; 3],
 }
 
+/// Those in use: every house that sounds at one rate has the same.
+static IN_USE: Mutex<Vec<Weak<Synthesizer>>> = Mutex::new(Vec::new());
+
 impl Synthesizer {
-    pub(crate) fn new(config: &AcousticConfig) -> Self {
+    /// The one for these settings, made where none is in use.
+    pub(crate) fn shared(config: &AcousticConfig) -> Arc<Self> {
+        let in_use = || IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = |all: &[Weak<Self>]| {
+            let mut known = all.iter().filter_map(Weak::upgrade);
+            known.find(|one| one.is_for(config))
+        };
+        if let Some(known) = known(&in_use()) {
+            return known;
+        }
+        // Made while nothing is locked: a process that forks meanwhile finds the list free.
+        let new = Arc::new(Self::new(config));
+        let mut in_use = in_use();
+        if let Some(known) = known(&in_use) {
+            return known;
+        }
+        in_use.retain(|one| one.strong_count() > 0);
+        in_use.push(Arc::downgrade(&new));
+        new
+    }
+
+    fn is_for(&self, config: &AcousticConfig) -> bool {
+        (self.rate_hz, self.longest, self.arrivals_per_s)
+            == (
+                f64::from(config.rate_hz),
+                longest(config),
+                config.arrivals_per_s,
+            )
+    }
+
+    fn new(config: &AcousticConfig) -> Self {
         let rate_hz = f64::from(config.rate_hz);
         let filters = PathFilters::new(rate_hz);
         Self {
-            longest: ((config.max_duration_s + 0.05) * rate_hz) as usize,
+            longest: longest(config),
             banks: [const { OnceLock::new() }; 3],
             filters,
             rate_hz,
@@ -61,7 +99,7 @@ impl Synthesizer {
             2 => (1, self.longest.div_ceil(2)),
             _ => (2, self.longest),
         };
-        self.banks[place].get_or_init(|| FilterBank::new(self.rate_hz, span.max(length), OVERLAP))
+        self.banks[place].get_or_init(|| FilterBank::new(self.rate_hz, span, OVERLAP))
     }
 
     /// Samples that an echogram fills: until 1e-7 of its energy is left, at most the configured duration.
@@ -87,7 +125,8 @@ impl Synthesizer {
             .map(|path| echogram.delay_s(path))
             .fold(0.0, f64::max);
         // 20 ms for the filters of the last arrivals.
-        ((tail_s.max(early_s) + 0.02) * self.rate_hz).ceil() as usize
+        let length = ((tail_s.max(early_s) + 0.02) * self.rate_hz).ceil() as usize;
+        length.min(self.longest)
     }
 
     /// Pressure at the receiver, Pa for an impulse of 1 Pa at 1 m. Shape (channel, sample), flat.
