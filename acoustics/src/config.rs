@@ -122,6 +122,11 @@ impl AcousticConfig {
     /// The names of all settings, the quickest first.
     pub const PRESETS: [&'static str; 3] = ["rl", "full", "reference"];
 
+    /// Bins of a tail's histogram.
+    pub(crate) fn bin_count(&self) -> usize {
+        (self.max_duration_s / self.bin_s).ceil() as usize
+    }
+
     /// Checks every range.
     ///
     /// # Errors

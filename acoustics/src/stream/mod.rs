@@ -5,6 +5,7 @@ mod convolver;
 mod early;
 mod memory;
 mod plan;
+mod remembered;
 mod voice;
 
 pub use config::StreamConfig;
@@ -360,6 +361,9 @@ impl Stream {
                 "{} blocks of {} samples; this stream has {partitions} of {size}",
                 snapshot.partitions, snapshot.block_samples
             ));
+        }
+        if let Err(what) = remembered::check(&self.scene, &snapshot.voices) {
+            return refuse(what);
         }
         let rate_hz = f64::from(self.scene.config().rate_hz);
         self.microphones = Microphones::restore(rate_hz, snapshot.microphones)?;

@@ -144,7 +144,7 @@ pub(crate) fn trace(
 ) -> Vec<Late> {
     let config = scene.config();
     let speed = config.air.speed_of_sound_m_s();
-    let bin_count = (config.max_duration_s / config.bin_s).ceil() as usize;
+    let bin_count = config.bin_count();
     let bins_per_direction = ((DIRECTION_S / config.bin_s).round() as usize).max(1);
     let times = bin_count.div_ceil(bins_per_direction);
     let probes = config.discovery_rays.clamp(PROBES.0, PROBES.1);
