@@ -40,8 +40,8 @@ impl Sensor for Gps {
         {
             let moved = seen.episode.start.inverse().transform_point(agent.position);
             out.copy_from_slice(&[
-                (-moved.z).clamp(-1000.0, 1000.0),
-                (-moved.x).clamp(-1000.0, 1000.0),
+                (0.0 - moved.z).clamp(-1000.0, 1000.0),
+                (0.0 - moved.x).clamp(-1000.0, 1000.0),
             ]);
         }
     }

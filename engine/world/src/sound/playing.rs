@@ -183,8 +183,7 @@ impl Playing {
             || (self.told.stopped && self.told.fade.is_silent())
     }
 
-    /// Where it sounds now, m.
-    /// From where it is heard: of an object, not from within it, but from above.
+    /// From where it is heard, m: of an object, not from within it, but from above.
     pub(super) fn heard_from(&self, house: &House, state: &State) -> Vec3 {
         let SoundPlace::Object(object) = self.told.request.place else {
             return self.position(house, state);
@@ -197,6 +196,7 @@ impl Playing {
         bounds.center().with_y(bounds.max.y)
     }
 
+    /// Where it sounds now, m.
     pub(super) fn position(&self, house: &House, state: &State) -> Vec3 {
         match self.told.request.place {
             SoundPlace::Point(point) => point,
