@@ -66,8 +66,9 @@ pub fn edit(house: &House, edits: &[Edit], files: &Files) -> Result<(House, Repo
     let mut report = desk.report;
     let put = put(house, &edited, edits);
     let named = |id: ObjectId| &edited.objects[id].name;
+    let state = State::new(&edited);
     for id in &put {
-        if is_outside(&edited, *id) {
+        if is_outside(&edited, &state, *id) {
             report.warn(at.field(named(*id)), Damage::OutsideRooms);
         } else if reaches_into_a_wall(&edited, *id) {
             report.warn(at.field(named(*id)), Damage::InWall);
@@ -97,8 +98,8 @@ fn put(before: &House, after: &House, edits: &[Edit]) -> Vec<ObjectId> {
 }
 
 /// Whether a thing is where no room is, in a house that has rooms.
-fn is_outside(house: &House, id: ObjectId) -> bool {
-    let bounds = house.object_bounds(&State::new(house), id);
+fn is_outside(house: &House, state: &State, id: ObjectId) -> bool {
+    let bounds = house.object_bounds(state, id);
     !house.rooms.is_empty() && !bounds.is_empty() && house.room_at(bounds.center()).is_none()
 }
 

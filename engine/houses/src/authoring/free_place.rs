@@ -56,8 +56,9 @@ impl<'a> FreePlace<'a> {
         let others = all.filter(|id| *id != carrier && *id != thing);
         let boxes = others.map(|id| world_box(data, id));
         // A building is around all that stands in it.
-        let encloses = |b: &Aabb| b.min.cmple(bounds.min).all() && b.max.cmpge(bounds.max).all();
-        let others = boxes.filter(|b| !b.is_empty() && !encloses(b)).collect();
+        let others = boxes
+            .filter(|b| !b.is_empty() && !b.encloses(&bounds))
+            .collect();
         Self {
             top: Top::of(data, carrier),
             bounds,

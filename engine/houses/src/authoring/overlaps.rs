@@ -31,12 +31,11 @@ pub(super) fn overlaps(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, Object
         for other in data.objects.ids().filter(|other| other != one) {
             let theirs = boxes[other.index()];
             // A building is around what stands in it.
-            let encloses = theirs.min.cmple(own.min).all() && theirs.max.cmpge(own.max).all();
             let known = found.contains(&(other, *one));
             let deep = Vec3::splat(DEEP_M);
             let near =
                 own.min.cmplt(theirs.max - deep).all() && own.max.cmpgt(theirs.min + deep).all();
-            let structure = encloses && is_around_rooms(house, &theirs);
+            let structure = theirs.encloses(&own) && is_around_rooms(house, &theirs);
             if !near || known || structure {
                 continue;
             }
@@ -50,7 +49,7 @@ pub(super) fn overlaps(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, Object
 
 fn is_around_rooms(house: &House, bounds: &Aabb) -> bool {
     let mut rooms = house.rooms.iter().map(|room| room.bounds.center());
-    rooms.any(|middle| bounds.min.cmple(middle).all() && bounds.max.cmpge(middle).all())
+    rooms.any(|middle| bounds.contains(middle))
 }
 
 /// Whether a point of `one`, a little inside of it, is inside of `other`.
