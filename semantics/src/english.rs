@@ -1,4 +1,108 @@
-//! English: articles, counts, lists.
+//! English: articles, counts, plurals, adjectives before nouns, lists.
+
+/// What is worn or held by two and has no singular of its own: "a pair of scissors".
+const PAIRS: [&str; 34] = [
+    "binoculars",
+    "boots",
+    "clippers",
+    "crutches",
+    "earphones",
+    "earrings",
+    "glasses",
+    "gloves",
+    "goggles",
+    "headphones",
+    "jeans",
+    "leggings",
+    "mittens",
+    "pajamas",
+    "pants",
+    "pincers",
+    "pliers",
+    "pyjamas",
+    "sandals",
+    "scissors",
+    "shears",
+    "shoes",
+    "shorts",
+    "skis",
+    "slippers",
+    "sneakers",
+    "socks",
+    "spectacles",
+    "sunglasses",
+    "tights",
+    "tongs",
+    "trainers",
+    "trousers",
+    "tweezers",
+];
+/// Nouns that end like a plural and are none.
+const SINGULAR_IN_S: [&str; 5] = ["atlas", "canvas", "christmas", "gas", "lens"];
+/// What counts or gathers things: colour and substance are those of what follows "of".
+const GATHERING: [&str; 8] = [
+    "bunch", "pair", "piece", "roll", "row", "set", "sheet", "stack",
+];
+
+/// The plural of a noun by its ending: "boxes", "knobs", "balconies".
+pub fn plural(noun: &str) -> String {
+    if let Some((head, rest)) = noun.split_once(" of ") {
+        return format!("{} of {rest}", plural(head));
+    }
+    let stem = noun.strip_suffix('y').filter(|stem| {
+        let before = stem.chars().last();
+        before.is_some_and(|letter| !"aeiou".contains(letter))
+    });
+    let hissing = ["s", "x", "z", "ch", "sh"];
+    match stem {
+        Some(stem) => format!("{stem}ies"),
+        None if hissing.iter().any(|end| noun.ends_with(end)) => format!("{noun}es"),
+        None => format!("{noun}s"),
+    }
+}
+
+/// One and several of the things that a name means. Names that are plural already take a counter: "pair of scissors",
+/// "set of towels".
+pub fn counted_noun(name: &str) -> (String, String) {
+    let last = name.rsplit(' ').next().unwrap_or_default();
+    let is_plural = last.len() > 3
+        && last.ends_with('s')
+        && !["ss", "us", "is"].iter().any(|end| last.ends_with(end))
+        && !SINGULAR_IN_S.contains(&last);
+    match name {
+        _ if PAIRS.contains(&last) => (format!("pair of {name}"), format!("pairs of {name}")),
+        _ if is_plural && !name.contains(" of ") => {
+            (format!("set of {name}"), format!("sets of {name}"))
+        }
+        _ => (name.to_owned(), plural(name)),
+    }
+}
+
+/// A noun with its adjectives: those of size before all, those of look before what they are seen on: "small brown chair",
+/// "large stack of red books", "pair of small black shoes". Either may be empty.
+pub fn qualified(size: &str, look: &str, noun: &str) -> String {
+    let row = |words: &[&str]| -> String {
+        let words: Vec<&str> = words
+            .iter()
+            .copied()
+            .filter(|word| !word.is_empty())
+            .collect();
+        words.join(" ")
+    };
+    let Some((head, rest)) = noun.split_once(" of ") else {
+        return row(&[size, look, noun]);
+    };
+    let one = |known: &&&str| {
+        head == **known
+            || head.strip_suffix('s') == Some(**known)
+            || head.strip_suffix("es") == Some(**known)
+    };
+    match GATHERING.iter().find(one) {
+        Some(&"pair") => row(&[head, "of", size, look, rest]),
+        Some(_) => row(&[size, head, "of", look, rest]),
+        None => row(&[size, look, noun]),
+    }
+}
 
 /// `"a"` or `"an"` before `phrase`, by sound.
 pub fn article(phrase: &str) -> &'static str {
@@ -59,19 +163,12 @@ pub fn ordinal(number: usize) -> String {
         .map_or_else(|| format!("{number}{ending}"), |word| (*word).to_owned())
 }
 
-/// "a chair", "two chairs"; `adjectives` go between and may be empty.
-pub fn counted(number: usize, adjectives: &str, singular: &str, plural: &str) -> String {
-    let join = |noun: &str| {
-        if adjectives.is_empty() {
-            noun.to_owned()
-        } else {
-            format!("{adjectives} {noun}")
-        }
-    };
+/// "a chair", "two chairs".
+pub fn counted(number: usize, singular: &str, plural: &str) -> String {
     if number == 1 {
-        with_article(&join(singular))
+        with_article(singular)
     } else {
-        format!("{} {}", count(number), join(plural))
+        format!("{} {plural}", count(number))
     }
 }
 
@@ -135,13 +232,76 @@ mod tests {
             "a bed, two lamps and a desk"
         );
         assert_eq!(list::<&str>(&[]), "");
-        assert_eq!(counted(1, "oak", "table", "tables"), "an oak table");
-        assert_eq!(counted(3, "", "shelf", "shelves"), "three shelves");
-        assert_eq!(counted(13, "", "chair", "chairs"), "13 chairs");
+        assert_eq!(counted(1, "oak table", "oak tables"), "an oak table");
+        assert_eq!(counted(3, "shelf", "shelves"), "three shelves");
+        assert_eq!(counted(13, "chair", "chairs"), "13 chairs");
         assert_eq!(
             (ordinal(2), ordinal(21), ordinal(113)),
             ("second".into(), "21st".into(), "113th".into())
         );
         assert_eq!(capitalized("a bed"), "A bed");
+    }
+
+    #[test]
+    fn plurals_follow_the_ending() {
+        let cases = [
+            ("knob", "knobs"),
+            ("porch", "porches"),
+            ("box", "boxes"),
+            ("balcony", "balconies"),
+            ("tray", "trays"),
+            ("bus", "buses"),
+        ];
+        for (one, several) in cases {
+            assert_eq!(plural(one), several);
+        }
+    }
+
+    #[test]
+    fn what_has_no_singular_is_counted_by_pairs_and_sets() {
+        let cases = [
+            ("scissors", "pair of scissors", "pairs of scissors"),
+            (
+                "running shoes",
+                "pair of running shoes",
+                "pairs of running shoes",
+            ),
+            ("towels", "set of towels", "sets of towels"),
+            ("compass", "compass", "compasses"),
+            ("lens", "lens", "lenses"),
+            ("gadget", "gadget", "gadgets"),
+            ("stack of coins", "stack of coins", "stacks of coins"),
+        ];
+        for (name, one, several) in cases {
+            assert_eq!(counted_noun(name), (one.to_owned(), several.to_owned()));
+        }
+    }
+
+    #[test]
+    fn adjectives_stand_where_they_are_seen() {
+        let cases = [
+            (
+                ("", "black leather", "pair of shoes"),
+                "pair of black leather shoes",
+            ),
+            (
+                ("small", "black", "pairs of shoes"),
+                "pairs of small black shoes",
+            ),
+            (
+                ("large", "red", "stack of books"),
+                "large stack of red books",
+            ),
+            (
+                ("", "green", "bunches of flowers"),
+                "bunches of green flowers",
+            ),
+            (("", "green", "bottle of beer"), "green bottle of beer"),
+            (("small", "brown", "chair"), "small brown chair"),
+            (("", "", "pair of shoes"), "pair of shoes"),
+        ];
+        for ((size, look, noun), text) in cases {
+            assert_eq!(qualified(size, look, noun), text);
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! What is true of an object in every state: kind, colours, substances, size.
 
 use crate::category::{CategoryRow, categories};
-use crate::color::{Patch, Vocabulary, color_words};
+use crate::color::{Paint, Patch, Vocabulary, color_words};
+use crate::english::counted_noun;
 use crate::geometry::mapped_area_m2;
 use crate::size::Size;
 use dwell_scene::material::{Substance, library};
@@ -21,7 +22,7 @@ pub struct Facts {
     /// Spoken noun, for several.
     pub plural: String,
     /// Its materials by share of what is seen of it where it stands at the start, from around and a little above (below, for
-    /// what hangs), largest first; by share of its whole surface where nothing of it is seen.
+    /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens are left out.
     pub patches: Vec<Patch>,
     /// Its colours in plain words with their shares, largest first; none for what is mostly glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
@@ -36,7 +37,7 @@ pub struct Facts {
 impl Facts {
     pub(crate) fn gather(
         house: &House,
-        colors: &IdVec<MaterialId, [f32; 3]>,
+        paints: &IdVec<MaterialId, Paint>,
         seen: &[(MaterialId, f32)],
         id: ObjectId,
     ) -> Self {
@@ -48,7 +49,7 @@ impl Facts {
         );
         let areas = areas_m2(house, id);
         let shown: &[(MaterialId, f32)] = if seen.is_empty() { &areas } else { seen };
-        let patches = patches(house, colors, shown);
+        let patches = patches(house, paints, &without_screen(house, category, shown));
         let substances = substances(house, &areas);
         let extents_m = own_box(house, id).size();
         // Glass and mirrors have the colour of what lies behind or before them.
@@ -82,14 +83,28 @@ impl Facts {
             .collect()
     }
 
-    /// The colour a speaker would use: the one of most of the surface, else the two largest; `None` without a surface
+    /// The colours a speaker would use: the one of most of the surface, else the two largest; none without a surface,
     /// or when no two cover most of it.
-    pub fn color_phrase(&self) -> Option<String> {
+    pub fn spoken_colors(&self) -> &[(&'static str, f32)] {
         match self.colors[..] {
-            [(one, share), ..] if share >= 0.6 => Some(one.to_owned()),
-            [(one, p), (two, q), ..] if p + q >= 0.6 => Some(format!("{one} and {two}")),
-            [(one, _)] => Some(one.to_owned()),
-            _ => None,
+            [(_, share), ..] if share >= 0.6 => &self.colors[..1],
+            [(_, p), (_, q), ..] if p + q >= 0.6 => &self.colors[..2],
+            [(_, share)] if share >= 0.5 => &self.colors[..1],
+            _ => &[],
+        }
+    }
+
+    /// [`Self::spoken_colors`] as words: "orange and gray".
+    pub fn color_phrase(&self) -> Option<String> {
+        match self.spoken_colors() {
+            [] => None,
+            words => Some(
+                words
+                    .iter()
+                    .map(|(word, _)| *word)
+                    .collect::<Vec<_>>()
+                    .join(" and "),
+            ),
         }
     }
 
@@ -180,7 +195,7 @@ fn unknown_noun(category: &dwell_scene::Category) -> (String, String) {
     if noun.is_empty() {
         ("thing".to_owned(), "things".to_owned())
     } else {
-        (noun.clone(), format!("{noun}s"))
+        counted_noun(&noun)
     }
 }
 
@@ -223,10 +238,27 @@ fn areas_m2(house: &House, id: ObjectId) -> Vec<(MaterialId, f32)> {
     rounded.filter(|(_, area)| *area > 0.0).collect()
 }
 
+/// `areas` without the picture of a screen: a television has the colour of its frame, whatever is on.
+fn without_screen(
+    house: &House,
+    category: Option<&CategoryRow>,
+    areas: &[(MaterialId, f32)],
+) -> Vec<(MaterialId, f32)> {
+    let screened = category.is_some_and(|row| {
+        row.nyu40_name == "television" || ["tablet", "cellphone"].contains(&row.name)
+    });
+    let shows = |id: MaterialId| {
+        let material = &house.materials[id];
+        material.texture.is_some() || material.emission.iter().any(|light| *light > 0.0)
+    };
+    let frame = areas.iter().copied();
+    frame.filter(|(id, _)| !(screened && shows(*id))).collect()
+}
+
 /// Materials by opacity-weighted share of `areas`, largest first.
 fn patches(
     house: &House,
-    colors: &IdVec<MaterialId, [f32; 3]>,
+    paints: &IdVec<MaterialId, Paint>,
     areas: &[(MaterialId, f32)],
 ) -> Vec<Patch> {
     let weight =
@@ -236,7 +268,7 @@ fn patches(
         .iter()
         .map(|area| Patch {
             material: area.0,
-            linear: colors[area.0],
+            linear: paints[area.0].dominant,
             share: weight(area) / total,
         })
         .collect();

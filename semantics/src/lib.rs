@@ -3,6 +3,7 @@
 pub mod category;
 pub mod color;
 pub mod describe;
+mod doors;
 pub mod english;
 mod error;
 mod facts;
@@ -22,6 +23,7 @@ mod size;
 mod table;
 pub mod tokens;
 
+pub use doors::Doorway;
 pub use error::SemanticsError;
 pub use facts::Facts;
 pub use rooms::RoomFacts;

@@ -18,6 +18,8 @@ pub struct RoomKind {
     pub synonyms: Vec<&'static str>,
     /// Whether it has walls all round.
     pub indoor: bool,
+    /// The word before it that says where one is: "in" the kitchen, "on" the balcony.
+    pub preposition: &'static str,
 }
 
 /// All kinds of rooms.
@@ -44,6 +46,7 @@ impl RoomKinds {
                 plural: row.text("plural")?,
                 synonyms: row.list("synonyms")?,
                 indoor: row.flag("indoor")?,
+                preposition: row.text("preposition")?,
             };
             by_word.entry(key(kind.name)).or_insert(index);
             weaker.push((key(kind.singular), index));
@@ -76,6 +79,11 @@ pub fn room_kinds() -> &'static RoomKinds {
             .expect("assets/rooms.csv is checked by this crate's tests")
     });
     &TABLE
+}
+
+/// The word before a room called `noun` that says where one is; "in" for kinds outside the table.
+pub fn preposition(noun: &str) -> &'static str {
+    room_kinds().get(noun).map_or("in", |kind| kind.preposition)
 }
 
 #[cfg(test)]
@@ -115,12 +123,39 @@ mod tests {
         for label in labels {
             assert!(room_kinds().get(label).is_some(), "{label}");
         }
-        assert_eq!(room_kinds().rows().len(), labels.len());
+        // Kinds that the format lacks.
+        for kind in ["porch", "roof"] {
+            assert!(room_kinds().get(kind).is_some(), "{kind}");
+        }
+        assert_eq!(room_kinds().rows().len(), labels.len() + 2);
         assert_eq!(
             room_kinds().get("Living_Room").unwrap().singular,
             "living room"
         );
         assert_eq!(room_kinds().get("lounge").unwrap().name, "living_room");
         assert_eq!(room_kinds().get("observatory"), None);
+    }
+
+    #[test]
+    fn one_is_on_what_has_no_walls_and_in_the_rest() {
+        for kind in room_kinds().rows() {
+            assert!(["in", "on"].contains(&kind.preposition), "{}", kind.name);
+            assert!(!kind.indoor || kind.preposition == "in", "{}", kind.name);
+        }
+        for noun in [
+            "balcony",
+            "terrace",
+            "patio",
+            "deck",
+            "porch",
+            "roof",
+            "loggia",
+            "covered balcony",
+        ] {
+            assert_eq!(preposition(noun), "on", "{noun}");
+        }
+        for noun in ["kitchen", "garden", "outside area", "hall", "observatory"] {
+            assert_eq!(preposition(noun), "in", "{noun}");
+        }
     }
 }

@@ -1,9 +1,9 @@
 //! What is true of a room in every state.
 
-use crate::color::{Patch, Vocabulary, color_words};
+use crate::color::{Paint, Patch, Vocabulary, color_words};
 use crate::english;
 use crate::passages::passages;
-use crate::room_kind::{RoomKind, room_kinds};
+use crate::room_kind::{RoomKind, preposition, room_kinds};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::math;
@@ -36,6 +36,8 @@ pub struct RoomFacts {
     pub area_m2: f32,
     /// The adjective of most of its floor: "tiled".
     pub floor_word: Option<&'static str>,
+    /// The colour word of most of its floor.
+    pub floor_color: Option<&'static str>,
     /// The colour word of most of its walls' inner faces.
     pub wall_color: Option<&'static str>,
     /// The rooms that it is open to without a door between, rising.
@@ -45,11 +47,11 @@ pub struct RoomFacts {
 impl RoomFacts {
     pub(crate) fn gather(
         rays: &RayScene,
-        colors: &IdVec<MaterialId, [f32; 3]>,
+        paints: &IdVec<MaterialId, Paint>,
         doors: &[Aabb],
     ) -> IdVec<RoomId, Self> {
         let house = rays.house();
-        let surfaces = Surfaces::gather(rays, colors);
+        let surfaces = Surfaces::gather(rays, paints);
         let passages = passages(rays, doors);
         let mut rooms: IdVec<RoomId, Self> = house
             .rooms
@@ -84,7 +86,7 @@ impl RoomFacts {
         let kind = kinds.first().copied().flatten();
         let said = room.kinds.first().map_or("room", String::as_str);
         let (noun, plural) = kind.map_or_else(
-            || (said.to_owned(), format!("{said}s")),
+            || (said.to_owned(), english::plural(said)),
             |kind| (kind.singular.to_owned(), kind.plural.to_owned()),
         );
         let mut names: Vec<String> = vec![noun.clone()];
@@ -101,9 +103,15 @@ impl RoomFacts {
             names,
             area_m2: house.own_area_m2(id),
             floor_word: surfaces.floor_word(id),
-            wall_color: surfaces.wall_color(id),
+            floor_color: most(&surfaces.floor_paints[id]),
+            wall_color: most(&surfaces.walls[id]),
             passages: Vec::new(),
         }
+    }
+
+    /// Where somebody in it is: "in the kitchen", "on the second balcony".
+    pub fn place(&self) -> String {
+        format!("{} the {}", preposition(&self.noun), self.label)
     }
 
     /// Whether a speaker may call it `name`.
@@ -115,14 +123,16 @@ impl RoomFacts {
 /// Areas of floors by substance and seen walls by material, per room.
 struct Surfaces {
     floors: IdVec<RoomId, BTreeMap<String, f32>>,
+    floor_paints: IdVec<RoomId, Vec<Patch>>,
     walls: IdVec<RoomId, Vec<Patch>>,
 }
 
 impl Surfaces {
-    fn gather(rays: &RayScene, colors: &IdVec<MaterialId, [f32; 3]>) -> Self {
+    fn gather(rays: &RayScene, paints: &IdVec<MaterialId, Paint>) -> Self {
         let house = rays.house();
         let count = house.rooms.len();
         let mut floors = IdVec::filled(BTreeMap::new(), count);
+        let mut floor_paints = IdVec::filled(Vec::new(), count);
         for piece in &house.structure {
             let mesh = &house.meshes[piece.mesh];
             for triangle in 0..mesh.triangles.len() {
@@ -139,10 +149,14 @@ impl Surfaces {
                     (StructureKind::Floor, Some(room)) if out.y > 0.5 => {
                         let substance = house.materials[*id].substance.clone();
                         *floors[room].entry(substance).or_insert(0.0) += area_m2;
+                        add(&mut floor_paints[room], *id, paints[*id].dominant, area_m2);
                     }
                     _ => {}
                 }
             }
+        }
+        for patches in &mut floor_paints {
+            shares(patches);
         }
         let points: IdVec<RoomId, Vec<Vec3>> = house
             .rooms
@@ -151,9 +165,13 @@ impl Surfaces {
             .collect();
         let walls = points
             .iter()
-            .map(|points| seen_walls(rays, colors, points))
+            .map(|points| seen_walls(rays, paints, points))
             .collect();
-        Self { floors, walls }
+        Self {
+            floors,
+            floor_paints,
+            walls,
+        }
     }
 
     fn floor_word(&self, room: RoomId) -> Option<&'static str> {
@@ -165,24 +183,27 @@ impl Surfaces {
             .filter(|substance| substance.name != "hard_surface")?;
         Some(&substance.adjective)
     }
+}
 
-    fn wall_color(&self, room: RoomId) -> Option<&'static str> {
-        let words = color_words(&self.walls[room], Vocabulary::Plain);
-        words
-            .first()
-            .filter(|(_, share)| *share >= 0.5)
-            .map(|(word, _)| *word)
+/// The colour word of at least half of a surface.
+fn most(patches: &[Patch]) -> Option<&'static str> {
+    let words = color_words(patches, Vocabulary::Plain);
+    let (word, _) = words.first().filter(|(_, share)| *share >= 0.5)?;
+    Some(word)
+}
+
+/// Makes areas shares of their sum.
+fn shares(patches: &mut [Patch]) {
+    let whole: f32 = patches.iter().map(|patch| patch.share).sum();
+    for patch in patches {
+        patch.share /= whole;
     }
 }
 
 /// The materials of the walls that somebody in the room sees, by share of the directions to the side.
 ///
 /// Walls have two shells and rooms may overlap, so what belongs to a room is not what shows in it.
-fn seen_walls(
-    rays: &RayScene,
-    colors: &IdVec<MaterialId, [f32; 3]>,
-    points: &[Vec3],
-) -> Vec<Patch> {
+fn seen_walls(rays: &RayScene, paints: &IdVec<MaterialId, Paint>, points: &[Vec3]) -> Vec<Patch> {
     let mut patches = Vec::new();
     let step = (points.len() / LOOKS).max(1);
     for eye in points.iter().step_by(step) {
@@ -199,20 +220,17 @@ fn seen_walls(
                 add(
                     &mut patches,
                     surface.material,
-                    colors[surface.material],
+                    paints[surface.material].dominant,
                     1.0,
                 );
             }
         }
     }
-    let seen: f32 = patches.iter().map(|patch| patch.share).sum();
-    for patch in &mut patches {
-        patch.share /= seen;
-    }
+    shares(&mut patches);
     patches
 }
 
-fn add(patches: &mut Vec<Patch>, material: MaterialId, linear: [f32; 3], share: f32) {
+fn add(patches: &mut Vec<Patch>, material: MaterialId, linear: Option<[f32; 3]>, share: f32) {
     match patches.iter_mut().find(|patch| patch.material == material) {
         Some(patch) => patch.share += share,
         None => patches.push(Patch {

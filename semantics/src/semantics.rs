@@ -1,6 +1,7 @@
 //! The entry point: a house, and what can be said about it.
 
-use crate::color::material_colors;
+use crate::color::{Paint, paints};
+use crate::doors::Doorway;
 use crate::error::SemanticsError;
 use crate::facts::Facts;
 use crate::geometry::{Extent, Hull};
@@ -11,6 +12,7 @@ use crate::seen::seen_surfaces;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, IdVec, MaterialId, ObjectId, RoomId, State, StructureId};
 use glam::Vec2;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Everything about a house that stays true in every state. Make it once and share it.
@@ -21,14 +23,15 @@ pub struct Semantics {
     rest_extents: IdVec<ObjectId, Extent>,
     structure: IdVec<StructureId, (Aabb, Hull)>,
     rooms: IdVec<RoomId, RoomFacts>,
-    colors: IdVec<MaterialId, [f32; 3]>,
+    doorways: BTreeMap<ObjectId, Doorway>,
+    paints: IdVec<MaterialId, Paint>,
 }
 
 impl Semantics {
     /// Gathers the lasting facts of `house`.
     pub fn new(house: &Arc<House>) -> Self {
         let state = State::new(house);
-        let colors = material_colors(house);
+        let paints = paints(house);
         let objects = || house.objects.ids();
         let structure = house.structure.iter().map(|piece| {
             let mesh = &house.meshes[piece.mesh];
@@ -39,19 +42,24 @@ impl Semantics {
             .map(|id| Extent::measure(house, &state, id))
             .collect();
         let rays = RayScene::new(house.clone());
-        let bounds = rest_extents.iter().map(|extent| extent.bounds).collect();
+        let bounds: IdVec<ObjectId, Aabb> =
+            rest_extents.iter().map(|extent| extent.bounds).collect();
         let seen = seen_surfaces(&rays, &bounds);
         let facts: IdVec<ObjectId, Facts> = objects()
-            .map(|id| Facts::gather(house, &colors, &seen[id], id))
+            .map(|id| Facts::gather(house, &paints, &seen[id], id))
             .collect();
         let doors = facts.iter_ids().filter(|(_, facts)| facts.is_door());
-        let doors: Vec<Aabb> = doors.map(|(id, _)| bounds[id]).collect();
+        let doorways: BTreeMap<ObjectId, Doorway> = doors
+            .map(|(id, _)| (id, Doorway::gather(&rays, &state, id, bounds[id])))
+            .collect();
+        let doors: Vec<Aabb> = doorways.keys().map(|id| bounds[*id]).collect();
         Self {
             structure: structure.collect(),
-            rooms: RoomFacts::gather(&rays, &colors, &doors),
+            rooms: RoomFacts::gather(&rays, &paints, &doors),
+            doorways,
             facts,
             rest_extents,
-            colors,
+            paints,
             house: house.clone(),
         }
     }
@@ -71,9 +79,14 @@ impl Semantics {
         &self.rooms[room]
     }
 
+    /// Where a door or archway leads; `None` for other things.
+    pub fn doorway(&self, door: ObjectId) -> Option<&Doorway> {
+        self.doorways.get(&door)
+    }
+
     /// Mean colour of a material in linear light: texture times base colour.
     pub fn material_color(&self, material: MaterialId) -> [f32; 3] {
-        self.colors[material]
+        self.paints[material].mean
     }
 
     pub(crate) fn rest_extent(&self, object: ObjectId) -> &Extent {

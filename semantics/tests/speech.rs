@@ -131,7 +131,7 @@ fn descriptions_read_aloud() {
     let scene = semantics.scene(&state);
     assert_eq!(
         describe_room(&scene, s.kitchen),
-        "The kitchen is about 15 square metres, with a parquet floor and white walls. There is a brown wooden table, \
+        "The kitchen is about 15 square metres, with a brown parquet floor and white walls. There is a brown wooden table, \
          a white refrigerator and two plastic chairs. On the table are a white porcelain bowl and a white porcelain \
          cup. In the bowl is a red plastic portion of food. On the wall hangs a yellow picture."
     );

@@ -5,6 +5,6 @@ mod paint;
 mod vocabulary;
 
 pub use oklab::Oklab;
-pub(crate) use paint::material_colors;
 pub use paint::{MENTION_SHARE, Patch, color_words};
+pub(crate) use paint::{Paint, paints};
 pub use vocabulary::Vocabulary;

@@ -1,6 +1,6 @@
 //! Things counted by kind.
 
-use super::object::{adjectives, joined, phrase};
+use super::object::{adjectives, described, phrase};
 use crate::english::{counted, with_article};
 use crate::scene::Scene;
 use dwell_scene::ObjectId;
@@ -26,9 +26,8 @@ impl Group {
         }
         counted(
             self.objects.len(),
-            &joined(&shared),
-            &facts.noun,
-            &facts.plural,
+            &described(&shared, &facts.noun),
+            &described(&shared, &facts.plural),
         )
     }
 }

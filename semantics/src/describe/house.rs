@@ -17,7 +17,7 @@ fn rooms_by_noun(scene: &Scene<'_>) -> Vec<String> {
     groups.sort_by(|p, q| p.0.cmp(q.0));
     groups
         .into_iter()
-        .map(|(one, many, number)| counted(number, "", one, many))
+        .map(|(one, many, number)| counted(number, one, many))
         .collect()
 }
 

@@ -1,8 +1,10 @@
 //! Speech about objects, rooms, houses and views.
 
 mod contents;
+mod hanging;
 mod house;
 mod object;
+mod openings;
 mod room;
 mod view;
 

@@ -1,9 +1,10 @@
 //! A caption of one object.
 
-use crate::english::{article, with_article};
+use super::hanging::Hanging;
+use crate::english::{qualified, with_article};
 use crate::predicates;
 use crate::scene::{Scene, Term};
-use dwell_scene::{ObjectId, RoomId, StructureKind};
+use dwell_scene::{ObjectId, RoomId};
 
 /// Openness above which a thing is called open, and below which closed.
 const OPEN: f32 = 0.5;
@@ -35,37 +36,37 @@ pub(super) fn adjectives(scene: &Scene<'_>, object: ObjectId) -> Adjectives {
     ]
 }
 
-/// Adjectives in a row; may be empty.
-pub(super) fn joined(adjectives: &Adjectives) -> String {
-    let words: Vec<&str> = adjectives.iter().flatten().map(String::as_str).collect();
-    words.join(" ")
+/// A noun with its adjectives, of which there may be none.
+pub(super) fn described(adjectives: &Adjectives, noun: &str) -> String {
+    let row = |words: &[Option<String>]| -> String {
+        let words: Vec<&str> = words.iter().flatten().map(String::as_str).collect();
+        words.join(" ")
+    };
+    qualified(&row(&adjectives[..2]), &row(&adjectives[2..]), noun)
 }
 
 /// Adjectives and noun.
 pub(super) fn phrase(scene: &Scene<'_>, object: ObjectId) -> String {
-    let words = joined(&adjectives(scene, object));
+    described(&adjectives(scene, object), &scene.facts(object).noun)
+}
+
+/// How many things in a room may be called as `object` is; as if there were several outside of all rooms.
+pub(super) fn alike(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> usize {
     let noun = &scene.facts(object).noun;
-    if words.is_empty() {
-        noun.clone()
-    } else {
-        format!("{words} {noun}")
-    }
+    room.map_or(2, |room| {
+        let here = scene.objects_in(room).into_iter();
+        here.filter(|other| scene.facts(*other).is_called(noun))
+            .count()
+    })
 }
 
 /// A landmark in a room: "the table" when it is the only one there, else "a table".
 pub(super) fn landmark(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
     let noun = &scene.facts(object).noun;
-    let alike = room.map_or(2, |room| {
-        scene
-            .objects_in(room)
-            .iter()
-            .filter(|other| scene.facts(**other).is_called(noun))
-            .count()
-    });
-    if alike == 1 {
+    if alike(scene, object, room) == 1 {
         format!("the {noun}")
     } else {
-        format!("{} {noun}", article(noun))
+        with_article(noun)
     }
 }
 
@@ -86,6 +87,20 @@ fn first_related(scene: &Scene<'_>, object: ObjectId, name: &str) -> Option<Obje
     (name != "next_to" || volume(largest) > 0.3 * volume(object)).then_some(largest)
 }
 
+/// Between what a door stands: " from the kitchen to the outside"; `None` when that is not known, and for other things.
+fn between(scene: &Scene<'_>, door: ObjectId, room: Option<RoomId>) -> Option<String> {
+    let doorway = scene.semantics.doorway(door)?;
+    let the = |room: RoomId| format!("the {}", scene.semantics.room(room).label);
+    match doorway.rooms[..] {
+        [one] if doorway.outside => Some(format!(" from {} to the outside", the(one))),
+        [one, other] if room == Some(other) => {
+            Some(format!(" from {} to {}", the(other), the(one)))
+        }
+        [one, other] => Some(format!(" from {} to {}", the(one), the(other))),
+        _ => None,
+    }
+}
+
 /// Where it is beside something else: " on the table"; empty when nothing is near.
 fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
     for (name, words) in [("in", "in"), ("on", "on")] {
@@ -93,18 +108,8 @@ fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
             return format!(" {words} {}", landmark(scene, other, room));
         }
     }
-    let house = scene.house();
-    let walls = house
-        .structure
-        .iter_ids()
-        .filter(|(_, piece)| piece.kind == StructureKind::Wall);
-    let hangs = predicates::find("hangs_on").is_ok_and(|predicate| {
-        walls.into_iter().any(|(wall, _)| {
-            predicate.holds(scene, Term::Object(object), Term::Structure(wall), None)
-        })
-    });
-    if hangs && !scene.facts(object).is_opening() {
-        return " on the wall".to_owned();
+    if let Some(hanging) = Hanging::of(scene, object) {
+        return hanging.place(scene);
     }
     first_related(scene, object, "next_to").map_or_else(String::new, |other| {
         format!(" next to {}", landmark(scene, other, room))
@@ -115,14 +120,17 @@ fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
 pub fn caption(scene: &Scene<'_>, object: ObjectId) -> String {
     let room = scene.room_of(object);
     let mut text = with_article(&phrase(scene, object));
-    if scene.holder(object).is_some() {
+    let between = between(scene, object, room);
+    if let Some(between) = &between {
+        text.push_str(between);
+    } else if scene.holder(object).is_some() {
         text.push_str(" in somebody's hand");
     } else {
         text.push_str(&place(scene, object, room));
     }
-    if let Some(room) = room {
-        text.push_str(" in the ");
-        text.push_str(&scene.semantics.room(room).label);
+    if let Some(room) = room.filter(|_| between.is_none()) {
+        text.push(' ');
+        text.push_str(&scene.semantics.room(room).place());
     }
     if scene.house().objects[object].switch.is_some() && scene.state.switched_on[object] {
         text.push_str(", switched on");

@@ -1,62 +1,31 @@
 //! The description of a room.
 
 use super::contents::grouped;
+use super::hanging::{Hanging, clauses};
 use super::object::landmark;
-use crate::english::{be, capitalized, counted, list, with_article};
+use super::openings::openings;
+use crate::english::{be, capitalized, list, with_article};
 use crate::predicates;
 use crate::scene::{Scene, Term};
-use dwell_scene::{ObjectId, RoomId, StructureKind};
-use glam::Vec3;
+use dwell_scene::{ObjectId, RoomId};
 use std::collections::BTreeMap;
 
-/// How far beyond a door's box its other side is looked for, m.
-const DOORSTEP_M: f32 = 0.35;
-
-fn is_a(scene: &Scene<'_>, object: ObjectId, names: &[&str]) -> bool {
+pub(super) fn is_a(scene: &Scene<'_>, object: ObjectId, names: &[&str]) -> bool {
     scene
         .facts(object)
         .category
         .is_some_and(|row| names.contains(&row.name))
 }
 
-/// The rooms on either side of a door or archway, in order; fewer than two where it leads outside.
-///
-/// They are looked for across the frame: a door's first part when it has several, else the whole; when that is not
-/// clearly thinner one way (a single mesh with an open leaf), on all four sides.
-pub(super) fn rooms_beside(scene: &Scene<'_>, door: ObjectId) -> Vec<RoomId> {
-    let house = scene.house();
-    let object = &house.objects[door];
-    let bounds = if object.part_count > 1 {
-        house.part_bounds(scene.state, object.first_part)
-    } else {
-        scene.extent(door).bounds
-    };
-    let (center, half) = (bounds.center(), bounds.size() * 0.5);
-    let (across_x, across_z) = (half.x < 1.5 * half.z, half.z < 1.5 * half.x);
-    let mut rooms = Vec::new();
-    for (x, z, looks) in [
-        (1.0, 0.0, across_x),
-        (-1.0, 0.0, across_x),
-        (0.0, 1.0, across_z),
-        (0.0, -1.0, across_z),
-    ] {
-        let step = Vec3::new(x * (half.x + DOORSTEP_M), 0.0, z * (half.z + DOORSTEP_M));
-        rooms.extend(house.room_at(center + step).filter(|_| looks));
-    }
-    rooms.sort();
-    rooms.dedup();
-    rooms
-}
-
 fn shell(scene: &Scene<'_>, room: RoomId) -> String {
     let facts = scene.semantics.room(room);
     let area = facts.area_m2.round().max(1.0);
     let mut with = Vec::new();
-    with.extend(
-        facts
-            .floor_word
-            .map(|word| with_article(&format!("{word} floor"))),
-    );
+    let floor = [facts.floor_color, facts.floor_word];
+    let floor: Vec<&str> = floor.into_iter().flatten().collect();
+    if !floor.is_empty() {
+        with.push(with_article(&format!("{} floor", floor.join(" "))));
+    }
     with.extend(facts.wall_color.map(|word| format!("{word} walls")));
     let with = if with.is_empty() {
         String::new()
@@ -67,65 +36,11 @@ fn shell(scene: &Scene<'_>, room: RoomId) -> String {
     format!("The {} is about {area} square {unit}{with}.", facts.label)
 }
 
-fn openings(scene: &Scene<'_>, room: RoomId) -> Option<String> {
-    let house = scene.house();
-    let doors: Vec<ObjectId> = house
-        .objects
-        .ids()
-        .filter(|object| scene.facts(*object).is_door())
-        .filter(|object| {
-            scene.room_of(*object) == Some(room) || rooms_beside(scene, *object).contains(&room)
-        })
-        .collect();
-    let windows = scene
-        .objects_in(room)
-        .into_iter()
-        .filter(|object| is_a(scene, *object, &["window"]))
-        .count();
-    let mut parts = Vec::new();
-    if windows > 0 {
-        parts.push(counted(windows, "", "window", "windows"));
-    }
-    let leads_to = |door: &ObjectId| {
-        let beside = rooms_beside(scene, *door);
-        beside.into_iter().filter(|other| *other != room)
-    };
-    // Behind some there is no room: they lead to the outside, or to what the house does not tell.
-    let (inner, further): (Vec<ObjectId>, Vec<ObjectId>) = doors
-        .into_iter()
-        .partition(|door| leads_to(door).next().is_some());
-    if !inner.is_empty() {
-        let mut beyond: Vec<RoomId> = inner.iter().flat_map(leads_to).collect();
-        beyond.sort();
-        beyond.dedup();
-        let names: Vec<String> = beyond
-            .iter()
-            .map(|other| format!("the {}", scene.semantics.room(*other).label))
-            .collect();
-        let count = counted(inner.len(), "", "door", "doors");
-        parts.push(format!("{count} to {}", list(&names)));
-    }
-    if !further.is_empty() {
-        let what = if inner.is_empty() { "" } else { "further" };
-        parts.push(counted(further.len(), what, "door", "doors"));
-    }
-    let open = &scene.semantics.room(room).passages;
-    if !open.is_empty() {
-        let names: Vec<String> = open
-            .iter()
-            .map(|other| format!("the {}", scene.semantics.room(*other).label))
-            .collect();
-        let count = counted(open.len(), "open", "passage", "passages");
-        parts.push(format!("{count} to {}", list(&names)));
-    }
-    (!parts.is_empty()).then(|| format!("It has {}.", list(&parts)))
-}
-
-/// What does not stand on the floor: things by what carries them and how, and what hangs on walls.
+/// What does not stand on the floor: things by what carries them and how, and what hangs.
 #[derive(Default)]
 struct Placed {
     carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>>,
-    hanging: Vec<ObjectId>,
+    hanging: Vec<Hanging>,
 }
 
 fn placed(scene: &Scene<'_>, room: RoomId, objects: &[ObjectId]) -> Placed {
@@ -149,24 +64,37 @@ fn placed(scene: &Scene<'_>, room: RoomId, objects: &[ObjectId]) -> Placed {
             placed
                 .carried
                 .entry((carrier, name))
-                .or_insert_with(Vec::new)
+                .or_default()
                 .push(*object);
             continue;
         }
-        let walls = house
-            .structure
-            .iter_ids()
-            .filter(|(_, piece)| piece.kind == StructureKind::Wall);
-        let hangs = predicates::find("hangs_on").is_ok_and(|predicate| {
-            walls.into_iter().any(|(wall, _)| {
-                predicate.holds(scene, Term::Object(*object), Term::Structure(wall), None)
-            })
-        });
-        if hangs && !scene.facts(*object).is_opening() {
-            placed.hanging.push(*object);
-        }
+        let hanging = Hanging::of(scene, *object);
+        placed
+            .hanging
+            .extend(hanging.filter(|hanging| !hanging.is_in_noun(scene)));
     }
     placed
+}
+
+/// The carriers of things, the largest kinds first, as lists have them: a table before the bowl on it.
+fn in_order(
+    scene: &Scene<'_>,
+    carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>>,
+) -> Vec<(ObjectId, &'static str, Vec<ObjectId>)> {
+    let mut carriers: Vec<ObjectId> = carried.keys().map(|(carrier, _)| *carrier).collect();
+    carriers.dedup();
+    let groups = grouped(scene, &carriers);
+    let mut ordered: Vec<(ObjectId, &'static str, Vec<ObjectId>)> = Vec::new();
+    let place = |carrier: ObjectId| {
+        let mut groups = groups.iter();
+        groups.position(|group| group.objects.contains(&carrier))
+    };
+    for ((carrier, words), things) in carried {
+        ordered.push((carrier, words, things));
+    }
+    // Stable: within a kind as the house has them.
+    ordered.sort_by_key(|(carrier, ..)| place(*carrier));
+    ordered
 }
 
 /// The description of a room: its size and surfaces, its openings, what stands in it, and what lies on what.
@@ -179,14 +107,12 @@ pub fn describe_room(scene: &Scene<'_>, room: RoomId) -> String {
         .filter(|object| !scene.facts(*object).is_door() && !is_a(scene, *object, &["window"]))
         .filter(|object| scene.holder(*object).is_none())
         .collect();
-    let Placed {
-        carried: on,
-        hanging,
-    } = placed(scene, room, &objects);
+    let Placed { carried, hanging } = placed(scene, room, &objects);
     let standing: Vec<ObjectId> = objects
         .iter()
         .filter(|object| {
-            !hanging.contains(object) && !on.values().flatten().any(|other| other == *object)
+            !hanging.iter().any(|hanging| hanging.thing == **object)
+                && !carried.values().flatten().any(|other| other == *object)
         })
         .copied()
         .collect();
@@ -196,7 +122,7 @@ pub fn describe_room(scene: &Scene<'_>, room: RoomId) -> String {
             .map(|group| group.text(scene))
             .collect()
     };
-    if standing.is_empty() && on.is_empty() && hanging.is_empty() {
+    if objects.is_empty() {
         sentences.push("It is empty.".to_owned());
     }
     if !standing.is_empty() {
@@ -204,18 +130,25 @@ pub fn describe_room(scene: &Scene<'_>, room: RoomId) -> String {
         let first = grouped(scene, &standing)[0].objects.len();
         sentences.push(format!("There {} {}.", be(first), list(&texts(&standing))));
     }
-    for ((carrier, words), things) in &on {
-        let verb = be(things.len());
-        let place = landmark(scene, *carrier, Some(room));
+    let mut told: Vec<ObjectId> = Vec::new();
+    for (carrier, words, things) in in_order(scene, carried) {
+        let noun = &scene.facts(carrier).noun;
+        let is_other = |other: &ObjectId| scene.facts(*other).noun == *noun;
+        let place = match told.last() {
+            Some(last) if *last == carrier => "it".to_owned(),
+            _ if told.iter().any(is_other) => format!("another {noun}"),
+            _ => landmark(scene, carrier, Some(room)),
+        };
+        told.push(carrier);
         sentences.push(format!(
-            "{} {place} {verb} {}.",
+            "{} {place} {} {}.",
             capitalized(words),
-            list(&texts(things))
+            be(things.len()),
+            list(&texts(&things))
         ));
     }
-    if !hanging.is_empty() {
-        let verb = if hanging.len() == 1 { "hangs" } else { "hang" };
-        sentences.push(format!("On the wall {verb} {}.", list(&texts(&hanging))));
+    for clause in clauses(scene, &hanging) {
+        sentences.push(format!("{}.", capitalized(&clause)));
     }
     sentences.join(" ")
 }

@@ -29,8 +29,7 @@ pub fn describe_view(scene: &Scene<'_>, viewer: &Viewer, visible: &[ObjectId]) -
     }
     let mut sentences = Vec::new();
     let here = scene.house().room_at(viewer.world_from_camera.position);
-    sentences
-        .extend(here.map(|room| format!("You are in the {}.", scene.semantics.room(room).label)));
+    sentences.extend(here.map(|room| format!("You are {}.", scene.semantics.room(room).place())));
     for (words, objects) in &sides {
         if !objects.is_empty() {
             let texts: Vec<String> = grouped(scene, objects)

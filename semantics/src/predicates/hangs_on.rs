@@ -1,16 +1,12 @@
-//! Hangs on a wall.
+//! Hangs on a wall, from a ceiling, or before a window.
 
+use super::mount::hangs_on;
 use super::{Laws, Predicate};
 use crate::scene::{Scene, Term, Viewer};
-use dwell_scene::StructureKind;
 
-/// The largest gap between a thing and the wall it hangs on, m.
-const WALL_GAP_M: f32 = 0.06;
-/// How far above the floor a thing must begin to hang, m.
-const CLEARANCE_M: f32 = 0.1;
-
-/// `a` hangs on `b`: `b` is a wall, the outline of `a` from above lies within 6 cm of the wall's, at the same height, and
-/// nothing carries `a`: it begins at least 10 cm above the wall's foot and rests on nothing.
+/// `a` hangs on `b`: nothing carries `a` from below, and `b` is a wall, at whose height it is, 10 cm above its foot or
+/// higher (cloth reaches the floor), with its outline from above at most 6 cm away; or a ceiling over it, 6 cm from
+/// its top at most; or, for curtains and blinds, a window in the same room and at the same height, 0.3 m away at most.
 pub(super) struct HangsOn;
 
 impl Predicate for HangsOn {
@@ -30,24 +26,9 @@ impl Predicate for HangsOn {
     }
 
     fn holds(&self, scene: &Scene<'_>, subject: Term, object: Term, _: Option<&Viewer>) -> bool {
-        let (Term::Object(thing), Term::Structure(wall)) = (subject, object) else {
+        let Term::Object(thing) = subject else {
             return false;
         };
-        if scene.house().structure[wall].kind != StructureKind::Wall
-            || scene.holder(thing).is_some()
-        {
-            return false;
-        }
-        let extent = scene.extent(thing);
-        let bounds = scene.semantics.structure_bounds(wall);
-        let at_height =
-            extent.bottom_m() >= bounds.min.y + CLEARANCE_M && extent.bottom_m() < bounds.max.y;
-        at_height
-            && extent.bounds.grown(WALL_GAP_M).intersects(bounds)
-            && extent
-                .footprint
-                .distance(scene.semantics.structure_outline(wall))
-                <= WALL_GAP_M
-            && scene.supports(thing).is_empty()
+        hangs_on(scene, thing, object)
     }
 }

@@ -6,11 +6,13 @@ mod hangs_on;
 mod in_room;
 mod inside;
 mod left_of;
+mod mount;
 mod next_to;
 mod on;
 mod right_of;
 mod support;
 
+pub(crate) use mount::mount_of;
 pub use support::Support;
 pub(crate) use support::supports_of;
 

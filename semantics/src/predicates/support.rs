@@ -1,5 +1,6 @@
 //! What a thing rests on.
 
+use super::mount::hangs_despite;
 use crate::geometry::{height_under, object_triangles, structure_triangles};
 use crate::scene::{Scene, Term};
 use dwell_scene::{ObjectId, StructureKind};
@@ -21,6 +22,8 @@ pub struct Support {
     pub by: Term,
     /// The share of the sole's points that rest on it, 0 to 1.
     pub share: f32,
+    /// How far those points are above it where they are nearest, m; at most 0 where they touch it or sink in.
+    pub gap_m: f32,
 }
 
 /// For every point of the sole the highest surface within [`REST_GAP_M`] of it, and whose it is.
@@ -54,7 +57,8 @@ impl Search {
 /// What `object` rests on, the largest share first; empty when it is held, hangs or floats.
 ///
 /// Each point of its sole counts for the highest surface that lies within 3 cm of it and is flatter than 60 degrees, of
-/// whatever object or structure piece.
+/// whatever object or structure piece. Nothing carries a curtain that touches a desk, or a picture just above a sofa: they
+/// hang.
 pub(crate) fn supports_of(scene: &Scene<'_>, object: ObjectId) -> Vec<Support> {
     let house = scene.house();
     let extent = scene.extent(object);
@@ -91,20 +95,32 @@ pub(crate) fn supports_of(scene: &Scene<'_>, object: ObjectId) -> Vec<Support> {
             });
         }
     }
-    let mut supports: Vec<(Term, usize)> = Vec::new();
-    for (_, owner) in search.best.iter().flatten() {
-        match supports.iter_mut().find(|(known, _)| known == owner) {
-            Some((_, points)) => *points += 1,
-            None => supports.push((*owner, 1)),
+    let mut supports: Vec<(Term, usize, f32)> = Vec::new();
+    for (point, best) in search.sole.iter().zip(&search.best) {
+        let Some((height, owner)) = best else {
+            continue;
+        };
+        let gap_m = point.y - height;
+        match supports.iter_mut().find(|(known, ..)| known == owner) {
+            Some((_, points, least_m)) => {
+                *points += 1;
+                *least_m = least_m.min(gap_m);
+            }
+            None => supports.push((*owner, 1, gap_m)),
         }
     }
     supports.sort_by(|p, q| q.1.cmp(&p.1).then(p.0.cmp(&q.0)));
     let count = search.sole.len().max(1);
-    supports
+    let supports: Vec<Support> = supports
         .into_iter()
-        .map(|(by, points)| Support {
+        .map(|(by, points, gap_m)| Support {
             by,
             share: points as f32 / count as f32,
+            gap_m,
         })
-        .collect()
+        .collect();
+    if hangs_despite(scene, object, &supports) {
+        return Vec::new();
+    }
+    supports
 }

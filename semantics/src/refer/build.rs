@@ -12,16 +12,17 @@ const TELLING: [&str; 3] = ["in", "on", "next_to"];
 fn by_properties(scene: &Scene<'_>, target: ObjectId) -> Vec<Expression> {
     let facts = scene.facts(target);
     let noun = Expression::noun(&facts.noun);
-    let color = facts
-        .colors
-        .first()
-        .map(|(word, _)| vec![(*word).to_owned()]);
-    let two = (facts.colors.len() > 1).then(|| {
-        facts.colors[..2]
-            .iter()
-            .map(|(word, _)| (*word).to_owned())
-            .collect::<Vec<_>>()
-    });
+    // What no colour prevails on is not told apart by one.
+    let spoken: &[_] = if facts.spoken_colors().is_empty() {
+        &[]
+    } else {
+        &facts.colors
+    };
+    let words = |count: usize| -> Option<Vec<String>> {
+        let words = spoken.get(..count)?.iter();
+        Some(words.map(|(word, _)| (*word).to_owned()).collect())
+    };
+    let (color, two) = (words(1), words(2));
     let material = facts.material_word().map(str::to_owned);
     let size = facts.size.word().map(|_| facts.size);
     let mut found = vec![noun.clone()];
@@ -77,7 +78,7 @@ fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
             }
             let facts = scene.facts(landmark);
             let mut words = vec![Expression::noun(&facts.noun)];
-            if let Some((color, _)) = facts.colors.first() {
+            if let Some((color, _)) = facts.spoken_colors().first() {
                 words.push(Expression {
                     colors: vec![(*color).to_owned()],
                     ..words[0].clone()

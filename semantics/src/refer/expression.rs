@@ -1,8 +1,9 @@
 //! A description of a thing, what it means, and how it sounds.
 
-use crate::english::with_article;
+use crate::english::{qualified, with_article};
 use crate::facts::Facts;
 use crate::predicates;
+use crate::room_kind::preposition;
 use crate::scene::{Scene, Term};
 use crate::size::Size;
 use dwell_scene::ObjectId;
@@ -99,16 +100,18 @@ impl Expression {
 
     /// Adjectives and noun: "large brown wooden table".
     pub fn phrase(&self) -> String {
-        let mut words: Vec<&str> = Vec::new();
-        words.extend(self.size.and_then(Size::word));
-        let colors: Vec<&str> = self.colors.iter().map(String::as_str).collect();
-        let color = colors.join(" and ");
-        if !color.is_empty() {
-            words.push(&color);
+        let mut look = self.colors.join(" and ");
+        if let Some(material) = &self.material {
+            if !look.is_empty() {
+                look.push(' ');
+            }
+            look.push_str(material);
         }
-        words.extend(self.material.as_deref());
-        words.push(&self.noun);
-        words.join(" ")
+        qualified(
+            self.size.and_then(Size::word).unwrap_or_default(),
+            &look,
+            &self.noun,
+        )
     }
 
     fn tail(&self) -> String {
@@ -124,7 +127,7 @@ impl Expression {
             let _ = write!(text, " {words} {landmark}");
         }
         if let Some(room) = &self.room {
-            let _ = write!(text, " in the {room}");
+            let _ = write!(text, " {} the {room}", preposition(room));
         }
         text
     }

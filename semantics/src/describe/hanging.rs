@@ -1,0 +1,119 @@
+//! What hangs, and on what.
+
+use super::contents::grouped;
+use crate::english::list;
+use crate::predicates::mount_of;
+use crate::scene::{Scene, Term};
+use dwell_scene::{ObjectId, StructureId, StructureKind};
+
+/// How far apart the middles of two pieces of one wall may lie across it, m.
+const SAME_WALL_M: f32 = 0.2;
+
+/// What things hang on, in the order of telling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Hold {
+    Wall,
+    Ceiling,
+    Window,
+}
+
+/// A thing that hangs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hanging {
+    pub(super) thing: ObjectId,
+    pub(super) hold: Hold,
+    mount: Term,
+}
+
+impl Hold {
+    /// "On the wall", "at the windows".
+    fn place(self, several: bool) -> &'static str {
+        match (self, several) {
+            (Self::Wall, false) => "on the wall",
+            (Self::Wall, true) => "on the walls",
+            (Self::Ceiling, _) => "from the ceiling",
+            (Self::Window, false) => "at the window",
+            (Self::Window, true) => "at the windows",
+        }
+    }
+}
+
+impl Hanging {
+    /// How `thing` hangs, if it does.
+    pub(super) fn of(scene: &Scene<'_>, thing: ObjectId) -> Option<Self> {
+        let mount = mount_of(scene, thing)?;
+        let hold = match mount {
+            Term::Structure(piece)
+                if scene.house().structure[piece].kind == StructureKind::Ceiling =>
+            {
+                Hold::Ceiling
+            }
+            Term::Structure(_) => Hold::Wall,
+            _ => Hold::Window,
+        };
+        Some(Self { thing, hold, mount })
+    }
+
+    /// Whether its noun says it already: a wall lamp, a ceiling lamp.
+    pub(super) fn is_in_noun(&self, scene: &Scene<'_>) -> bool {
+        let said = match self.hold {
+            Hold::Wall => "wall",
+            Hold::Ceiling => "ceiling",
+            Hold::Window => "window",
+        };
+        let mut words = scene.facts(self.thing).noun.split(' ');
+        words.any(|word| word == said)
+    }
+
+    /// Where it hangs, after its name: "on the wall", "at the window"; empty where its noun says it.
+    pub(super) fn place(&self, scene: &Scene<'_>) -> String {
+        match self.hold {
+            _ if self.is_in_noun(scene) => String::new(),
+            // "From the ceiling" needs a verb.
+            Hold::Ceiling => " on the ceiling".to_owned(),
+            hold => format!(" {}", hold.place(false)),
+        }
+    }
+}
+
+/// "On the wall hang two pictures and a clock", "at the window hangs a curtain": one each of what `hanging` hangs on, in
+/// order.
+pub(super) fn clauses(scene: &Scene<'_>, hanging: &[Hanging]) -> Vec<String> {
+    let mut clauses = Vec::new();
+    for hold in [Hold::Wall, Hold::Ceiling, Hold::Window] {
+        let here: Vec<&Hanging> = hanging.iter().filter(|one| one.hold == hold).collect();
+        let Some((first, others)) = here.split_first() else {
+            continue;
+        };
+        let several = others
+            .iter()
+            .any(|other| !is_one(scene, first.mount, other.mount));
+        let things: Vec<ObjectId> = here.iter().map(|one| one.thing).collect();
+        let texts: Vec<String> = grouped(scene, &things)
+            .iter()
+            .map(|group| group.text(scene))
+            .collect();
+        let verb = if things.len() == 1 { "hangs" } else { "hang" };
+        clauses.push(format!("{} {verb} {}", hold.place(several), list(&texts)));
+    }
+    clauses
+}
+
+/// Whether two mounts are one to the eye: the same, or pieces of one wall between its windows.
+fn is_one(scene: &Scene<'_>, one: Term, other: Term) -> bool {
+    let (Term::Structure(p), Term::Structure(q)) = (one, other) else {
+        return one == other;
+    };
+    // Across a wall its box is thin; walls at an angle count as walls of their own.
+    let across = |piece: StructureId| {
+        let bounds = scene.semantics.structure_bounds(piece);
+        let (size, middle) = (bounds.size(), bounds.center());
+        if size.x < size.z {
+            (true, middle.x)
+        } else {
+            (false, middle.z)
+        }
+    };
+    let ((p_along_z, p_m), (q_along_z, q_m)) = (across(p), across(q));
+    p == q || (p_along_z == q_along_z && (p_m - q_m).abs() <= SAME_WALL_M)
+}

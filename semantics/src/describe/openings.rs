@@ -1,0 +1,137 @@
+//! Windows, doors and passages of a room.
+
+use super::room::is_a;
+use crate::english::{counted, list};
+use crate::scene::Scene;
+use dwell_scene::{ObjectId, RoomId};
+
+/// Where a door leads from a room.
+#[derive(Clone, PartialEq, Eq)]
+enum Way {
+    Rooms(Vec<RoomId>),
+    Outside,
+    /// Within the room, or to what the house does not tell.
+    Elsewhere,
+}
+
+/// Doors of one noun that lead the same way.
+struct Doors<'a> {
+    noun: &'a str,
+    plural: &'a str,
+    way: Way,
+    number: usize,
+}
+
+fn names(scene: &Scene<'_>, rooms: &[RoomId]) -> String {
+    let labels = rooms.iter().map(|room| &scene.semantics.room(*room).label);
+    list(
+        &labels
+            .map(|label| format!("the {label}"))
+            .collect::<Vec<_>>(),
+    )
+}
+
+fn doors_of<'a>(scene: &Scene<'a>, room: RoomId) -> Vec<Doors<'a>> {
+    let mut groups: Vec<Doors<'a>> = Vec::new();
+    for door in scene.house().objects.ids() {
+        let Some(doorway) = scene.semantics.doorway(door) else {
+            continue;
+        };
+        if scene.room_of(door) != Some(room) && !doorway.rooms.contains(&room) {
+            continue;
+        }
+        let rooms: Vec<RoomId> = doorway.beyond(room).collect();
+        let way = match (rooms.is_empty(), doorway.outside) {
+            (false, _) => Way::Rooms(rooms),
+            (true, true) => Way::Outside,
+            (true, false) => Way::Elsewhere,
+        };
+        let facts = scene.facts(door);
+        match groups
+            .iter_mut()
+            .find(|group| group.noun == facts.noun && group.way == way)
+        {
+            Some(group) => group.number += 1,
+            None => groups.push(Doors {
+                noun: &facts.noun,
+                plural: &facts.plural,
+                way,
+                number: 1,
+            }),
+        }
+    }
+    groups
+}
+
+/// "two doors to the hall and the kitchen", "a door to the outside", "another door": by noun, then by where they lead.
+fn door_texts(scene: &Scene<'_>, room: RoomId) -> Vec<String> {
+    let groups = doors_of(scene, room);
+    let mut nouns: Vec<(&str, &str)> = Vec::new();
+    for group in &groups {
+        if !nouns.contains(&(group.noun, group.plural)) {
+            nouns.push((group.noun, group.plural));
+        }
+    }
+    let mut texts = Vec::new();
+    for (noun, plural) in nouns {
+        let said = texts.len();
+        let of = || groups.iter().filter(|group| group.noun == noun);
+        // One door to each of several rooms is told in one breath; two to one room would blur which leads where.
+        let mut single: Vec<RoomId> = Vec::new();
+        for group in of() {
+            match &group.way {
+                Way::Rooms(rooms) if group.number == 1 && rooms.len() == 1 => single.extend(rooms),
+                _ => {}
+            }
+        }
+        if !single.is_empty() {
+            single.sort();
+            let doors = counted(single.len(), noun, plural);
+            texts.push(format!("{doors} to {}", names(scene, &single)));
+        }
+        for group in of() {
+            let doors = counted(group.number, noun, plural);
+            match &group.way {
+                Way::Rooms(rooms) if group.number > 1 || rooms.len() > 1 => {
+                    texts.push(format!("{doors} to {}", names(scene, rooms)));
+                }
+                _ => {}
+            }
+        }
+        let number = |way: &Way| {
+            of().find(|group| group.way == *way)
+                .map(|group| group.number)
+        };
+        if let Some(number) = number(&Way::Outside) {
+            texts.push(format!("{} to the outside", counted(number, noun, plural)));
+        }
+        if let Some(number) = number(&Way::Elsewhere) {
+            texts.push(match (number, texts.len() > said) {
+                (_, false) => counted(number, noun, plural),
+                (1, true) => format!("another {noun}"),
+                (_, true) => counted(number, noun, &format!("other {plural}")),
+            });
+        }
+    }
+    texts
+}
+
+/// What the room opens to: "It has two windows, a door to the hall and an open passage to the kitchen."
+pub(super) fn openings(scene: &Scene<'_>, room: RoomId) -> Option<String> {
+    let windows: Vec<ObjectId> = scene
+        .objects_in(room)
+        .into_iter()
+        .filter(|object| is_a(scene, *object, &["window"]))
+        .collect();
+    let mut parts = Vec::new();
+    if !windows.is_empty() {
+        parts.push(counted(windows.len(), "window", "windows"));
+    }
+    parts.extend(door_texts(scene, room));
+    let open = &scene.semantics.room(room).passages;
+    if !open.is_empty() {
+        let passages = counted(open.len(), "open passage", "open passages");
+        parts.push(format!("{passages} to {}", names(scene, open)));
+    }
+    (!parts.is_empty()).then(|| format!("It has {}.", list(&parts)))
+}

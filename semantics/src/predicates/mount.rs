@@ -1,0 +1,143 @@
+//! What holds things that no surface below them carries: walls, ceilings, windows.
+
+use super::Support;
+use crate::scene::{Scene, Term};
+use dwell_scene::{Mobility, ObjectId, StructureId, StructureKind};
+
+/// The largest gap between a thing and the wall or ceiling it hangs on, m.
+const WALL_GAP_M: f32 = 0.06;
+/// How far above a wall's foot a thing must begin to hang on it, m.
+const CLEARANCE_M: f32 = 0.1;
+/// The largest distance from above between a window and the cloth before it, m.
+const WINDOW_GAP_M: f32 = 0.3;
+/// The share of the lower one's height that a window and the cloth before it must have in common.
+const WINDOW_SHARE: f32 = 0.3;
+/// The gap from which a thing is above a surface and does not touch it, m.
+const ABOVE_M: f32 = 0.01;
+/// What is thinner than this falls over where nothing holds it, m.
+const FLAT_M: f32 = 0.08;
+/// What of cloth is higher than this is held from above, m.
+const UPRIGHT_M: f32 = 0.3;
+
+/// Kinds that the table marks as mounted and that stand as well: on a sink, on the floor.
+const MAY_STAND: [&str; 3] = ["tap", "heater", "soap_dish"];
+/// Kinds that hang or lean.
+const MAY_LEAN: [&str; 4] = ["picture_frame", "mirror", "clock", "rifle"];
+
+fn is_cloth(scene: &Scene<'_>, thing: ObjectId) -> bool {
+    let row = scene.facts(thing).category;
+    row.is_some_and(|row| ["curtain", "blinds"].contains(&row.name))
+}
+
+/// Whether a thing with surfaces below it hangs all the same, and those only touch it or lie close under it.
+///
+/// So it is with upright cloth, and with what the table calls mounted where a wall or a ceiling is near: when it ends a
+/// centimetre or more above them; when it is fixed in its place and of a kind that never stands; or when it is fixed and
+/// too flat to stand.
+pub(super) fn hangs_despite(scene: &Scene<'_>, thing: ObjectId, supports: &[Support]) -> bool {
+    let facts = scene.facts(thing);
+    let Some(row) = facts.category.filter(|row| row.mounted) else {
+        return false;
+    };
+    if supports.is_empty() {
+        return true;
+    }
+    let size = scene.extent(thing).bounds.size();
+    if is_cloth(scene, thing) && size.y >= UPRIGHT_M && size.y > size.x.min(size.z) {
+        return true;
+    }
+    // What stands in a shelf may be near the wall behind it.
+    let (house, inner) = (scene.house(), scene.extent(thing).bounds);
+    let stands_in = |support: &Support| {
+        let by = support.by.object();
+        by.is_some_and(|by| house.encloses(scene.state, by, &scene.extent(by).bounds, &inner))
+    };
+    let mut pieces = house.structure.ids();
+    if !pieces.any(|piece| is_at(scene, thing, piece)) || supports.iter().any(stands_in) {
+        return false;
+    }
+    let above = supports.iter().all(|support| support.gap_m >= ABOVE_M);
+    let fixed = house.objects[thing].mobility != Mobility::Movable;
+    let flat = facts.extents_m.min_element() < FLAT_M;
+    above || (fixed && !MAY_STAND.contains(&row.name) && (flat || !MAY_LEAN.contains(&row.name)))
+}
+
+/// Whether a thing is so near to a wall, at its height, or so close under a ceiling, that it may hang there.
+fn is_at(scene: &Scene<'_>, thing: ObjectId, piece: StructureId) -> bool {
+    let extent = scene.extent(thing);
+    let bounds = scene.semantics.structure_bounds(piece);
+    if !extent.bounds.grown(WALL_GAP_M).intersects(bounds) {
+        return false;
+    }
+    let outline = scene.semantics.structure_outline(piece);
+    match scene.house().structure[piece].kind {
+        StructureKind::Wall => {
+            // Curtains reach the floor.
+            let foot = bounds.min.y + CLEARANCE_M;
+            let at_height = (extent.bottom_m() >= foot || is_cloth(scene, thing))
+                && extent.bottom_m() < bounds.max.y;
+            at_height && extent.footprint.distance(outline) <= WALL_GAP_M
+        }
+        StructureKind::Ceiling => {
+            (extent.bounds.max.y - bounds.min.y).abs() <= WALL_GAP_M
+                && extent.footprint.overlap_m2(outline) >= 0.5 * extent.footprint.area_m2()
+        }
+        _ => false,
+    }
+}
+
+/// Whether cloth hangs before a window: in its room, at its height, at most 0.3 m away from above.
+fn is_before(scene: &Scene<'_>, cloth: ObjectId, window: ObjectId) -> bool {
+    let is_window = |row: &crate::category::CategoryRow| row.name == "window";
+    if !is_cloth(scene, cloth) || !scene.facts(window).category.is_some_and(is_window) {
+        return false;
+    }
+    let (p, q) = (scene.extent(cloth), scene.extent(window));
+    let shared = p.bounds.max.y.min(q.bounds.max.y) - p.bounds.min.y.max(q.bounds.min.y);
+    let lower = p.bounds.size().y.min(q.bounds.size().y);
+    let room = scene.room_of(window);
+    shared >= WINDOW_SHARE * lower
+        && p.footprint.distance(&q.footprint) <= WINDOW_GAP_M
+        && (room.is_none() || room == scene.room_of(cloth))
+}
+
+/// Whether `thing` hangs on `mount`: see [`super::hangs_on::HangsOn`].
+pub(super) fn hangs_on(scene: &Scene<'_>, thing: ObjectId, mount: Term) -> bool {
+    let near = match mount {
+        Term::Structure(piece) => is_at(scene, thing, piece),
+        Term::Object(window) => is_before(scene, thing, window),
+        Term::Room(_) | Term::Agent(_) => false,
+    };
+    near && scene.holder(thing).is_none() && scene.supports(thing).is_empty()
+}
+
+/// What `thing` hangs on: the nearest window for cloth, else the nearest wall, else a ceiling; the first of equals. Doors
+/// and windows are part of their walls and hang on nothing.
+pub(crate) fn mount_of(scene: &Scene<'_>, thing: ObjectId) -> Option<Term> {
+    if scene.facts(thing).is_opening() && !is_cloth(scene, thing) {
+        return None;
+    }
+    let house = scene.house();
+    let kind = |piece: &StructureId, kind| house.structure[*piece].kind == kind;
+    let of = |wanted| {
+        house
+            .structure
+            .ids()
+            .filter(move |piece| kind(piece, wanted))
+    };
+    let windows = house.objects.ids().filter(|other| *other != thing);
+    let here = &scene.extent(thing).footprint;
+    let nearest = |mounts: &mut dyn Iterator<Item = Term>| {
+        let away_m = |mount: &Term| match *mount {
+            Term::Object(window) => here.distance(&scene.extent(window).footprint),
+            Term::Structure(piece) => here.distance(scene.semantics.structure_outline(piece)),
+            Term::Room(_) | Term::Agent(_) => f32::MAX,
+        };
+        mounts
+            .filter(|mount| hangs_on(scene, thing, *mount))
+            .min_by(|p, q| away_m(p).total_cmp(&away_m(q)))
+    };
+    nearest(&mut windows.map(Term::Object))
+        .or_else(|| nearest(&mut of(StructureKind::Wall).map(Term::Structure)))
+        .or_else(|| nearest(&mut of(StructureKind::Ceiling).map(Term::Structure)))
+}
