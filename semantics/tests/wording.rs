@@ -117,6 +117,29 @@ fn hung(things: impl Fn(&mut Builder) -> Vec<ObjectId>) -> Hung {
     }
 }
 
+/// With a second window the curtain hangs at one of the two.
+#[test]
+fn a_curtain_hangs_at_a_window_among_others() {
+    let s = hung(|b| {
+        let cloth = b.material("light_curtain", [250, 250, 250]);
+        let glass = b.material("double_glazing", [250; 3]);
+        let curtain = b.thing("curtain", &[([0.9, 0.75, 0.08], [2.3, 2.3, 0.2])], cloth);
+        let other = b.thing("window", &[([2.8, 0.9, 0.0], [3.5, 2.1, 0.06])], glass);
+        b.data.objects[other].room = Some(RoomId(0));
+        fix(b, other);
+        vec![curtain, other]
+    });
+    assert_eq!(
+        s.told.caption(s.things[0]),
+        "a white curtain at a window in the bedroom"
+    );
+    let text = s.told.room(s.room);
+    assert!(
+        text.contains("At a window hangs a white curtain."),
+        "{text}"
+    );
+}
+
 #[test]
 fn curtains_hang_at_windows_and_pictures_on_walls() {
     let s = hung(|b| {

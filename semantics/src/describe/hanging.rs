@@ -1,6 +1,7 @@
 //! What hangs, and on what.
 
 use super::contents::grouped;
+use super::room::is_a;
 use crate::english::list;
 use crate::predicates::mount_of;
 use crate::scene::{Scene, Term};
@@ -23,17 +24,17 @@ pub(super) struct Hanging {
     pub(super) thing: ObjectId,
     pub(super) hold: Hold,
     mount: Term,
+    /// Whether its room has other windows beside the one it hangs at.
+    other_windows: bool,
 }
 
 impl Hold {
-    /// "On the wall", "at the windows".
-    fn place(self, several: bool) -> &'static str {
-        match (self, several) {
-            (Self::Wall, false) => "on the wall",
-            (Self::Wall, true) => "on the walls",
-            (Self::Ceiling, _) => "from the ceiling",
-            (Self::Window, false) => "at the window",
-            (Self::Window, true) => "at the windows",
+    /// Of several: "on the walls", "at the windows".
+    fn places(self) -> &'static str {
+        match self {
+            Self::Wall => "on the walls",
+            Self::Ceiling => "from the ceiling",
+            Self::Window => "at the windows",
         }
     }
 }
@@ -51,7 +52,16 @@ impl Hanging {
             Term::Structure(_) => Hold::Wall,
             _ => Hold::Window,
         };
-        Some(Self { thing, hold, mount })
+        let window = |other: &ObjectId| is_a(scene, *other, &["window"]);
+        let windows = |room| scene.objects_in(room).iter().filter(|o| window(o)).count();
+        let other_windows =
+            hold == Hold::Window && scene.room_of(thing).is_some_and(|room| windows(room) > 1);
+        Some(Self {
+            thing,
+            hold,
+            mount,
+            other_windows,
+        })
     }
 
     /// Whether its noun says it already: a wall lamp, a ceiling lamp.
@@ -71,7 +81,17 @@ impl Hanging {
             _ if self.is_in_noun(scene) => String::new(),
             // "From the ceiling" needs a verb.
             Hold::Ceiling => " on the ceiling".to_owned(),
-            hold => format!(" {}", hold.place(false)),
+            _ => format!(" {}", self.only_place()),
+        }
+    }
+
+    /// "On the wall", "at the window", "at a window" where there are others.
+    fn only_place(&self) -> &'static str {
+        match self.hold {
+            Hold::Wall => "on the wall",
+            Hold::Ceiling => "from the ceiling",
+            Hold::Window if self.other_windows => "at a window",
+            Hold::Window => "at the window",
         }
     }
 }
@@ -94,7 +114,12 @@ pub(super) fn clauses(scene: &Scene<'_>, hanging: &[Hanging]) -> Vec<String> {
             .map(|group| group.text(scene))
             .collect();
         let verb = if things.len() == 1 { "hangs" } else { "hang" };
-        clauses.push(format!("{} {verb} {}", hold.place(several), list(&texts)));
+        let place = if several {
+            hold.places()
+        } else {
+            first.only_place()
+        };
+        clauses.push(format!("{place} {verb} {}", list(&texts)));
     }
     clauses
 }
