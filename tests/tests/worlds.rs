@@ -72,15 +72,23 @@ fn snapshots_of_worlds_stay_within_their_size() {
     assert!(sizes[1] <= sizes[0] + 320 * 1024, "{sizes:?}");
 }
 
-/// The most that a snapshot takes for a pair of pieces near each other of a heap in motion, bytes.
-const BYTES_A_PAIR: usize = 100;
+/// The most that a snapshot of a heap in motion takes: for all that stands, for each pair of pieces near each other, and beside that for
+/// each that touches, bytes. A line through 48 moments of eight throws is 122 KB + 38 a pair near + 325 a pair that touches.
+const BYTES_OF_A_HEAP: (usize, usize, usize) = (128 * 1024, 45, 350);
 
-/// All that can be picked up is dropped on one spot, a metre and a half across: some hundred things, 8,000 near pairs.
+/// All that can be picked up is dropped on one spot, a metre and a half across: some hundred things, 8,000 near pairs. Of eight throws
+/// the first and the one with the most bytes a pair.
 #[test]
 fn a_snapshot_of_a_heap_stays_within_its_size_and_goes_on_with_the_same_bits() {
+    for seed in [1, 5] {
+        throw(seed);
+    }
+}
+
+fn throw(seed: u64) {
     let mut world = world();
     let house = world.house().clone();
-    let mut stream = Key::root(1).stream();
+    let mut stream = Key::root(seed).stream();
     let rooms = house.rooms.iter();
     let area = |room: &&dwell_scene::Room| room.bounds.size().x * room.bounds.size().z;
     let room = rooms.max_by(|a, b| area(a).total_cmp(&area(b))).unwrap();
@@ -105,7 +113,8 @@ fn a_snapshot_of_a_heap_stays_within_its_size_and_goes_on_with_the_same_bits() {
         if k % 10 == 0 {
             let (size, pairs) = (world.snapshot().len(), world.pair_counts());
             println!("  {size} bytes, {pairs:?}");
-            let most = bound.max(BYTES_A_PAIR * pairs.near);
+            let (standing, near, touching) = BYTES_OF_A_HEAP;
+            let most = bound.max(standing + near * pairs.near + touching * pairs.touching);
             assert!(size <= most, "{size} of {most}, {pairs:?}");
         }
     }
