@@ -112,7 +112,6 @@ fn throw(seed: u64) {
         world.step(&[]).unwrap();
         if k % 10 == 0 {
             let (size, pairs) = (world.snapshot().len(), world.pair_counts());
-            println!("  {size} bytes, {pairs:?}");
             let (standing, near, touching) = BYTES_OF_A_HEAP;
             let most = bound.max(standing + near * pairs.near + touching * pairs.touching);
             assert!(size <= most, "{size} of {most}, {pairs:?}");
