@@ -16,7 +16,7 @@ pub struct AcousticConfig {
     pub rate_hz: u32,
     /// Rays of the energy tail; 0 (no tail) to 10,000,000.
     pub rays: usize,
-    /// Longest time that a ray travels, s; 0.02 to 20.
+    /// Longest time that a ray travels, s; 0.02 to 20. Responses end 0.05 s later at most.
     pub max_duration_s: f64,
     /// Width of the histogram's bins, s; 0.0005 to 0.05.
     pub bin_s: f64,

@@ -336,7 +336,8 @@ impl Stream {
     /// Remembers what [`Stream::snapshot`] wrote. The stream must have been made with the same scene, settings and key.
     ///
     /// # Errors
-    /// [`AcousticsError::Snapshot`] for damaged bytes or those of a stream with other blocks; the stream is unchanged then.
+    /// [`AcousticsError::Snapshot`] for damaged bytes, those of a stream with other blocks, and what no stream can have heard; the stream is
+    /// unchanged then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), AcousticsError> {
         let refuse = |why: String| Err(AcousticsError::Snapshot(why));
         let Some((sum, body)) = bytes.split_first_chunk::<8>() else {

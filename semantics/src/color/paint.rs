@@ -28,6 +28,7 @@ pub(crate) struct Paint {
 
 /// The colours of every material of a house. Shape (material,).
 pub(crate) fn paints(house: &House) -> IdVec<MaterialId, Paint> {
+    let decoded = decoded();
     let means: IdVec<TextureId, [f32; 3]> = house
         .textures
         .iter()
@@ -47,7 +48,7 @@ pub(crate) fn paints(house: &House) -> IdVec<MaterialId, Paint> {
             let mean = means[texture];
             Paint {
                 mean: std::array::from_fn(|k| base[k] * mean[k]),
-                dominant: dominant(&house.textures[texture], base),
+                dominant: dominant(&house.textures[texture], base, &decoded),
             }
         })
         .collect()
@@ -57,8 +58,8 @@ pub(crate) fn paints(house: &House) -> IdVec<MaterialId, Paint> {
 ///
 /// A sort is what lies within [`SHADE`] of its own mean. It is sought from the image's mean and from each of its pixels that
 /// lies in no sort found before, so that neither a pattern's ground nor a grain about its mean is missed.
-fn dominant(texture: &Texture, base: [f32; 3]) -> Option<[f32; 3]> {
-    let decoded = decoded();
+/// `decoded`: linear light of every byte. Shape (256,).
+fn dominant(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Option<[f32; 3]> {
     let solid = |pixel: &&[u8]| pixel[3] > 0;
     let count = texture.rgba().len() / 4;
     let step = (count / PIXELS).max(1);
@@ -214,7 +215,7 @@ mod tests {
     }
 
     fn word(texture: &Texture) -> Option<&'static str> {
-        dominant(texture, [1.0; 3]).map(|linear| Vocabulary::Plain.word(linear))
+        dominant(texture, [1.0; 3], &decoded()).map(|linear| Vocabulary::Plain.word(linear))
     }
 
     #[test]
