@@ -103,6 +103,8 @@ pub struct Echogram {
     pub tail: Histogram,
     /// How the rays fared.
     pub trace: TraceStatistics,
+    /// Where the source is, m.
+    pub source: Vec3,
     /// The straight distance from source to receiver, m, whatever stands between: nothing is heard before that.
     pub direct_length_m: f64,
     /// Speed of sound, m/s.

@@ -81,7 +81,7 @@ impl Explanation {
                     name: material.name.clone(),
                     substance: material.substance.clone(),
                     area_m2: *area_m2,
-                    absorption: surface.kept.map(|kept| 1.0 - kept),
+                    absorption: surface.absorption,
                     scattering: surface.scattering,
                     is_default: known.is_none_or(|substance| substance.name == *default)
                         && known

@@ -1,6 +1,6 @@
 //! A house as sound sees it.
 
-use crate::bands::{self, BAND_COUNT, Banded, NOMINAL_CENTRES_HZ};
+use crate::bands::{BAND_COUNT, Banded, NOMINAL_CENTRES_HZ};
 use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, Path};
 use crate::error::{AcousticsError, finite};
@@ -8,73 +8,24 @@ use crate::explain::Explanation;
 use crate::head::{Head, Heads};
 use crate::laws::{self, Effects, stage::Listener};
 use crate::microphones::Microphones;
-use crate::planes::{Edge, Plane, PlaneTable};
+use crate::planes::{Edge, Plane, PlaneTable, WALL_M2};
 use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
 use crate::stream::Memory;
+use crate::surface::Surface;
 use crate::synthesis::{Synthesizer, Wavelet};
 use crate::{images, tail};
 use dwell_scene::bvh::Hit;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Address, House, LawSpec, Material, MaterialId, Pose, State};
+use dwell_scene::{Address, House, LawSpec, MaterialId, Pose, State};
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Panels at least this large are walls of rooms, m².
-const WALL_M2: f32 = 4.0;
 /// How far sound goes from a panel to what it meets next, m: the mean free path of a living room.
 const NEXT_WAY_M: f64 = 3.0;
-
-/// What a material does to sound energy.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Surface {
-    /// Energy that stays after a reflection, 1 - absorption.
-    pub(crate) kept: Banded,
-    /// Fraction of it that is scattered.
-    pub(crate) scattering: Banded,
-    /// Energy that passes through, from 0 to 1.
-    pub(crate) passed: Banded,
-}
-
-impl Surface {
-    const HARD: Self = Self {
-        kept: [1.0; BAND_COUNT],
-        scattering: [0.0; BAND_COUNT],
-        passed: [0.0; BAND_COUNT],
-    };
-
-    fn new(house: &House, state: Option<&State>, id: MaterialId) -> Self {
-        let material = &house.materials[id];
-        let (absorption, scattering, loss_db) = match state {
-            Some(state) => (
-                state.absorption(house, id),
-                state.scattering(house, id),
-                state.transmission_loss_db(house, id),
-            ),
-            None => (
-                material.absorption.clone(),
-                material.scattering.clone(),
-                material.transmission_loss_db.clone(),
-            ),
-        };
-        let scattering = bands::sample(&scattering).map(|s| s.clamp(0.0, 1.0));
-        let loss_db = bands::sample(&loss_db);
-        Self {
-            kept: bands::sample(&absorption).map(|a| (1.0 - a).clamp(0.0, 1.0)),
-            scattering,
-            passed: loss_db.map(|db| {
-                if db >= Material::OPAQUE_TO_SOUND_DB {
-                    0.0
-                } else {
-                    libm::powf(10.0, -db / 10.0)
-                }
-            }),
-        }
-    }
-}
 
 /// A house prepared for sound, as it stands in one world.
 ///
@@ -119,7 +70,7 @@ impl AcousticScene {
             surfaces: house
                 .materials
                 .ids()
-                .map(|id| Surface::new(&house, None, id))
+                .map(|id| Surface::new(&house, None, id, &config))
                 .collect(),
             synthesizer: Synthesizer::shared(&config),
             heads: Arc::new(Heads::new(&config)),
@@ -143,7 +94,7 @@ impl AcousticScene {
             self.overrides.clone_from(&state.overrides);
             let ids = self.house.materials.ids();
             self.surfaces = ids
-                .map(|id| Surface::new(&self.house, Some(state), id))
+                .map(|id| Surface::new(&self.house, Some(state), id, &self.config))
                 .collect();
         }
         if self.table.update(&mut self.planes, &mut self.poses, state) {
@@ -216,11 +167,14 @@ impl AcousticScene {
     ///
     /// A panel that is small against the wave scatters what it is too small to mirror. Images and rays share this rule, so that
     /// together they keep all energy; therefore the way after the reflection, which rays do not know yet, counts as
-    /// [`NEXT_WAY_M`]. Walls end at other walls, where their images go on: they mirror all waves.
+    /// [`NEXT_WAY_M`]. Walls end at other walls, where their images go on: they mirror all waves. What goes around a panel that
+    /// hangs at a wall meets the wall: waves that are long against the depth between find one mirror.
     ///
     /// # Source
     /// J. H. Rindel, *Attenuation of sound reflections due to diffraction*, Proc. Nordic Acoustical Meeting 86, 257 (1986): below
-    /// `f_g = c a / (2 S cos theta)` with `a = 2 d1 d2 / (d1 + d2)`, the amplitude falls with `f / f_g`.
+    /// `f_g = c a / (2 S cos theta)` with `a = 2 d1 d2 / (d1 + d2)`, the amplitude falls with `f / f_g`. W. S. Ament, Proc. IRE 41,
+    /// 142 (1953): a surface whose height varies by sigma (rms) mirrors `exp(-(2 k sigma cos theta)^2)` of the energy; two
+    /// levels a depth h apart have sigma = h / 2.
     pub(crate) fn scattering(
         &self,
         material: &Surface,
@@ -232,17 +186,22 @@ impl AcousticScene {
         if !self.config.panel_size {
             return scattering;
         }
-        let area_m2 = self.table.panel_m2(&self.house, hit);
-        if area_m2 >= WALL_M2 {
+        let panel = self.table.panel(&self.house, hit);
+        if panel.area_m2 >= WALL_M2 {
             return scattering;
         }
+        let cosine = cosine.max(0.05);
         let way_m = 2.0 * straight_m * NEXT_WAY_M / (straight_m + NEXT_WAY_M);
         let speed = self.config.air.speed_of_sound_m_s();
-        let limit_hz = (speed * way_m) as f32 / (2.0 * area_m2 * cosine.max(0.05)).max(1e-6);
+        let limit_hz = (speed * way_m) as f32 / (2.0 * panel.area_m2 * cosine).max(1e-6);
+        let depth = std::f32::consts::TAU / speed as f32 * panel.depth_m * cosine;
         for (s, centre_hz) in scattering.iter_mut().zip(NOMINAL_CENTRES_HZ) {
             let ratio = centre_hz / limit_hz;
             if ratio < 1.0 {
-                *s = 1.0 - (1.0 - *s) * ratio * ratio;
+                let depth = depth * centre_hz;
+                let behind = libm::expf(-depth * depth);
+                let mirrored = ratio * ratio + (1.0 - ratio * ratio) * behind;
+                *s = 1.0 - (1.0 - *s) * mirrored;
             }
         }
         scattering
@@ -359,6 +318,7 @@ impl AcousticScene {
                 paths,
                 tail: late.histogram,
                 trace: late.statistics,
+                source: position,
                 direct_length_m: position.as_dvec3().distance(receiver.as_dvec3()),
                 speed_m_s: self.config.air.speed_of_sound_m_s(),
             };
@@ -409,7 +369,8 @@ impl AcousticScene {
         threads: Threads,
     ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
         let placed: Vec<Receiver> = receivers.iter().map(|r| self.effects.placed(r)).collect();
-        let arrived = self.arrivals(rays, source, &placed, key, threads)?;
+        let noise = |receiver: &Receiver| between(key, source.position(), receiver.position());
+        let arrived = self.arrivals(rays, source, &placed, key, noise, threads)?;
         let both = arrived.into_iter().zip(&placed);
         Ok(both
             .map(|(response, receiver)| self.record(response, receiver, key))
@@ -419,11 +380,12 @@ impl AcousticScene {
     /// The impulse response that belongs to an echogram: another turn of the head needs no new rays. Laws of microphones act as
     /// in [`Self::impulse_response`].
     ///
-    /// The microphones of an array hear the centre's early paths as plane waves here. A head that the scene does not know is
-    /// heard as the built-in one.
+    /// With the key of [`Self::impulse_response`] it has the same random arrivals. The microphones of an array hear the centre's
+    /// early paths as plane waves here. A head that the scene does not know is heard as the built-in one.
     pub fn respond(&self, echogram: Echogram, receiver: &Receiver, key: Key) -> ImpulseResponse {
         let receiver = &self.effects.placed(receiver);
-        self.record(self.arrive(echogram, receiver, None, key), receiver, key)
+        let noise = between(key, echogram.source, receiver.position());
+        self.record(self.arrive(echogram, receiver, None, noise), receiver, key)
     }
 
     /// What the laws of microphones make of a response.
@@ -459,13 +421,15 @@ impl AcousticScene {
         self.heads.check(receiver)
     }
 
-    /// The impulse responses up to the microphones, without their laws. Shape (receiver,).
+    /// The impulse responses up to the microphones, without their laws; `noise` keys the random arrivals at a receiver. Shape
+    /// (receiver,).
     pub(crate) fn arrivals(
         &self,
         rays: &RayScene,
         source: &Source,
         receivers: &[Receiver],
         key: Key,
+        noise: impl Fn(&Receiver) -> Key + Sync,
         threads: Threads,
     ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
         for receiver in receivers {
@@ -474,8 +438,10 @@ impl AcousticScene {
         let centres: Vec<Vec3> = receivers.iter().map(Receiver::position).collect();
         let echograms = self.echograms(rays, source, &centres, key, threads)?;
         Ok(threads.map(receivers.len(), |k| {
-            let early = self.early_of_microphones(rays, source, &receivers[k]);
-            self.arrive(echograms[k].clone(), &receivers[k], early.as_deref(), key)
+            let receiver = &receivers[k];
+            let early = self.early_of_microphones(rays, source, receiver);
+            let echogram = echograms[k].clone();
+            self.arrive(echogram, receiver, early.as_deref(), noise(receiver))
         }))
     }
 
@@ -501,7 +467,7 @@ impl AcousticScene {
         let mut echogram = echograms.into_iter().next().unwrap_or_default();
         memory.recall(&mut echogram);
         let early = self.early_of_microphones(rays, source, receiver);
-        Ok(self.arrive(echogram, receiver, early.as_deref(), key))
+        Ok(self.arrive(echogram, receiver, early.as_deref(), memory.noise))
     }
 
     /// The early paths of each microphone of an array; `None` where the centre's serve.
@@ -577,4 +543,10 @@ impl AcousticScene {
             echogram,
         }
     }
+}
+
+/// The key of the random arrivals from one place to another: tails of places apart have nothing in common.
+pub(crate) fn between(key: Key, source: Vec3, receiver: Vec3) -> Key {
+    let places = source.to_array().into_iter().chain(receiver.to_array());
+    places.fold(key, |key, x| key.child(u64::from((x + 0.0).to_bits())))
 }

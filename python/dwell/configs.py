@@ -106,6 +106,8 @@ class AcousticSettings(TypedDict, total=False):
     arrivals_per_s: float
     #: Whether small panels mirror only short waves.
     panel_size: bool
+    #: Whether surfaces absorb more of what grazes them; else all angles alike.
+    absorption_by_angle: bool
     #: Temperature, humidity, pressure.
     air: AirSettings
     #: Whether air absorbs.

@@ -74,9 +74,9 @@ impl<'a> Validator<'a> {
             // The way from the source, unfolded.
             let straight_m = images[k].distance(points[k]);
             let scattering = self.scene.scattering(material, &hit, cosine, straight_m);
-            let factors = material.kept.iter().zip(scattering);
-            for (e, (kept, scattering)) in energy.iter_mut().zip(factors) {
-                *e *= f64::from(*kept) * (1.0 - f64::from(scattering));
+            let factors = material.absorption.iter().zip(scattering);
+            for (e, (absorption, scattering)) in energy.iter_mut().zip(factors) {
+                *e *= f64::from(1.0 - absorption) * (1.0 - f64::from(scattering));
             }
             from = points[k];
             leaves_surface = true;

@@ -1,6 +1,7 @@
 //! The planes and edges of a house: side tables over its triangles, made once and shared by all worlds.
 
 mod cluster;
+mod depth;
 mod edges;
 mod panels;
 mod sets;
@@ -18,6 +19,24 @@ use glam::Vec3;
 pub const NO_PLANE: u32 = u32::MAX;
 /// Triangles between looks at whether the planes are still wanted.
 const TRIANGLES_PER_CHECK: usize = 512;
+/// Panels at least this large are walls of rooms, m².
+pub(crate) const WALL_M2: f32 = 4.0;
+
+/// The piece of a plane that a triangle belongs to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Panel {
+    /// 0 for triangles without a plane.
+    pub(crate) area_m2: f32,
+    /// How far from a wall it hangs, m; infinite for what does not, for walls and for what can move.
+    pub(crate) depth_m: f32,
+}
+
+impl Panel {
+    const NONE: Self = Self {
+        area_m2: 0.0,
+        depth_m: f32::INFINITY,
+    };
+}
 
 /// The planes of one moving part.
 #[derive(Clone, Debug)]
@@ -39,8 +58,8 @@ pub struct PlaneTable {
     /// Position of the first triangle of each placed mesh in `of_triangle`. Shape (placed,).
     first_triangle: Vec<u32>,
     of_triangle: Vec<u32>,
-    /// Area of the panel that each triangle belongs to, m². As `of_triangle`.
-    panel_m2: Vec<f32>,
+    /// The panel that each triangle belongs to. As `of_triangle`.
+    panels: Vec<Panel>,
     moving: Vec<Moving>,
     /// Planes of everything that never moves, the largest first.
     largest: Vec<u32>,
@@ -69,13 +88,17 @@ impl PlaneTable {
             .collect();
         let (mut at_start, planes) = cluster::cluster(&fixed);
         let mut of_triangle = vec![NO_PLANE; total];
-        let mut panel_m2 = vec![0.0; total];
+        let mut panels = vec![Panel::NONE; total];
         let areas = panels::areas(&fixed, &planes);
+        let depths = depth::depths(&fixed, &at_start, &planes, &areas);
         let mut edges = EdgeTable::new(sharp::find(&fixed, &planes));
-        for ((source, plane), area) in geometry.static_triangles.iter().zip(planes).zip(areas) {
+        for (k, source) in geometry.static_triangles.iter().enumerate() {
             let place = (first_triangle[source.placed as usize] + source.triangle) as usize;
-            of_triangle[place] = plane;
-            panel_m2[place] = area;
+            of_triangle[place] = planes[k];
+            panels[place] = Panel {
+                area_m2: areas[k],
+                depth_m: depths[k],
+            };
         }
         let mut largest: Vec<u32> = (0..at_start.len() as u32).collect();
         largest.sort_by(|a, b| {
@@ -99,7 +122,9 @@ impl PlaneTable {
             let (planes, of_part) = cluster::cluster(&corners);
             let base = first_triangle[structures + part.index()] as usize;
             let areas = panels::areas(&corners, &of_part);
-            panel_m2[base..base + areas.len()].copy_from_slice(&areas);
+            for (panel, area_m2) in panels[base..].iter_mut().zip(areas) {
+                panel.area_m2 = area_m2;
+            }
             edges.add_moving(part, sharp::find(&corners, &of_part));
             for (k, plane) in of_part.into_iter().enumerate() {
                 if plane != NO_PLANE {
@@ -121,7 +146,7 @@ impl PlaneTable {
             at_start,
             first_triangle,
             of_triangle,
-            panel_m2,
+            panels,
             moving,
             largest,
             edges,
@@ -153,10 +178,10 @@ impl PlaneTable {
         place.map_or(NO_PLANE, |place| self.of_triangle[place])
     }
 
-    /// The area of the panel that a hit lies in, m²; 0 where it has none.
-    pub(crate) fn panel_m2(&self, house: &House, hit: &Hit) -> f32 {
+    /// The panel that a hit lies in.
+    pub(crate) fn panel(&self, house: &House, hit: &Hit) -> Panel {
         let place = self.place_of(house, hit);
-        place.map_or(0.0, |place| self.panel_m2[place])
+        place.map_or(Panel::NONE, |place| self.panels[place])
     }
 
     /// Where the triangle of a hit stands in the tables.

@@ -1,6 +1,7 @@
 //! What a listener who moves on still knows of the tail.
 
 use crate::echogram::Echogram;
+use dwell_scene::random::Key;
 
 /// How far early sound stays alike, m.
 const NEAR_M: f64 = 0.3;
@@ -19,6 +20,8 @@ pub(crate) struct Memory<'a> {
     pub(crate) share: f64,
     /// Tells updates apart.
     pub(crate) update: u64,
+    /// The tail's random arrivals: as before, so that it does not boil.
+    pub(crate) noise: Key,
 }
 
 impl Memory<'_> {

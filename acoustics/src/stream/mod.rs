@@ -384,12 +384,7 @@ impl Stream {
         let scene = self.scene.as_heard(situation.effects);
         let receiver = &situation.receiver;
         if receiver.microphone_positions().is_none() {
-            response = scene.arrive(
-                response.echogram,
-                receiver,
-                None,
-                self.noise(situation.noise),
-            );
+            response = scene.arrive(response.echogram, receiver, None, situation.noise);
         }
         let most = voice.moved.followed.as_ref();
         let most = most.map(|_| self.config.moving_paths);
@@ -400,7 +395,7 @@ impl Stream {
     }
 
     /// What is random in how a source is heard.
-    fn noise(&self, source: u64) -> Key {
+    fn key_of(&self, source: u64) -> Key {
         self.key.child("source").child(source)
     }
 

@@ -6,6 +6,7 @@ use crate::echogram::Path;
 use crate::error::AcousticsError;
 use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
+use crate::scene::between;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Pose, State};
@@ -70,6 +71,7 @@ impl Stream {
             let Some(position) = position.or(last.map(|(source, _)| source)) else {
                 continue;
             };
+            let key = self.key_of(id);
             let mut now = Situation {
                 source: position,
                 receiver: receiver.clone(),
@@ -77,7 +79,10 @@ impl Stream {
                 overrides: state.overrides.clone(),
                 effects: *self.scene.effects(),
                 passing: false,
-                noise: id,
+                noise: heard.map_or_else(
+                    || between(key, position, receiver.position()),
+                    |(then, _)| then.noise,
+                ),
             };
             let changed = |then: &Situation| then.change(&now, &threshold);
             let change = heard.map_or(Change::Moved, |(then, _)| {
@@ -87,7 +92,6 @@ impl Stream {
                     then.change_while_ringing(&now, &threshold)
                 }
             });
-            let key = self.noise(id);
             // A blow on the table is heard as the one before it was: other sources' impulse responses serve as well.
             let known = || {
                 let others = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
@@ -109,8 +113,7 @@ impl Stream {
                     // The echogram stays that of the place where it was traced.
                     let mut turned = then.clone();
                     turned.receiver.pose.rotation = receiver.pose.rotation;
-                    turned.noise = id;
-                    let response = scene.arrive(echogram, &turned.receiver, None, key);
+                    let response = scene.arrive(echogram, &turned.receiver, None, turned.noise);
                     Some((turned, response))
                 }
                 _ => Some(if let Some(known) = known() {
@@ -131,11 +134,14 @@ impl Stream {
                             moved_m: then.moved_m(&now),
                             share: self.config.update_share,
                             update: self.block,
+                            noise: now.noise,
                         };
                         scene.arrive_again(rays, &source, receiver, &memory, key, threads)?
                     } else {
                         let receivers = std::slice::from_ref(receiver);
-                        let arrived = scene.arrivals(rays, &source, receivers, key, threads)?;
+                        let noise = |_: &Receiver| now.noise;
+                        let arrived =
+                            scene.arrivals(rays, &source, receivers, key, noise, threads)?;
                         arrived.into_iter().next().unwrap_or_default()
                     };
                     (now.clone(), response)

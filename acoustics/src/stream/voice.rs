@@ -6,6 +6,7 @@ use crate::fft::RealFft;
 use crate::laws::Effects;
 use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
+use dwell_scene::random::Key;
 use dwell_scene::{Address, Pose};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -22,8 +23,8 @@ pub(super) struct Situation {
     pub(super) effects: Effects,
     /// Whether large parts were on their way, so that the tail is partly remembered from where they were before.
     pub(super) passing: bool,
-    /// The source whose noise the tail has.
-    pub(super) noise: u64,
+    /// The tail's random arrivals: those between the places where it was first heard.
+    pub(super) noise: Key,
 }
 
 /// How a situation differs from another.

@@ -6,6 +6,7 @@ use crate::bands::{BAND_COUNT, Banded};
 use crate::directions::{CELL_COUNT, cell_of};
 use crate::directivity::Pattern;
 use crate::scene::AcousticScene;
+use crate::surface::Parts;
 use crate::transmission;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::math::sin_cos;
@@ -158,7 +159,6 @@ impl Walk<'_> {
             if self.through > 0.0 && material.passed.iter().any(|passed| *passed > 0.0) {
                 self.pass(&one, &hit, random.aside, beyond);
             }
-            multiply(&mut one.energy, &material.kept);
             let point = one.ray.at(hit.distance_m);
             let cosine = surface.normal.dot(one.ray.direction);
             let normal = if cosine > 0.0 {
@@ -169,12 +169,18 @@ impl Walk<'_> {
             let scattering =
                 self.scene
                     .scattering(material, &hit, cosine.abs(), f64::from(one.straight_m));
+            let parts = material.parts(cosine.abs(), &scattering);
             let start = point + normal * margin_m(point);
             if scattering.iter().any(|s| *s > 0.0) {
-                self.shine(start, normal, &one, &scattering, random.aside, chunk);
+                self.shine(start, normal, &one, &parts.scattered, random.aside, chunk);
             }
             let stream = random.of(&one);
-            let mean = one.energy.iter().sum::<f32>() / (BAND_COUNT as f32 * one.power);
+            let kept = parts.scattered.iter().zip(&parts.mirrored);
+            let kept = one.energy.iter().zip(kept);
+            let left: f32 = kept
+                .map(|(e, (scattered, mirrored))| e * (scattered + mirrored))
+                .sum();
+            let mean = left / (BAND_COUNT as f32 * one.power);
             if mean < self.roulette {
                 let survival = mean / self.roulette;
                 if survival < 1e-3 || stream.uniform_f32() >= survival {
@@ -182,7 +188,7 @@ impl Walk<'_> {
                 }
                 one.energy = one.energy.map(|e| e / survival);
             }
-            one.turn(start, normal, &scattering, stream);
+            one.turn(start, normal, &parts, stream);
         }
     }
 
@@ -192,7 +198,7 @@ impl Walk<'_> {
         start: Vec3,
         normal: Vec3,
         one: &Traveller,
-        scattering: &Banded,
+        scattered: &Banded,
         aside: &mut Stream,
         chunk: &mut Chunk,
     ) {
@@ -229,7 +235,7 @@ impl Walk<'_> {
                 multiply(&mut share, &passed.map(|p| p / LOOK_THROUGH));
             }
             let nearest = distance_m.max(NEAREST_M);
-            multiply(&mut share, scattering);
+            multiply(&mut share, scattered);
             let factor = 4.0 * cosine / (nearest * nearest);
             self.deposit(chunk, receiver, way_m, &share, factor, -direction);
         }
@@ -241,7 +247,8 @@ impl Walk<'_> {
             return;
         }
         // Nothing of furniture keeps rooms apart.
-        if self.scene.table().panel_m2(self.scene.house(), hit) < WALL_M2 {
+        let panel = self.scene.table().panel(self.scene.house(), hit);
+        if panel.area_m2 < WALL_M2 {
             return;
         }
         let Some(exit) = transmission::beyond(self.scene, self.rays, &one.ray, hit) else {
@@ -315,20 +322,20 @@ impl Walk<'_> {
 impl Traveller {
     /// Leaves a surface, scattered or mirrored.
     ///
-    /// The fraction of this ray's energy that is scattered is the chance: with it, both branches keep the sum over the bands,
-    /// and no band's weight can grow from reflection to reflection.
-    fn turn(&mut self, start: Vec3, normal: Vec3, scattering: &Banded, stream: &mut Stream) {
-        let all: f32 = self.energy.iter().sum();
-        let parts = self.energy.iter().zip(scattering);
-        let scattered_part: f32 = parts.map(|(e, s)| e * s).sum();
-        let scatter = (scattered_part / all).clamp(0.0, 1.0);
+    /// The fraction of what stays of this ray's energy that is scattered is the chance: with it, both branches keep the sum over the
+    /// bands, and no band's weight can grow from reflection to reflection.
+    fn turn(&mut self, start: Vec3, normal: Vec3, parts: &Parts, stream: &mut Stream) {
+        let part =
+            |of: &Banded| -> f32 { self.energy.iter().zip(of).map(|(e, part)| e * part).sum() };
+        let (scattered, mirrored) = (part(&parts.scattered), part(&parts.mirrored));
+        let scatter = (scattered / (scattered + mirrored)).clamp(0.0, 1.0);
         if scatter > 0.0 && stream.uniform_f32() < scatter {
-            multiply(&mut self.energy, &scattering.map(|s| s / scatter));
+            multiply(&mut self.energy, &parts.scattered.map(|s| s / scatter));
             self.ray = Ray::new(start, lambert(normal, stream));
             (self.scattered, self.mirrored, self.straight_m) = (true, false, 0.0);
         } else {
             let kept = 1.0 - scatter;
-            multiply(&mut self.energy, &scattering.map(|s| (1.0 - s) / kept));
+            multiply(&mut self.energy, &parts.mirrored.map(|m| m / kept));
             let direction = self.ray.direction;
             self.ray = Ray::new(start, direction - 2.0 * direction.dot(normal) * normal);
             self.mirrored = true;

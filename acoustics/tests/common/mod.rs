@@ -44,7 +44,8 @@ pub(crate) fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
     }
 }
 
-/// Settings without air, transmission or diffraction, with walls that mirror all waves alike, at 343.2 m/s.
+/// Settings without air, transmission or diffraction, with walls that mirror all waves and reflect at all angles alike, at
+/// 343.2 m/s.
 pub(crate) fn dry(rays: usize) -> AcousticConfig {
     AcousticConfig {
         rays,
@@ -52,6 +53,7 @@ pub(crate) fn dry(rays: usize) -> AcousticConfig {
         transmission: false,
         diffraction: false,
         panel_size: false,
+        absorption_by_angle: false,
         ..AcousticConfig::full()
     }
 }

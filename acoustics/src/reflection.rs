@@ -1,0 +1,150 @@
+//! What a surface keeps of a wave, by the angle at which it meets it.
+
+use crate::bands::Banded;
+
+/// The admittance that absorbs most over all angles: 1 / 1.567.
+const HIGHEST_ADMITTANCE: f64 = 0.638_163;
+/// Steps of Newton's method; the last half is for the flat top, where each only halves the error.
+const STEPS: usize = 40;
+/// The smallest cosine of incidence: nothing comes along the very surface.
+const GRAZING: f32 = 1e-4;
+
+/// The energy that stays after a reflection.
+///
+/// A table's absorption coefficients are measured with sound from all sides. Here a surface is a real admittance in every band,
+/// the one whose absorption from all sides is the table's: what grazes it is absorbed more, what meets it head on less. In a
+/// room of parallel walls all directions then decay nearly alike, as its modes do (P. M. Morse, K. U. Ingard, *Theoretical
+/// Acoustics* (1968), section 9.5), where one coefficient for all angles leaves the sound along its length.
+///
+/// # Source
+/// H. Kuttruff, *Room Acoustics* (5th ed., 2009), equations 2.22 (one angle) and 2.42 (all angles) for real impedances. 0.951 is
+/// the most that such a surface can absorb; above it, the rest is taken off at all angles alike. J. H. Rindel, Applied
+/// Acoustics 38, 223 (1993) has programs for rooms reflect so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Reflection {
+    /// Of air over the surface's impedance; 0 for what does not depend on the angle. Shape (band,).
+    admittance: Banded,
+    /// What is kept where the admittance keeps all. Shape (band,).
+    most: Banded,
+}
+
+impl Reflection {
+    /// Of a surface that absorbs nothing.
+    pub(crate) const HARD: Self = Self {
+        admittance: [0.0; crate::bands::BAND_COUNT],
+        most: [1.0; crate::bands::BAND_COUNT],
+    };
+
+    /// That of `absorption` (from 0 to 1) at all angles alike.
+    pub(crate) fn uniform(absorption: &Banded) -> Self {
+        Self {
+            most: absorption.map(|a| 1.0 - a),
+            ..Self::HARD
+        }
+    }
+
+    /// That of a surface which absorbs `absorption` (from 0 to 1) of sound from all sides.
+    pub(crate) fn by_angle(absorption: &Banded) -> Self {
+        let highest = from_all_sides(HIGHEST_ADMITTANCE);
+        let rest = |a: f32| (1.0 - f64::from(a)) / (1.0 - highest);
+        Self {
+            admittance: absorption.map(|a| admittance(f64::from(a).min(highest)) as f32),
+            most: absorption.map(|a| rest(a).min(1.0) as f32),
+        }
+    }
+
+    /// The part of the energy that is kept, at a cosine of incidence. Shape (band,).
+    pub(crate) fn kept(&self, cosine: f32) -> Banded {
+        let cosine = cosine.max(GRAZING);
+        std::array::from_fn(|band| {
+            let admittance = self.admittance[band];
+            let pressure = (cosine - admittance) / (cosine + admittance);
+            self.most[band] * pressure * pressure
+        })
+    }
+}
+
+/// The absorption of an admittance over all angles.
+fn from_all_sides(admittance: f64) -> f64 {
+    8.0 * admittance * admittance * bracket(admittance)
+}
+
+/// What stands in the equation's brackets.
+fn bracket(b: f64) -> f64 {
+    1.0 + 1.0 / b - b / (1.0 + b) + 2.0 * libm::log(b / (1.0 + b))
+}
+
+/// The lower of the two admittances that absorb so much over all angles.
+fn admittance(absorption: f64) -> f64 {
+    // The curve bends downwards: from the left, Newton's steps never go too far.
+    let mut b = absorption / 8.0;
+    if b <= 0.0 {
+        return 0.0;
+    }
+    for _ in 0..STEPS {
+        let slope = 16.0 * b * bracket(b) - 8.0 / ((1.0 + b) * (1.0 + b));
+        if slope <= 1e-9 {
+            break;
+        }
+        b = (b + (absorption - from_all_sides(b)) / slope).clamp(0.0, HIGHEST_ADMITTANCE);
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bands::BAND_COUNT;
+
+    /// The mean of a function of the cosine over sound from all sides, by the midpoint rule.
+    fn over_all_sides(f: impl Fn(f64) -> f64) -> f64 {
+        let n = 200_000;
+        let cosines = (0..n).map(|k| (f64::from(k) + 0.5) / f64::from(n));
+        cosines.map(|c| f(c) * 2.0 * c).sum::<f64>() / f64::from(n)
+    }
+
+    #[test]
+    fn what_comes_from_all_sides_is_absorbed_as_the_table_has_it() {
+        let absorption: Banded = [0.0, 0.01, 0.1, 0.3, 0.6, 0.9, 0.97, 1.0];
+        let reflection = Reflection::by_angle(&absorption);
+        for (band, wanted) in absorption.into_iter().map(f64::from).enumerate() {
+            let absorbed = over_all_sides(|c| 1.0 - f64::from(reflection.kept(c as f32)[band]));
+            assert!((absorbed - wanted).abs() < 2e-4, "{wanted}: {absorbed}");
+        }
+        assert_eq!(reflection.kept(0.3)[0], 1.0);
+        assert_eq!(reflection.kept(0.3)[7], 0.0);
+    }
+
+    /// A tube measures half of what a reverberant room does, where little is absorbed (Kuttruff, section 2.5): 4 of 8 admittances.
+    #[test]
+    fn head_on_hard_walls_absorb_half_of_it() {
+        let kept = Reflection::by_angle(&[0.002; BAND_COUNT]).kept(1.0)[3];
+        assert!((f64::from(1.0 - kept) / 0.002 - 0.5).abs() < 2e-3, "{kept}");
+    }
+
+    #[test]
+    fn more_is_absorbed_the_flatter_it_comes() {
+        let reflection = Reflection::by_angle(&[0.2; BAND_COUNT]);
+        let mut before = 1.0;
+        for k in (3..=20).rev() {
+            let kept = reflection.kept(0.05 * k as f32)[0];
+            assert!(kept < before, "{k}");
+            before = kept;
+        }
+    }
+
+    #[test]
+    fn along_a_surface_numbers_stay_numbers() {
+        for absorption in [0.0, 1e-30, 0.5, 1.0] {
+            for reflection in [
+                Reflection::by_angle(&[absorption; BAND_COUNT]),
+                Reflection::uniform(&[absorption; BAND_COUNT]),
+            ] {
+                for cosine in [0.0, 1e-20, 1.0] {
+                    let kept = reflection.kept(cosine)[0];
+                    assert!((0.0..=1.0).contains(&kept), "{absorption} {cosine}: {kept}");
+                }
+            }
+        }
+    }
+}

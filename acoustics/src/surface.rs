@@ -1,0 +1,85 @@
+//! What materials do to sound.
+
+use crate::bands::{self, BAND_COUNT, Banded};
+use crate::config::AcousticConfig;
+use crate::reflection::Reflection;
+use dwell_scene::{House, Material, MaterialId, State};
+
+/// What a material does to sound energy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Surface {
+    /// Energy that sound from all sides loses in a reflection.
+    pub(crate) absorption: Banded,
+    pub(crate) reflection: Reflection,
+    /// Fraction of what stays that is scattered.
+    pub(crate) scattering: Banded,
+    /// Energy that passes through, from 0 to 1.
+    pub(crate) passed: Banded,
+}
+
+/// What a reflection makes of a wave's energy. Shapes (band,).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parts {
+    pub(crate) scattered: Banded,
+    pub(crate) mirrored: Banded,
+}
+
+impl Surface {
+    pub(crate) const HARD: Self = Self {
+        absorption: [0.0; BAND_COUNT],
+        reflection: Reflection::HARD,
+        scattering: [0.0; BAND_COUNT],
+        passed: [0.0; BAND_COUNT],
+    };
+
+    pub(crate) fn new(
+        house: &House,
+        state: Option<&State>,
+        id: MaterialId,
+        config: &AcousticConfig,
+    ) -> Self {
+        let material = &house.materials[id];
+        let (absorption, scattering, loss_db) = match state {
+            Some(state) => (
+                state.absorption(house, id),
+                state.scattering(house, id),
+                state.transmission_loss_db(house, id),
+            ),
+            None => (
+                material.absorption.clone(),
+                material.scattering.clone(),
+                material.transmission_loss_db.clone(),
+            ),
+        };
+        let scattering = bands::sample(&scattering).map(|s| s.clamp(0.0, 1.0));
+        let loss_db = bands::sample(&loss_db);
+        let absorption = bands::sample(&absorption).map(|a| a.clamp(0.0, 1.0));
+        Self {
+            absorption,
+            reflection: if config.absorption_by_angle {
+                Reflection::by_angle(&absorption)
+            } else {
+                Reflection::uniform(&absorption)
+            },
+            scattering,
+            passed: loss_db.map(|db| {
+                if db >= Material::OPAQUE_TO_SOUND_DB {
+                    0.0
+                } else {
+                    libm::powf(10.0, -db / 10.0)
+                }
+            }),
+        }
+    }
+
+    /// What is left of a wave that meets it with a cosine of incidence where so much is scattered.
+    ///
+    /// What is scattered forgets the angle that it came at, so that ways there and back lose alike.
+    pub(crate) fn parts(&self, cosine: f32, scattering: &Banded) -> Parts {
+        let kept = self.reflection.kept(cosine);
+        Parts {
+            scattered: std::array::from_fn(|b| (1.0 - self.absorption[b]) * scattering[b]),
+            mirrored: std::array::from_fn(|b| kept[b] * (1.0 - scattering[b])),
+        }
+    }
+}
