@@ -17,7 +17,7 @@ const GRAZING: f32 = 1e-4;
 /// Acoustics* (1968), section 9.5), where one coefficient for all angles leaves the sound along its length.
 ///
 /// # Source
-/// H. Kuttruff, *Room Acoustics* (5th ed., 2009), equations 2.22 (one angle) and 2.42 (all angles) for real impedances. 0.951 is
+/// H. Kuttruff, *Room Acoustics* (5th ed., 2009), sections 2.3 (one angle) and 2.5 (all angles) for real impedances. 0.951 is
 /// the most that such a surface can absorb; above it, the rest is taken off at all angles alike. J. H. Rindel, Applied
 /// Acoustics 38, 223 (1993) has programs for rooms reflect so.
 #[derive(Clone, Copy, Debug, PartialEq)]
