@@ -24,6 +24,10 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Places within a cell of this size have the same random arrivals, m.
+const CELL_M: f64 = 0.1;
+/// Where cells begin: off the round numbers that things are put at.
+const CELL_START: f64 = 0.318;
 /// How far sound goes from a panel to what it meets next, m: the mean free path of a living room.
 const NEXT_WAY_M: f64 = 3.0;
 
@@ -545,8 +549,10 @@ impl AcousticScene {
     }
 }
 
-/// The key of the random arrivals from one place to another: tails of places apart have nothing in common.
+/// The key of the random arrivals from one place to another: tails of places apart have nothing in common, and nobody who
+/// stands a hair elsewhere hears others.
 pub(crate) fn between(key: Key, source: Vec3, receiver: Vec3) -> Key {
     let places = source.to_array().into_iter().chain(receiver.to_array());
-    places.fold(key, |key, x| key.child(u64::from((x + 0.0).to_bits())))
+    let cell = |x: f32| (f64::from(x) / CELL_M + CELL_START).floor() as i64;
+    places.fold(key, |key, x| key.child(cell(x).cast_unsigned()))
 }

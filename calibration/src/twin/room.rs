@@ -219,6 +219,9 @@ fn config(bundle: &Bundle, options: &Options, rate_hz: u32) -> AcousticConfig {
             humidity_pct: air.humidity_pct.unwrap_or(50.0),
             pressure_kpa: air.pressure_pa.unwrap_or(101_325.0) / 1000.0,
         },
+        // One number for a surface's early reflections and for the decay: with two models of it, what was measured early and
+        // late would ask for different ones.
+        absorption_by_angle: false,
         ..AcousticConfig::full()
     }
 }
