@@ -1,0 +1,79 @@
+//! Small panels: alone, and before a wall.
+
+#![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
+
+mod common;
+
+use common::{Hall, dry, material, pieces, rectangle};
+use dwell_acoustics::AcousticConfig;
+use dwell_scene::random::Key;
+use glam::Vec3;
+
+/// The first-order reflection of a hard panel of 1 m², 3 m away, at 45 degrees; `depth_m`: how far before a wall it hangs.
+/// Energy over that of a large mirror. Shape (band,).
+fn mirrored(depth_m: Option<f32>) -> [f32; 8] {
+    let hard = material(0.0, 0.0);
+    let panel = rectangle(Vec3::new(-0.5, -0.5, 0.0), Vec3::X, Vec3::Y, 1);
+    let mut items = vec![(panel, hard.clone())];
+    if let Some(depth_m) = depth_m {
+        let corner = Vec3::new(-4.0, -4.0, -depth_m);
+        items.push((
+            rectangle(corner, Vec3::X * 8.0, Vec3::Y * 8.0, 1),
+            hard.clone(),
+        ));
+    }
+    let config = AcousticConfig {
+        panel_size: true,
+        ..dry(0)
+    };
+    let hall = Hall::new(pieces(items), config);
+    let way_m = 3.0_f32;
+    let across = way_m * 0.5_f32.sqrt();
+    let (source, ear) = (
+        Vec3::new(-across, 0.0, across),
+        Vec3::new(across, 0.0, across),
+    );
+    let found = hall.echogram(source, ear, Key::root(0));
+    let path = found
+        .paths
+        .iter()
+        .find(|path| path.order() == 1 && (path.length_m - 6.0).abs() < 1e-4);
+    path.unwrap().energy.map(|e| e * 4.0 * way_m * way_m)
+}
+
+/// A panel in free air mirrors with the square of the frequency below its limit (Rindel 1986: `f_g = c a / (2 S cos theta)`,
+/// where `a` is 3 m here). Before a wall it mirrors what is long against the depth, too, by `exp(-(k h cos theta)^2)` of what
+/// goes around it; far before it, it is as in free air.
+#[test]
+fn a_panel_at_a_wall_mirrors_long_waves() {
+    let cosine = 0.5_f64.sqrt();
+    let limit_hz = 343.2 * 3.0 / (2.0 * cosine);
+    let alone = |hz: f64| (hz / limit_hz).min(1.0).powi(2);
+    let (free, near, middle, far) = (
+        mirrored(None),
+        mirrored(Some(0.05)),
+        mirrored(Some(0.3)),
+        mirrored(Some(1.2)),
+    );
+    for (band, hz) in [63.0, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0]
+        .into_iter()
+        .enumerate()
+    {
+        let behind = |depth_m: f64| {
+            let height = std::f64::consts::TAU * hz / 343.2 * depth_m * cosine;
+            alone(hz) + (1.0 - alone(hz)) * (-height * height).exp()
+        };
+        for (found, wanted) in [
+            (free, alone(hz)),
+            (near, behind(0.05)),
+            (middle, behind(0.3)),
+            (far, alone(hz)),
+        ] {
+            assert!(
+                (f64::from(found[band]) - wanted).abs() < 0.01,
+                "{hz} Hz: {}, {wanted}",
+                found[band]
+            );
+        }
+    }
+}
