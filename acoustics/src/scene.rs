@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// Places within a cell of this size have the same random arrivals, m.
 const CELL_M: f64 = 0.1;
 /// Where cells begin: off the round numbers that things are put at.
-const CELL_START: f64 = 0.318;
+const CELL_START: f64 = 0.32;
 /// How far sound goes from a panel to what it meets next, m: the mean free path of a living room.
 const NEXT_WAY_M: f64 = 3.0;
 
