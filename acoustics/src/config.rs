@@ -36,7 +36,8 @@ pub struct AcousticConfig {
     pub max_error: f64,
     /// Random arrivals that make up a second of the tail's pressure; 500 to 100,000. Denser ones cannot be told apart.
     pub arrivals_per_s: f64,
-    /// Whether panels below 4 m² mirror only short waves and scatter long ones, but for those that hang at a wall.
+    /// Whether panels below 4 m² mirror only short waves and scatter long ones, but for those that hang at a wall or lean out
+    /// of one.
     pub panel_size: bool,
     /// Whether surfaces absorb more of what grazes them and less of what meets them head on; their tables' coefficients are
     /// for sound from all sides. Without it they hold for every angle.

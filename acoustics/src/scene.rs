@@ -172,13 +172,12 @@ impl AcousticScene {
     /// A panel that is small against the wave scatters what it is too small to mirror. Images and rays share this rule, so that
     /// together they keep all energy; therefore the way after the reflection, which rays do not know yet, counts as
     /// [`NEXT_WAY_M`]. Walls end at other walls, where their images go on: they mirror all waves. What goes around a panel that
-    /// hangs at a wall meets the wall: waves that are long against the depth between find one mirror.
+    /// hangs at a wall, or leans out of one as folds do, meets the wall: waves that are long against the heights find one mirror.
     ///
     /// # Source
     /// J. H. Rindel, *Attenuation of sound reflections due to diffraction*, Proc. Nordic Acoustical Meeting 86, 257 (1986): below
     /// `f_g = c a / (2 S cos theta)` with `a = 2 d1 d2 / (d1 + d2)`, the amplitude falls with `f / f_g`. W. S. Ament, Proc. IRE 41,
-    /// 142 (1953): a surface whose height varies by sigma (rms) mirrors `exp(-(2 k sigma cos theta)^2)` of the energy; two
-    /// levels a depth h apart have sigma = h / 2.
+    /// 142 (1953): a surface whose height varies by sigma (rms) mirrors `exp(-(2 k sigma cos theta)^2)` of the energy.
     pub(crate) fn scattering(
         &self,
         material: &Surface,
@@ -198,12 +197,12 @@ impl AcousticScene {
         let way_m = 2.0 * straight_m * NEXT_WAY_M / (straight_m + NEXT_WAY_M);
         let speed = self.config.air.speed_of_sound_m_s();
         let limit_hz = (speed * way_m) as f32 / (2.0 * panel.area_m2 * cosine).max(1e-6);
-        let depth = std::f32::consts::TAU / speed as f32 * panel.depth_m * cosine;
+        let rough_s = 2.0 * std::f32::consts::TAU / speed as f32 * panel.relief_m * cosine;
         for (s, centre_hz) in scattering.iter_mut().zip(NOMINAL_CENTRES_HZ) {
             let ratio = centre_hz / limit_hz;
             if ratio < 1.0 {
-                let depth = depth * centre_hz;
-                let behind = libm::expf(-depth * depth);
+                let rough = rough_s * centre_hz;
+                let behind = libm::expf(-rough * rough);
                 let mirrored = ratio * ratio + (1.0 - ratio * ratio) * behind;
                 *s = 1.0 - (1.0 - *s) * mirrored;
             }

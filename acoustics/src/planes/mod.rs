@@ -1,9 +1,9 @@
 //! The planes and edges of a house: side tables over its triangles, made once and shared by all worlds.
 
 mod cluster;
-mod depth;
 mod edges;
 mod panels;
+mod relief;
 mod sets;
 mod sharp;
 
@@ -27,14 +27,15 @@ pub(crate) const WALL_M2: f32 = 4.0;
 pub(crate) struct Panel {
     /// 0 for triangles without a plane.
     pub(crate) area_m2: f32,
-    /// How far from a wall it hangs, m; infinite for what does not, for walls and for what can move.
-    pub(crate) depth_m: f32,
+    /// How far it stands out of a wall behind or around it, rms over both, m; infinite for what has no wall near, for walls and
+    /// for what can move.
+    pub(crate) relief_m: f32,
 }
 
 impl Panel {
     const NONE: Self = Self {
         area_m2: 0.0,
-        depth_m: f32::INFINITY,
+        relief_m: f32::INFINITY,
     };
 }
 
@@ -89,15 +90,15 @@ impl PlaneTable {
         let (mut at_start, planes) = cluster::cluster(&fixed);
         let mut of_triangle = vec![NO_PLANE; total];
         let mut panels = vec![Panel::NONE; total];
-        let areas = panels::areas(&fixed, &planes);
-        let depths = depth::depths(&fixed, &at_start, &planes, &areas);
+        let pieces = panels::find(&fixed, &planes);
+        let reliefs = relief::reliefs(&fixed, &at_start, &planes, &pieces);
         let mut edges = EdgeTable::new(sharp::find(&fixed, &planes));
         for (k, source) in geometry.static_triangles.iter().enumerate() {
             let place = (first_triangle[source.placed as usize] + source.triangle) as usize;
             of_triangle[place] = planes[k];
             panels[place] = Panel {
-                area_m2: areas[k],
-                depth_m: depths[k],
+                area_m2: pieces.area_m2[k],
+                relief_m: reliefs[k],
             };
         }
         let mut largest: Vec<u32> = (0..at_start.len() as u32).collect();
@@ -121,8 +122,8 @@ impl PlaneTable {
                 .collect();
             let (planes, of_part) = cluster::cluster(&corners);
             let base = first_triangle[structures + part.index()] as usize;
-            let areas = panels::areas(&corners, &of_part);
-            for (panel, area_m2) in panels[base..].iter_mut().zip(areas) {
+            let pieces = panels::find(&corners, &of_part);
+            for (panel, area_m2) in panels[base..].iter_mut().zip(pieces.area_m2) {
                 panel.area_m2 = area_m2;
             }
             edges.add_moving(part, sharp::find(&corners, &of_part));

@@ -9,10 +9,20 @@ use glam::Vec3;
 /// Triangles of one plane whose boxes come this near are one panel, m.
 const GAP_M: f32 = 0.005;
 
-/// The area of the panel that each triangle belongs to, m²; 0 for triangles without a plane. Shape (triangle,).
+/// The panels of a set of triangles.
+#[derive(Debug)]
+pub(super) struct Panels {
+    /// The panel that each triangle belongs to, named by one of its triangles; triangles without a plane by themselves. Shape
+    /// (triangle,).
+    pub(super) of_triangle: Vec<usize>,
+    /// The area of that panel, m²; 0 for triangles without a plane. Shape (triangle,).
+    pub(super) area_m2: Vec<f32>,
+}
+
+/// Joins triangles to panels.
 ///
 /// Touching is judged by boxes along the world's axes: panels that stand askew and close together may count as one.
-pub(super) fn areas(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<f32> {
+pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Panels {
     let boxes: Vec<Aabb> = corners
         .iter()
         .map(|corners| Aabb::from_points(corners.iter().copied()).grown(0.5 * GAP_M))
@@ -42,20 +52,21 @@ pub(super) fn areas(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<f32> {
             }
         }
     }
+    let roots: Vec<usize> = (0..corners.len()).map(|k| sets.root(k)).collect();
     let mut total = vec![0.0_f64; corners.len()];
     for &k in &order {
-        let [a, b, c] = corners[k].map(Vec3::as_dvec3);
-        total[sets.root(k)] += 0.5 * (b - a).cross(c - a).length();
+        total[roots[k]] += area_m2(&corners[k]);
     }
-    (0..corners.len())
-        .map(|k| {
-            if of_triangle[k] == NO_PLANE {
-                0.0
-            } else {
-                total[sets.root(k)] as f32
-            }
-        })
-        .collect()
+    Panels {
+        area_m2: roots.iter().map(|root| total[*root] as f32).collect(),
+        of_triangle: roots,
+    }
+}
+
+/// The area of a triangle, m².
+pub(super) fn area_m2(corners: &[Vec3; 3]) -> f64 {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    0.5 * (b - a).cross(c - a).length()
 }
 
 #[cfg(test)]
@@ -79,7 +90,7 @@ mod tests {
         corners.extend(square(2.01, 0.5));
         corners.extend(square(2.5, 0.1));
         let of_triangle = [0, 0, 0, 0, 0, 0, 1, NO_PLANE];
-        let found = areas(&corners, &of_triangle);
+        let found = find(&corners, &of_triangle).area_m2;
         for (k, wanted) in [2.0, 2.0, 2.0, 2.0, 0.25, 0.25, 0.005, 0.0]
             .into_iter()
             .enumerate()
@@ -91,7 +102,7 @@ mod tests {
     #[test]
     fn a_wall_of_many_triangles_with_loose_corners_is_one_panel() {
         let corners: Vec<[Vec3; 3]> = (0..40).flat_map(|k| square(0.1 * k as f32, 0.1)).collect();
-        let found = areas(&corners, &vec![0; corners.len()]);
+        let found = find(&corners, &vec![0; corners.len()]).area_m2;
         assert!(found.iter().all(|area| (area - 0.4).abs() < 1e-4));
     }
 }
