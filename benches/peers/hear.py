@@ -3,8 +3,9 @@
     .venv/bin/python benches/peers/hear.py [--rlr]
 
 A room of 9.7 x 5.5 x 2.7 m with the absorption of a measured laboratory, one source, one receiver,
-one thread each. Every program hears it several times with other random rays; the spread of energies
-of 10 ms between 20 and 50, 50 and 200, 200 and 500 ms is its noise. See README.md beside this.
+one thread each. Every program hears it several times with other random rays. Its noise is how far
+the measures of ISO 3382-1 spread, and energies of 10 ms between 20 and 50, 50 and 200, 200 and
+500 ms. See README.md beside this.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from typing import Any
 import numpy as np
 from run import environment, last_line
 
+from dwell import measures
+
 HERE = Path(__file__).resolve().parent
 PEERS = {
     "pyroomacoustics": "pyroomacoustics==0.10.1",
@@ -27,10 +30,19 @@ PEERS = {
 RAYS = {
     "dwell": (300, 1000, 3000, 10_000),
     "pyroomacoustics": (1000, 3000, 10_000, 30_000),
-    "rlr": (300, 1000, 3000, 10_000),
+    "rlr": (300, 1000, 5000, 10_000),
 }
 WINDOWS_MS = ((20, 50), (50, 200), (200, 500))
 STEP_MS = 10
+#: Measures by octave from 250 Hz to 4 kHz: their names here and in a row of measures, and whether
+#: their spread is told over their mean.
+MEASURES = (
+    ("T30", "t30_s", True),
+    ("EDT", "edt_s", True),
+    ("C80, dB", "c80_db", False),
+    ("D50", "d50", False),
+)
+NOISES = [name for name, _, _ in MEASURES] + [f"{a} to {b} ms" for a, b in WINDOWS_MS]
 SCENE: dict[str, Any] = {
     "name": "laboratory",
     "fs": 48_000,
@@ -50,13 +62,26 @@ SCENE: dict[str, Any] = {
 }
 
 
-def noise(responses: np.ndarray) -> list[float]:
+def of_energies(responses: np.ndarray) -> list[float]:
     """Relative standard deviation of energies of 10 ms, the mean over each window."""
     step = SCENE["fs"] * STEP_MS // 1000
     count = responses.shape[1] // step
     energy = (responses[:, : count * step].astype(np.float64) ** 2).reshape(-1, count, step).sum(2)
     spread = energy.std(0, ddof=1) / np.maximum(energy.mean(0), 1e-30)
     return [float(spread[a // STEP_MS : b // STEP_MS].mean()) for a, b in WINDOWS_MS]
+
+
+def of_measures(responses: np.ndarray) -> list[float]:
+    """Standard deviation of each measure, the mean over octaves; dwell measures all programs."""
+    heard = [measures.of_response(response, SCENE["fs"]) for response in responses]
+    spreads = []
+    for _, key, relative in MEASURES:
+        octaves = [row for row in heard[0] if 200 < float(row["centre_hz"] or 0) < 5000]
+        places = [heard[0].index(row) for row in octaves]
+        values = np.array([[rows[k][key] for k in places] for rows in heard], np.float64)
+        spread = values.std(0, ddof=1)
+        spreads.append(float(np.mean(spread / values.mean(0) if relative else spread)))
+    return spreads
 
 
 def heard(python: str, name: str, folder: Path, rays: int, times: int) -> dict[str, Any] | str:
@@ -75,17 +100,17 @@ def heard(python: str, name: str, folder: Path, rays: int, times: int) -> dict[s
         return {
             "rays": rays,
             "s": float(np.median(file["s"])),
-            "noise": noise(file["ir"]),
+            "noise": of_measures(file["ir"]) + of_energies(file["ir"]),
         }
 
 
-def seconds_at(curve: list[dict[str, Any]], window: int, wanted: float) -> float:
+def seconds_at(curve: list[dict[str, Any]], which: int, wanted: float) -> float:
     """Seconds after which a program has a noise: along its curve, beyond its ends with the root."""
     seconds = np.log([one["s"] for one in curve])
-    spread = np.log([one["noise"][window] for one in curve])
-    if wanted > curve[0]["noise"][window]:
+    spread = np.log([one["noise"][which] for one in curve])
+    if wanted > curve[0]["noise"][which]:
         return float(np.exp(seconds[0] + 2 * (spread[0] - np.log(wanted))))
-    if wanted < curve[-1]["noise"][window]:
+    if wanted < curve[-1]["noise"][which]:
         return float(np.exp(seconds[-1] + 2 * (spread[-1] - np.log(wanted))))
     return float(np.exp(np.interp(-np.log(wanted), -spread, seconds)))
 
@@ -115,29 +140,22 @@ def main() -> int:
                 missing[name] = f"it cannot hear: {one}"
             else:
                 curve.append(one)
-    windows = [f"{a} to {b} ms" for a, b in WINDOWS_MS]
-    print("| program | rays | s | " + " | ".join(windows) + " |")
-    print("| --- " * (3 + len(windows)) + "|")
+    print("| program | rays | s | " + " | ".join(NOISES) + " |")
+    print("| --- " * (3 + len(NOISES)) + "|")
     for name, curve in curves.items():
         for one in curve:
             spreads = " | ".join(f"{x:.3f}" for x in one["noise"])
             print(f"| {name} | {one['rays']:,} | {one['s']:.3f} | {spreads} |")
     for name in names:
-        if name not in missing:
-            ratios = []
-            for window in range(len(windows)):
-                reached = [one["noise"][window] for one in curves[name]]
-                ratios.append(
-                    [
-                        one["s"] / seconds_at(curves["dwell"], window, spread)
-                        for one, spread in zip(curves[name], reached, strict=True)
-                    ]
-                )
-            told = "; ".join(
-                f"{windows[k]}: " + ", ".join(f"{x:.2g}" for x in row)
-                for k, row in enumerate(ratios)
-            )
-            print(f"\ndwell is so many times as fast as {name} at its noise: {told}")
+        if name in missing:
+            continue
+        print(f"\ndwell is so many times as fast as {name} at its noise, by {name}'s rays:")
+        for which, noise in enumerate(NOISES):
+            ratios = [
+                one["s"] / seconds_at(curves["dwell"], which, one["noise"][which])
+                for one in curves[name]
+            ]
+            print(f"  {noise}: " + ", ".join(f"{ratio:.2g}" for ratio in ratios))
     for name, why in missing.items():
         print(f"{name} is missing: {why}")
     (folder / "figures.json").write_text(json.dumps(curves), "utf-8")
