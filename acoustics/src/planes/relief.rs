@@ -150,7 +150,7 @@ mod tests {
         check(&corners, &[far, 0.025, 0.3, far, far]);
     }
 
-    /// The heights of a panel that stands in its wall, as one face of a fold does, are even from -h / 2 to h / 2: h² / 12 rms.
+    /// The heights of a panel that stands in its wall, as one face of a fold does, are even from -h / 2 to h / 2: h / sqrt(12) rms.
     #[test]
     fn panels_that_lean_out_of_a_wall_are_as_rough_as_they_are_high() {
         let mut corners = Vec::new();
