@@ -190,12 +190,12 @@ fn cut() -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use ogg::{PacketWriteEndInfo, PacketWriter};
 
     /// A real file's packets: three headers, then sound.
-    fn packets() -> Vec<Vec<u8>> {
+    pub(in super::super) fn packets() -> Vec<Vec<u8>> {
         let file = include_bytes!("../../tests/data/tone.ogg");
         let mut reader = PacketReader::new(Cursor::new(&file[..]));
         let mut packets = Vec::new();
@@ -206,10 +206,10 @@ mod tests {
         packets
     }
 
-    /// A whole file with right check sums, whose header `which` is `header`.
-    fn file_with(which: usize, header: Vec<u8>) -> Vec<u8> {
+    /// A whole file with right check sums, whose packet `which` is `packet`.
+    pub(in super::super) fn file_with(which: usize, packet: Vec<u8>) -> Vec<u8> {
         let mut packets = packets();
-        packets[which] = header;
+        packets[which] = packet;
         let mut bytes = Vec::new();
         let mut writer = PacketWriter::new(&mut bytes);
         let last = packets.len() - 1;
