@@ -74,11 +74,10 @@ def of_energies(responses: np.ndarray) -> list[float]:
 def of_measures(responses: np.ndarray) -> list[float]:
     """Standard deviation of each measure, the mean over octaves; dwell measures all programs."""
     heard = [measures.of_response(response, SCENE["fs"]) for response in responses]
+    octaves = [k for k, row in enumerate(heard[0]) if 200 < float(row["centre_hz"] or 0) < 5000]
     spreads = []
     for _, key, relative in MEASURES:
-        octaves = [row for row in heard[0] if 200 < float(row["centre_hz"] or 0) < 5000]
-        places = [heard[0].index(row) for row in octaves]
-        values = np.array([[rows[k][key] for k in places] for rows in heard], np.float64)
+        values = np.array([[rows[k][key] for k in octaves] for rows in heard], np.float64)
         spread = values.std(0, ddof=1)
         spreads.append(float(np.mean(spread / values.mean(0) if relative else spread)))
     return spreads

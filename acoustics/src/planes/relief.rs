@@ -19,8 +19,8 @@ struct Wall<'a> {
     bounds: Aabb,
 }
 
-/// How far the panel of each triangle stands out of the wall that it is nearest to, m, as [`of_panel`] has it; infinite where no
-/// wall is near, and for walls. Shape (triangle,).
+/// How far the panel of each triangle stands out of the wall that it stands least out of, m, as [`of_panel`] has it; infinite
+/// where no wall is near, and for walls. Shape (triangle,).
 pub(super) fn reliefs(
     corners: &[[Vec3; 3]],
     planes: &[Plane],
@@ -33,7 +33,6 @@ pub(super) fn reliefs(
         .map(|k| (panels.of_triangle[k], k))
         .collect();
     small.sort_unstable();
-    let mut along: Vec<Option<Vec<usize>>> = planes.iter().map(|_| None).collect();
     let mut reliefs = vec![f32::INFINITY; corners.len()];
     let mut pace = Pace::new(TRIANGLES_PER_CHECK);
     let mut pieces = Vec::new();
@@ -43,14 +42,11 @@ pub(super) fn reliefs(
             pace.turn();
             pieces.push(corners[*k]);
         }
-        let own = of_triangle[panel[0].1] as usize;
-        let along = along[own].get_or_insert_with(|| {
-            let cosine = |wall: &Wall<'_>| wall.plane.normal.dot(planes[own].normal).abs();
-            (0..walls.len())
-                .filter(|w| cosine(&walls[*w]) > LEAST_COS)
-                .collect()
-        });
-        let relief_m = of_panel(&pieces, along.iter().map(|w| &walls[*w]));
+        let own = &planes[of_triangle[panel[0].1] as usize];
+        let along = walls
+            .iter()
+            .filter(|wall| wall.plane.normal.dot(own.normal).abs() > LEAST_COS);
+        let relief_m = of_panel(&pieces, along);
         for (_, k) in panel {
             reliefs[*k] = relief_m;
         }
