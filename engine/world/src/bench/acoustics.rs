@@ -6,6 +6,7 @@ use crate::error::WorldError;
 use crate::info::viewpoints;
 use dwell_acoustics::metrics::{self, BandMetrics, Metrics};
 use dwell_acoustics::{ActiveSource, Receiver, Source, Stream, StreamConfig, signals};
+use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::rays::RayScene;
@@ -47,16 +48,20 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
             json!(f64::from(pairs) / median(&seconds)),
         );
     }
-    let rooms = &spots[..spots.len().min(ROOMS)];
+    let rooms: Vec<Figure> = spots
+        .iter()
+        .filter_map(|spot| Figure::free(&rays, *spot))
+        .take(ROOMS)
+        .collect();
     let wanted: Vec<Metrics> = rooms
         .iter()
-        .map(|spot| wanted(&engines, &rays, *spot, threads))
+        .map(|figure| wanted(&engines, &rays, *figure, threads))
         .collect::<Result<_, _>>()?;
     for preset in &options.presets {
         let walks = rooms.iter().zip(&wanted);
         let walks: Vec<Walk> = walks
             .flat_map(|place| (0..SEEDS).map(move |seed| (place, seed)))
-            .map(|((spot, wanted), seed)| walk(&engines, &rays, preset, *spot, wanted, seed))
+            .map(|((figure, wanted), seed)| walk(&engines, &rays, preset, *figure, wanted, seed))
             .collect::<Result<_, _>>()?;
         let middle = |of: fn(&Walk) -> Option<f64>| {
             let mut values: Vec<f64> = walks.iter().filter_map(of).collect();
@@ -100,27 +105,76 @@ struct Walk {
     c80_off_db: Option<f64>,
 }
 
-/// Where a listener is at the end of block `k`, who walks to and fro around `spot` at 1 m/s and turns, and a radio that is carried
-/// about as fast.
-fn place(spot: Vec3, k: usize) -> (Vec3, Pose) {
-    // Half a metre to either side.
-    let way = (0.05 * k as f32 + 0.5).rem_euclid(2.0);
-    let off = if way < 1.0 { way - 0.5 } else { 1.5 - way };
-    let head = Pose::from_position_yaw(spot + Vec3::X * off, 0.031 * k as f32);
-    (
-        spot + Vec3::new(0.3 - 0.7 * off, -0.4, 0.8 + 0.5 * off),
-        head,
-    )
+/// What is walked in a room.
+#[derive(Clone, Copy)]
+struct Figure {
+    /// Where the listener's way has its middle, m.
+    spot: Vec3,
+    /// Where that way goes to, and what is to its right; unit length, level.
+    ahead: Vec3,
+    right: Vec3,
+}
+
+impl Figure {
+    /// Turns of a figure that are tried.
+    const TURNS: usize = 12;
+    /// How far the listener goes to either side of the middle, m.
+    const REACH_M: f32 = 0.6;
+    /// How far ways go on freely beyond their ends, m.
+    const ROOM_M: f32 = 0.15;
+
+    /// The first turn around `spot` for which nothing stands in the two ways, nor between the two who go them.
+    fn free(rays: &RayScene, spot: Vec3) -> Option<Self> {
+        let mut turned = (0..Self::TURNS).map(|k| {
+            let angle = std::f32::consts::TAU * k as f32 / Self::TURNS as f32;
+            let (sin, cos) = dwell_scene::math::sin_cos(angle);
+            let (ahead, right) = (Vec3::new(cos, 0.0, -sin), Vec3::new(sin, 0.0, cos));
+            Self { spot, ahead, right }
+        });
+        turned.find(|figure| figure.is_free(rays))
+    }
+
+    fn is_free(&self, rays: &RayScene) -> bool {
+        let clear = |a: Vec3, b: Vec3| {
+            let beyond = Self::ROOM_M * (b - a).normalize_or_zero();
+            let ways = [(a - beyond, b + beyond), (b + beyond, a - beyond)];
+            let mut ways = ways.map(|(a, b)| Ray::segment(a, b, 0.0)).into_iter();
+            ways.all(|way| !rays.occluded(&way, RayMask::EAR))
+        };
+        let ends = [-Self::REACH_M, Self::REACH_M].map(|off| self.at(off));
+        let between = [-Self::REACH_M, 0.0, Self::REACH_M].map(|off| self.at(off));
+        clear(ends[0].0, ends[1].0)
+            && clear(ends[0].1, ends[1].1)
+            && between.iter().all(|(radio, head)| clear(*radio, *head))
+    }
+
+    /// The radio and the head, when the listener is `off_m` from the middle.
+    fn at(&self, off_m: f32) -> (Vec3, Vec3) {
+        let radio = (0.3 - 0.7 * off_m) * self.ahead + (0.8 + 0.5 * off_m) * self.right;
+        (
+            self.spot + radio - 0.4 * Vec3::Y,
+            self.spot + off_m * self.ahead,
+        )
+    }
+
+    /// Where a listener is at the end of block `k`, who walks to and fro at 1 m/s and turns, and a radio that is carried about as
+    /// fast.
+    fn place(&self, k: usize) -> (Vec3, Pose) {
+        let way_m = (0.05 * k as f32 + Self::REACH_M).rem_euclid(4.0 * Self::REACH_M);
+        let off_m = Self::REACH_M - (way_m - 2.0 * Self::REACH_M).abs();
+        let (radio, head) = self.at(off_m);
+        (radio, Pose::from_position_yaw(head, 0.031 * k as f32))
+    }
 }
 
 /// What the reference has for the end of the walk.
 fn wanted(
     engines: &Engines,
     rays: &RayScene,
-    spot: Vec3,
+    figure: Figure,
     threads: Threads,
 ) -> Result<Metrics, WorldError> {
-    let (position, head) = place(spot, BLOCKS - 1);
+    let (position, head) = figure.place(BLOCKS - 1);
     let scene = engines.acoustics("reference", 16_000)?;
     let source = Source::at(position);
     let echogram = scene.echogram(rays, &source, head.position, Key::root(1), threads)?;
@@ -132,7 +186,7 @@ fn walk(
     engines: &Engines,
     rays: &RayScene,
     preset: &str,
-    spot: Vec3,
+    figure: Figure,
     wanted: &Metrics,
     seed: u64,
 ) -> Result<Walk, WorldError> {
@@ -145,7 +199,7 @@ fn walk(
     let mut out = vec![0.0; 2 * BLOCK];
     let start = Instant::now();
     for k in 0..BLOCKS {
-        let (position, head) = place(spot, k);
+        let (position, head) = figure.place(k);
         let source = ActiveSource {
             id: 0,
             position,
