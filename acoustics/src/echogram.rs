@@ -74,6 +74,9 @@ impl Histogram {
     }
 }
 
+/// Spans of time in [`TraceStatistics::error_over_time`].
+pub const SPAN_COUNT: usize = 7;
+
 /// How the rays fared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TraceStatistics {
@@ -90,6 +93,9 @@ pub struct TraceStatistics {
     /// Standard error of the tail's energy over its mean, from the scatter among groups of rays; 0 where nothing arrives.
     /// Shape (band,).
     pub relative_error: Banded,
+    /// The same for spans of time, all bands together, from the scatter among rays: up to 20, 40, 80, 160, 320, 640 ms, and later.
+    /// Shape (span,).
+    pub error_over_time: [f32; SPAN_COUNT],
     /// Volume that the receiver sees, m³: that of a convex room, and an underestimate behind corners.
     pub seen_volume_m3: f64,
 }

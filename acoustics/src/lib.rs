@@ -57,7 +57,7 @@ pub use air::Air;
 pub use config::AcousticConfig;
 pub use directions::{CELL_COUNT, Directions, cell_of, within};
 pub use directivity::Directivity;
-pub use echogram::{Echogram, Histogram, Path, TraceStatistics};
+pub use echogram::{Echogram, Histogram, Path, SPAN_COUNT, TraceStatistics};
 pub use error::AcousticsError;
 pub use explain::{Explanation, MaterialRow};
 pub use head::{Head, HeadId};

@@ -448,7 +448,8 @@ impl AcousticScene {
         }))
     }
 
-    /// A new response for a listener who heard `before` not far from here: fewer rays, and the rest of the tail from memory.
+    /// A new response for a listener who heard `before` not far from here: fewer rays, and the rest of the tail from memory; all
+    /// rays where these show that it is another one.
     ///
     /// # Errors
     /// As [`Self::arrivals`].
@@ -466,9 +467,14 @@ impl AcousticScene {
         self.check_receiver(receiver)?;
         let count = (self.config.rays as f64 * memory.share).ceil() as usize;
         let again = key.child("again").child(memory.update);
-        let echograms = self.echograms_of(rays, source, &centre, count, again, threads);
-        let mut echogram = echograms.into_iter().next().unwrap_or_default();
-        memory.recall(&mut echogram);
+        let trace = |count, key| {
+            let echograms = self.echograms_of(rays, source, &centre, count, key, threads);
+            echograms.into_iter().next().unwrap_or_default()
+        };
+        let mut echogram = trace(count, again);
+        if !memory.recall(&mut echogram) {
+            echogram = trace(self.config.rays, again.child("all"));
+        }
         let early = self.early_of_microphones(rays, source, receiver);
         Ok(self.arrive(echogram, receiver, early.as_deref(), memory.noise))
     }

@@ -184,9 +184,11 @@ fn the_order_of_the_images_does_not_change_the_energy() {
     }
 }
 
-/// Thinning out faint rays is fair: it changes neither level nor decay beyond chance.
+/// Thinning out faint rays is fair: it changes neither level nor decay beyond chance. Of one trace that is thinned, the late energy has
+/// an error of 4.5 %: eight bring it to 0.07 dB.
 #[test]
 fn roulette_is_unbiased() {
+    const TRACES: u64 = 8;
     let [all, thinned] = [120.0, 15.0].map(|roulette_db| {
         let config = AcousticConfig {
             roulette_db,
@@ -194,15 +196,16 @@ fn roulette_is_unbiased() {
         };
         let hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.3, 0.5), config);
         let (source, ear) = (Vec3::new(1.2, 1.5, 1.4), Vec3::new(4.6, 1.2, 3.3));
-        hall.echogram(source, ear, Key::root(12))
+        let found = (0..TRACES).map(|key| hall.echogram(source, ear, Key::root(key)));
+        found.collect::<Vec<_>>()
     });
-    assert!(thinned.trace.segments < all.trace.segments / 2);
-    let late = |found: &dwell_acoustics::Echogram| {
-        let bins = found.tail.bins[40..60].iter();
+    assert!(thinned[0].trace.segments < all[0].trace.segments / 2);
+    let late = |found: &[dwell_acoustics::Echogram]| {
+        let bins = found.iter().flat_map(|found| &found.tail.bins[40..60]);
         bins.map(|bin| bin[4]).sum::<f64>()
     };
     let difference_db = 10.0 * (late(&thinned) / late(&all)).log10();
-    assert!(difference_db.abs() < 0.3, "{difference_db}");
+    assert!(difference_db.abs() < 0.21, "{difference_db}");
 }
 
 /// Bands that scatter differently share their rays, and still each has the decay of a room that scatters like it.

@@ -53,7 +53,7 @@ impl StreamConfig {
             update_angle_rad: 0.175,
             update_part_m: 0.15,
             moving_paths: 6,
-            update_share: 0.2,
+            update_share: 0.15,
             max_sources: 4,
             ..Self::full()
         }

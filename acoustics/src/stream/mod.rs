@@ -31,7 +31,7 @@ use xxhash_rust::xxh3::xxh3_64;
 
 /// Parts whose box is smaller than this from corner to corner do not change what is heard, m.
 const LARGE_PART_M: f32 = 0.7;
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 
 /// A source that sounds during a block.
 #[derive(Clone, Copy, Debug)]

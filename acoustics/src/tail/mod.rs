@@ -6,6 +6,7 @@
 //! around the receiver.
 
 mod listener;
+pub(crate) mod spans;
 mod walk;
 
 use crate::bands::{BAND_COUNT, Banded};
@@ -19,6 +20,7 @@ use dwell_scene::random::{Key, Stream};
 use dwell_scene::rays::RayScene;
 use glam::{Quat, Vec3};
 use listener::Listener;
+use spans::Scatter;
 use walk::Walk;
 
 /// Rays that are traced and summed together; a constant, so that sums do not depend on threads.
@@ -100,6 +102,8 @@ struct Chunk {
     energy: Vec<Banded>,
     /// Shape (receiver, time, cell), flat.
     directions: Vec<Banded>,
+    /// Shape (receiver,).
+    scatter: Vec<Scatter>,
     segments: u64,
     escaped: u64,
     length_m: f64,
@@ -112,6 +116,7 @@ struct Sums {
     directions: Vec<Banded>,
     /// Sum and sum of squares of the chunks' energies.
     moments: [[f64; BAND_COUNT]; 2],
+    scatter: Scatter,
 }
 
 impl Sums {
@@ -167,6 +172,7 @@ pub(crate) fn trace(
         bins_per_m: (1.0 / (speed * config.bin_s)) as f32,
         furthest_m: (speed * config.max_duration_s) as f32,
         bin_count,
+        span_of_bin: spans::of_bins(bin_count, config.bin_s),
         bins_per_direction,
         times,
         roulette: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
@@ -181,6 +187,7 @@ pub(crate) fn trace(
             energy: vec![[0.0; BAND_COUNT]; bin_count],
             directions: vec![[0.0; BAND_COUNT]; times * CELL_COUNT],
             moments: [[0.0; BAND_COUNT]; 2],
+            scatter: Scatter::default(),
         };
         receivers.len()
     ];
@@ -228,6 +235,7 @@ pub(crate) fn trace(
     let decay = scene.air_decay_per_m();
     let late = sums.into_iter().zip(&listeners).map(|(sums, listener)| {
         let relative_error = sums.relative_error(first).map(|e| e as f32);
+        let error_over_time = sums.scatter.relative_error(traced);
         let mut bins = sums.energy;
         for (k, bin) in bins.iter_mut().enumerate() {
             // All that arrives in a bin has come about equally far, so that air can be applied at the end.
@@ -250,6 +258,7 @@ pub(crate) fn trace(
             },
             statistics: TraceStatistics {
                 relative_error,
+                error_over_time,
                 receiver_radius_m: listener.largest_m(),
                 seen_volume_m3: listener.seen_volume_m3,
                 ..statistics
@@ -274,6 +283,7 @@ impl Sums {
             self.moments[0][band] += all;
             self.moments[1][band] += all * all;
         }
+        self.scatter.merge(&chunk.scatter[receiver]);
         let cells = times * CELL_COUNT;
         let directions = &chunk.directions[receiver * cells..(receiver + 1) * cells];
         for (sum, cell) in self.directions.iter_mut().zip(directions) {

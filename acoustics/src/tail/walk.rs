@@ -1,6 +1,7 @@
 //! One ray's way through the house.
 
 use super::listener::Listener;
+use super::spans::Scatter;
 use super::{Chunk, RAYS_PER_CHUNK, margin_m, sequence_direction};
 use crate::bands::{BAND_COUNT, Banded};
 use crate::directions::{CELL_COUNT, cell_of};
@@ -24,6 +25,10 @@ const LOOK_THROUGH: f32 = 0.1;
 const WALL_M2: f32 = 0.5;
 /// No ray is followed further than this many reflections.
 const MOST_REFLECTIONS: usize = 20_000;
+/// Less energy than this is none: its inverse is a number still.
+const FAINTEST: f32 = 1e-30;
+/// Way between two looks at how energies have spread, m: about two reflections in a living room.
+const STAGE_M: f32 = 5.0;
 
 /// What all rays of one trace have in common.
 pub(super) struct Walk<'a> {
@@ -40,10 +45,12 @@ pub(super) struct Walk<'a> {
     pub(super) bins_per_m: f32,
     pub(super) furthest_m: f32,
     pub(super) bin_count: usize,
+    /// Shape (bin,).
+    pub(super) span_of_bin: Vec<usize>,
     pub(super) bins_per_direction: usize,
     /// Entries of directions over time.
     pub(super) times: usize,
-    /// Energy re the start below which rays are thinned out.
+    /// Mean energy re the start below which rays are thinned out.
     pub(super) roulette: f32,
     /// The chance that a ray goes on behind a wall, too; 0 where nobody listens there.
     pub(super) through: f32,
@@ -62,11 +69,13 @@ impl Random<'_> {
 }
 
 /// A ray on its way.
+#[derive(Clone)]
 struct Traveller {
     ray: Ray,
     energy: Banded,
-    /// Mean energy over the bands at the start.
-    power: f32,
+    /// Which of the chunk's rays it once was.
+    origin: usize,
+    reflections: usize,
     travelled_m: f32,
     /// Way since the source or the last scattering, m.
     straight_m: f32,
@@ -87,6 +96,7 @@ impl Walk<'_> {
         let mut chunk = Chunk {
             energy: vec![[0.0; BAND_COUNT]; receivers * self.bin_count],
             directions: vec![[0.0; BAND_COUNT]; receivers * self.times * CELL_COUNT],
+            scatter: vec![Scatter::of(range.len()); receivers],
             segments: 0,
             escaped: 0,
             length_m: 0.0,
@@ -94,46 +104,83 @@ impl Walk<'_> {
         let mut stream = key.stream();
         // What goes through walls has its own chance, so that what stays is the same with and without it.
         let mut aside = key.child("walls").stream();
-        for k in range {
+        let first = range.start;
+        let start = range.map(|k| {
             let direction = self.turn * sequence_direction(k, self.place);
-            let energy = self.pattern.gain(direction.dot(self.axis)).map(|g| g * g);
-            let power = energy.iter().sum::<f32>() / BAND_COUNT as f32;
-            if power > 0.0 {
-                let traveller = Traveller {
-                    ray: Ray::new(self.source, direction),
-                    energy,
-                    power,
-                    travelled_m: 0.0,
-                    straight_m: 0.0,
-                    scattered: false,
-                    mirrored: false,
-                    order: 0,
-                    walls: 0,
-                };
-                let mut beyond = Vec::new();
-                let random = &mut Random {
-                    own: &mut stream,
-                    aside: &mut aside,
-                };
-                self.follow(traveller, random, &mut chunk, &mut beyond);
-                while let Some(traveller) = beyond.pop() {
-                    self.follow(traveller, random, &mut chunk, &mut beyond);
-                }
+            Traveller {
+                ray: Ray::new(self.source, direction),
+                energy: self.pattern.gain(direction.dot(self.axis)).map(|g| g * g),
+                origin: k - first,
+                reflections: 0,
+                travelled_m: 0.0,
+                straight_m: 0.0,
+                scattered: false,
+                mirrored: false,
+                order: 0,
+                walls: 0,
             }
+        });
+        let mut beyond = Vec::new();
+        let random = &mut Random {
+            own: &mut stream,
+            aside: &mut aside,
+        };
+        let start = start.filter(|one| one.energy.iter().any(|e| *e > 0.0));
+        let start = start.collect();
+        self.go(start, random, &mut chunk, &mut beyond);
+        while let Some(one) = beyond.pop() {
+            self.go(vec![one], random, &mut chunk, &mut beyond);
         }
         chunk
     }
 
-    /// Follows one ray to its end; what goes on behind walls is added to `beyond`.
-    fn follow(
+    /// Follows rays to their ends, stage by stage; what goes on behind walls is added to `beyond`.
+    fn go(
         &self,
-        mut one: Traveller,
+        mut rays: Vec<Traveller>,
         random: &mut Random<'_>,
         chunk: &mut Chunk,
         beyond: &mut Vec<Traveller>,
     ) {
+        let Some(begin_m) = rays.first().map(|one| one.travelled_m) else {
+            return;
+        };
+        let count = rays.len();
+        let least = sum(&rays).map(|all| self.roulette * all);
+        let mut worth = worth(&rays, &least);
+        let mut next = Vec::with_capacity(count);
+        for stage in 1_u16.. {
+            let end_m = begin_m + f32::from(stage) * STAGE_M;
+            let last = end_m >= self.furthest_m;
+            for one in rays.drain(..) {
+                next.extend(self.follow(one, end_m, &worth, random, chunk, beyond));
+            }
+            let Some(one) = next.first() else { return };
+            if last {
+                return;
+            }
+            let place = random.of(one).uniform_f32();
+            worth = self::worth(&next, &least);
+            resample(&next, count, &worth, place, &mut rays);
+            next.clear();
+        }
+    }
+
+    /// Follows one ray to its first reflection behind `end_m`.
+    fn follow(
+        &self,
+        mut one: Traveller,
+        end_m: f32,
+        worth: &Banded,
+        random: &mut Random<'_>,
+        chunk: &mut Chunk,
+        beyond: &mut Vec<Traveller>,
+    ) -> Option<Traveller> {
         let images = self.scene.config().image_order;
-        for _ in 0..MOST_REFLECTIONS {
+        while one.travelled_m < end_m {
+            if one.reflections == MOST_REFLECTIONS {
+                return None;
+            }
             let hit = self.rays.closest(&one.ray, RayMask::EAR);
             // Images go through no walls.
             if one.mirrored && (one.scattered || one.order > images || one.walls > 0) {
@@ -143,7 +190,7 @@ impl Walk<'_> {
             let Some(hit) = hit else {
                 // Behind an outer wall all is open.
                 chunk.escaped += u64::from(one.walls == 0);
-                return;
+                return None;
             };
             if one.walls == 0 {
                 chunk.segments += 1;
@@ -152,7 +199,7 @@ impl Walk<'_> {
             one.travelled_m += hit.distance_m;
             one.straight_m += hit.distance_m;
             if one.travelled_m >= self.furthest_m {
-                return;
+                return None;
             }
             let surface = self.rays.surface(&hit);
             let material = self.scene.surface(surface.material);
@@ -175,21 +222,11 @@ impl Walk<'_> {
                 self.shine(start, normal, &one, &parts.scattered, random.aside, chunk);
             }
             let stream = random.of(&one);
-            let kept = parts.scattered.iter().zip(&parts.mirrored);
-            let kept = one.energy.iter().zip(kept);
-            let left: f32 = kept
-                .map(|(e, (scattered, mirrored))| e * (scattered + mirrored))
-                .sum();
-            let mean = left / (BAND_COUNT as f32 * one.power);
-            if mean < self.roulette {
-                let survival = mean / self.roulette;
-                if survival < 1e-3 || stream.uniform_f32() >= survival {
-                    return;
-                }
-                one.energy = one.energy.map(|e| e / survival);
+            if !one.turn(start, normal, &parts, worth, stream) {
+                return None;
             }
-            one.turn(start, normal, &parts, stream);
         }
+        Some(one)
     }
 
     /// Counts what the surface at `start` scatters straight to the receivers.
@@ -237,7 +274,8 @@ impl Walk<'_> {
             let nearest = distance_m.max(NEAREST_M);
             multiply(&mut share, scattered);
             let factor = 4.0 * cosine / (nearest * nearest);
-            self.deposit(chunk, receiver, way_m, &share, factor, -direction);
+            let from = -direction;
+            self.deposit(chunk, (receiver, one.origin), way_m, &share, factor, from);
         }
     }
 
@@ -259,7 +297,6 @@ impl Walk<'_> {
         let inside_m = exit.start.distance(one.ray.at(hit.distance_m));
         beyond.push(Traveller {
             ray: Ray::new(exit.start, one.ray.direction),
-            power: energy.iter().sum::<f32>() / BAND_COUNT as f32,
             energy,
             travelled_m: one.travelled_m + inside_m,
             straight_m: one.straight_m + inside_m,
@@ -292,14 +329,15 @@ impl Walk<'_> {
             }
             let way_m = one.travelled_m + 0.5 * (crossing.enter_m + crossing.leave_m);
             let from = -one.ray.direction;
-            self.deposit(chunk, receiver, way_m, &one.energy, crossing.factor, from);
+            let to = (receiver, one.origin);
+            self.deposit(chunk, to, way_m, &one.energy, crossing.factor, from);
         }
     }
 
     fn deposit(
         &self,
         chunk: &mut Chunk,
-        receiver: usize,
+        (receiver, origin): (usize, usize),
         way_m: f32,
         energy: &Banded,
         factor: f32,
@@ -309,6 +347,8 @@ impl Walk<'_> {
         if bin >= self.bin_count {
             return;
         }
+        let all = energy.iter().sum::<f32>() * factor;
+        chunk.scatter[receiver].add(origin, self.span_of_bin[bin], all);
         let time = receiver * self.times + bin / self.bins_per_direction;
         let cell = &mut chunk.directions[time * CELL_COUNT + cell_of(from)];
         let bin = &mut chunk.energy[receiver * self.bin_count + bin];
@@ -319,15 +359,99 @@ impl Walk<'_> {
     }
 }
 
+/// Energy of all rays. Shape (band,).
+fn sum(rays: &[Traveller]) -> Banded {
+    let mut sum = [0.0; BAND_COUNT];
+    for one in rays {
+        for (all, e) in sum.iter_mut().zip(&one.energy) {
+            *all += e;
+        }
+    }
+    sum
+}
+
+/// What energy is worth in each band: all bands are worth the same, 1, until they fall below their `least`. Shape (band,).
+fn worth(rays: &[Traveller], least: &Banded) -> Banded {
+    let all = sum(rays);
+    std::array::from_fn(|band| {
+        let all = all[band].max(least[band]);
+        if all > FAINTEST { 1.0 / all } else { 0.0 }
+    })
+}
+
+/// Rays of equal worth for those of `from`: the strong ones split, the weak ones end or stand for others. `count`: as many as there
+/// should be while no band is below its least; then there are fewer. While they are worth about the same still, all stay as they
+/// are. `place`: chance, 0 to 1.
+///
+/// After some reflections, the energy that is left is that of a few lucky rays. Split, they meet other surfaces from then on.
+///
+/// # Source
+/// G. Kitagawa, J. Comput. Graph. Stat. 5, 1 (1996), appendix: stratified resampling, here with equal distances ("systematic"); when
+/// half of the effective number is lost: A. Kong, J. S. Liu, W. H. Wong, J. Am. Stat. Assoc. 89, 278 (1994).
+fn resample(
+    from: &[Traveller],
+    count: usize,
+    worth: &Banded,
+    place: f32,
+    into: &mut Vec<Traveller>,
+) {
+    let weights = || from.iter().map(|one| one.weight(worth));
+    let (all, squares): (f32, f32) = (weights().sum(), weights().map(|w| w * w).sum());
+    let bands = worth.iter().filter(|worth| **worth > 0.0).count();
+    if bands == 0 {
+        return;
+    }
+    let each = bands as f32 / count as f32;
+    // As many as there should be, of which no less than half count.
+    if all > 0.99 * bands as f32 && all * all > 0.5 * count as f32 * squares {
+        into.extend_from_slice(from);
+        return;
+    }
+    // A mark at every `each` of all worth, from a place by chance on.
+    let mut mark = place * each;
+    let mut passed = 0.0;
+    for (one, weight) in from.iter().zip(weights()) {
+        passed += weight;
+        while mark < passed && into.len() <= count {
+            mark += each;
+            let mut copy = one.clone();
+            copy.energy = one.energy.map(|e| e * (each / weight));
+            into.push(copy);
+        }
+    }
+}
+
 impl Traveller {
-    /// Leaves a surface, scattered or mirrored.
+    /// What it counts among others.
+    fn weight(&self, worth: &Banded) -> f32 {
+        self.energy
+            .iter()
+            .zip(worth)
+            .map(|(e, worth)| e * worth)
+            .sum()
+    }
+
+    /// Leaves a surface, scattered or mirrored; `false` where nothing is left.
     ///
     /// The fraction of what stays of this ray's energy that is scattered is the chance: with it, both branches keep the sum over the
     /// bands, and no band's weight can grow from reflection to reflection.
-    fn turn(&mut self, start: Vec3, normal: Vec3, parts: &Parts, stream: &mut Stream) {
-        let part =
-            |of: &Banded| -> f32 { self.energy.iter().zip(of).map(|(e, part)| e * part).sum() };
+    fn turn(
+        &mut self,
+        start: Vec3,
+        normal: Vec3,
+        parts: &Parts,
+        worth: &Banded,
+        stream: &mut Stream,
+    ) -> bool {
+        let part = |of: &Banded| -> f32 {
+            let energy = self.energy.iter().zip(worth).map(|(e, worth)| e * worth);
+            energy.zip(of).map(|(e, part)| e * part).sum()
+        };
         let (scattered, mirrored) = (part(&parts.scattered), part(&parts.mirrored));
+        if scattered + mirrored <= 0.0 {
+            return false;
+        }
+        self.reflections += 1;
         let scatter = (scattered / (scattered + mirrored)).clamp(0.0, 1.0);
         if scatter > 0.0 && stream.uniform_f32() < scatter {
             multiply(&mut self.energy, &parts.scattered.map(|s| s / scatter));
@@ -341,6 +465,7 @@ impl Traveller {
             self.mirrored = true;
             self.order += 1;
         }
+        true
     }
 }
 
@@ -362,6 +487,77 @@ fn lambert(normal: Vec3, stream: &mut Stream) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A ray of some energy in all bands.
+    fn ray(energy: f32) -> Traveller {
+        Traveller {
+            ray: Ray::new(Vec3::ZERO, Vec3::X),
+            energy: std::array::from_fn(|band| energy * (1.0 + band as f32)),
+            origin: 0,
+            reflections: 0,
+            travelled_m: 0.0,
+            straight_m: 0.0,
+            scattered: false,
+            mirrored: false,
+            order: 0,
+            walls: 0,
+        }
+    }
+
+    /// Over all places, every ray's energy comes out again, whether rays are split or thinned; alike, they stay as they are.
+    #[test]
+    fn resampling_keeps_what_every_ray_stands_for() {
+        let from: Vec<Traveller> = (0..16)
+            .map(|k| Traveller {
+                origin: k,
+                ..ray(if k == 3 { 40.0 } else { 0.1 + k as f32 })
+            })
+            .collect();
+        let start = sum(&from);
+        // As much as there was, and a tenth of it: the rays are as many, or about a tenth.
+        for (least, many) in [(0.1, 16.0), (10.0, 1.6)] {
+            let worth = worth(&from, &start.map(|all| least * all));
+            let (mut found, mut rays) = ([0.0_f64; 16], 0);
+            let places = 1000;
+            for k in 0..places {
+                let place = (k as f32 + 0.5) / places as f32;
+                let mut into = Vec::new();
+                resample(&from, 16, &worth, place, &mut into);
+                rays += into.len();
+                for one in into {
+                    found[one.origin] += f64::from(one.energy[2]) / f64::from(places);
+                }
+            }
+            assert!(
+                (rays as f64 / f64::from(places) - many).abs() < 0.02,
+                "{rays}"
+            );
+            for (found, one) in found.iter().zip(&from) {
+                let wanted = f64::from(one.energy[2]);
+                assert!((found / wanted - 1.0).abs() < 0.03, "{found} for {wanted}");
+            }
+        }
+        let alike = vec![ray(1.0); 9];
+        let mut into = Vec::new();
+        resample(
+            &alike,
+            9,
+            &worth(&alike, &[0.0; BAND_COUNT]),
+            0.5,
+            &mut into,
+        );
+        assert!(into.len() == 9 && into.iter().all(|one| one.energy == ray(1.0).energy));
+    }
+
+    /// What nobody can hear, nor divide by, is no energy.
+    #[test]
+    fn the_faintest_rays_end() {
+        let mut into = Vec::new();
+        let faint = vec![ray(1e-38); 4];
+        let worth = worth(&faint, &[0.0; BAND_COUNT]);
+        resample(&faint, 4, &worth, 0.5, &mut into);
+        assert!(into.is_empty());
+    }
 
     /// The mean cosine of Lambert's law is 2/3, its mean square 1/2; five seeds, five standard errors.
     #[test]

@@ -1,0 +1,126 @@
+//! Spans of time, each twice as long as the one before, for which the tail's error is told.
+
+use crate::echogram::{Histogram, SPAN_COUNT};
+
+/// Where the first span ends, s.
+const FIRST_S: f64 = 0.02;
+
+/// The span in which `time_s` lies.
+pub(crate) fn span_of(time_s: f64) -> usize {
+    let mut end_s = FIRST_S;
+    let mut span = 0;
+    while time_s >= end_s && span + 1 < SPAN_COUNT {
+        (end_s, span) = (2.0 * end_s, span + 1);
+    }
+    span
+}
+
+/// The middle of span `span`, s; of the last one, that of one as long as its beginning.
+pub(crate) fn middle_s(span: usize) -> f64 {
+    let end_s = FIRST_S * libm::exp2(span as f64);
+    if span == 0 { 0.5 * end_s } else { 0.75 * end_s }
+}
+
+/// The span of each of `count` bins of `bin_s`. Shape (bin,).
+pub(super) fn of_bins(count: usize, bin_s: f64) -> Vec<usize> {
+    let middle_s = |k: usize| (k as f64 + 0.5) * bin_s;
+    (0..count).map(|k| span_of(middle_s(k))).collect()
+}
+
+/// Energy in each span, all bands together. Shape (span,).
+pub(crate) fn energies(tail: &Histogram) -> [f64; SPAN_COUNT] {
+    let mut sums = [0.0; SPAN_COUNT];
+    let spans = of_bins(tail.bins.len(), tail.bin_s);
+    for (bin, span) in tail.bins.iter().zip(spans) {
+        sums[span] += bin.iter().sum::<f64>();
+    }
+    sums
+}
+
+/// What single rays bring in each span, of which the error of their mean follows.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scatter {
+    /// Of the rays on their way, with all that they split into. Shape (ray, span).
+    rays: Vec<[f32; SPAN_COUNT]>,
+    sums: [f64; SPAN_COUNT],
+    squares: [f64; SPAN_COUNT],
+}
+
+impl Scatter {
+    /// Of `count` rays that start.
+    pub(super) fn of(count: usize) -> Self {
+        Self {
+            rays: vec![[0.0; SPAN_COUNT]; count],
+            ..Self::default()
+        }
+    }
+
+    /// Something of a ray arrives.
+    pub(super) fn add(&mut self, ray: usize, span: usize, energy: f32) {
+        self.rays[ray][span] += energy;
+    }
+
+    /// Takes over other rays, which are over.
+    pub(super) fn merge(&mut self, other: &Self) {
+        for ray in &other.rays {
+            for (k, energy) in ray.iter().enumerate() {
+                let energy = f64::from(*energy);
+                self.sums[k] += energy;
+                self.squares[k] += energy * energy;
+            }
+        }
+    }
+
+    /// Standard error of the mean of `rays` rays over the mean; 0 where nothing arrives.
+    ///
+    /// # Source
+    /// H. P. Chan, T. L. Lai, Ann. Stat. 41, 2877 (2013), section 2: what all descendants of a ray bring counts as its own.
+    pub(super) fn relative_error(&self, rays: usize) -> [f32; SPAN_COUNT] {
+        let n = rays as f64;
+        std::array::from_fn(|k| {
+            let (mean, square) = (self.sums[k] / n, self.squares[k] / n);
+            if mean <= 0.0 || rays < 2 {
+                return 0.0;
+            }
+            (((square - mean * mean).max(0.0) / (n - 1.0)).sqrt() / mean) as f32
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spans_double() {
+        for (time_s, span) in [
+            (0.0, 0),
+            (0.019, 0),
+            (0.02, 1),
+            (0.079, 2),
+            (0.08, 3),
+            (0.65, 6),
+            (100.0, 6),
+        ] {
+            assert_eq!(span_of(time_s), span, "{time_s}");
+        }
+        assert_eq!(of_bins(4, 0.012), [0, 0, 1, 2]);
+    }
+
+    /// Ten rays of 1 and ten of 3: mean 2, standard deviation 1 (with 19 for 20: 1.026), so that the error is 0.229 of 2.
+    #[test]
+    fn the_error_is_that_of_a_mean() {
+        let mut all = Scatter::default();
+        for k in 0..2 {
+            let mut half = Scatter::of(10);
+            for ray in 0..10 {
+                half.add(ray, 2, k as f32 + 0.5);
+                half.add(ray, 2, k as f32 + 0.5);
+            }
+            all.merge(&half);
+        }
+        let error = all.relative_error(20);
+        assert!((f64::from(error[2]) - 1.0 / 19.0_f64.sqrt() / 2.0).abs() < 1e-6);
+        assert_eq!((error[1], error[3]), (0.0, 0.0));
+    }
+}
