@@ -26,8 +26,8 @@ pub struct AcousticConfig {
     pub image_planes: usize,
     /// Rays from the receiver that discover further sequences of planes; 0 to 100,000.
     pub discovery_rays: usize,
-    /// How far a ray may fall below its start before chance ends it, dB; 10 to 120. Above it, every ray is followed; below, the
-    /// fewer the fainter they are, and those that go on stand for the others.
+    /// How far the rays' energy may fall below the start before they become fewer, dB; 10 to 120. Above it, the faint ones end and
+    /// the strong ones split, so that there are always as many; below, the fewer the fainter they are. Bands count alike.
     pub roulette_db: f64,
     /// Radius of the ball in which paths with specular last reflections are counted, m; 0.05 to 2. It is this large for paths up
     /// to 8 m and grows with their length, up to 0.35 of the cube root of the volume in sight.

@@ -84,9 +84,9 @@ pub struct TraceStatistics {
     pub rays: u64,
     /// Straight pieces that ended on a surface.
     pub segments: u64,
-    /// Rays that left the house.
+    /// How often a ray left the house; what rays split into counts, too.
     pub escaped: u64,
-    /// Mean length of the pieces, m: 4 V / S in a closed room with scattering walls.
+    /// Mean length of the pieces, m: 4 V / S in a closed room with scattering walls that absorb alike.
     pub mean_free_path_m: f64,
     /// Radius of the largest ball around the receiver in which rays were counted, m.
     pub receiver_radius_m: f64,

@@ -18,7 +18,8 @@ pub struct StreamConfig {
     /// Early paths of a source whose delays glide while it or the listener moves: all straight ones, and reflections up to so many;
     /// the others change with the impulse response. 0 (none) to 64. Microphone arrays have none.
     pub moving_paths: usize,
-    /// The share of all rays that an update of the tail traces where only source or listener have moved; the rest is remembered.
+    /// The share of all rays that an update of the tail traces where only source or listener have moved; the rest is remembered,
+    /// unless these rays tell of another tail: then all are traced.
     /// 0.001 to 1.
     pub update_share: f64,
     /// Sources that are followed at once; the first in the list win. 1 to 1,000.

@@ -18,9 +18,9 @@ const MIXED_S: f64 = 0.04;
 const PLACES: f64 = 0.115;
 /// A difference that neither chance nor place makes, in standard deviations of a normal distribution.
 const SURPRISE: f64 = 5.0;
-/// Such differences from here on are believed more than the memory.
+/// From such a difference on, the new weighs more, the more the larger it is.
 const DOUBT: f64 = 3.0;
-/// Relative errors of so few rays that they tell nothing.
+/// Above this relative error, too few rays came to tell anything.
 const FEW: f64 = 0.5;
 
 /// The tail that was heard before, and what has changed since.

@@ -11,7 +11,7 @@ mod walk;
 
 use crate::bands::{BAND_COUNT, Banded};
 use crate::directions::{CELL_COUNT, Directions};
-use crate::echogram::{Histogram, TraceStatistics};
+use crate::echogram::{Histogram, SPAN_COUNT, TraceStatistics};
 use crate::receiver::Source;
 use crate::scene::AcousticScene;
 use dwell_scene::math::sin_cos;
@@ -23,7 +23,7 @@ use listener::Listener;
 use spans::Scatter;
 use walk::Walk;
 
-/// Rays that are traced and summed together; a constant, so that sums do not depend on threads.
+/// Rays that are traced and summed together, and split and end among themselves; a constant, so that sums do not depend on threads.
 const RAYS_PER_CHUNK: usize = 64;
 /// Chunks between two looks at the error.
 const CHUNKS_PER_WAVE: usize = 32;
@@ -102,8 +102,8 @@ struct Chunk {
     energy: Vec<Banded>,
     /// Shape (receiver, time, cell), flat.
     directions: Vec<Banded>,
-    /// Shape (receiver,).
-    scatter: Vec<Scatter>,
+    /// What each ray brings over time, with all that it splits into. Shape (receiver, ray of a chunk, span), flat but for the last.
+    by_ray: Vec<[f32; SPAN_COUNT]>,
     segments: u64,
     escaped: u64,
     length_m: f64,
@@ -283,7 +283,8 @@ impl Sums {
             self.moments[0][band] += all;
             self.moments[1][band] += all * all;
         }
-        self.scatter.merge(&chunk.scatter[receiver]);
+        let rays = receiver * RAYS_PER_CHUNK..(receiver + 1) * RAYS_PER_CHUNK;
+        self.scatter.add(&chunk.by_ray[rays]);
         let cells = times * CELL_COUNT;
         let directions = &chunk.directions[receiver * cells..(receiver + 1) * cells];
         for (sum, cell) in self.directions.iter_mut().zip(directions) {

@@ -37,32 +37,17 @@ pub(crate) fn energies(tail: &Histogram) -> [f64; SPAN_COUNT] {
     sums
 }
 
-/// What single rays bring in each span, of which the error of their mean follows.
+/// Sums over rays of what each brings in each span, of which the error of their mean follows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scatter {
-    /// Of the rays on their way, with all that they split into. Shape (ray, span).
-    rays: Vec<[f32; SPAN_COUNT]>,
     sums: [f64; SPAN_COUNT],
     squares: [f64; SPAN_COUNT],
 }
 
 impl Scatter {
-    /// Of `count` rays that start.
-    pub(super) fn of(count: usize) -> Self {
-        Self {
-            rays: vec![[0.0; SPAN_COUNT]; count],
-            ..Self::default()
-        }
-    }
-
-    /// Something of a ray arrives.
-    pub(super) fn add(&mut self, ray: usize, span: usize, energy: f32) {
-        self.rays[ray][span] += energy;
-    }
-
-    /// Takes over other rays, which are over.
-    pub(super) fn merge(&mut self, other: &Self) {
-        for ray in &other.rays {
+    /// Adds what rays brought, each with all that it split into. Shape (ray, span).
+    pub(super) fn add(&mut self, rays: &[[f32; SPAN_COUNT]]) {
+        for ray in rays {
             for (k, energy) in ray.iter().enumerate() {
                 let energy = f64::from(*energy);
                 self.sums[k] += energy;
@@ -111,13 +96,10 @@ mod tests {
     #[test]
     fn the_error_is_that_of_a_mean() {
         let mut all = Scatter::default();
-        for k in 0..2 {
-            let mut half = Scatter::of(10);
-            for ray in 0..10 {
-                half.add(ray, 2, k as f32 + 0.5);
-                half.add(ray, 2, k as f32 + 0.5);
-            }
-            all.merge(&half);
+        for energy in [1.0, 3.0] {
+            let mut ray = [0.0; SPAN_COUNT];
+            ray[2] = energy;
+            all.add(&[ray; 10]);
         }
         let error = all.relative_error(20);
         assert!((f64::from(error[2]) - 1.0 / 19.0_f64.sqrt() / 2.0).abs() < 1e-6);

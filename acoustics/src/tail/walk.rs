@@ -1,11 +1,11 @@
 //! One ray's way through the house.
 
 use super::listener::Listener;
-use super::spans::Scatter;
 use super::{Chunk, RAYS_PER_CHUNK, margin_m, sequence_direction};
 use crate::bands::{BAND_COUNT, Banded};
 use crate::directions::{CELL_COUNT, cell_of};
 use crate::directivity::Pattern;
+use crate::echogram::SPAN_COUNT;
 use crate::scene::AcousticScene;
 use crate::surface::Parts;
 use crate::transmission;
@@ -50,7 +50,7 @@ pub(super) struct Walk<'a> {
     pub(super) bins_per_direction: usize,
     /// Entries of directions over time.
     pub(super) times: usize,
-    /// Mean energy re the start below which rays are thinned out.
+    /// A band's energy, of all rays of a chunk, re the start below which it counts less and rays become fewer.
     pub(super) roulette: f32,
     /// The chance that a ray goes on behind a wall, too; 0 where nobody listens there.
     pub(super) through: f32,
@@ -75,6 +75,7 @@ struct Traveller {
     energy: Banded,
     /// Which of the chunk's rays it once was.
     origin: usize,
+    /// Reflections so far, those before it split among them.
     reflections: usize,
     travelled_m: f32,
     /// Way since the source or the last scattering, m.
@@ -96,7 +97,7 @@ impl Walk<'_> {
         let mut chunk = Chunk {
             energy: vec![[0.0; BAND_COUNT]; receivers * self.bin_count],
             directions: vec![[0.0; BAND_COUNT]; receivers * self.times * CELL_COUNT],
-            scatter: vec![Scatter::of(range.len()); receivers],
+            by_ray: vec![[0.0; SPAN_COUNT]; receivers * RAYS_PER_CHUNK],
             segments: 0,
             escaped: 0,
             length_m: 0.0,
@@ -107,18 +108,8 @@ impl Walk<'_> {
         let first = range.start;
         let start = range.map(|k| {
             let direction = self.turn * sequence_direction(k, self.place);
-            Traveller {
-                ray: Ray::new(self.source, direction),
-                energy: self.pattern.gain(direction.dot(self.axis)).map(|g| g * g),
-                origin: k - first,
-                reflections: 0,
-                travelled_m: 0.0,
-                straight_m: 0.0,
-                scattered: false,
-                mirrored: false,
-                order: 0,
-                walls: 0,
-            }
+            let energy = self.pattern.gain(direction.dot(self.axis)).map(|g| g * g);
+            Traveller::new(Ray::new(self.source, direction), energy, k - first)
         });
         let mut beyond = Vec::new();
         let random = &mut Random {
@@ -348,7 +339,7 @@ impl Walk<'_> {
             return;
         }
         let all = energy.iter().sum::<f32>() * factor;
-        chunk.scatter[receiver].add(origin, self.span_of_bin[bin], all);
+        chunk.by_ray[receiver * RAYS_PER_CHUNK + origin][self.span_of_bin[bin]] += all;
         let time = receiver * self.times + bin / self.bins_per_direction;
         let cell = &mut chunk.directions[time * CELL_COUNT + cell_of(from)];
         let bin = &mut chunk.energy[receiver * self.bin_count + bin];
@@ -422,6 +413,22 @@ fn resample(
 }
 
 impl Traveller {
+    /// At the source, ray `origin` of its chunk.
+    fn new(ray: Ray, energy: Banded, origin: usize) -> Self {
+        Self {
+            ray,
+            energy,
+            origin,
+            reflections: 0,
+            travelled_m: 0.0,
+            straight_m: 0.0,
+            scattered: false,
+            mirrored: false,
+            order: 0,
+            walls: 0,
+        }
+    }
+
     /// What it counts among others.
     fn weight(&self, worth: &Banded) -> f32 {
         self.energy
@@ -490,18 +497,8 @@ mod tests {
 
     /// A ray of some energy in all bands.
     fn ray(energy: f32) -> Traveller {
-        Traveller {
-            ray: Ray::new(Vec3::ZERO, Vec3::X),
-            energy: std::array::from_fn(|band| energy * (1.0 + band as f32)),
-            origin: 0,
-            reflections: 0,
-            travelled_m: 0.0,
-            straight_m: 0.0,
-            scattered: false,
-            mirrored: false,
-            order: 0,
-            walls: 0,
-        }
+        let energy = std::array::from_fn(|band| energy * (1.0 + band as f32));
+        Traveller::new(Ray::new(Vec3::ZERO, Vec3::X), energy, 0)
     }
 
     /// Over all places, every ray's energy comes out again, whether rays are split or thinned; alike, they stay as they are.
