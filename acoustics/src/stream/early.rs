@@ -1,14 +1,10 @@
 //! Early paths that are followed while source or listener move: delays that glide, so that pitch shifts as it should.
 
+use super::glide::Heard;
 use crate::echogram::Path;
 use crate::synthesis::{Wavelet, strongest};
 use serde::{Deserialize, Serialize};
-use std::sync::LazyLock;
 
-/// Taps on either side of a place between samples, at most.
-const HALF: usize = 16;
-/// Places between two samples in the tables; between them weights are interpolated.
-const PHASES: usize = 128;
 /// Delays that change by more than this fraction of the time do not glide: an eighth of the speed of sound.
 const FASTEST: f64 = 0.125;
 /// Two paths bend around one edge when their bends are this close, m: a bend slides along its edge as the listener walks.
@@ -103,127 +99,13 @@ impl Glide<'_> {
             (None, Some(b)) => (late(b), late(b)),
             (None, None) => return,
         };
-        // Places in the history that the block hears.
-        let place = |k: usize| {
-            let way = (k + 1) as f64 / size as f64;
-            (self.history.len() - size + k) as f64 - (from + (to - from) * way)
-        };
-        let (start, end) = (place(0).min(place(size - 1)), place(0).max(place(size - 1)));
-        let first = start.floor() as i64 - HALF as i64;
-        let count = (end.floor() as i64 + HALF as i64 + 1 - first) as usize;
+        let heard = Heard::new(self.history, size, (from, to));
         let filtered = |wavelet: &Wavelet| {
             let skip = skip.min(wavelet.lead);
-            self.filtered(&wavelet.response[skip..], wavelet.amplitude, first, count)
+            heard.filtered(&wavelet.response[skip..], wavelet.amplitude)
         };
         let (old, new) = (old.map(filtered), new.map(filtered));
-        for (k, y) in out.iter_mut().enumerate() {
-            let place = place(k);
-            // The sample after the newest does not exist yet.
-            let ahead = (self.history.len() as i64 - 1 - place.floor() as i64).max(1) as usize;
-            let taps = Taps::new(place, ahead);
-            let read = |samples: &Option<Vec<f32>>| {
-                samples
-                    .as_deref()
-                    .map_or(0.0, |samples| taps.read(samples, first))
-            };
-            let (a, b) = (read(&old), read(&new));
-            *y += a + (b - a) * self.fade[k];
-        }
-    }
-
-    /// `count` samples, from place `first` of the history on, as a filter makes them.
-    fn filtered(&self, response: &[f32], amplitude: f32, first: i64, count: usize) -> Vec<f32> {
-        let mut samples = vec![0.0; count];
-        let length = self.history.len() as i64;
-        for (k, weight) in response.iter().enumerate() {
-            let scaled = weight * amplitude;
-            // y[first + n] += h[k] x[first + n - k]
-            let shift = first - k as i64;
-            let from = (-shift).clamp(0, count as i64);
-            let to = (length - shift).clamp(from, count as i64);
-            let here = &self.history[(from + shift).max(0) as usize..(to + shift).max(0) as usize];
-            for (y, x) in samples[from as usize..to as usize].iter_mut().zip(here) {
-                *y += scaled * x;
-            }
-        }
-        samples
-    }
-}
-
-/// Weights of a windowed sinc at places between samples, for every half length 1, 2, 4, 8, 16. Shape (half, phase, tap).
-static TABLES: LazyLock<Vec<Vec<Vec<f32>>>> = LazyLock::new(|| {
-    let halves = (0..=HALF.trailing_zeros()).map(|power| 1_usize << power);
-    halves
-        .map(|half| {
-            (0..=PHASES)
-                .map(|phase| weights(half, phase as f64 / PHASES as f64))
-                .collect()
-        })
-        .collect()
-});
-
-fn weights(half: usize, fraction: f64) -> Vec<f32> {
-    let values: Vec<f64> = (0..2 * half)
-        .map(|k| {
-            let x = k as f64 + 1.0 - half as f64 - fraction;
-            let sinc = if x.abs() < 1e-9 {
-                1.0
-            } else {
-                libm::sin(std::f64::consts::PI * x) / (std::f64::consts::PI * x)
-            };
-            let way = std::f64::consts::PI * x / (half as f64 + 0.5);
-            // Blackman's window where there is room for it, von Hann's where there are few taps.
-            let window = if half == HALF {
-                0.42 + 0.5 * libm::cos(way) + 0.08 * libm::cos(2.0 * way)
-            } else {
-                0.5 + 0.5 * libm::cos(way)
-            };
-            sinc * window
-        })
-        .collect();
-    let sum: f64 = values.iter().sum();
-    values.iter().map(|value| (value / sum) as f32).collect()
-}
-
-/// The weights for one place.
-struct Taps {
-    whole: i64,
-    half: usize,
-    below: &'static [f32],
-    above: &'static [f32],
-    way: f32,
-}
-
-impl Taps {
-    /// `ahead`: samples after the one below the place that there are, at least 1.
-    fn new(place: f64, ahead: usize) -> Self {
-        let power = ahead.min(HALF).ilog2() as usize;
-        let whole = place.floor();
-        let phase = (place - whole) * PHASES as f64;
-        let below = (phase as usize).min(PHASES - 1);
-        let table = &TABLES[power];
-        Self {
-            whole: whole as i64,
-            half: 1 << power,
-            below: &table[below],
-            above: &table[below + 1],
-            way: (phase - below as f64) as f32,
-        }
-    }
-
-    /// The value between samples, of which the first stands at place `first`.
-    fn read(&self, samples: &[f32], first: i64) -> f32 {
-        let start = self.whole + 1 - self.half as i64 - first;
-        let here = usize::try_from(start)
-            .ok()
-            .and_then(|start| samples.get(start..start + 2 * self.half));
-        let Some(here) = here else { return 0.0 };
-        let (mut a, mut b) = (0.0, 0.0);
-        for ((x, below), above) in here.iter().zip(self.below).zip(self.above) {
-            a += x * below;
-            b += x * above;
-        }
-        a + (b - a) * self.way
+        heard.add(old.as_deref(), new.as_deref(), self.fade, out);
     }
 }
 

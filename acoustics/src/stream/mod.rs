@@ -3,6 +3,7 @@
 mod config;
 mod convolver;
 mod early;
+mod glide;
 mod memory;
 mod plan;
 mod remembered;

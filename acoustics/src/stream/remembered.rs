@@ -131,8 +131,6 @@ mod tests {
     /// A stream under the sky that has heard three blocks of two sources, the listener on the move.
     fn stream() -> Stream {
         let house = Arc::new(House::new(HouseData::default()).unwrap());
-        let state = State::new(&house);
-        let rays = RayScene::new(house.clone());
         let config = AcousticConfig {
             rays: 100,
             ..AcousticConfig::rl()
@@ -144,21 +142,29 @@ mod tests {
         };
         let mut stream = Stream::new(scene, settings, Key::root(3), Threads::ONE).unwrap();
         for k in 0..3 {
-            let signal = [0.1; BLOCK];
-            let source = |id| ActiveSource {
-                id,
-                position: Vec3::new(0.0, 1.0, 2.0),
-                signal: &signal,
-            };
-            let head = Pose::from_position_yaw(Vec3::new(0.1 * k as f32, 1.0, 0.0), 0.0);
-            let receiver = Receiver::binaural(head);
-            let mut out = vec![0.0; 2 * BLOCK];
-            let sources = [source(4), source(7)];
-            stream
-                .block(&rays, &state, &sources, &receiver, &mut out)
-                .unwrap();
+            hear(&mut stream, k);
         }
         stream
+    }
+
+    /// The next block, the `k`th.
+    fn hear(stream: &mut Stream, k: usize) {
+        let house = stream.scene().house().clone();
+        let (rays, state) = (RayScene::new(house.clone()), State::new(&house));
+        let signal = [0.1; BLOCK];
+        let source = |id| ActiveSource {
+            id,
+            position: Vec3::new(0.0, 1.0, 2.0),
+            signal: &signal,
+        };
+        let head = Pose::from_position_yaw(Vec3::new(0.1 * k as f32, 1.0, 0.0), 0.0);
+        let receiver = Receiver::binaural(head);
+        let mut out = vec![0.0; 2 * BLOCK];
+        let sources = [source(4), source(7)];
+        stream
+            .block(&rays, &state, &sources, &receiver, &mut out)
+            .unwrap();
+        assert!(out.iter().all(|x| x.is_finite()));
     }
 
     /// The snapshot with something changed, and a check sum that fits.
@@ -243,6 +249,7 @@ mod tests {
         stream.restore(&far).unwrap();
         let heard = &stream.voices[0].heard.as_ref().unwrap().1;
         assert!(heard.duration_s() < 1.1 * AcousticConfig::rl().max_duration_s);
+        hear(&mut stream, 3);
     }
 
     fn situation(voices: &mut [Memory]) -> &mut Situation {
