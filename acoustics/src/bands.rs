@@ -19,6 +19,10 @@ pub const NOMINAL_CENTRES_HZ: Banded = [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.
 
 /// Filters ring no longer than this to either side, s.
 const LONGEST_RING_S: f64 = 0.05;
+/// How far below the rate at which it is kept a band ends: the squares of its samples then have the energy of every few of them.
+const ROOM: f64 = 0.85;
+/// A band is kept at no less than this part of the rate.
+const SLOWEST: usize = 8;
 /// Position of the 1 kHz band.
 const BAND_OF_1_KHZ: f64 = 4.0;
 
@@ -67,9 +71,12 @@ pub struct FilterBank {
     fft: RealFft,
     /// Power share of each band at each bin. Shape (band, bin).
     shares: Vec<Vec<f32>>,
-    /// As [`Self::up_to`] and [`Self::passed`].
+    /// As [`Self::up_to`].
     up_to: Vec<Vec<f32>>,
-    passed: Vec<f64>,
+    /// As [`Self::stride`], and the transform to that rate. Shape (band,).
+    slow: Vec<(usize, RealFft)>,
+    /// Energy in a band of what two bands blend to, for pulses of amplitude 1. Shape (band, one, other).
+    blended: Vec<[[f64; BAND_COUNT]; BAND_COUNT]>,
 }
 
 impl FilterBank {
@@ -85,29 +92,31 @@ impl FilterBank {
             }
         }
         let reach = (LONGEST_RING_S * rate_hz) as usize;
-        let (mut up_to, mut passed) = (Vec::new(), Vec::new());
+        let mut up_to = Vec::new();
         for share in &shares {
             let mut spectrum: Vec<Complex<f32>> =
                 share.iter().map(|s| Complex::new(*s, 0.0)).collect();
             let response = fft.inverse(&mut spectrum);
-            let energy = |k: usize| f64::from(response[k]).powi(2);
             // Samples before the pulse stand at the end.
             let samples = (0..2 * reach).map(|k| (k + fft.len() - reach) % fft.len());
             let mut sum = 0.0;
             let mut sums = vec![0.0];
             for k in samples {
-                sum += energy(k);
+                sum += f64::from(response[k]).powi(2);
                 sums.push(sum);
             }
-            let all: f64 = (0..fft.len()).map(energy).sum();
             up_to.push(sums.iter().map(|s| (s / sum.max(1e-300)) as f32).collect());
-            passed.push(all);
         }
+        let slow = shares.iter().map(|share| {
+            let stride = stride(share);
+            (stride, RealFft::new(fft.len() / stride))
+        });
         Self {
+            slow: slow.collect(),
+            blended: (0..BAND_COUNT).map(|band| blended(&shares, band)).collect(),
             fft,
             shares,
             up_to,
-            passed,
         }
     }
 
@@ -131,46 +140,41 @@ impl FilterBank {
             .collect()
     }
 
-    /// Each signal filtered by its band's **power share** as a gain: what [`Self::blend`] sums. Shape (band, sample).
-    pub fn filter(&self, signals: &[Vec<f32>], length: usize) -> Vec<Vec<f32>> {
-        let mut fft = self.fft.clone();
-        let bands = signals.iter().zip(&self.shares);
-        bands
-            .map(|(signal, share)| {
-                if signal.iter().all(|x| *x == 0.0) {
-                    return vec![0.0; length];
-                }
-                let mut spectrum = fft.forward(signal);
-                for (value, share) in spectrum.iter_mut().zip(share) {
-                    *value *= share;
-                }
-                let mut samples = fft.inverse(&mut spectrum);
-                samples.resize(length, 0.0);
-                samples
-            })
-            .collect()
-    }
-
-    /// One signal filtered by every band's power share as a gain. Shape (band, sample).
-    pub fn filter_one(&self, signal: &[f32]) -> Vec<Vec<f32>> {
-        let mut fft = self.fft.clone();
-        let spectrum = fft.forward(signal);
-        let filtered = self.shares.iter().map(|share| {
-            let parts = spectrum.iter().zip(share);
-            let mut band: Vec<Complex<f32>> = parts.map(|(value, share)| value * share).collect();
+    /// A signal filtered by every band's **power share** as a gain, of which each [`Self::stride`]th sample is kept.
+    /// Shape (band, sample).
+    pub fn sift(&self, signal: &[f32]) -> Vec<Vec<f32>> {
+        let spectrum = self.fft.clone().forward(signal);
+        let bands = self.shares.iter().zip(&self.slow);
+        let sifted = bands.map(|(share, (stride, fft))| {
+            let mut fft = fft.clone();
+            let scale = 1.0 / *stride as f32;
+            let parts = spectrum.iter().zip(share).take(fft.bins());
+            let mut band: Vec<Complex<f32>> = parts
+                .map(|(value, share)| value * (share * scale))
+                .collect();
             let mut samples = fft.inverse(&mut band);
-            samples.resize(signal.len(), 0.0);
+            samples.resize(signal.len().div_ceil(*stride), 0.0);
             samples
         });
-        filtered.collect()
+        sifted.collect()
     }
 
-    /// The energy that the power share of `band`, as a gain, passes of a pulse of energy 1.
-    pub fn passed(&self, band: usize) -> f64 {
-        self.passed[band]
+    /// Of how many samples of a band [`Self::sift`] keeps one: a power of two.
+    pub fn stride(&self, band: usize) -> usize {
+        self.slow[band].0
     }
 
-    /// The fraction of it that is over up to each sample; the middle of the row is the pulse. Shape (odd,).
+    /// The energy that [`Self::sift`] finds in a band of a pulse that [`Self::blend`] made, from its energy in each band.
+    pub fn found(&self, band: usize, energy: &[f64; BAND_COUNT]) -> f64 {
+        let amplitude = energy.map(f64::sqrt);
+        let rows = self.blended[band].iter().zip(&amplitude);
+        let row = |row: &[f64; BAND_COUNT]| -> f64 {
+            row.iter().zip(&amplitude).map(|(share, a)| share * a).sum()
+        };
+        rows.map(|(shares, a)| a * row(shares)).sum()
+    }
+
+    /// The fraction of a pulse's energy in a band that is over up to each sample; the middle of the row is the pulse. Shape (odd,).
     pub fn up_to(&self, band: usize) -> &[f32] {
         &self.up_to[band]
     }
@@ -195,6 +199,33 @@ impl FilterBank {
         samples.resize(length, 0.0);
         samples
     }
+}
+
+/// See [`FilterBank::stride`].
+fn stride(share: &[f32]) -> usize {
+    let last = share.iter().rposition(|s| *s > 0.0).unwrap_or(0);
+    let mut stride = SLOWEST;
+    while stride > 1 && (last * stride) as f64 > ROOM * (share.len() - 1) as f64 {
+        stride /= 2;
+    }
+    stride
+}
+
+/// See [`FilterBank::blended`].
+fn blended(shares: &[Vec<f32>], band: usize) -> [[f64; BAND_COUNT]; BAND_COUNT] {
+    let mut sums = [[0.0; BAND_COUNT]; BAND_COUNT];
+    let last = shares[band].len() - 1;
+    for bin in (0..=last).filter(|bin| shares[band][*bin] > 0.0) {
+        // All bins but the first and the last stand for two frequencies.
+        let weight = if bin == 0 || bin == last { 0.5 } else { 1.0 } / last as f64;
+        let here: [f64; BAND_COUNT] = std::array::from_fn(|k| f64::from(shares[k][bin]));
+        for (row, one) in sums.iter_mut().zip(&here) {
+            for (sum, other) in row.iter_mut().zip(&here) {
+                *sum += weight * here[band] * here[band] * one * other;
+            }
+        }
+    }
+    sums
 }
 
 #[cfg(test)]
@@ -249,6 +280,58 @@ mod tests {
                 for (a, b) in blended.iter().zip(&impulse) {
                     assert!((a - b).abs() < 1e-5);
                 }
+            }
+        }
+    }
+
+    /// What is kept of a band has the energy of all of it, over every 20 ms of noise too, and that of a blended pulse is known
+    /// before.
+    #[test]
+    fn few_samples_have_the_energy_of_all() {
+        for rate_hz in [8_000.0, 16_000.0, 44_100.0, 48_000.0] {
+            let n = rate_hz as usize / 2;
+            let bank = FilterBank::new(rate_hz, n, 0.5);
+            let mut stream = dwell_scene::random::Key::root(3).stream();
+            let noise: Vec<f32> = (0..n).map(|_| stream.normal() as f32).collect();
+            let spectrum = bank.fft.clone().forward(&noise);
+            let sifted = bank.sift(&noise);
+            let mut slowest = 1;
+            for (band, few) in sifted.iter().enumerate() {
+                let parts = spectrum.iter().zip(&bank.shares[band]);
+                let mut parts: Vec<Complex<f32>> = parts.map(|(x, share)| x * share).collect();
+                let all = bank.fft.clone().inverse(&mut parts);
+                let stride = bank.stride(band);
+                slowest = slowest.max(stride);
+                let loudest = all.iter().fold(0.0_f32, |most, x| most.max(x.abs()));
+                for (k, x) in few.iter().enumerate() {
+                    assert!((x - all[k * stride]).abs() < 1e-5 * loudest.max(1.0));
+                }
+                let energy = |x: &[f32]| x.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
+                let window = (0.02 * rate_hz) as usize / stride;
+                let usual = energy(&all[..n]) / (n / (window * stride)) as f64;
+                for k in 1..n / stride / window {
+                    // Each sample stands for those around it.
+                    let around = |k: usize| k * window * stride - stride / 2;
+                    let few = stride as f64 * energy(&few[k * window..(k + 1) * window]);
+                    let all = energy(&all[around(k)..around(k + 1)]);
+                    let off = (few - all).abs();
+                    assert!(off <= 0.06 * usual, "{rate_hz} {band}: {few} {all}");
+                }
+            }
+            assert_eq!(slowest, 8);
+            let energy: [f64; BAND_COUNT] = std::array::from_fn(|k| 1.0 + (k % 3) as f64);
+            let mut pulses = vec![vec![0.0; n]; BAND_COUNT];
+            for (pulse, energy) in pulses.iter_mut().zip(&energy) {
+                pulse[n / 2] = energy.sqrt() as f32;
+            }
+            let heard = bank.sift(&bank.blend(&pulses, n));
+            for (band, heard) in heard.iter().enumerate() {
+                let sum: f64 = heard.iter().map(|x| f64::from(*x).powi(2)).sum();
+                let (found, wanted) = (sum * bank.stride(band) as f64, bank.found(band, &energy));
+                assert!(
+                    (found - wanted).abs() < 1e-3 * wanted.max(1e-9),
+                    "{band}: {found} {wanted}"
+                );
             }
         }
     }

@@ -4,10 +4,6 @@
     clippy::inline_always,
     reason = "what is not inline does not use the wider instructions of the function around it"
 )]
-#![expect(
-    clippy::needless_range_loop,
-    reason = "plain loops over lanes without branches are what becomes vector instructions"
-)]
 
 use dwell_scene::instructions::{Kernel, Level};
 use std::sync::LazyLock;

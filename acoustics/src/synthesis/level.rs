@@ -1,6 +1,6 @@
 //! Noise whose energy is not left to chance.
 
-use crate::bands::BAND_COUNT;
+use crate::bands::{BAND_COUNT, FilterBank};
 
 /// Shortest window over which a band's energy is set, s.
 const SHORTEST_S: f64 = 0.01;
@@ -10,19 +10,21 @@ const PERIODS: f64 = 2.0;
 const GOOD_PERIODS: f64 = 3.0;
 const LONG_S: f64 = 0.016;
 /// Gains stay between 1 / MOST and MOST.
-const MOST: f64 = 4.0;
+const MOST: f32 = 4.0;
 
 /// Gains over time for one band.
 #[derive(Clone, Debug)]
 pub(super) struct Gains {
-    /// Samples between two gains.
-    hop: usize,
+    /// Gains a sample.
+    per_sample: f32,
     gain: Vec<f32>,
 }
 
 /// Energy over the hops of a band, each arrival spread as the band's filter spreads a pulse.
 pub(super) struct Energy<'a> {
+    /// Samples of a hop, and of how many of them one is kept; see [`FilterBank::stride`].
     hop: usize,
+    stride: usize,
     /// Energy of the filter's response to a pulse up to each sample; the middle one is the pulse's. Shape (odd,).
     up_to: &'a [f32],
     /// Samples at the start in which nothing may be heard: what would fall there comes with the first that may.
@@ -30,29 +32,32 @@ pub(super) struct Energy<'a> {
     sums: Vec<f64>,
 }
 
-/// Samples between two gains of a band.
-fn hop(band: usize, rate_hz: f64) -> usize {
+/// Samples between two gains of a band: a multiple of `stride`.
+fn hop(band: usize, rate_hz: f64, stride: usize) -> usize {
     let lowest_hz = crate::bands::exact_centre_hz(band) * std::f64::consts::FRAC_1_SQRT_2;
     let window_s = (GOOD_PERIODS / lowest_hz)
         .min(LONG_S)
         .max(PERIODS / lowest_hz)
         .max(SHORTEST_S);
-    ((0.5 * window_s * rate_hz) as usize).max(1)
+    let kept = 0.5 * window_s * rate_hz / stride as f64;
+    stride * (kept as usize).max(1)
 }
 
 impl<'a> Energy<'a> {
     /// No energy in `length` samples.
     pub(super) fn new(
+        bank: &'a FilterBank,
         band: usize,
         rate_hz: f64,
         length: usize,
         quiet: usize,
-        up_to: &'a [f32],
     ) -> Self {
-        let hop = hop(band, rate_hz);
+        let stride = bank.stride(band);
+        let hop = hop(band, rate_hz, stride);
         Self {
             hop,
-            up_to,
+            stride,
+            up_to: bank.up_to(band),
             quiet,
             sums: vec![0.0; length.div_ceil(hop) + 1],
         }
@@ -83,50 +88,55 @@ impl<'a> Energy<'a> {
 }
 
 impl Gains {
-    /// The gains g with which paths + g noise has, in every window, the energy `wanted`.
+    /// Noise stays as it is.
+    pub(super) fn ones(wanted: &Energy<'_>) -> Self {
+        Self {
+            per_sample: 1.0 / wanted.hop as f32,
+            gain: vec![1.0; wanted.sums.len()],
+        }
+    }
+
+    /// Corrects the gains by those g with which paths + g noise has, in every window, the energy `wanted`.
     ///
     /// Random arrivals carry their energy only on average, and all meet each other in or out of phase by chance: even the early
     /// paths, since nothing is known of the phases of real reflections. Heard through a narrow band, an impulse response
-    /// would be up to decibels off what was traced. `paths`, `noise`: one band at the receiver's centre. Shape (sample,).
-    pub(super) fn new(paths: &[f32], noise: &[f32], wanted: &Energy<'_>) -> Self {
-        let hop = wanted.hop;
-        // Sums over each hop; a triangular window is two neighbours' halves.
-        let sums: Vec<[f64; 3]> = wanted
-            .sums
-            .iter()
-            .enumerate()
-            .map(|(k, wanted)| {
-                let span = |x: &[f32]| (k * hop).min(x.len())..((k + 1) * hop).min(x.len());
-                let (n, p) = (&noise[span(noise)], &paths[span(paths)]);
-                let nn = n.iter().map(|x| f64::from(*x).powi(2)).sum();
-                let both = n.iter().zip(p);
-                let pn = both.map(|(n, p)| f64::from(*n) * f64::from(*p)).sum();
-                let pp: f64 = p.iter().map(|x| f64::from(*x).powi(2)).sum();
-                [nn, pn, wanted - pp]
-            })
-            .collect();
-        let gain = (0..sums.len())
-            .map(|k| {
-                let here = sums[k];
-                let before = if k == 0 { [0.0; 3] } else { sums[k - 1] };
-                let [nn, pn, missing] = std::array::from_fn(|j| here[j] + before[j]);
-                if nn <= 0.0 {
-                    return 1.0;
-                }
+    /// would be up to decibels off what was traced. `paths`, `noise`: what the bank sifts into one band at the receiver's centre,
+    /// the noise with these gains. Shape (sample,).
+    pub(super) fn correct(&mut self, paths: &[f32], noise: &[f32], wanted: &Energy<'_>) {
+        let (kept, stride) = (wanted.hop / wanted.stride, wanted.stride as f64);
+        let hops = wanted.sums.iter().enumerate().map(|(k, wanted)| {
+            let span = |x: &[f32]| (k * kept).min(x.len())..((k + 1) * kept).min(x.len());
+            let (n, p) = (&noise[span(noise)], &paths[span(paths)]);
+            let product = |a: &[f32], b: &[f32]| -> f64 {
+                let pairs = a.iter().zip(b);
+                stride
+                    * pairs
+                        .map(|(a, b)| f64::from(*a) * f64::from(*b))
+                        .sum::<f64>()
+            };
+            [product(n, n), product(p, n), wanted - product(p, p)]
+        });
+        // A triangular window is two neighbours' halves.
+        let mut before = [0.0; 3];
+        for (gain, here) in self.gain.iter_mut().zip(hops) {
+            let [nn, pn, missing] = std::array::from_fn(|j| here[j] + before[j]);
+            before = here;
+            if nn > 0.0 {
                 // g² nn + 2 g pn = missing
                 let root = (pn * pn + nn * missing).max(0.0).sqrt();
-                ((root - pn) / nn).clamp(1.0 / MOST, MOST) as f32
-            })
-            .collect();
-        Self { hop, gain }
+                let more = ((root - pn) / nn) as f32;
+                *gain = (*gain * more).clamp(1.0 / MOST, MOST);
+            }
+        }
     }
 
     /// The gain at a sample.
     pub(super) fn at(&self, sample: usize) -> f32 {
-        let below = (sample / self.hop).min(self.gain.len() - 1);
-        let above = (below + 1).min(self.gain.len() - 1);
-        let way = (sample % self.hop) as f32 / self.hop as f32;
-        self.gain[below] + (self.gain[above] - self.gain[below]) * way
+        let place = sample as f32 * self.per_sample;
+        let last = self.gain.len() - 1;
+        let below = (place as usize).min(last);
+        let above = (below + 1).min(last);
+        self.gain[below] + (self.gain[above] - self.gain[below]) * (place - below as f32)
     }
 }
 
@@ -138,34 +148,44 @@ mod tests {
     use super::*;
     use dwell_scene::random::Key;
 
-    /// Noise that is up to three times too loud or too faint, and in or out of phase with a path, gets the energy that is asked.
+    /// Noise that is twice too loud or too faint, and in phase with paths, gets the energy that is asked.
     #[test]
     fn windows_get_the_energy_that_is_asked_for() {
-        let (band, rate_hz, length) = (5, 16_000.0, 4000);
+        let (band, rate_hz, length, asked) = (5, 16_000.0, 4000, 0.15);
+        let bank = FilterBank::new(rate_hz, length, 0.5);
         let mut stream = Key::root(5).stream();
         let noise: Vec<f32> = (0..length)
-            .map(|k| stream.normal() as f32 * if k < 2000 { 3.0 } else { 0.3 })
+            .map(|k| stream.normal() as f32 * if k < 2000 { 2.0 } else { 0.4 })
             .collect();
         let paths: Vec<f32> = noise.iter().map(|x| 0.1 * x).collect();
-        let mut wanted = Energy::new(band, rate_hz, length, 0, &[0.0, 1.0, 1.0]);
+        let mut wanted = Energy::new(&bank, band, rate_hz, length, 0);
         for k in 0..length {
-            wanted.add(k, 1.0);
+            wanted.add(k, asked);
         }
-        let gains = Gains::new(&paths, &noise, &wanted);
-        for window in [400..1800, 2400..4000] {
+        let mut gains = Gains::ones(&wanted);
+        let p = bank.sift(&paths);
+        for _ in 0..2 {
+            let noise: Vec<f32> = (0..length).map(|k| gains.at(k) * noise[k]).collect();
+            gains.correct(&p[band], &bank.sift(&noise)[band], &wanted);
+        }
+        for window in [400..1800_usize, 2400..3800] {
             let length = window.len() as f64;
-            let energy: f64 = window
-                .map(|k| f64::from(paths[k] + gains.at(k) * noise[k]).powi(2))
-                .sum();
-            assert!((energy / length - 1.0).abs() < 0.05, "{}", energy / length);
+            let heard: Vec<f32> = (0..4000)
+                .map(|k| paths[k] + gains.at(k) * noise[k])
+                .collect();
+            let heard = &bank.sift(&heard)[band];
+            let stride = bank.stride(band);
+            let kept = window.start / stride..window.end / stride;
+            let energy: f64 = heard[kept].iter().map(|x| f64::from(*x).powi(2)).sum();
+            let energy = stride as f64 * energy / (asked * length);
+            assert!((energy - 1.0).abs() < 0.05, "{energy}");
         }
     }
 
     #[test]
     fn what_would_be_heard_too_early_comes_with_the_first_that_may() {
-        // A response of five samples, of equal energy.
-        let up_to = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.0];
-        let mut energy = Energy::new(7, 16_000.0, 1000, 300, &up_to);
+        let bank = FilterBank::new(16_000.0, 1000, 0.5);
+        let mut energy = Energy::new(&bank, 7, 16_000.0, 1000, 300);
         energy.add(301, 2.0);
         assert!((energy.sums.iter().sum::<f64>() - 2.0).abs() < 1e-6);
         assert!(energy.sums[..300 / energy.hop].iter().all(|e| *e == 0.0));

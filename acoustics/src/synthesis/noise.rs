@@ -15,6 +15,9 @@ const TAPS: usize = 2 * HALF as usize;
 /// Places between two samples.
 const PHASES: usize = 64;
 
+/// How often the noise is measured and its gains corrected: what changes over time spreads in frequency, and bands cross.
+const ROUNDS: usize = 2;
+
 /// What the noise is made from.
 pub(super) struct Noise<'a> {
     pub(super) echogram: &'a Echogram,
@@ -62,11 +65,11 @@ impl Noise<'_> {
                 band.resize(self.length, 0.0);
             }
             for arrival in &arrivals {
-                let place = ((arrival.time_s * self.rate_hz) as usize).min(self.length - 1);
                 let heard = channel.hear(speed, arrival.from);
-                let pulse: Banded = std::array::from_fn(|band| {
-                    arrival.amplitude[band] * heard.gain[band] * levels[band].at(place)
-                });
+                let mut pulse = self.pulse(arrival, &levels);
+                for (amplitude, gain) in pulse.iter_mut().zip(&heard.gain) {
+                    *amplitude *= gain;
+                }
                 self.strike(&mut bus, arrival.time_s, &pulse, &heard.delay);
             }
             let heard = self.bank.blend(&bus, self.length);
@@ -116,33 +119,48 @@ impl Noise<'_> {
 
     /// The gains that give the noise, at the receiver's centre and beside the early paths, the energy it should have.
     fn levels(&self, energy: &[[f64; BAND_COUNT]], arrivals: &[Arrival], paths: &[f32]) -> Levels {
-        let mut bus: Bus = vec![vec![0.0; self.length]; BAND_COUNT];
-        for arrival in arrivals {
-            self.strike(&mut bus, arrival.time_s, &arrival.amplitude, &Delay::None);
-        }
-        let mut noise = self.bank.filter(&bus, self.length);
-        for band in &mut noise {
-            band[..self.quiet].fill(0.0);
-        }
-        let paths = self.bank.filter_one(paths);
-        let samples_per_bin = self.echogram.tail.bin_s * self.rate_hz;
-        std::array::from_fn(|band| {
-            let (passed, up_to) = (self.bank.passed(band), self.bank.up_to(band));
-            let mut wanted = Energy::new(band, self.rate_hz, self.length, self.quiet, up_to);
-            for (k, bin) in energy.iter().enumerate() {
-                let place = ((k as f64 + 0.5) * samples_per_bin) as usize;
-                if place < self.length {
-                    wanted.add(place, bin[band] * passed);
-                }
+        let wanted: [Energy<'_>; BAND_COUNT] = std::array::from_fn(|b| self.wanted(energy, b));
+        let mut levels: Levels = std::array::from_fn(|band| Gains::ones(&wanted[band]));
+        let paths = self.bank.sift(paths);
+        for _ in 0..ROUNDS {
+            let mut bus: Bus = vec![vec![0.0; self.length]; BAND_COUNT];
+            for arrival in arrivals {
+                let pulse = self.pulse(arrival, &levels);
+                self.strike(&mut bus, arrival.time_s, &pulse, &Delay::None);
             }
-            for path in &self.echogram.paths {
-                let place = (self.echogram.delay_s(path) * self.rate_hz) as usize;
-                if place < self.length {
-                    wanted.add(place, f64::from(path.energy[band]) * passed);
-                }
+            let mut noise = self.bank.blend(&bus, self.length);
+            noise[..self.quiet].fill(0.0);
+            let noise = self.bank.sift(&noise);
+            for (band, gains) in levels.iter_mut().enumerate() {
+                gains.correct(&paths[band], &noise[band], &wanted[band]);
             }
-            Gains::new(&paths[band], &noise[band], &wanted)
-        })
+        }
+        levels
+    }
+
+    /// The energy over time that a band should have.
+    fn wanted(&self, energy: &[[f64; BAND_COUNT]], band: usize) -> Energy<'_> {
+        let Self { bank, rate_hz, .. } = self;
+        let mut wanted = Energy::new(bank, band, *rate_hz, self.length, self.quiet);
+        let mut add = |time_s: f64, energy: &[f64; BAND_COUNT]| {
+            let place = (time_s * rate_hz) as usize;
+            if place < self.length {
+                wanted.add(place, bank.found(band, energy));
+            }
+        };
+        for (k, bin) in energy.iter().enumerate() {
+            add((k as f64 + 0.5) * self.echogram.tail.bin_s, bin);
+        }
+        for path in &self.echogram.paths {
+            add(self.echogram.delay_s(path), &path.energy.map(f64::from));
+        }
+        wanted
+    }
+
+    /// How strong an arrival is in each band.
+    fn pulse(&self, arrival: &Arrival, levels: &Levels) -> Banded {
+        let place = ((arrival.time_s * self.rate_hz) as usize).min(self.length - 1);
+        std::array::from_fn(|band| arrival.amplitude[band] * levels[band].at(place))
     }
 
     /// Adds one arrival to the bands of one channel.
