@@ -182,6 +182,7 @@ impl Voice {
             let response = ImpulseResponse {
                 samples,
                 echogram: response.echogram.clone(),
+                levels: None,
                 ..*response
             };
             (situation.clone(), response)
