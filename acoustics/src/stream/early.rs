@@ -1,6 +1,6 @@
 //! Early paths that are followed while source or listener move: delays that glide, so that pitch shifts as it should.
 
-use super::glide::Heard;
+use super::passage::Passage;
 use crate::echogram::Path;
 use crate::synthesis::{Wavelet, strongest};
 use serde::{Deserialize, Serialize};
@@ -99,13 +99,13 @@ impl Glide<'_> {
             (None, Some(b)) => (late(b), late(b)),
             (None, None) => return,
         };
-        let heard = Heard::new(self.history, size, (from, to));
+        let passage = Passage::new(self.history, size, (from, to));
         let filtered = |wavelet: &Wavelet| {
             let skip = skip.min(wavelet.lead);
-            heard.filtered(&wavelet.response[skip..], wavelet.amplitude)
+            passage.filtered(&wavelet.response[skip..], wavelet.amplitude)
         };
         let (old, new) = (old.map(filtered), new.map(filtered));
-        heard.add(old.as_deref(), new.as_deref(), self.fade, out);
+        passage.add(old.as_deref(), new.as_deref(), self.fade, out);
     }
 }
 

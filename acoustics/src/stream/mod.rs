@@ -3,8 +3,8 @@
 mod config;
 mod convolver;
 mod early;
-mod glide;
 mod memory;
+mod passage;
 mod plan;
 mod remembered;
 mod voice;

@@ -16,35 +16,35 @@ const PHASES: usize = 128;
 /// Samples that are filtered side by side.
 const LANES: usize = 64;
 
-/// The part of what a source has played that a channel hears in one block.
-pub(super) struct Heard<'a> {
+/// The passage of what a source has played that a channel hears in one block.
+pub(super) struct Passage<'a> {
     history: &'a [f32],
     size: usize,
     /// Delays before the block's first sample and at its last one, samples.
     delays: (f64, f64),
-    /// Where in the history the part begins, and how long it is.
+    /// Where in the history it begins, and how long it is.
     first: i64,
     count: usize,
 }
 
-impl<'a> Heard<'a> {
+impl<'a> Passage<'a> {
     /// `history`: its last `size` samples are the block's. `delays`: before the block's first sample and at its last one; at least 1
     /// sample.
     pub(super) fn new(history: &'a [f32], size: usize, delays: (f64, f64)) -> Self {
         // What is older than the history is silent, however old.
         let oldest = (history.len() + TAPS) as f64;
-        let mut heard = Self {
+        let mut passage = Self {
             history,
             size,
             delays: (delays.0.min(oldest), delays.1.min(oldest)),
             first: 0,
             count: 0,
         };
-        let ends = (heard.place(0), heard.place(size - 1));
+        let ends = (passage.place(0), passage.place(size - 1));
         let (start, end) = (ends.0.min(ends.1), ends.0.max(ends.1));
-        heard.first = start.floor() as i64 - HALF as i64;
-        heard.count = (end.floor() as i64 + HALF as i64 + 1 - heard.first) as usize;
-        heard
+        passage.first = start.floor() as i64 - HALF as i64;
+        passage.count = (end.floor() as i64 + HALF as i64 + 1 - passage.first) as usize;
+        passage
     }
 
     /// Where in the history sample `k` of the block is heard.
@@ -55,7 +55,7 @@ impl<'a> Heard<'a> {
         (self.history.len() - self.size + k) as f64 - (from + (to - from) * way)
     }
 
-    /// The part as a filter makes it. `response`: shape (tap,).
+    /// The passage as a filter makes it. `response`: shape (tap,).
     pub(super) fn filtered(&self, response: &[f32], amplitude: f32) -> Vec<f32> {
         let mut filtered = vec![0.0; self.count.next_multiple_of(LANES)];
         let met = self.met(response.len(), filtered.len());
@@ -68,7 +68,7 @@ impl<'a> Heard<'a> {
         filtered
     }
 
-    /// What a filter of `taps` meets for the first `count` samples of the part, and as many samples before them; silence where there
+    /// What a filter of `taps` meets for the first `count` samples of the passage, and as many samples before them; silence where there
     /// is no history.
     fn met(&self, taps: usize, count: usize) -> Vec<f32> {
         let mut met = vec![0.0; taps + count];
@@ -84,7 +84,7 @@ impl<'a> Heard<'a> {
         met
     }
 
-    /// Adds to `out`, shape (sample,), what is heard as one filtered part fades into another. `fade`: the weight of the new. Shape
+    /// Adds to `out`, shape (sample,), what is heard as one filtered passage fades into another. `fade`: the weight of the new. Shape
     /// (sample,).
     pub(super) fn add(
         &self,
@@ -94,7 +94,7 @@ impl<'a> Heard<'a> {
         out: &mut [f32],
     ) {
         Level::best().run(Read {
-            heard: self,
+            passage: self,
             old,
             new,
             fade,
@@ -138,7 +138,7 @@ impl Kernel for Filter<'_> {
 
 /// Reads between samples.
 struct Read<'a> {
-    heard: &'a Heard<'a>,
+    passage: &'a Passage<'a>,
     old: Option<&'a [f32]>,
     new: Option<&'a [f32]>,
     fade: &'a [f32],
@@ -150,15 +150,15 @@ impl Kernel for Read<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let newest = self.heard.history.len() as i64 - 1;
+        let newest = self.passage.history.len() as i64 - 1;
         let tables = &*TABLES;
         for k in 0..self.out.len().min(self.fade.len()) {
-            let place = self.heard.place(k);
+            let place = self.passage.place(k);
             let whole = place.floor();
             // The sample after the newest does not exist yet.
             let ahead = (newest - whole as i64).max(1) as usize;
             let taps = taps(tables, place - whole, ahead);
-            let start = (whole as i64 + 1 - HALF as i64 - self.heard.first) as usize;
+            let start = (whole as i64 + 1 - HALF as i64 - self.passage.first) as usize;
             let (old, new) = (around(self.old, start), around(self.new, start));
             let fade = self.fade[k];
             let mut products = [0.0; TAPS];
@@ -259,11 +259,11 @@ mod tests {
         let fade: Vec<f32> = (1..=size).map(|k| k as f32 / size as f32).collect();
         for (taps, delays) in [(80, (40.0, 40.0)), (3, (700.7, 690.2)), (1, (2.5, 1.0))] {
             let responses = [noise(taps), noise(taps + 5)];
-            let heard = Heard::new(&history, size, delays);
+            let passage = Passage::new(&history, size, delays);
             let answer = |level: Level| {
                 let parts = responses.each_ref().map(|response| {
-                    let mut out = vec![0.0; heard.count.next_multiple_of(LANES)];
-                    let met = heard.met(response.len(), out.len());
+                    let mut out = vec![0.0; passage.count.next_multiple_of(LANES)];
+                    let met = passage.met(response.len(), out.len());
                     level.run(Filter {
                         met: &met,
                         response,
@@ -274,7 +274,7 @@ mod tests {
                 });
                 let mut out = vec![0.0; size];
                 level.run(Read {
-                    heard: &heard,
+                    passage: &passage,
                     old: Some(&parts[0]),
                     new: Some(&parts[1]),
                     fade: &fade,
