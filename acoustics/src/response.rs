@@ -1,9 +1,7 @@
 //! What a receiver hears of an impulse.
 
 use crate::echogram::Echogram;
-use crate::synthesis::Levels;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// Pressure over time at a receiver, for a source that makes an impulse of 1 Pa at 1 m.
 ///
@@ -19,9 +17,6 @@ pub struct ImpulseResponse {
     pub samples: Vec<f32>,
     /// The energies it was made from.
     pub echogram: Echogram,
-    /// How its noise was corrected: the same whichever way the receiver turns. It follows from the rest.
-    #[serde(skip)]
-    pub(crate) levels: Option<Arc<Levels>>,
 }
 
 impl ImpulseResponse {

@@ -109,10 +109,11 @@ impl Stream {
                 (Change::None, _) if !settles => None,
                 (Change::Turned, Some((then, response))) => {
                     report.turned += 1;
+                    let echogram = response.echogram.clone();
                     // The echogram stays that of the place where it was traced.
                     let mut turned = then.clone();
                     turned.receiver.pose.rotation = receiver.pose.rotation;
-                    let response = scene.turn(response, &turned.receiver, turned.noise);
+                    let response = scene.arrive(echogram, &turned.receiver, None, turned.noise);
                     Some((turned, response))
                 }
                 _ => Some(if let Some(known) = known() {

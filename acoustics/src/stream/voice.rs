@@ -182,7 +182,6 @@ impl Voice {
             let response = ImpulseResponse {
                 samples,
                 echogram: response.echogram.clone(),
-                levels: None,
                 ..*response
             };
             (situation.clone(), response)

@@ -13,8 +13,8 @@ const LONG_S: f64 = 0.016;
 const MOST: f32 = 4.0;
 
 /// Gains over time for one band.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Gains {
+#[derive(Clone, Debug)]
+pub(super) struct Gains {
     /// Gains a sample.
     per_sample: f32,
     gain: Vec<f32>,
@@ -141,7 +141,7 @@ impl Gains {
 }
 
 /// Gains of every band.
-pub(crate) type Levels = [Gains; BAND_COUNT];
+pub(super) type Levels = [Gains; BAND_COUNT];
 
 #[cfg(test)]
 mod tests {

@@ -15,7 +15,6 @@ use crate::head::Heads;
 use crate::receiver::Receiver;
 use dwell_scene::random::Key;
 use fractional::Taps;
-pub(crate) use level::Levels;
 use minimum_phase::PathFilters;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
@@ -133,27 +132,23 @@ impl Synthesizer {
     /// Pressure at the receiver, Pa for an impulse of 1 Pa at 1 m. Shape (channel, sample), flat.
     ///
     /// Sample 0 is the moment of the impulse; a free path of d metres arrives d/c later with the amplitude 1/d. `early`: the
-    /// paths of each channel where they are not the centre's. `levels`: those of the same echogram and key, if known; they are returned, too.
+    /// paths of each channel where they are not the centre's.
     pub(crate) fn render(
         &self,
         echogram: &Echogram,
         receiver: &Receiver,
         heads: &Heads,
         early: Option<&[Vec<Path>]>,
-        levels: Option<Arc<Levels>>,
         key: Key,
-    ) -> (Vec<f32>, Option<Arc<Levels>>) {
+    ) -> Vec<f32> {
         let length = self.length(echogram);
         let mut out = vec![0.0; receiver.channels() * length];
         if length == 0 {
-            return (out, None);
+            return out;
         }
         let channels = Channel::of(receiver, heads, echogram.speed_m_s);
-        let paths = || {
-            let mut center = vec![0.0; length];
-            self.add_paths(echogram, &echogram.paths, &Channel::Omni, true, &mut center);
-            center
-        };
+        let mut center = vec![0.0; length];
+        self.add_paths(echogram, &echogram.paths, &Channel::Omni, true, &mut center);
         // Nothing may be heard before the straight way is over.
         let radius_m = receiver.radius_m().max(EAR_LEAD_S * echogram.speed_m_s);
         let quiet_s = (echogram.direct_length_m - radius_m) / echogram.speed_m_s;
@@ -165,9 +160,8 @@ impl Synthesizer {
             length,
             quiet,
             bank: self.bank(length),
-            paths: &paths,
         };
-        let levels = noise.add(&channels, levels, key, &mut out);
+        noise.add(&channels, &center, key, &mut out);
         for (k, (channel, out)) in channels
             .iter()
             .zip(out.chunks_exact_mut(length))
@@ -178,7 +172,7 @@ impl Synthesizer {
                 None => self.add_paths(echogram, &echogram.paths, channel, false, out),
             }
         }
-        (out, levels)
+        out
     }
 
     /// Adds early paths as a channel hears them; `there`: whether they end at the channel itself rather than at the centre.

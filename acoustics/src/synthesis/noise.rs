@@ -7,7 +7,7 @@ use crate::directions::Directions;
 use crate::echogram::Echogram;
 use dwell_scene::random::{Key, Stream};
 use glam::Vec3;
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
 /// Taps on either side of an arrival that falls between samples.
 const HALF: i32 = 4;
@@ -27,8 +27,6 @@ pub(super) struct Noise<'a> {
     /// Samples at the start in which nothing may be heard.
     pub(super) quiet: usize,
     pub(super) bank: &'a FilterBank,
-    /// What the receiver's centre hears of the early paths. Shape (sample,).
-    pub(super) paths: &'a dyn Fn() -> Vec<f32>,
 }
 
 /// One wave of the tail.
@@ -43,7 +41,7 @@ struct Arrival {
 type Bus = Vec<Vec<f32>>;
 
 impl Noise<'_> {
-    /// Adds the tail to `out`, shape (channel, sample), and returns how it was corrected. `known`: how it was, for the same arrivals.
+    /// Adds the tail to `out`, shape (channel, sample). `paths`: what the centre hears of the early paths, shape (sample,).
     ///
     /// Arrivals come at random (Poisson), each with a sign and a direction drawn from those of its bin. Within a bin all arrivals are equally strong, and their energies sum to the bin's in every
     /// band. All channels hear the same arrivals, each with its own delay and gain, so that their coherence is right: that of
@@ -52,19 +50,13 @@ impl Noise<'_> {
     /// # Source
     /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
     /// section 5.3.4; coherence after R. K. Cook et al., JASA 27, 1072 (1955).
-    pub(super) fn add(
-        &self,
-        channels: &[Channel],
-        known: Option<Arc<Levels>>,
-        key: Key,
-        out: &mut [f32],
-    ) -> Option<Arc<Levels>> {
+    pub(super) fn add(&self, channels: &[Channel], paths: &[f32], key: Key, out: &mut [f32]) {
         let energy = super::smooth::smooth(&self.echogram.tail);
         let arrivals = self.arrivals(&energy, key);
         if arrivals.is_empty() {
-            return None;
+            return;
         }
-        let levels = known.unwrap_or_else(|| Arc::new(self.levels(&energy, &arrivals)));
+        let levels = self.levels(&energy, &arrivals, paths);
         let speed = self.echogram.speed_m_s;
         let mut bus: Bus = vec![Vec::new(); BAND_COUNT];
         for (channel, out) in channels.iter().zip(out.chunks_exact_mut(self.length)) {
@@ -86,7 +78,6 @@ impl Noise<'_> {
                 *y += x;
             }
         }
-        Some(levels)
     }
 
     /// All waves of the tail, by bins.
@@ -127,10 +118,10 @@ impl Noise<'_> {
     }
 
     /// The gains that give the noise, at the receiver's centre and beside the early paths, the energy it should have.
-    fn levels(&self, energy: &[[f64; BAND_COUNT]], arrivals: &[Arrival]) -> Levels {
+    fn levels(&self, energy: &[[f64; BAND_COUNT]], arrivals: &[Arrival], paths: &[f32]) -> Levels {
         let wanted: [Energy<'_>; BAND_COUNT] = std::array::from_fn(|b| self.wanted(energy, b));
         let mut levels: Levels = std::array::from_fn(|band| Gains::ones(&wanted[band]));
-        let paths = self.bank.sift(&(self.paths)());
+        let paths = self.bank.sift(paths);
         for _ in 0..ROUNDS {
             let mut bus: Bus = vec![vec![0.0; self.length]; BAND_COUNT];
             for arrival in arrivals {
