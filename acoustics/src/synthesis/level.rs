@@ -13,7 +13,7 @@ const LONG_S: f64 = 0.016;
 const MOST: f32 = 4.0;
 
 /// Gains over time for one band.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Gains {
     /// Gains a sample.
     per_sample: f32,
@@ -116,12 +116,12 @@ impl Gains {
             };
             [product(n, n), product(p, n), wanted - product(p, p)]
         });
-        // A triangular window is two neighbours' halves.
+        // The window around a gain is the hops on either side.
         let mut before = [0.0; 3];
-        for (gain, here) in self.gain.iter_mut().zip(hops) {
+        for (k, (gain, here)) in self.gain.iter_mut().zip(hops).enumerate() {
             let [nn, pn, missing] = std::array::from_fn(|j| here[j] + before[j]);
             before = here;
-            if nn > 0.0 {
+            if nn > 0.0 && (k + 1) * wanted.hop > wanted.quiet {
                 // g² nn + 2 g pn = missing
                 let root = (pn * pn + nn * missing).max(0.0).sqrt();
                 let more = ((root - pn) / nn) as f32;

@@ -15,8 +15,11 @@ const TAPS: usize = 2 * HALF as usize;
 /// Places between two samples.
 const PHASES: usize = 64;
 
-/// How often the noise is measured and its gains corrected: what changes over time spreads in frequency, and bands cross.
+/// How often one microphone's noise is measured and its gains corrected: what changes over time spreads in frequency, and bands cross.
 const ROUNDS: usize = 2;
+/// The same of several channels. What is corrected is the centre's noise: where that is faint by chance the others' is not, so that
+/// every round costs them some of their coherence.
+const ROUNDS_OF_MANY: usize = 1;
 
 /// What the noise is made from.
 pub(super) struct Noise<'a> {
@@ -56,7 +59,12 @@ impl Noise<'_> {
         if arrivals.is_empty() {
             return;
         }
-        let levels = self.levels(&energy, &arrivals, paths);
+        let rounds = if channels.len() == 1 {
+            ROUNDS
+        } else {
+            ROUNDS_OF_MANY
+        };
+        let levels = self.levels(&energy, &arrivals, paths, rounds);
         let speed = self.echogram.speed_m_s;
         let mut bus: Bus = vec![Vec::new(); BAND_COUNT];
         for (channel, out) in channels.iter().zip(out.chunks_exact_mut(self.length)) {
@@ -118,11 +126,17 @@ impl Noise<'_> {
     }
 
     /// The gains that give the noise, at the receiver's centre and beside the early paths, the energy it should have.
-    fn levels(&self, energy: &[[f64; BAND_COUNT]], arrivals: &[Arrival], paths: &[f32]) -> Levels {
+    fn levels(
+        &self,
+        energy: &[[f64; BAND_COUNT]],
+        arrivals: &[Arrival],
+        paths: &[f32],
+        rounds: usize,
+    ) -> Levels {
         let wanted: [Energy<'_>; BAND_COUNT] = std::array::from_fn(|b| self.wanted(energy, b));
         let mut levels: Levels = std::array::from_fn(|band| Gains::ones(&wanted[band]));
         let paths = self.bank.sift(paths);
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             let mut bus: Bus = vec![vec![0.0; self.length]; BAND_COUNT];
             for arrival in arrivals {
                 let pulse = self.pulse(arrival, &levels);
