@@ -117,9 +117,10 @@ def recording(path: Path) -> tuple[NDArray[np.float32], int]:
 # The laboratory of R3VIVAL (CC BY 4.0), as its README and its plan have it: 9.7 x 5.5 x 2.7 m, the
 # array 3.5 m from the back wall, sources at the corners to some centimetres. Heights are not told;
 # in the bare state the echoes of floor and ceiling at 1.5, 2 and 3 m come within 0.35 ms of each
-# other: all stands half-way up, at 1.35 m.
+# other: all stands within centimetres of half-way up, here 2 cm off it (0.16 to 0.2 ms). In the
+# very middle the two would be one echo in every band: DRR at 2 and 4 kHz would be 0.5 to 1 dB less.
 SIZE_M = [9.7, 5.5, 2.7]
-HEIGHT_M = 1.35
+HEIGHT_M = 1.37
 ARRAY_M = (3.5, 2.75)
 CORNERS_M = {"BG1": (0.39, 4.63), "BG2": (0.39, 1.01), "BG3": (9.15, 0.78), "BG4": (9.02, 4.41)}
 OCTAVES_HZ = (125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0)
@@ -246,15 +247,12 @@ def beyond(measured: Means, simulated: Means, name: str, *octaves_hz: float) -> 
 def test_clarity_and_direct_sound_follow_from_the_decay(tmp_path: Path, distance: str) -> None:
     """M4: absorption from T30 of the bare state by Sabine, then C50 and DRR at 1.5, 2 and 3 m.
 
-    Within 1.5 dB, C50 from 250 Hz, DRR at 1 and 2 kHz. At 125 Hz so small a room has single modes.
-    For DRR at and below 500 Hz 2.5 ms are too short: they hold one period or little more. At 4 kHz
-    it is 1.5 dB too low at 3 m (four seeds: 1.50, standard deviation 0.03).
+    Within 1.5 dB, C50 from 250 Hz, DRR from 1 to 4 kHz. At 125 Hz so small a room has single modes.
+    For DRR at and below 500 Hz 2.5 ms are too short: they hold one period or little more.
     """
     measured, simulated = means(laboratory(tmp_path), "000", distance, LOUDSPEAKER)
     assert not beyond(measured, simulated, "c50_db", *OCTAVES_HZ[1:])
-    assert not beyond(measured, simulated, "drr_db", 1000.0, 2000.0)
-    low_db = measured["drr_db", 4000.0] - simulated["drr_db", 4000.0]
-    assert low_db < TOLERANCE_DB + 0.2
+    assert not beyond(measured, simulated, "drr_db", 1000.0, 2000.0, 4000.0)
 
 
 @pytest.mark.parametrize("state", ["000", "100"])
@@ -316,7 +314,7 @@ def test_states_between_follow_from_the_first_and_the_last(
 def test_turned_panels_as_the_loudspeaker_hears_them(tmp_path: Path) -> None:
     """M4: all panels turned, absorption from T30 of the corners, then the loudspeaker at 2 m.
 
-    DRR holds at 1 and 2 kHz and is 1.6 dB low at 4 kHz. C50 holds at 250 Hz and 4 kHz. From 500 Hz
+    DRR holds from 1 to 4 kHz. C50 holds at 250 Hz and 4 kHz. From 500 Hz
     to 2 kHz it is 2 to 3 dB too clear, since the decay is 13 to 20 % too short: Sabine's formula
     makes too much of coefficients where a third is absorbed on average. With Eyring's it is 0.4 to
     1.2 dB off there, and 1.7 and 3.1 dB too faint at 250 Hz and 4 kHz.
@@ -325,9 +323,7 @@ def test_turned_panels_as_the_loudspeaker_hears_them(tmp_path: Path) -> None:
     scene = laboratory(tmp_path, bare / SURFACE_M2 + (all_turned - bare) / SIDES_M2)
     measured, simulated = means(scene, "100", "2.0", LOUDSPEAKER)
     assert not beyond(measured, simulated, "c50_db", 250.0, 4000.0)
-    assert not beyond(measured, simulated, "drr_db", 1000.0, 2000.0)
-    low_db = measured["drr_db", 4000.0] - simulated["drr_db", 4000.0]
-    assert low_db < TOLERANCE_DB + 0.2
+    assert not beyond(measured, simulated, "drr_db", 1000.0, 2000.0, 4000.0)
     bare, mean = eyring("000"), eyring("100")
     scene = laboratory(tmp_path, bare + (mean - bare) * SURFACE_M2 / SIDES_M2, bare)
     measured, simulated = means(scene, "100", "2.0", LOUDSPEAKER)
