@@ -7,6 +7,7 @@
 use crate::fft::RealFft;
 use dwell_scene::Bands;
 use realfft::num_complex::Complex;
+use std::ops::Range;
 
 /// The number of bands.
 pub const BAND_COUNT: usize = 8;
@@ -72,6 +73,8 @@ pub struct FilterBank {
     fft: RealFft,
     /// Power share of each band at each bin. Shape (band, bin).
     shares: Vec<Vec<f32>>,
+    /// The bins at which a band has any. Shape (band,).
+    spans: Vec<Range<usize>>,
     /// As [`Self::up_to`].
     up_to: Vec<Vec<f32>>,
     /// As [`Self::stride`], and the transform to that rate. Shape (band,).
@@ -83,8 +86,8 @@ pub struct FilterBank {
 impl FilterBank {
     /// A bank for signals of at most `length` samples at `rate_hz`; `overlap` as in [`power_shares`].
     pub fn new(rate_hz: f64, length: usize, overlap: f64) -> Self {
-        // A quarter of a second lets the ringing of the lowest band fade before it wraps around.
-        let mut fft = RealFft::at_least(length + (0.25 * rate_hz) as usize);
+        // What rings beyond either end does so in what is left.
+        let mut fft = RealFft::at_least(length + (2.0 * LONGEST_RING_S * rate_hz) as usize);
         let mut shares = vec![vec![0.0; fft.bins()]; BAND_COUNT];
         for bin in 0..fft.bins() {
             let here = power_shares(bin as f64 * rate_hz / fft.len() as f64, overlap);
@@ -120,6 +123,7 @@ impl FilterBank {
             slow: slow.collect(),
             blended: (0..BAND_COUNT).map(|band| blended(&shares, band)).collect(),
             fft,
+            spans: shares.iter().map(|share| span(share)).collect(),
             shares,
             up_to,
         }
@@ -149,14 +153,15 @@ impl FilterBank {
     /// Shape (band, sample).
     pub(crate) fn sift(&self, signal: &[f32]) -> Vec<Vec<f32>> {
         let spectrum = self.fft.clone().forward(signal);
-        let bands = self.shares.iter().zip(&self.slow);
-        let sifted = bands.map(|(share, (stride, fft))| {
+        let bands = self.shares.iter().zip(&self.spans).zip(&self.slow);
+        let sifted = bands.map(|((share, span), (stride, fft))| {
             let mut fft = fft.clone();
             let scale = 1.0 / *stride as f32;
-            let parts = spectrum.iter().zip(share).take(fft.bins());
-            let mut band: Vec<Complex<f32>> = parts
-                .map(|(value, share)| value * (share * scale))
-                .collect();
+            let mut band = vec![Complex::default(); fft.bins()];
+            let parts = spectrum[span.clone()].iter().zip(&share[span.clone()]);
+            for (part, (value, share)) in band[span.clone()].iter_mut().zip(parts) {
+                *part = value * (share * scale);
+            }
             let mut samples = fft.inverse(&mut band);
             samples.resize(signal.len().div_ceil(*stride), 0.0);
             samples
@@ -192,12 +197,15 @@ impl FilterBank {
     pub fn blend(&self, signals: &[Vec<f32>], length: usize) -> Vec<f32> {
         let mut fft = self.fft.clone();
         let mut sum = vec![Complex::default(); fft.bins()];
-        for (signal, share) in signals.iter().zip(&self.shares) {
+        let mut spectrum = sum.clone();
+        let bands = self.shares.iter().zip(&self.spans);
+        for (signal, (share, span)) in signals.iter().zip(bands) {
             if signal.iter().all(|x| *x == 0.0) {
                 continue;
             }
-            let spectrum = fft.forward(signal);
-            for ((total, value), share) in sum.iter_mut().zip(&spectrum).zip(share) {
+            fft.forward_into(signal, &mut spectrum);
+            let parts = spectrum[span.clone()].iter().zip(&share[span.clone()]);
+            for (total, (value, share)) in sum[span.clone()].iter_mut().zip(parts) {
                 *total += value * share;
             }
         }
@@ -205,6 +213,15 @@ impl FilterBank {
         samples.resize(length, 0.0);
         samples
     }
+}
+
+/// The bins from the first to the last with a share.
+fn span(share: &[f32]) -> Range<usize> {
+    let first = share.iter().position(|s| *s > 0.0);
+    let last = share.iter().rposition(|s| *s > 0.0);
+    first
+        .zip(last)
+        .map_or(0..0, |(first, last)| first..last + 1)
 }
 
 /// See [`FilterBank::stride`].

@@ -96,7 +96,7 @@ impl AcousticConfig {
             image_order: 2,
             image_planes: 16,
             discovery_rays: 200,
-            roulette_db: 30.0,
+            roulette_db: 25.0,
             ..Self::full()
         }
     }

@@ -1,6 +1,7 @@
 //! What a receiver hears of an impulse.
 
 use crate::echogram::Echogram;
+use crate::synthesis::KnownLevels;
 use serde::{Deserialize, Serialize};
 
 /// Pressure over time at a receiver, for a source that makes an impulse of 1 Pa at 1 m.
@@ -17,6 +18,9 @@ pub struct ImpulseResponse {
     pub samples: Vec<f32>,
     /// The energies it was made from.
     pub echogram: Echogram,
+    /// How its noise was corrected: the same whichever way the receiver turns.
+    #[serde(skip)]
+    pub(crate) levels: KnownLevels,
 }
 
 impl ImpulseResponse {
@@ -41,5 +45,34 @@ impl ImpulseResponse {
     /// Duration, s.
     pub fn duration_s(&self) -> f64 {
         self.len() as f64 / f64::from(self.rate_hz.max(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{AcousticConfig, AcousticScene, Receiver, Source};
+    use dwell_scene::Pose;
+    use dwell_scene::parallel::Threads;
+    use dwell_scene::random::Key;
+    use dwell_scene::rays::RayScene;
+    use glam::Vec3;
+    use std::sync::Arc;
+
+    /// Whose head turns hears what one hears who came so, to the bit.
+    #[test]
+    fn a_turned_head_hears_what_one_that_came_so_hears() {
+        let house = Arc::new(dwell_houses::open("builtin:apartment").unwrap().0);
+        let rays = RayScene::new(house.clone());
+        let scene = AcousticScene::new(house, AcousticConfig::rl()).unwrap();
+        let (place, key) = (Vec3::new(2.0, 1.5, 2.0), Key::root(4));
+        let source = Source::at(place + 0.5 * Vec3::X);
+        let echogram = scene
+            .echogram(&rays, &source, place, key, Threads::ONE)
+            .unwrap();
+        let head = |yaw| Receiver::binaural(Pose::from_position_yaw(place, yaw));
+        let before = scene.arrive(echogram.clone(), &head(0.0), None, key);
+        let turned = scene.turn(&before, &head(1.0), key);
+        assert!(turned.samples.iter().any(|x| *x != 0.0) && turned.samples != before.samples);
+        assert_eq!(turned, scene.arrive(echogram, &head(1.0), None, key));
     }
 }

@@ -13,7 +13,7 @@ use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
 use crate::stream::Memory;
 use crate::surface::Surface;
-use crate::synthesis::{Synthesizer, Wavelet};
+use crate::synthesis::{KnownLevels, Synthesizer, Wavelet};
 use crate::{images, tail};
 use dwell_scene::bvh::Hit;
 use dwell_scene::parallel::Threads;
@@ -542,14 +542,36 @@ impl AcousticScene {
         early: Option<&[Vec<Path>]>,
         key: Key,
     ) -> ImpulseResponse {
-        let key = key.child("noise");
+        self.arrive_with(KnownLevels::default(), echogram, receiver, early, key)
+    }
+
+    /// The same response for a receiver that has turned in its place; `key` as it was.
+    pub(crate) fn turn(
+        &self,
+        response: &ImpulseResponse,
+        receiver: &Receiver,
+        key: Key,
+    ) -> ImpulseResponse {
+        let (levels, echogram) = (response.levels.clone(), response.echogram.clone());
+        self.arrive_with(levels, echogram, receiver, None, key)
+    }
+
+    fn arrive_with(
+        &self,
+        mut levels: KnownLevels,
+        echogram: Echogram,
+        receiver: &Receiver,
+        early: Option<&[Vec<Path>]>,
+        key: Key,
+    ) -> ImpulseResponse {
+        let (synthesizer, heads, key) = (&self.synthesizer, &self.heads, key.child("noise"));
+        let samples = synthesizer.render(&echogram, receiver, heads, early, &mut levels, key);
         ImpulseResponse {
             channels: receiver.channels(),
             rate_hz: self.config.rate_hz,
-            samples: self
-                .synthesizer
-                .render(&echogram, receiver, &self.heads, early, key),
+            samples,
             echogram,
+            levels,
         }
     }
 }

@@ -88,9 +88,10 @@ impl SphericalHead {
 
     /// Place between two rows of the tables.
     fn place(cos_incidence: f64) -> (usize, f32) {
-        let place = libm::acos(cos_incidence.clamp(-1.0, 1.0)) / PI * (ANGLES - 1) as f64;
-        let below = (place.floor() as usize).min(ANGLES - 2);
-        (below, (place - below as f64) as f32)
+        let angle = dwell_scene::math::acos(cos_incidence as f32);
+        let place = angle * ((ANGLES - 1) as f32 / std::f32::consts::PI);
+        let below = (place as usize).min(ANGLES - 2);
+        (below, place - below as f32)
     }
 
     /// Delay of a path against the head's centre, s; negative on the near side.

@@ -109,11 +109,10 @@ impl Stream {
                 (Change::None, _) if !settles => None,
                 (Change::Turned, Some((then, response))) => {
                     report.turned += 1;
-                    let echogram = response.echogram.clone();
                     // The echogram stays that of the place where it was traced.
                     let mut turned = then.clone();
                     turned.receiver.pose.rotation = receiver.pose.rotation;
-                    let response = scene.arrive(echogram, &turned.receiver, None, turned.noise);
+                    let response = scene.turn(response, &turned.receiver, turned.noise);
                     Some((turned, response))
                 }
                 _ => Some(if let Some(known) = known() {

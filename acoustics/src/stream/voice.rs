@@ -6,6 +6,7 @@ use crate::fft::RealFft;
 use crate::laws::Effects;
 use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
+use crate::synthesis::KnownLevels;
 use dwell_scene::random::Key;
 use dwell_scene::{Address, Pose};
 use glam::Vec3;
@@ -182,6 +183,7 @@ impl Voice {
             let response = ImpulseResponse {
                 samples,
                 echogram: response.echogram.clone(),
+                levels: KnownLevels::default(),
                 ..*response
             };
             (situation.clone(), response)

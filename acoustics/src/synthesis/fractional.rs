@@ -1,5 +1,12 @@
 //! Delays between samples.
 
+#![expect(
+    clippy::inline_always,
+    reason = "what is not inline does not use the wider instructions of the function around it"
+)]
+
+use dwell_scene::instructions::{Kernel, Level};
+
 /// Half of the longest interpolation filter, samples.
 const HALF: usize = 40;
 
@@ -55,15 +62,40 @@ impl Taps {
 
     /// Adds `response`, moved by the delay less `lead` samples and scaled, to `out`. What falls outside is dropped.
     pub(crate) fn add(&self, out: &mut [f32], response: &[f32], lead: usize, gain: f32) {
-        for (k, weight) in self.weights[..self.count].iter().enumerate() {
-            let scaled = weight * gain;
-            let start = self.first + k;
-            let skip = lead.saturating_sub(start);
-            let start = start.saturating_sub(lead);
-            if start >= out.len() || skip >= response.len() {
+        Level::best().run(Add {
+            taps: self,
+            out,
+            response,
+            lead,
+            gain,
+        });
+    }
+}
+
+/// What [`Taps::add`] does.
+struct Add<'a> {
+    taps: &'a Taps,
+    out: &'a mut [f32],
+    response: &'a [f32],
+    lead: usize,
+    gain: f32,
+}
+
+impl Kernel for Add<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { taps, out, .. } = self;
+        for (k, weight) in taps.weights[..taps.count].iter().enumerate() {
+            let scaled = weight * self.gain;
+            let start = taps.first + k;
+            let skip = self.lead.saturating_sub(start);
+            let start = start.saturating_sub(self.lead);
+            if start >= out.len() || skip >= self.response.len() {
                 continue;
             }
-            for (y, x) in out[start..].iter_mut().zip(&response[skip..]) {
+            for (y, x) in out[start..].iter_mut().zip(&self.response[skip..]) {
                 *y += scaled * x;
             }
         }

@@ -7,6 +7,9 @@ use realfft::num_complex::Complex;
 /// Energies below this fraction of a path's strongest band are raised to it: -120 dB.
 const FLOOR: f32 = 1e-12;
 
+/// How early the filters of ears begin before the delay, s: room for their ringing.
+pub(crate) const EAR_LEAD_S: f64 = 0.001;
+
 /// Time that the transforms of paths span, s.
 const SPAN_S: f64 = 0.032;
 
@@ -23,6 +26,10 @@ pub(crate) struct PathFilters {
     fft: RealFft,
     /// Logarithmic spectrum of a band whose gain is e, others 1. Shape (band, bin).
     basis: Vec<Vec<Complex<f32>>>,
+    /// What makes a response [`Self::lead`] samples late. Shape (bin,).
+    late: Vec<Complex<f32>>,
+    /// How responses end. Shape (tap,).
+    fade: Vec<f32>,
 }
 
 impl PathFilters {
@@ -62,7 +69,17 @@ impl PathFilters {
                 fft.forward(&cepstrum)
             })
             .collect();
-        Self { fft, basis }
+        let lead = lead(rate_hz);
+        let late = (0..bins).map(|bin| {
+            let turn = std::f64::consts::TAU * ((bin * lead) % length) as f64 / length as f64;
+            Complex::new(libm::cos(turn) as f32, -libm::sin(turn) as f32)
+        });
+        Self {
+            late: late.collect(),
+            fade: fade(length / 8),
+            fft,
+            basis,
+        }
     }
 
     /// Values of a spectrum.
@@ -98,27 +115,45 @@ impl PathFilters {
         self.fft.clone()
     }
 
-    /// The first half of the impulse response of a spectrum, its end faded out; `lead` samples late. Destroys `spectrum`.
+    /// Makes the response of a spectrum late by [`lead`].
+    pub(crate) fn delay(&self, spectrum: &mut [Complex<f32>]) {
+        for (value, late) in spectrum.iter_mut().zip(&self.late) {
+            *value *= late;
+        }
+    }
+
+    /// The first half of the impulse response of a spectrum, its end faded out. Destroys `spectrum`.
     pub(crate) fn impulse_response(
+        &self,
         fft: &mut RealFft,
         spectrum: &mut [Complex<f32>],
-        lead: usize,
     ) -> Vec<f32> {
-        let length = fft.len();
-        if lead > 0 {
-            for (bin, value) in spectrum.iter_mut().enumerate() {
-                let turn = std::f64::consts::TAU * ((bin * lead) % length) as f64 / length as f64;
-                *value *= Complex::new(libm::cos(turn) as f32, -libm::sin(turn) as f32);
-            }
-        }
-        let taps = length / 2;
+        let taps = fft.len() / 2;
         let mut response = fft.inverse_ref(spectrum)[..taps].to_vec();
-        let fade = taps / 4;
-        for (k, x) in response[taps - fade..].iter_mut().enumerate() {
-            let half_turn = std::f32::consts::FRAC_PI_2 * k as f32 / fade as f32;
-            *x *= libm::cosf(half_turn) * libm::cosf(half_turn);
-        }
+        fade_out(&mut response, &self.fade);
         response
+    }
+}
+
+/// Samples by which the filters of ears begin before the delay.
+pub(crate) fn lead(rate_hz: f64) -> usize {
+    (EAR_LEAD_S * rate_hz) as usize
+}
+
+/// Weights that lead from 1 to 0. Shape (tap,).
+pub(crate) fn fade(taps: usize) -> Vec<f32> {
+    let weight = |k: usize| {
+        let cos = libm::cosf(std::f32::consts::FRAC_PI_2 * k as f32 / taps as f32);
+        cos * cos
+    };
+    (0..taps).map(weight).collect()
+}
+
+/// Lets a response end with `fade`.
+pub(crate) fn fade_out(response: &mut [f32], fade: &[f32]) {
+    let start = response.len().saturating_sub(fade.len());
+    for (x, weight) in response[start..].iter_mut().zip(fade) {
+        *x *= weight;
     }
 }
 
@@ -130,7 +165,7 @@ mod tests {
     fn equal_energies_are_one_sample() {
         let filters = PathFilters::new(16_000.0);
         let (mut spectrum, amplitude) = filters.spectrum(&[0.25; 8]);
-        let response = PathFilters::impulse_response(&mut filters.fft(), &mut spectrum, 0);
+        let response = filters.impulse_response(&mut filters.fft(), &mut spectrum);
         assert!((amplitude - 0.5).abs() < 1e-7);
         assert!((response[0] - 1.0).abs() < 1e-6);
         assert!(response[1..].iter().all(|x| x.abs() < 1e-6));
@@ -142,7 +177,7 @@ mod tests {
         let filters = PathFilters::new(rate_hz);
         let energy = [1.0, 0.9, 0.8, 0.7, 0.5, 0.3, 0.1, 0.03];
         let (mut spectrum, amplitude) = filters.spectrum(&energy);
-        let response = PathFilters::impulse_response(&mut filters.fft(), &mut spectrum, 0);
+        let response = filters.impulse_response(&mut filters.fft(), &mut spectrum);
         for (band, wanted) in energy.iter().enumerate().skip(2).take(5) {
             let omega = std::f64::consts::TAU * bands::exact_centre_hz(band) / rate_hz;
             let sum: Complex<f64> = response

@@ -6,7 +6,7 @@ pub(crate) mod minimum_phase;
 mod noise;
 mod smooth;
 
-use crate::bands::{Banded, FilterBank};
+use crate::bands::{BAND_COUNT, Banded, FilterBank};
 use crate::channel::Channel;
 use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, Path};
@@ -15,7 +15,8 @@ use crate::head::Heads;
 use crate::receiver::Receiver;
 use dwell_scene::random::Key;
 use fractional::Taps;
-use minimum_phase::PathFilters;
+pub(crate) use level::KnownLevels;
+use minimum_phase::{EAR_LEAD_S, PathFilters};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
@@ -27,8 +28,11 @@ const END: f64 = 1e-7;
 const OVERLAP: f64 = 0.5;
 /// Length of the filters of paths that move, s.
 const SHORT_S: f64 = 0.004;
-/// How early the filters of ears begin before the delay, s: room for their ringing.
-const EAR_LEAD_S: f64 = 0.001;
+
+/// Taps of the filters of paths that move.
+fn short(rate_hz: f64) -> usize {
+    (SHORT_S * rate_hz) as usize
+}
 
 /// Samples of the longest response.
 fn longest(config: &AcousticConfig) -> usize {
@@ -41,6 +45,8 @@ pub(crate) struct Synthesizer {
     rate_hz: f64,
     arrivals_per_s: f64,
     filters: PathFilters,
+    /// How the filters of paths that move end.
+    fade: Vec<f32>,
     longest: usize,
     /// Filter banks for a quarter, half and all of the longest response, made when first needed.
     banks: [OnceLock<FilterBank>; 3],
@@ -87,6 +93,7 @@ impl Synthesizer {
             longest: longest(config),
             banks: [const { OnceLock::new() }; 3],
             filters,
+            fade: minimum_phase::fade(short(rate_hz) / 4),
             rate_hz,
             arrivals_per_s: config.arrivals_per_s,
         }
@@ -132,13 +139,15 @@ impl Synthesizer {
     /// Pressure at the receiver, Pa for an impulse of 1 Pa at 1 m. Shape (channel, sample), flat.
     ///
     /// Sample 0 is the moment of the impulse; a free path of d metres arrives d/c later with the amplitude 1/d. `early`: the
-    /// paths of each channel where they are not the centre's.
+    /// paths of each channel where they are not the centre's. `levels`: those of the same echogram and key for a receiver that was
+    /// turned another way, where they are known; afterwards they are.
     pub(crate) fn render(
         &self,
         echogram: &Echogram,
         receiver: &Receiver,
         heads: &Heads,
         early: Option<&[Vec<Path>]>,
+        levels: &mut KnownLevels,
         key: Key,
     ) -> Vec<f32> {
         let length = self.length(echogram);
@@ -147,81 +156,106 @@ impl Synthesizer {
             return out;
         }
         let channels = Channel::of(receiver, heads, echogram.speed_m_s);
-        let mut center = vec![0.0; length];
-        self.add_paths(echogram, &echogram.paths, &Channel::Omni, true, &mut center);
         // Nothing may be heard before the straight way is over.
         let radius_m = receiver.radius_m().max(EAR_LEAD_S * echogram.speed_m_s);
         let quiet_s = (echogram.direct_length_m - radius_m) / echogram.speed_m_s;
         let quiet = ((quiet_s * self.rate_hz).max(0.0) as usize).min(length);
         let noise = noise::Noise {
             echogram,
+            energy: smooth::smooth(&echogram.tail),
             rate_hz: self.rate_hz,
             arrivals_per_s: self.arrivals_per_s,
             length,
             quiet,
             bank: self.bank(length),
         };
-        noise.add(&channels, &center, key, &mut out);
-        for (k, (channel, out)) in channels
-            .iter()
-            .zip(out.chunks_exact_mut(length))
-            .enumerate()
-        {
-            match early.and_then(|early| early.get(k)) {
-                Some(paths) => self.add_paths(echogram, paths, channel, true, out),
-                None => self.add_paths(echogram, &echogram.paths, channel, false, out),
-            }
+        let arrivals = noise.arrivals(key);
+        if !arrivals.is_empty() {
+            let levels = levels.or_find(|| {
+                let mut paths = vec![0.0; length];
+                self.add_paths(
+                    echogram,
+                    &echogram.paths,
+                    &[Channel::Omni],
+                    true,
+                    &mut paths,
+                );
+                noise.levels(&arrivals, &paths, channels.len())
+            });
+            noise.add(&arrivals, levels, &channels, &mut out);
+        }
+        let Some(early) = early else {
+            self.add_paths(echogram, &echogram.paths, &channels, false, &mut out);
+            return out;
+        };
+        let all = channels.chunks(1).zip(out.chunks_exact_mut(length));
+        for ((channel, out), paths) in all.zip(early) {
+            self.add_paths(echogram, paths, channel, true, out);
         }
         out
     }
 
-    /// Adds early paths as a channel hears them; `there`: whether they end at the channel itself rather than at the centre.
+    /// Adds early paths as channels hear them to `out`, shape (channel, sample); `there`: whether they end at the channel itself rather
+    /// than at the centre.
     fn add_paths(
         &self,
         echogram: &Echogram,
         paths: &[Path],
-        channel: &Channel,
+        channels: &[Channel],
         there: bool,
         out: &mut [f32],
     ) {
+        let length = out.len() / channels.len();
         let mut fft = self.filters.fft();
         for path in strongest(paths) {
-            let wavelet = self.wavelet(&mut fft, echogram.speed_m_s, path, channel, there);
-            let taps = Taps::new(wavelet.delay_s * self.rate_hz);
-            taps.add(out, &wavelet.response, wavelet.lead, wavelet.amplitude);
+            let wavelets = self.heard(&mut fft, echogram.speed_m_s, path, channels, there);
+            for (wavelet, out) in wavelets.zip(out.chunks_exact_mut(length)) {
+                let taps = Taps::new(wavelet.delay_s * self.rate_hz);
+                taps.add(out, &wavelet.response, wavelet.lead, wavelet.amplitude);
+            }
         }
     }
 
-    /// A path as a channel hears it; `there`: whether it ends at the channel itself rather than at the centre.
-    fn wavelet(
-        &self,
-        fft: &mut RealFft,
+    /// A path as channels hear it; `there`: whether it ends at the channel itself rather than at the centre. Shape (channel,).
+    fn heard<'a>(
+        &'a self,
+        fft: &'a mut RealFft,
         speed_m_s: f64,
-        path: &Path,
-        channel: &Channel,
+        path: &'a Path,
+        channels: &'a [Channel],
         there: bool,
-    ) -> Wavelet {
-        let gain = channel.path_gain(path.arrival);
-        let energy: Banded = std::array::from_fn(|b| path.energy[b] * gain[b] * gain[b]);
-        let (mut spectrum, mut amplitude) = self.filters.spectrum(&energy);
-        if path.inverted != (gain.iter().sum::<f32>() < 0.0) {
-            amplitude = -amplitude;
-        }
-        let mut delay_s = channel.shade(speed_m_s, path.arrival, &mut spectrum);
-        if there {
-            delay_s = 0.0;
-        }
-        let lead = if channel.rings_early() {
-            (EAR_LEAD_S * self.rate_hz) as usize
-        } else {
-            0
-        };
-        Wavelet {
-            response: PathFilters::impulse_response(fft, &mut spectrum, lead),
-            lead,
-            amplitude,
-            delay_s: delay_s + path.length_m.max(crate::images::NEAREST_M) / speed_m_s,
-        }
+    ) -> impl Iterator<Item = Wavelet> + 'a {
+        // Most channels hear the same energies.
+        let (mut last, mut found) = ([f32::NAN; BAND_COUNT], (Vec::new(), 0.0));
+        channels.iter().map(move |channel| {
+            let gain = channel.path_gain(path.arrival);
+            let energy: Banded = std::array::from_fn(|b| path.energy[b] * gain[b] * gain[b]);
+            if energy != last {
+                (last, found) = (energy, self.filters.spectrum(&energy));
+            }
+            let (mut spectrum, mut amplitude) = found.clone();
+            if path.inverted != (gain.iter().sum::<f32>() < 0.0) {
+                amplitude = -amplitude;
+            }
+            let mut delay_s = channel.shade(speed_m_s, path.arrival, &mut spectrum);
+            if there {
+                delay_s = 0.0;
+            }
+            let early = channel.rings_early();
+            if early {
+                self.filters.delay(&mut spectrum);
+            }
+            Wavelet {
+                response: self.filters.impulse_response(fft, &mut spectrum),
+                lead: if early {
+                    minimum_phase::lead(self.rate_hz)
+                } else {
+                    0
+                },
+                amplitude,
+                delay_s: delay_s + path.length_m.max(crate::images::NEAREST_M) / speed_m_s,
+            }
+        })
     }
 
     /// Paths as each channel of a receiver hears them, with filters of [`SHORT_S`]. Shape (path, channel).
@@ -234,17 +268,21 @@ impl Synthesizer {
     ) -> Vec<Vec<Wavelet>> {
         let channels = Channel::of(receiver, heads, speed_m_s);
         let mut fft = self.filters.fft();
-        let mut hear = |path: &Path, channel: &Channel| {
-            let mut wavelet = self.wavelet(&mut fft, speed_m_s, path, channel, false);
-            wavelet.shorten((SHORT_S * self.rate_hz) as usize + wavelet.lead);
-            wavelet
+        let mut hear = |path: &Path| -> Vec<Wavelet> {
+            let wavelets = self.heard(&mut fft, speed_m_s, path, &channels, false);
+            wavelets.map(|wavelet| self.shorten(wavelet)).collect()
         };
-        let all = paths.iter();
-        all.map(|path| {
-            let channels = channels.iter();
-            channels.map(|channel| hear(path, channel)).collect()
-        })
-        .collect()
+        paths.iter().map(&mut hear).collect()
+    }
+
+    /// Keeps the first [`SHORT_S`] after the lead, the last quarter of them faded out.
+    fn shorten(&self, mut wavelet: Wavelet) -> Wavelet {
+        let taps = short(self.rate_hz) + wavelet.lead;
+        if wavelet.response.len() > taps {
+            wavelet.response.truncate(taps);
+            minimum_phase::fade_out(&mut wavelet.response, &self.fade);
+        }
+        wavelet
     }
 
     /// Takes wavelets out of a response again. Shapes: (path, channel) and (channel, sample), flat.
@@ -282,19 +320,4 @@ pub(crate) struct Wavelet {
     pub(crate) lead: usize,
     pub(crate) amplitude: f32,
     pub(crate) delay_s: f64,
-}
-
-impl Wavelet {
-    /// Keeps the first `taps`, the last quarter of them faded out.
-    fn shorten(&mut self, taps: usize) {
-        if self.response.len() <= taps {
-            return;
-        }
-        self.response.truncate(taps);
-        let fade = (taps / 4).max(1);
-        for (k, x) in self.response[taps - fade..].iter_mut().enumerate() {
-            let half_turn = std::f32::consts::FRAC_PI_2 * k as f32 / fade as f32;
-            *x *= libm::cosf(half_turn) * libm::cosf(half_turn);
-        }
-    }
 }

@@ -24,6 +24,8 @@ const ROUNDS_OF_MANY: usize = 1;
 /// What the noise is made from.
 pub(super) struct Noise<'a> {
     pub(super) echogram: &'a Echogram,
+    /// The tail's, as even over time as it is known. Shape (bin, band).
+    pub(super) energy: Vec<[f64; BAND_COUNT]>,
     pub(super) rate_hz: f64,
     pub(super) arrivals_per_s: f64,
     pub(super) length: usize,
@@ -33,7 +35,7 @@ pub(super) struct Noise<'a> {
 }
 
 /// One wave of the tail.
-struct Arrival {
+pub(super) struct Arrival {
     /// At the receiver's centre, s.
     time_s: f64,
     from: Vec3,
@@ -44,40 +46,32 @@ struct Arrival {
 type Bus = Vec<Vec<f32>>;
 
 impl Noise<'_> {
-    /// Adds the tail to `out`, shape (channel, sample). `paths`: what the centre hears of the early paths, shape (sample,).
+    /// Adds the tail to `out`, shape (channel, sample).
     ///
-    /// Arrivals come at random (Poisson), each with a sign and a direction drawn from those of its bin. Within a bin all arrivals are equally strong, and their energies sum to the bin's in every
-    /// band. All channels hear the same arrivals, each with its own delay and gain, so that their coherence is right: that of
+    /// All channels hear the same arrivals, each with its own delay and gain, so that their coherence is right: that of
     /// a diffuse field where sound comes from all sides.
     ///
     /// # Source
-    /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
-    /// section 5.3.4; coherence after R. K. Cook et al., JASA 27, 1072 (1955).
-    pub(super) fn add(&self, channels: &[Channel], paths: &[f32], key: Key, out: &mut [f32]) {
-        let energy = super::smooth::smooth(&self.echogram.tail);
-        let arrivals = self.arrivals(&energy, key);
-        if arrivals.is_empty() {
-            return;
-        }
-        let rounds = if channels.len() == 1 {
-            ROUNDS
-        } else {
-            ROUNDS_OF_MANY
-        };
-        let levels = self.levels(&energy, &arrivals, paths, rounds);
+    /// R. K. Cook et al., JASA 27, 1072 (1955).
+    pub(super) fn add(
+        &self,
+        arrivals: &[Arrival],
+        levels: &Levels,
+        channels: &[Channel],
+        out: &mut [f32],
+    ) {
         let speed = self.echogram.speed_m_s;
+        let pulses = arrivals.iter().map(|arrival| self.pulse(arrival, levels));
+        let pulses: Vec<Banded> = pulses.collect();
         let mut bus: Bus = vec![Vec::new(); BAND_COUNT];
         for (channel, out) in channels.iter().zip(out.chunks_exact_mut(self.length)) {
             for band in &mut bus {
                 band.clear();
                 band.resize(self.length, 0.0);
             }
-            for arrival in &arrivals {
+            for (arrival, pulse) in arrivals.iter().zip(&pulses) {
                 let heard = channel.hear(speed, arrival.from);
-                let mut pulse = self.pulse(arrival, &levels);
-                for (amplitude, gain) in pulse.iter_mut().zip(&heard.gain) {
-                    *amplitude *= gain;
-                }
+                let pulse = std::array::from_fn(|band| pulse[band] * heard.gain[band]);
                 self.strike(&mut bus, arrival.time_s, &pulse, &heard.delay);
             }
             let heard = self.bank.blend(&bus, self.length);
@@ -88,13 +82,18 @@ impl Noise<'_> {
         }
     }
 
-    /// All waves of the tail, by bins.
-    fn arrivals(&self, energy: &[[f64; BAND_COUNT]], key: Key) -> Vec<Arrival> {
+    /// All waves of the tail, by bins: they come at random (Poisson), each with a sign and a direction drawn from those of its bin.
+    /// Within a bin all are equally strong, and their energies sum to the bin's in every band.
+    ///
+    /// # Source
+    /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
+    /// section 5.3.4.
+    pub(super) fn arrivals(&self, key: Key) -> Vec<Arrival> {
         let tail = &self.echogram.tail;
         let nowhere = Directions::default();
         let mut sampler = None;
         let mut arrivals = Vec::new();
-        for (k, bin) in energy.iter().enumerate() {
+        for (k, bin) in self.energy.iter().enumerate() {
             if k % tail.bins_per_direction.max(1) == 0 {
                 sampler = None;
             }
@@ -125,15 +124,15 @@ impl Noise<'_> {
         arrivals
     }
 
-    /// The gains that give the noise, at the receiver's centre and beside the early paths, the energy it should have.
-    fn levels(
-        &self,
-        energy: &[[f64; BAND_COUNT]],
-        arrivals: &[Arrival],
-        paths: &[f32],
-        rounds: usize,
-    ) -> Levels {
-        let wanted: [Energy<'_>; BAND_COUNT] = std::array::from_fn(|b| self.wanted(energy, b));
+    /// The gains that give the noise, at the receiver's centre and beside the early paths, the energy it should have. `paths`: what
+    /// the centre hears of them, shape (sample,); `channels`: how many hear the noise.
+    pub(super) fn levels(&self, arrivals: &[Arrival], paths: &[f32], channels: usize) -> Levels {
+        let rounds = if channels == 1 {
+            ROUNDS
+        } else {
+            ROUNDS_OF_MANY
+        };
+        let wanted: [Energy<'_>; BAND_COUNT] = std::array::from_fn(|band| self.wanted(band));
         let mut levels: Levels = std::array::from_fn(|band| Gains::ones(&wanted[band]));
         let paths = self.bank.sift(paths);
         for _ in 0..rounds {
@@ -153,7 +152,7 @@ impl Noise<'_> {
     }
 
     /// The energy over time that a band should have.
-    fn wanted(&self, energy: &[[f64; BAND_COUNT]], band: usize) -> Energy<'_> {
+    fn wanted(&self, band: usize) -> Energy<'_> {
         let Self { bank, rate_hz, .. } = self;
         let mut wanted = Energy::new(bank, band, *rate_hz, self.length, self.quiet);
         let mut add = |time_s: f64, energy: &[f64; BAND_COUNT]| {
@@ -162,7 +161,7 @@ impl Noise<'_> {
                 wanted.add(place, bank.found(band, energy));
             }
         };
-        for (k, bin) in energy.iter().enumerate() {
+        for (k, bin) in self.energy.iter().enumerate() {
             add((k as f64 + 0.5) * self.echogram.tail.bin_s, bin);
         }
         for path in &self.echogram.paths {
@@ -229,6 +228,9 @@ fn weights(fraction: f32) -> [f32; TAPS] {
     weights.map(|weight| weight * scale)
 }
 
+/// Pulses that stand so many samples before the start, or more, fall outside with all their taps.
+const BEFORE: i64 = TAPS as i64;
+
 /// A pulse of energy 1 between two samples, within a 128th of its place.
 struct Between {
     weights: &'static [f32; TAPS],
@@ -237,14 +239,11 @@ struct Between {
 
 impl Between {
     fn new(place: f64) -> Self {
-        let place = (place * PHASES as f64).round() as i64;
-        let (whole, phase) = (
-            place.div_euclid(PHASES as i64),
-            place.rem_euclid(PHASES as i64),
-        );
+        // To the nearest; a cast cuts off, and makes 0 of what is below.
+        let place = ((place + BEFORE as f64) * PHASES as f64 + 0.5) as usize;
         Self {
-            weights: &WEIGHTS[phase as usize],
-            first: whole + 1 - i64::from(HALF),
+            weights: &WEIGHTS[place % PHASES],
+            first: (place / PHASES) as i64 - BEFORE + 1 - i64::from(HALF),
         }
     }
 

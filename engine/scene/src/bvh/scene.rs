@@ -3,14 +3,13 @@
 use super::instances::InstanceSet;
 use super::kernels::level::{ClosestPacket, OccludedPacket};
 use super::kernels::nearest::{Claim, Nearest, Place, reach};
-use super::kernels::single::{self, Probe};
-use super::kernels::slab::least;
+use super::kernels::one::{Any, Every, Everything, Offer};
+use super::kernels::single::Hits;
 use super::kernels::triangle::{EdgePlanes, dot, height_of, weights};
 use super::kernels::{Filter, packet};
 use super::packet::{PacketHits, RayPacket};
 use super::ray::{Hit, Ray, RayMask};
 use super::triangles::TriangleBvh;
-use crate::bounds::Aabb;
 use crate::instructions::Level;
 
 /// A world as rays see it; a pair of references, free to make and copy.
@@ -62,21 +61,8 @@ impl SceneBvh<'_> {
         if !ray.is_usable() {
             return;
         }
-        let filter = Filter::new(mask, None);
-        let probe = Self::probe(ray, &self.fixed.tree.bounds);
-        single::every(self.fixed, &probe, &filter, |slot, distance| {
-            hits.push(self.hit(ray, Place { source: 0, slot }, distance));
-        });
-        let probe = Self::probe(ray, &self.moving.tree.bounds);
-        single::traverse(&self.moving.tree, &probe, probe.far, |instance, _| {
-            if let Some((bvh, local)) = self.enter(instance, &probe, probe.far, &filter) {
-                let source = instance as u32 + 1;
-                single::every(bvh, &local, &filter.within(), |slot, distance| {
-                    hits.push(self.hit(ray, Place { source, slot }, distance));
-                });
-            }
-            false
-        });
+        let mut every = Every(|place, distance| hits.push(self.hit(ray, place, distance)));
+        self.offer(ray, &Filter::new(mask, None), &mut every);
         hits.sort_by(|a, b| {
             let rest = |hit: &Hit| (hit.id, hit.instance, hit.triangle);
             a.distance_m
@@ -174,21 +160,7 @@ impl SceneBvh<'_> {
     }
 
     fn occluded_filtered(&self, ray: &Ray, filter: &Filter) -> bool {
-        if !ray.is_usable() {
-            return false;
-        }
-        if single::occluded(
-            self.fixed,
-            &Self::probe(ray, &self.fixed.tree.bounds),
-            filter,
-        ) {
-            return true;
-        }
-        let probe = Self::probe(ray, &self.moving.tree.bounds);
-        single::traverse(&self.moving.tree, &probe, probe.far, |instance, _| {
-            let entered = self.enter(instance, &probe, probe.far, filter);
-            entered.is_some_and(|(bvh, local)| single::occluded(bvh, &local, &filter.within()))
-        })
+        ray.is_usable() && self.offer(ray, filter, &mut Any)
     }
 
     /// The second run of a ray whose first was not sure.
@@ -201,66 +173,19 @@ impl SceneBvh<'_> {
 
     /// Offers all hits that may matter.
     fn offer_all(&self, ray: &Ray, filter: &Filter, nearest: &mut Nearest) {
-        let claim =
-            |place: Place| self.claim(ray.origin.to_array(), ray.direction.to_array(), place);
-        let probe = Self::probe(ray, &self.fixed.tree.bounds);
-        single::closest(self.fixed, &probe, filter, 0, nearest, claim);
-        if self.moving.is_empty() {
-            return;
-        }
-        let probe = Self::probe(ray, &self.moving.tree.bounds);
-        single::traverse(
-            &self.moving.tree,
-            &probe,
-            nearest.limit,
-            |instance, limit| {
-                if let Some((bvh, local)) = self.enter(instance, &probe, nearest.limit, filter) {
-                    single::closest(
-                        bvh,
-                        &local,
-                        &filter.within(),
-                        instance as u32 + 1,
-                        nearest,
-                        claim,
-                    );
-                    *limit = nearest.limit;
-                }
-                false
-            },
-        );
+        let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+        let claim = |place: Place| self.claim(origin, direction, place);
+        self.offer(ray, filter, &mut Offer { nearest, claim });
     }
 
-    fn probe(ray: &Ray, bounds: &Aabb) -> Probe {
-        Probe::new(
-            bounds,
-            ray.origin.to_array(),
-            ray.direction.to_array(),
-            (ray.near_m, ray.far_m),
-            1.0,
-        )
-    }
-
-    /// The ray in the space of an instance, where it lies in the instance's box; nothing when it cannot meet it.
-    #[inline(always)]
-    fn enter(
-        &self,
-        instance: usize,
-        probe: &Probe,
-        limit: f32,
-        filter: &Filter,
-    ) -> Option<(&TriangleBvh, Probe)> {
-        let placed = &self.moving.placed[instance];
-        let (start, end) = probe.range_in(&placed.bounds);
-        let apart = placed.is_hidden() || start > least(end, limit);
-        if apart || !filter.admits(placed.id, placed.mask) {
-            return None;
-        }
-        let map = &placed.mesh_from_world;
-        let [x, y, z] = probe.direction;
-        let direction = map.vector(x, y, z);
-        let (bounds, origin) = (&placed.mesh.tree.bounds, map.point(probe.origin));
-        let local = Probe::new(bounds, origin, direction, (start, end), map.longest);
-        local.is_usable().then_some((&*placed.mesh, local))
+    /// Hands hits to `hits`; whether one was enough.
+    fn offer(&self, ray: &Ray, filter: &Filter, hits: &mut impl Hits) -> bool {
+        Level::best().run(Everything {
+            scene: self,
+            ray,
+            filter,
+            hits,
+        })
     }
 
     #[inline(always)]

@@ -42,6 +42,8 @@ impl<const N: usize> Kernel for OccludedPacket<'_, '_, N> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::nearest::{Nearest, Place};
+    use super::super::one::{Any, Everything, Offer};
     use super::*;
     use crate::bvh::{Instance, InstanceSet, PacketHits, RayMask, TriangleBvh, TriangleTag};
     use crate::instructions::Level;
@@ -85,6 +87,37 @@ mod tests {
                     rays: &rays,
                     filter: &filter,
                 });
+                // Each ray alone gives the same.
+                for k in 0..N {
+                    let ray = &rays.ray(k);
+                    let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+                    let claim = |place| scene.claim(origin, direction, place);
+                    let mut nearest = Nearest::new(ray.far_m);
+                    let filter = &filter;
+                    let hits_of_one = &mut Offer {
+                        nearest: &mut nearest,
+                        claim,
+                    };
+                    level.run(Everything {
+                        scene,
+                        ray,
+                        filter,
+                        hits: hits_of_one,
+                    });
+                    let met = level.run(Everything {
+                        scene,
+                        ray,
+                        filter,
+                        hits: &mut Any,
+                    });
+                    assert_eq!(met, blocked >> k & 1 == 1);
+                    assert_eq!(nearest.best != Place::NONE, hits.is_hit(k));
+                    if hits.is_hit(k) && !nearest.is_unsure() {
+                        let found = (nearest.best.source, nearest.best.slot);
+                        assert_eq!(found, (hits.source[k], hits.slot[k]));
+                        assert_eq!(nearest.distance.to_bits(), hits.distance_m[k].to_bits());
+                    }
+                }
                 (hits, blocked)
             };
             let (hits, blocked) = answer(Level::Portable);

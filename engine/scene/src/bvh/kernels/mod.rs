@@ -1,11 +1,11 @@
-//! How rays walk the trees. One ray: `single`; many from one point: `packet`, compiled for several instruction levels by
-//! `level`. All compute the same distances bit for bit and judge them by the one rule of `nearest`; boxes are only ever
+//! How rays walk the trees. One ray: `single` and `one`; many from one point: `packet` and `everything`. All compute the same distances bit for bit and judge them by the one rule of `nearest`; boxes are only ever
 //! passed over when nothing in them could count.
 
 mod everything;
 mod fan;
 pub(super) mod level;
 pub(super) mod nearest;
+pub(super) mod one;
 pub(super) mod packet;
 pub(super) mod single;
 pub(super) mod slab;

@@ -1,11 +1,11 @@
-//! One ray against one tree.
+//! One ray against one tree. What is done at leaves and with hits are traits, not closures: see [`crate::instructions::Kernel`].
 
 use glam::Vec4;
 
-use super::super::node::{Link, Node, STACK};
+use super::super::node::{Block, Link, Node, STACK};
 use super::super::triangles::TriangleBvh;
 use super::super::wide::WideTree;
-use super::nearest::{Claim, Nearest, Place};
+use super::nearest::Place;
 use super::slab::{WideOrigin, crossing, crossing4, inverse, least, margin, most};
 use super::triangle::{EdgePlanes, bounds, dot, height_of, settled};
 use super::{Filter, three};
@@ -80,53 +80,32 @@ impl Probe {
         )
     }
 
-    /// Calls `found` for the hits with a block of triangles, with their slot and distance, until it returns `true`.
+    /// Where the ray meets a triangle of a block that it may pass inside, or NaN.
     #[inline(always)]
-    fn meet(
-        &self,
-        bvh: &TriangleBvh,
-        block: usize,
-        filter: &Filter,
-        mut found: impl FnMut(u32, f32) -> bool,
-    ) -> bool {
-        let triangles = &bvh.blocks[block];
-        let planes = EdgePlanes::new(triangles, self.origin, self.longest);
-        let mut candidates = planes.inside(self.direction);
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize;
-            candidates &= candidates - 1;
-            let slot = block * 4 + lane;
-            let [x, y, z] = self.direction;
-            let slope = dot(triangles.normal_of(lane), x, y, z);
-            let distance = height_of(triangles, lane, self.origin) / slope;
-            let (min, max) = bounds(triangles, lane);
-            let (min, max) = self.wide.corners(&min, &max);
-            let distance = settled(
-                distance,
-                slope,
-                crossing(&min, &max, self.inverse),
-                self.margin,
-            );
-            let in_range = distance >= self.near && distance <= self.far;
-            if in_range
-                && filter.admits_surface(&bvh.surfaces[slot])
-                && found(slot as u32, distance)
-            {
-                return true;
-            }
-        }
-        false
+    fn distance(&self, triangles: &Block, lane: usize) -> f32 {
+        let [x, y, z] = self.direction;
+        let slope = dot(triangles.normal_of(lane), x, y, z);
+        let distance = height_of(triangles, lane, self.origin) / slope;
+        let (min, max) = bounds(triangles, lane);
+        let (min, max) = self.wide.corners(&min, &max);
+        let crossing = crossing(&min, &max, self.inverse);
+        settled(distance, slope, crossing, self.margin)
     }
 }
 
-/// Visits the leaves that a ray enters before `limit`, nearer ones first, until `leaf` returns `true`. `leaf` may lower the
-/// limit.
+/// What is done at the leaves of a tree.
+pub(in super::super) trait Visit {
+    /// Looks into a leaf; may lower the limit beyond which nothing matters. `true`: that is enough.
+    fn leaf(&mut self, index: usize, limit: &mut f32) -> bool;
+}
+
+/// Visits the leaves that a ray enters before `limit`, nearer ones first, until one is enough.
 #[inline(always)]
 pub(in super::super) fn traverse(
     tree: &WideTree,
     probe: &Probe,
     mut limit: f32,
-    mut leaf: impl FnMut(usize, &mut f32) -> bool,
+    visit: &mut impl Visit,
 ) -> bool {
     let mut stack = [(0.0_f32, Link::NONE); STACK];
     let mut top = 0;
@@ -137,7 +116,7 @@ pub(in super::super) fn traverse(
     loop {
         let (is_leaf, index) = link.parts();
         if is_leaf {
-            if leaf(index, &mut limit) {
+            if visit.leaf(index, &mut limit) {
                 return true;
             }
         } else {
@@ -161,51 +140,66 @@ pub(in super::super) fn traverse(
     }
 }
 
-/// Offers every hit that may matter to `nearest`.
+/// What is done with hits.
+pub(in super::super) trait Hits {
+    /// Takes one. `true`: that is enough.
+    fn found(&mut self, place: Place, distance: f32) -> bool;
+
+    /// The distance beyond which none matters any more.
+    fn limit(&self) -> f32;
+}
+
+/// Hands the hits with the triangles of a tree to `hits`, until one is enough; `source` as in [`Place`].
 #[inline(always)]
-pub(in super::super) fn closest(
+pub(in super::super) fn meet<H: Hits>(
     bvh: &TriangleBvh,
     probe: &Probe,
     filter: &Filter,
     source: u32,
-    nearest: &mut Nearest,
-    claim: impl Fn(Place) -> Claim,
-) {
-    traverse(
-        &bvh.tree,
+    hits: &mut H,
+) -> bool {
+    let limit = least(hits.limit(), probe.far);
+    let mut triangles = Triangles {
+        bvh,
         probe,
-        least(nearest.limit, probe.far),
-        |block, limit| {
-            probe.meet(bvh, block, filter, |slot, distance| {
-                if distance <= *limit {
-                    nearest.offer(distance, Place { source, slot }, &claim);
-                    *limit = least(nearest.limit, probe.far);
-                }
-                false
-            })
-        },
-    );
+        filter,
+        source,
+        hits,
+    };
+    traverse(&bvh.tree, probe, limit, &mut triangles)
 }
 
-/// Whether anything lies in the ray's range.
-#[inline(always)]
-pub(in super::super) fn occluded(bvh: &TriangleBvh, probe: &Probe, filter: &Filter) -> bool {
-    traverse(&bvh.tree, probe, probe.far, |block, _| {
-        probe.meet(bvh, block, filter, |_, _| true)
-    })
+/// The triangles of a tree.
+struct Triangles<'a, H> {
+    bvh: &'a TriangleBvh,
+    probe: &'a Probe,
+    filter: &'a Filter,
+    source: u32,
+    hits: &'a mut H,
 }
 
-/// Calls `found` for every hit in the ray's range, in no particular order.
-pub(in super::super) fn every(
-    bvh: &TriangleBvh,
-    probe: &Probe,
-    filter: &Filter,
-    mut found: impl FnMut(u32, f32),
-) {
-    traverse(&bvh.tree, probe, probe.far, |block, _| {
-        probe.meet(bvh, block, filter, |slot, distance| {
-            found(slot, distance);
-            false
-        })
-    });
+impl<H: Hits> Visit for Triangles<'_, H> {
+    #[inline(always)]
+    fn leaf(&mut self, block: usize, limit: &mut f32) -> bool {
+        let (probe, source) = (self.probe, self.source);
+        let triangles = &self.bvh.blocks[block];
+        let planes = EdgePlanes::new(triangles, probe.origin, probe.longest);
+        let mut candidates = planes.inside(probe.direction);
+        while candidates != 0 {
+            let lane = candidates.trailing_zeros() as usize;
+            candidates &= candidates - 1;
+            let slot = block * 4 + lane;
+            let distance = probe.distance(triangles, lane);
+            let in_range = distance >= probe.near && distance <= probe.far;
+            if !in_range || !self.filter.admits_surface(&self.bvh.surfaces[slot]) {
+                continue;
+            }
+            let slot = slot as u32;
+            if self.hits.found(Place { source, slot }, distance) {
+                return true;
+            }
+        }
+        *limit = least(self.hits.limit(), *limit);
+        false
+    }
 }
