@@ -18,8 +18,10 @@ pub type Banded = [f32; BAND_COUNT];
 /// Nominal centres of the octave bands, Hz. Shape (band,).
 pub const NOMINAL_CENTRES_HZ: Banded = [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
 
-/// Filters ring no longer than this to either side, s.
+/// What filters ring beyond this to either side is left out of account, s.
 const LONGEST_RING_S: f64 = 0.05;
+/// What rings beyond this comes in again at the other end, s: of the lowest bands, -60 to -80 dB.
+const WRAP_S: f64 = 0.2;
 /// A band ends below this part of half the rate at which it is kept: the energy of its samples over some milliseconds is then that of
 /// all that were left out.
 const ROOM: f64 = 0.85;
@@ -86,8 +88,7 @@ pub struct FilterBank {
 impl FilterBank {
     /// A bank for signals of at most `length` samples at `rate_hz`; `overlap` as in [`power_shares`].
     pub fn new(rate_hz: f64, length: usize, overlap: f64) -> Self {
-        // What rings beyond either end does so in what is left.
-        let mut fft = RealFft::at_least(length + (2.0 * LONGEST_RING_S * rate_hz) as usize);
+        let mut fft = RealFft::at_least(length + (WRAP_S * rate_hz) as usize);
         let mut shares = vec![vec![0.0; fft.bins()]; BAND_COUNT];
         for bin in 0..fft.bins() {
             let here = power_shares(bin as f64 * rate_hz / fft.len() as f64, overlap);

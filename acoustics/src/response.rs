@@ -69,10 +69,30 @@ mod tests {
         let echogram = scene
             .echogram(&rays, &source, place, key, Threads::ONE)
             .unwrap();
-        let head = |yaw| Receiver::binaural(Pose::from_position_yaw(place, yaw));
-        let before = scene.arrive(echogram.clone(), &head(0.0), None, key);
-        let turned = scene.turn(&before, &head(1.0), key);
-        assert!(turned.samples.iter().any(|x| *x != 0.0) && turned.samples != before.samples);
-        assert_eq!(turned, scene.arrive(echogram, &head(1.0), None, key));
+        for order in [None, Some(1)] {
+            let head = |yaw| {
+                let pose = Pose::from_position_yaw(place, yaw);
+                order.map_or_else(
+                    || Receiver::binaural(pose),
+                    |order| Receiver::ambisonics(pose, order),
+                )
+            };
+            let before = scene.arrive(echogram.clone(), &head(0.0), None, key);
+            let turned = scene.turn(&before, &head(1.0), key);
+            assert!(turned.samples.iter().any(|x| *x != 0.0) && turned.samples != before.samples);
+            assert_eq!(
+                turned,
+                scene.arrive(echogram.clone(), &head(1.0), None, key)
+            );
+            assert!(turned.levels.are_shared_with(&before.levels));
+        }
+        // Nobody listens.
+        let nobody = Receiver::array(Pose::from_position(place), Vec::new());
+        assert!(
+            scene
+                .arrive(echogram, &nobody, None, key)
+                .samples
+                .is_empty()
+        );
     }
 }

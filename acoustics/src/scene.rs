@@ -545,7 +545,7 @@ impl AcousticScene {
         self.arrive_with(KnownLevels::default(), echogram, receiver, early, key)
     }
 
-    /// The same response for a receiver that has turned in its place; `key` as it was.
+    /// The same response for a receiver that has turned in its place and is otherwise the same; `key` as it was.
     pub(crate) fn turn(
         &self,
         response: &ImpulseResponse,

@@ -144,8 +144,8 @@ impl Gains {
 /// Gains of every band.
 pub(super) type Levels = [Gains; BAND_COUNT];
 
-/// The levels that a response was made with, where they are known. They follow from its echogram and its key, so that they count for
-/// nothing where responses are compared.
+/// The levels that a response was made with, where they are known. They follow from its echogram, its key and the kind of its receiver, so
+/// that they count for nothing where responses are compared.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KnownLevels(Option<Arc<Levels>>);
 
@@ -153,6 +153,15 @@ impl KnownLevels {
     /// The levels; `find` finds them where they are not known yet.
     pub(super) fn or_find(&mut self, find: impl FnOnce() -> Levels) -> &Levels {
         self.0.get_or_insert_with(|| Arc::new(find()))
+    }
+}
+
+#[cfg(test)]
+impl KnownLevels {
+    /// Whether both are the same piece of memory.
+    pub(crate) fn are_shared_with(&self, other: &Self) -> bool {
+        let both = self.0.as_ref().zip(other.0.as_ref());
+        both.is_some_and(|(a, b)| Arc::ptr_eq(a, b))
     }
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct PathFilters {
     fft: RealFft,
     /// Logarithmic spectrum of a band whose gain is e, others 1. Shape (band, bin).
     basis: Vec<Vec<Complex<f32>>>,
-    /// What makes a response [`Self::lead`] samples late. Shape (bin,).
+    /// What makes a response [`lead`] samples late. Shape (bin,).
     late: Vec<Complex<f32>>,
     /// How responses end. Shape (tap,).
     fade: Vec<f32>,

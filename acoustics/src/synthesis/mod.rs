@@ -152,7 +152,7 @@ impl Synthesizer {
     ) -> Vec<f32> {
         let length = self.length(echogram);
         let mut out = vec![0.0; receiver.channels() * length];
-        if length == 0 {
+        if out.is_empty() {
             return out;
         }
         let channels = Channel::of(receiver, heads, echogram.speed_m_s);

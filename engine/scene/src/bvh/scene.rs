@@ -3,7 +3,7 @@
 use super::instances::InstanceSet;
 use super::kernels::level::{ClosestPacket, OccludedPacket};
 use super::kernels::nearest::{Claim, Nearest, Place, reach};
-use super::kernels::one::{Any, Every, Everything, Offer};
+use super::kernels::one::{Any, Every, Offer, OneRay};
 use super::kernels::single::Hits;
 use super::kernels::triangle::{EdgePlanes, dot, height_of, weights};
 use super::kernels::{Filter, packet};
@@ -99,7 +99,7 @@ impl SceneBvh<'_> {
         })
     }
 
-    /// Everything about one ray of a packet; the same as [`Self::closest`] gives.
+    /// OneRay about one ray of a packet; the same as [`Self::closest`] gives.
     pub fn packet_hit<const N: usize>(
         &self,
         rays: &RayPacket<N>,
@@ -180,7 +180,7 @@ impl SceneBvh<'_> {
 
     /// Hands hits to `hits`; whether one was enough.
     fn offer(&self, ray: &Ray, filter: &Filter, hits: &mut impl Hits) -> bool {
-        Level::best().run(Everything {
+        Level::best().run(OneRay {
             scene: self,
             ray,
             filter,

@@ -43,7 +43,7 @@ impl<const N: usize> Kernel for OccludedPacket<'_, '_, N> {
 #[cfg(test)]
 mod tests {
     use super::super::nearest::{Nearest, Place};
-    use super::super::one::{Any, Everything, Offer};
+    use super::super::one::{Any, Offer, OneRay};
     use super::*;
     use crate::bvh::{Instance, InstanceSet, PacketHits, RayMask, TriangleBvh, TriangleTag};
     use crate::instructions::Level;
@@ -98,13 +98,13 @@ mod tests {
                         nearest: &mut nearest,
                         claim,
                     };
-                    level.run(Everything {
+                    level.run(OneRay {
                         scene,
                         ray,
                         filter,
                         hits: hits_of_one,
                     });
-                    let met = level.run(Everything {
+                    let met = level.run(OneRay {
                         scene,
                         ray,
                         filter,

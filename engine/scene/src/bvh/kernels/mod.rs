@@ -1,5 +1,6 @@
-//! How rays walk the trees. One ray: `single` and `one`; many from one point: `packet` and `everything`. All compute the same distances bit for bit and judge them by the one rule of `nearest`; boxes are only ever
-//! passed over when nothing in them could count.
+//! How rays walk the trees. One ray: `single` and `one`; many from one point: `packet` and `everything`, by `level`. Both are compiled
+//! for several instruction levels. All compute the same distances bit for bit and judge them by the one rule of `nearest`; boxes
+//! are only ever passed over when nothing in them could count.
 
 mod everything;
 mod fan;

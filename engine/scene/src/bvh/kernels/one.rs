@@ -11,14 +11,14 @@ use crate::bounds::Aabb;
 use crate::instructions::Kernel;
 
 /// Hands the hits of a ray to `hits`, in no particular order, until one is enough. What comes of it: whether one was.
-pub(in super::super) struct Everything<'a, 'b, H> {
+pub(in super::super) struct OneRay<'a, 'b, H> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) ray: &'a Ray,
     pub(in super::super) filter: &'a Filter,
     pub(in super::super) hits: &'a mut H,
 }
 
-impl<H: Hits> Kernel for Everything<'_, '_, H> {
+impl<H: Hits> Kernel for OneRay<'_, '_, H> {
     type Output = bool;
 
     #[inline(always)]

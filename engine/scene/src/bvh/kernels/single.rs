@@ -1,4 +1,4 @@
-//! One ray against one tree. What is done at leaves and with hits are traits, not closures: see [`crate::instructions::Kernel`].
+//! One ray against one tree. What is done at leaves and with hits are traits, since closures cannot be made to compile inline.
 
 use glam::Vec4;
 
@@ -13,22 +13,22 @@ use crate::bounds::Aabb;
 
 /// A ray in the space of a tree, prepared. Its direction need not have unit length: distances are multiples of it.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Probe {
-    pub(in super::super) origin: [f32; 3],
-    pub(in super::super) direction: [f32; 3],
+pub(super) struct Probe {
+    pub(super) origin: [f32; 3],
+    pub(super) direction: [f32; 3],
     inverse: [f32; 3],
     wide: WideOrigin,
     margin: f32,
     /// See [`EdgePlanes::new`].
     longest: f32,
-    pub(in super::super) near: f32,
+    pub(super) near: f32,
     /// Hits beyond do not count.
-    pub(in super::super) far: f32,
+    pub(super) far: f32,
 }
 
 impl Probe {
     #[inline(always)]
-    pub(in super::super) fn new(
+    pub(super) fn new(
         all: &Aabb,
         origin: [f32; 3],
         direction: [f32; 3],
@@ -52,14 +52,14 @@ impl Probe {
 
     /// Whether origin and direction survived a transform.
     #[inline(always)]
-    pub(in super::super) fn is_usable(&self) -> bool {
+    pub(super) fn is_usable(&self) -> bool {
         let finite = |v: &[f32; 3]| v[0].is_finite() && v[1].is_finite() && v[2].is_finite();
         finite(&self.origin) && finite(&self.direction)
     }
 
     /// Where the ray is inside a box, within its own range.
     #[inline(always)]
-    pub(in super::super) fn range_in(&self, bounds: &Aabb) -> (f32, f32) {
+    pub(super) fn range_in(&self, bounds: &Aabb) -> (f32, f32) {
         let (min, max) = self.wide.corners(bounds.min.as_ref(), bounds.max.as_ref());
         let (enter, leave) = crossing(&min, &max, self.inverse);
         (most(enter, self.near), least(leave, self.far))
@@ -94,14 +94,14 @@ impl Probe {
 }
 
 /// What is done at the leaves of a tree.
-pub(in super::super) trait Visit {
+pub(super) trait Visit {
     /// Looks into a leaf; may lower the limit beyond which nothing matters. `true`: that is enough.
     fn leaf(&mut self, index: usize, limit: &mut f32) -> bool;
 }
 
 /// Visits the leaves that a ray enters before `limit`, nearer ones first, until one is enough.
 #[inline(always)]
-pub(in super::super) fn traverse(
+pub(super) fn traverse(
     tree: &WideTree,
     probe: &Probe,
     mut limit: f32,
@@ -151,7 +151,7 @@ pub(in super::super) trait Hits {
 
 /// Hands the hits with the triangles of a tree to `hits`, until one is enough; `source` as in [`Place`].
 #[inline(always)]
-pub(in super::super) fn meet<H: Hits>(
+pub(super) fn meet<H: Hits>(
     bvh: &TriangleBvh,
     probe: &Probe,
     filter: &Filter,
