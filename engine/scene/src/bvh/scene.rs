@@ -99,7 +99,7 @@ impl SceneBvh<'_> {
         })
     }
 
-    /// OneRay about one ray of a packet; the same as [`Self::closest`] gives.
+    /// Everything about one ray of a packet; the same as [`Self::closest`] gives.
     pub fn packet_hit<const N: usize>(
         &self,
         rays: &RayPacket<N>,
