@@ -20,7 +20,8 @@ pub const NOMINAL_CENTRES_HZ: Banded = [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.
 
 /// What filters ring beyond this to either side is left out of account, s.
 const LONGEST_RING_S: f64 = 0.05;
-/// What rings beyond this comes in again at the other end, s: of the lowest bands, -60 to -80 dB.
+/// What rings beyond this comes in again at the other end, s: where bands cross over half an octave or more, less than -77 dB of what
+/// [`FilterBank::blend`] and [`FilterBank::sift`] make of one, less than -55 dB of what [`FilterBank::split`] does.
 const WRAP_S: f64 = 0.2;
 /// A band ends below this part of half the rate at which it is kept: the energy of its samples over some milliseconds is then that of
 /// all that were left out.
