@@ -113,8 +113,9 @@ impl FilterBank {
             }
             up_to.push(sums.iter().map(|s| (s / sum.max(1e-300)) as f32).collect());
         }
-        let slow = shares.iter().map(|share| {
-            let stride = stride(share);
+        let spans: Vec<Range<usize>> = shares.iter().map(|share| span(share)).collect();
+        let slow = spans.iter().map(|span| {
+            let stride = stride(span, fft.bins());
             let slow = match stride {
                 1 => fft.clone(),
                 _ => RealFft::new(fft.len() / stride),
@@ -125,7 +126,7 @@ impl FilterBank {
             slow: slow.collect(),
             blended: (0..BAND_COUNT).map(|band| blended(&shares, band)).collect(),
             fft,
-            spans: shares.iter().map(|share| span(share)).collect(),
+            spans,
             shares,
             up_to,
         }
@@ -227,10 +228,10 @@ fn span(share: &[f32]) -> Range<usize> {
 }
 
 /// See [`FilterBank::stride`].
-fn stride(share: &[f32]) -> usize {
-    let last = share.iter().rposition(|s| *s > 0.0).unwrap_or(0);
+fn stride(span: &Range<usize>, bins: usize) -> usize {
+    let last = span.end.saturating_sub(1);
     let mut stride = SLOWEST;
-    while stride > 1 && (last * stride) as f64 > ROOM * (share.len() - 1) as f64 {
+    while stride > 1 && (last * stride) as f64 > ROOM * (bins - 1) as f64 {
         stride /= 2;
     }
     stride
