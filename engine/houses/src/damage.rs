@@ -234,7 +234,7 @@ pub enum Damage {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Unmapped {
-    /// A model id without a row in the category table.
+    /// A model id without a row in the category table, or with a class that is none of `assets/categories.csv`.
     Category,
     /// A texture or material name without a substance.
     Substance,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::report::At;
+use crate::report::{At, Report};
 
 /// Everything that stops a house from being opened or written.
 ///
@@ -111,12 +111,12 @@ pub enum HousesError {
         root: PathBuf,
     },
     /// Nothing in the file can be seen, touched or heard.
-    #[error("{at}: the house is empty, not one triangle could be read ({damage} warnings)")]
+    #[error("{at}: the house is empty, not one triangle could be read; {report}")]
     Empty {
         /// The file.
         at: At,
-        /// How many warnings the report holds.
-        damage: usize,
+        /// How many warnings there are, and the first of them: they say why.
+        report: String,
     },
     /// The converted house breaks a rule of the scene.
     #[error("{at}: {source}")]
@@ -149,6 +149,23 @@ impl HousesError {
         move |source| Self::Scene {
             at,
             source: Box::new(source),
+        }
+    }
+
+    /// An [`HousesError::Empty`] at `at`, with what was reported on the way.
+    pub(crate) fn empty(at: &At, report: &Report) -> Self {
+        const TOLD: usize = 3;
+        let first: Vec<String> = (report.warnings().iter().take(TOLD))
+            .map(ToString::to_string)
+            .collect();
+        let report = match report.len() as u64 + report.not_kept() {
+            0 => "nothing was reported".to_owned(),
+            1 => format!("1 warning: {}", first.join("")),
+            count => format!("{count} warnings, the first: {}", first.join("; ")),
+        };
+        Self::Empty {
+            at: at.clone(),
+            report,
         }
     }
 

@@ -135,7 +135,10 @@ fn a_house_of_nothing_is_refused() {
     let error = open(&path.to_string_lossy()).unwrap_err().to_string();
     assert_eq!(
         error,
-        "house.json: the house is empty, not one triangle could be read (3 warnings)"
+        "house.json: the house is empty, not one triangle could be read; 3 warnings, the first: \
+         metadata/ModelCategoryMapping.csv: table \"metadata/ModelCategoryMapping.csv\" does not exist; no object has a category; \
+         metadata/suncgModelLights.json: table \"metadata/suncgModelLights.json\" does not exist; no lamp shines; \
+         house.json: levels[0].nodes[0].transform: no usable transform (missing); the node is left out"
     );
 }
 

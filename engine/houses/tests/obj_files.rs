@@ -172,7 +172,7 @@ fn files_without_a_triangle_say_so() {
     let error = open(&path.to_string_lossy()).unwrap_err().to_string();
     assert_eq!(
         error,
-        "a.obj: the house is empty, not one triangle could be read (1 warnings)"
+        "a.obj: the house is empty, not one triangle could be read; 1 warning: a.obj: a face is left out: a vertex beyond the 1 of the file"
     );
     let missing = folder.path().join("b.obj");
     let error = open(&missing.to_string_lossy()).unwrap_err().to_string();

@@ -75,10 +75,7 @@ pub(super) fn load(
     let (mut mesh, materials) = joined(&pieces);
     if mesh.triangles.is_empty() {
         let at = At::file(path.display().to_string());
-        return Err(HousesError::Empty {
-            at,
-            damage: report.len(),
-        });
+        return Err(HousesError::empty(&at, &report));
     }
     if mesh.bounds().size().max_element() > 1_000.0 {
         let found = format!("{:?} m", mesh.bounds().size().to_array());

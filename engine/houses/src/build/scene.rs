@@ -99,10 +99,7 @@ impl Scene {
             .iter()
             .all(|thing| thing.mesh.triangles.is_empty())
         {
-            return Err(HousesError::Empty {
-                at: at.clone(),
-                damage: report.len(),
-            });
+            return Err(HousesError::empty(at, report));
         }
         let data = HouseData {
             name: self.name,

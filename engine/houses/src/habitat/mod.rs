@@ -96,8 +96,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
     }
     let data = reader.data;
     if data.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
-        let damage = report.len();
-        return Err(HousesError::Empty { at, damage });
+        return Err(HousesError::empty(&at, &report));
     }
     Ok((House::new(data).map_err(HousesError::scene(&at))?, report))
 }

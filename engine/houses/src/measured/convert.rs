@@ -94,10 +94,7 @@ pub(super) fn convert(
         }
     }
     if room.data.structure.is_empty() {
-        return Err(HousesError::Empty {
-            at: at.clone(),
-            damage: report.len(),
-        });
+        return Err(HousesError::empty(at, report));
     }
     Ok(room.data)
 }

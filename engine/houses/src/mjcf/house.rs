@@ -86,8 +86,7 @@ pub(super) fn read(mut source: Source, report: &mut Report) -> Result<House, Hou
     }
     let mut data = reader.data;
     if data.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
-        let damage = report.len();
-        return Err(HousesError::Empty { at, damage });
+        return Err(HousesError::empty(&at, report));
     }
     place(&mut data);
     House::new(data).map_err(HousesError::scene(&at))

@@ -79,8 +79,7 @@ fn convert(
     reader.assembly.storey();
     reader.shell(&file);
     if reader.rooms.is_empty() {
-        let damage = report.len();
-        return Err(HousesError::Empty { at, damage });
+        return Err(HousesError::empty(&at, &report));
     }
     reader.objects(&file.objects);
     reader.lamps(&file.procedural_parameters.lights);

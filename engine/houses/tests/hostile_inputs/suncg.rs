@@ -331,6 +331,30 @@ pub(crate) const CASES: &[Case] = &[
         &["metadata/ModelCategoryMapping.csv"],
     ),
     warns(
+        "a table of random bytes",
+        |d| {
+            let bytes: Vec<u8> = (0..4000_u32)
+                .map(|k| (k * k * 31 + 7 * k + 200) as u8)
+                .collect();
+            put(d, "metadata/ModelCategoryMapping.csv", bytes);
+            house(d, r#"{"id": "0_1", "type": "None"}"#)
+        },
+        &["metadata/ModelCategoryMapping.csv:1", "invalid UTF-8"],
+    ),
+    warns(
+        "classes that nobody knows",
+        |d| {
+            put(d, "object/7/7.obj", obj_of(""));
+            put(
+                d,
+                "metadata/ModelCategoryMapping.csv",
+                "model_id,fine_grained_class,coarse_grained_class\n7,xq,zzv\n",
+            );
+            object(d, "7")
+        },
+        &["modelId", "the category of model", "7"],
+    ),
+    warns(
         "a table of lamps that is a list",
         |d| {
             put(d, "metadata/suncgModelLights.json", "[1, 2, 3]");

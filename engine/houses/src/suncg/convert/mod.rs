@@ -174,10 +174,7 @@ impl Converter<'_> {
             .sum::<usize>()
             == 0
         {
-            return Err(HousesError::Empty {
-                at: self.at,
-                damage: self.report.len(),
-            });
+            return Err(HousesError::empty(&self.at, self.report));
         }
         let _span = debug_span!("check").entered();
         House::new(self.data).map_err(HousesError::scene(&self.at))

@@ -67,7 +67,15 @@ impl<'a> Converter<'a> {
             return;
         };
         let entry = self.files.categories.get(model);
-        if entry.is_none() && !self.files.categories.is_empty() {
+        let category = entry.map(|e| Category {
+            fine: e.fine.clone(),
+            coarse: e.coarse.clone(),
+            nyu40: e.nyu40.clone(),
+        });
+        let category = category.unwrap_or_default();
+        let row = crate::build::category([category.fine.as_str(), category.coarse.as_str()]);
+        // A table that says nothing of the model, or a class that nobody knows.
+        if row.is_none() && !self.files.categories.is_empty() {
             self.report.warn(
                 at.field("modelId"),
                 Damage::Unmapped {
@@ -76,13 +84,6 @@ impl<'a> Converter<'a> {
                 },
             );
         }
-        let category = entry.map(|e| Category {
-            fine: e.fine.clone(),
-            coarse: e.coarse.clone(),
-            nyu40: e.nyu40.clone(),
-        });
-        let category = category.unwrap_or_default();
-        let row = crate::build::category([category.fine.as_str(), category.coarse.as_str()]);
         let moves = mobility::kind_moves(row, entry);
         let plan = Plan {
             key,

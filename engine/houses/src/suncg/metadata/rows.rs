@@ -48,7 +48,14 @@ impl<'a> Rows<'a> {
         report: &mut Report,
     ) -> Option<Self> {
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text);
-        let headers = reader.headers().ok()?.clone();
+        let headers = match reader.headers() {
+            Ok(headers) => headers.clone(),
+            Err(error) => {
+                let reason = error.to_string();
+                report.warn(at.line(1), Damage::BadRow { reason });
+                return None;
+            }
+        };
         let columns: Vec<_> = names
             .iter()
             .map(|name| headers.iter().position(|header| header.trim() == *name))
