@@ -20,8 +20,22 @@ from dwell._native import ConfigError
 _MOST = 2**64 - 1
 #: The engines reckon in 32 bits: what is larger would be infinite there.
 _LARGEST = float(np.finfo(np.float32).max)
+#: How deep lists and mappings lie in each other at most, as the native side reads them.
+_DEEPEST = 100
 
 _Record = TypeVar("_Record")
+
+
+def shown(value: object, most: int = 200) -> str:
+    """``repr`` for error messages: never much text, and of everything.
+
+    Whole numbers of thousands of digits, and lists in each other without end, have none.
+    """
+    try:
+        row = repr(value)
+    except (RecursionError, ValueError):
+        return f"a {type(value).__name__} that cannot be written out"
+    return row if len(row) <= most else f"{row[:most]}…"
 
 
 def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
@@ -30,11 +44,11 @@ def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
     try:
         number = operator.index(value)  # type: ignore[arg-type] # what this finds out
     except TypeError:
-        raise ConfigError(f"{name} is {value!r}; allowed are {allowed}") from None
+        raise ConfigError(f"{name} is {shown(value)}; allowed are {allowed}") from None
     if isinstance(value, bool) or not low <= number <= high:
         if number > _MOST:
             allowed = f"whole numbers from {low} to {high}"
-        raise ConfigError(f"{name} is {value!r}; allowed are {allowed}")
+        raise ConfigError(f"{name} is {shown(value)}; allowed are {allowed}")
     return number
 
 
@@ -45,7 +59,7 @@ def finite(name: str, value: object) -> float:
             raise TypeError
         number = float(value)  # type: ignore[arg-type] # what this finds out
     except (TypeError, ValueError, OverflowError):
-        raise ConfigError(f"{name} is {value!r}; expected a number") from None
+        raise ConfigError(f"{name} is {shown(value)}; expected a number") from None
     if not math.isfinite(number):
         raise ConfigError(f"{name} is {number}; allowed are finite numbers")
     if abs(number) > _LARGEST:
@@ -58,14 +72,14 @@ def finite(name: str, value: object) -> float:
 def text(name: str, value: object) -> str:
     """Text."""
     if not isinstance(value, str):
-        raise ConfigError(f"{name} is {value!r}; expected text")
+        raise ConfigError(f"{name} is {shown(value)}; expected text")
     return value
 
 
 def choice(name: str, value: object, allowed: Sequence[str]) -> str:
     """One of several words."""
     if value not in allowed:
-        raise ConfigError(f"{name} is {value!r}; allowed are {', '.join(allowed)}")
+        raise ConfigError(f"{name} is {shown(value)}; allowed are {', '.join(allowed)}")
     return text(name, value)
 
 
@@ -85,20 +99,20 @@ def path(name: str, value: object) -> str:
     try:
         return text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
     except TypeError:
-        raise ConfigError(f"{name} is {value!r}; expected text or a path") from None
+        raise ConfigError(f"{name} is {shown(value)}; expected text or a path") from None
 
 
 def flag(name: str, value: object) -> bool:
     """``True`` or ``False``."""
     if not isinstance(value, bool | np.bool_):
-        raise ConfigError(f"{name} is {value!r}; allowed are True and False")
+        raise ConfigError(f"{name} is {shown(value)}; allowed are True and False")
     return bool(value)
 
 
 def mapping(name: str, value: object, of: str = "values by name") -> dict[str, Any]:
     """A mapping whose keys are text."""
     if not isinstance(value, Mapping):
-        raise ConfigError(f"{name} is {value!r}; expected {of}")
+        raise ConfigError(f"{name} is {shown(value)}; expected {of}")
     return {text(f"a name in {name}", key): part for key, part in value.items()}
 
 
@@ -140,7 +154,7 @@ def record(
 ) -> dict[str, Any]:
     """The fields of a data class, numbers or one of several ``words``."""
     if not isinstance(value, kind):
-        raise ConfigError(f"{name} is {value!r}; expected a dwell.{kind.__name__}")
+        raise ConfigError(f"{name} is {shown(value)}; expected a dwell.{kind.__name__}")
     checked: dict[str, Any] = {}
     for field in dataclasses.fields(kind):  # type: ignore[arg-type] # every kind is a data class
         part, at = getattr(value, field.name), f"{name}.{field.name}"
@@ -164,7 +178,9 @@ def point(name: str, value: object) -> tuple[float, float, float]:
     except TypeError:
         parts = []
     if len(parts) != 3:
-        raise ConfigError(f"{name}: expected three numbers (x, y, z) in metres, found {value!r}")
+        raise ConfigError(
+            f"{name}: expected three numbers (x, y, z) in metres, found {shown(value)}"
+        )
     x, y, z = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts))
     return x, y, z
 
@@ -176,7 +192,7 @@ def triple(name: str, value: Sequence[float]) -> tuple[float, float, float]:
     except TypeError:
         parts = []
     if len(parts) != 3:
-        raise ConfigError(f"{name}: expected three numbers (x, y, z), found {value!r}")
+        raise ConfigError(f"{name}: expected three numbers (x, y, z), found {shown(value)}")
     x, y, z = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts))
     return x, y, z
 
@@ -189,14 +205,14 @@ def unit_quaternion(name: str, value: Sequence[float]) -> tuple[float, ...]:
         parts = []
     length = math.hypot(*parts)
     if len(parts) != 4 or length == 0.0 or not math.isfinite(length):
-        raise ConfigError(f"{name}: expected a rotation (x, y, z, w), found {value!r}")
+        raise ConfigError(f"{name}: expected a rotation (x, y, z, w), found {shown(value)}")
     return tuple(part / length for part in parts)
 
 
 def pair(name: str, value: object) -> tuple[float, float]:
     """Two finite numbers."""
     if isinstance(value, str | bytes) or not isinstance(value, Sequence) or len(value) != 2:
-        raise ConfigError(f"{name}: expected two numbers, found {value!r}")
+        raise ConfigError(f"{name}: expected two numbers, found {shown(value)}")
     first, second = (finite(f"{name}[{k}]", part) for k, part in enumerate(value))
     return first, second
 
@@ -204,26 +220,53 @@ def pair(name: str, value: object) -> tuple[float, float]:
 def file_name(name: str, value: object) -> str:
     """A name of a file or folder that leads nowhere else: letters, digits, ``_``, ``-``, ``.``."""
     if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9_.-]{0,99}", value):
-        raise ConfigError(f"{name} is {value!r}; allowed are 1 to 100 letters, digits, _, - and .")
+        raise ConfigError(
+            f"{name} is {shown(value)}; allowed are 1 to 100 letters, digits, _, - and ."
+        )
     return value
 
 
-def _plain(at: str, value: object) -> Any:  # noqa: ANN401 - any JSON value
+def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any JSON value
     """``value`` as JSON knows it; ``at``: its place, for the error."""
+    if depth > _DEEPEST:
+        raise ConfigError(
+            f"{at[:60]}… is nested too deep; allowed are {_DEEPEST} lists and mappings in "
+            "each other"
+        )
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, Mapping):
         dot = f"{at}." if at else ""
-        return {str(key): _plain(f"{dot}{key}", part) for key, part in value.items()}
+        return {str(key): _plain(f"{dot}{key}", part, depth + 1) for key, part in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(f"{at}[{k}]", part) for k, part in enumerate(value)]
+        return [_plain(f"{at}[{k}]", part, depth + 1) for k, part in enumerate(value)]
     if isinstance(value, float):
         return finite(at, value)
     if value is None or isinstance(value, str | int):
         return value
-    raise ConfigError(f"{at} is {value!r}; expected numbers, text, lists or mappings")
+    raise ConfigError(f"{at} is {shown(value)}; expected numbers, text, lists or mappings")
 
 
 def to_json(settings: Mapping[str, object] | Sequence[object]) -> str:
     """Settings as JSON text for the native side; what JSON cannot hold is refused by its place."""
-    return json.dumps(_plain("", settings))
+    try:
+        return json.dumps(_plain("", settings))
+    except ValueError as error:
+        # A whole number of more digits than Python writes.
+        if isinstance(error, ConfigError):
+            raise
+        raise ConfigError(f"settings: {error}") from None
+
+
+def from_json(at: str, written: str | bytes) -> Any:  # noqa: ANN401 - any JSON value
+    """What JSON says; ``at``: where it stands, for the error.
+
+    Raises:
+        ConfigError: It is no JSON, or nested too deep.
+    """
+    try:
+        return json.loads(written)
+    except RecursionError:
+        raise ConfigError(f"{at}: JSON is nested too deep") from None
+    except ValueError as error:
+        raise ConfigError(f"{at}: no JSON: {error}") from None

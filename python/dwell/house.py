@@ -228,7 +228,9 @@ class House:
 
         Args:
             level: ``house`` (one text), ``room`` (a text each), ``object`` (a caption each),
-                ``graph`` (one JSON object), ``instructions`` (a JSON object each).
+                ``graph`` (one JSON object), ``instructions`` (a JSON object each: ``kind``,
+                ``text``, and ``goal`` with ``rooms``, counted from 0 as in the graph, ``objects``,
+                the ids of instance images and of the graph, ``radius_m`` and ``in_sight``).
             seed: Draws the wording of instructions; without it each has its first wording.
         """
         seed = None if seed is None else whole("seed", seed)
@@ -244,8 +246,12 @@ class House:
         return self._native.semantic_classes(text("table", table))
 
     def navigation(self, walker: Walker | None = None) -> Navigation:
-        """Where one can walk in the house as it starts."""
-        return Navigation(_native.Navigation(self._native, walker_json(walker)))
+        """Where one can walk in the house as it starts.
+
+        The house keeps what it found for the latest eight walkers: asked again, it answers at once.
+        """
+        walks = walker_json(walker)
+        return Navigation(self, walks, _native.Navigation(self._native, walks))
 
     def write(self, path: str | os.PathLike[str], form: Form) -> list[str]:
         """Writes the house as it starts.

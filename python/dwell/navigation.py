@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import point, record, whole
+from dwell.arguments import point, record, shown, whole
 
 if TYPE_CHECKING:
+    from dwell.house import House
     from dwell.world import World
 
 
@@ -78,11 +79,26 @@ class Occupancy:
 
 
 class Navigation:
-    """Where one can walk in a house as it stands at one moment; all storeys at once."""
+    """Where one can walk in a house as it stands at one moment; all storeys at once.
 
-    def __init__(self, native: _native.Navigation) -> None:
+    A pickle holds the house, the walker and where everything stands.
+    """
+
+    def __init__(self, house: House, walker_json: str, native: _native.Navigation) -> None:
         """Wraps a native grid; use ``House.navigation`` or ``World.navigation``."""
+        self._house = house
+        self._walker_json = walker_json
         self._native = native
+
+    @classmethod
+    def _again(cls, house: House, walker_json: str, state: bytes | None) -> Navigation:
+        """What was pickled."""
+        native = _native.Navigation(house.native, walker_json, state)
+        return cls(house, walker_json, native)
+
+    def __reduce__(self) -> tuple[Any, tuple[House, str, bytes | None]]:
+        """House, walker and state."""
+        return Navigation._again, (self._house, self._walker_json, self._native.state())
 
     def __repr__(self) -> str:
         """How many places there are to stand."""
@@ -132,5 +148,5 @@ class Navigation:
         """
         native = getattr(world, "native", None)
         if not isinstance(native, _native.World):
-            raise ConfigError(f"world is {world!r}; expected a dwell.World")
+            raise ConfigError(f"world is {shown(world)}; expected a dwell.World")
         return native.follow(self._native)

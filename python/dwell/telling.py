@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 from dwell import _native
+from dwell.arguments import text, whole
 
 
 class Telling:
@@ -23,9 +24,9 @@ class Telling:
             up. ``velocity``: m/s. ``grounded``: whether it stands on something. ``collided``:
             whether something stopped it in the last step. ``holding``: the place in
             :meth:`objects` of what is in its hand, or ``None``. ``crouched_by_m``: how much lower
-            than its height it is.
-            ``gyro_rad_s``: how fast it turns, positive to the left. ``body``: what its body can, as
-            ``agents`` of the constructor. ``base``: its wheels, as ``wheel_rad_s``,
+            than its height it is. ``gyro_rad_s``: how fast it turns, positive to the left.
+            ``body``: what its body can now, as ``agents`` of the constructor, with the numbers that
+            :meth:`set_parameters` set. ``base``: its wheels, as ``wheel_rad_s``,
             ``wheel_turned_rad`` (left, right), ``twist`` and ``odometry``.
         """
         return told_agents(self._native.agents_json())
@@ -50,12 +51,31 @@ class Telling:
         Examples:
             >>> import dwell
             >>> world = dwell.World("builtin:apartment", agents=0)
-            >>> radio = next(row for row in world.objects() if row["name"] == "radio_1")
-            >>> radio["on"], radio["sounds"], radio["held_by"]
-            (False, True, None)
+            >>> [row["name"] for row in world.objects() if row["sounds"]][:3]
+            ['clock_1', 'laptop_1', 'radio_1']
         """
         objects: list[dict[str, Any]] = json.loads(self._native.objects_json())
         return objects
+
+    def object(self, name: str | int) -> dict[str, Any]:
+        """What one object is like now, as a row of :meth:`objects`.
+
+        Args:
+            name: Its name, or its ``id``.
+
+        Raises:
+            ConfigError: There is none; the message has the nearest names.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment", agents=0)
+            >>> radio = world.object("radio_1")
+            >>> radio["on"], radio["room"], world.object(radio["id"]) == radio
+            (False, 'child_room', True)
+        """
+        named = text("name", name) if isinstance(name, str) else whole("name", name, high=2**31 - 1)
+        found: dict[str, Any] = json.loads(self._native.object_json(json.dumps(named)))
+        return found
 
 
 def told_agents(agents_json: str) -> list[dict[str, Any]]:

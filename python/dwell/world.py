@@ -16,6 +16,7 @@ from dwell.arguments import (
     mapping,
     pair,
     point,
+    shown,
     text,
     texts,
     to_json,
@@ -77,7 +78,8 @@ class World(Acting, Guiding, Sounds):
                 {...}}`` (``max_forward_m_s``, ``max_sideways_m_s``, ``max_yaw_rate_rad_s``,
                 ``max_acceleration_m_s2``, ``max_yaw_acceleration_rad_s2``).
             seed: The seed of everything random.
-            laws: Laws to install, as ``{"id", "version", "target", "params"}``; or what calibration
+            laws: Laws to install: a name, ``{name: {parameter: value}}``, or a list of names and of
+                ``{"id", "version", "target", "params"}`` (``docs/laws.md``); or what calibration
                 found (laws and parameters), as a mapping or as the path of its ``found.json``.
             parameters: Values by address, such as ``{"world/gravity_m_s2": 1.62}``; they go before
                 those that calibration found.
@@ -324,7 +326,8 @@ class World(Acting, Guiding, Sounds):
 
     def navigation(self, walker: Walker | None = None) -> Navigation:
         """Where one can walk in the house as it stands now."""
-        return Navigation(self._native.navigation(walker_json(walker)))
+        walks = walker_json(walker)
+        return Navigation(self.house, walks, self._native.navigation(walks))
 
     def merged_events(self) -> dict[str, Any]:
         """The events of the last step beyond its limit: count and impulse_n_s."""
@@ -383,10 +386,10 @@ class World(Acting, Guiding, Sounds):
                 m/s. Nothing has changed then.
         """
         if not isinstance(joints, Mapping):
-            raise ConfigError(f"joints is {joints!r}; expected (position, velocity) by id")
+            raise ConfigError(f"joints is {shown(joints)}; expected (position, velocity) by id")
         rows = []
         for joint, stand in joints.items():
-            position, velocity = pair(f"joint {joint!r}: (position, velocity)", stand)
+            position, velocity = pair(f"joint {shown(joint)}: (position, velocity)", stand)
             rows.append((whole("joint", joint, high=_MOST_IDS), position, velocity))
         self._native.set_joints(rows)
 
@@ -516,7 +519,7 @@ class World(Acting, Guiding, Sounds):
     def restore(self, snapshot: bytes) -> None:
         """Goes to where the snapshot was taken; the next steps give the same bits as then."""
         if not isinstance(snapshot, bytes):
-            raise ConfigError(f"snapshot is {snapshot!r:.60}; expected the bytes of snapshot()")
+            raise ConfigError(f"snapshot is {shown(snapshot)}; expected the bytes of snapshot()")
         self._native.restore(snapshot)
 
     def state_hash(self) -> int:

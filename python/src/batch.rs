@@ -318,6 +318,11 @@ impl PyBatch {
             .into_pyarray(py))
     }
 
+    /// What the scripted expert of one environment would do now.
+    fn expert_action(&self, py: Python<'_>, env: usize) -> PyResult<i64> {
+        self.with(py, |batch| Ok(batch.env_mut(env)?.expert_action()? as i64))
+    }
+
     fn state_hash(&self, py: Python<'_>, env: usize) -> PyResult<u64> {
         self.with(py, |batch| Ok(batch.env(env)?.world().hash()))
     }
@@ -339,9 +344,8 @@ impl PyBatch {
 
     fn agents_json(&self, py: Python<'_>, env: usize) -> PyResult<String> {
         self.with(py, |batch| {
-            Ok(serde_json::to_string(
-                &batch.env(env)?.world().state().agents,
-            )?)
+            let agents = dwell::agents_now(batch.env(env)?.world());
+            Ok(serde_json::to_string(&agents)?)
         })
     }
 }

@@ -11,7 +11,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::{Bands, House, Material, Pose, ShoeboxMaterials, State};
 use dwell_semantics::graph::scene_graph;
-use dwell_semantics::instruct::{InstructionKind, candidates, choose};
+use dwell_semantics::instruct::{Goal, InstructionKind, candidates, choose};
 use dwell_semantics::{Semantics, describe};
 use glam::Vec3;
 use pyo3::prelude::*;
@@ -279,7 +279,11 @@ pub(crate) fn describe_level(
                         )
                     });
                     let instruction = worded.unwrap_or(instruction);
-                    lines.push(json!({"kind": kind.name(), "text": instruction.text, "goal": instruction.goal}).to_string());
+                    let goal = goal(house, &instruction.goal);
+                    lines.push(
+                        json!({"kind": kind.name(), "text": instruction.text, "goal": goal})
+                            .to_string(),
+                    );
                 }
             }
             lines
@@ -290,5 +294,16 @@ pub(crate) fn describe_level(
                 "level is {other:?}; allowed are {allowed}"
             )));
         }
+    })
+}
+
+/// Where an instruction leads, by the numbers of sensors and of the scene graph: ids of objects, rooms counted from 0.
+fn goal(house: &House, goal: &Goal) -> Value {
+    let ids = goal.objects.iter().map(|id| house.entity_of_object(*id).0);
+    json!({
+        "rooms": goal.rooms,
+        "objects": ids.collect::<Vec<_>>(),
+        "radius_m": goal.radius_m,
+        "in_sight": goal.in_sight,
     })
 }

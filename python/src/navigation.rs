@@ -3,6 +3,7 @@
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::PyHouse;
+use dwell::Engines;
 use dwell_scene::interrupt;
 use dwell_scene::navigation::{Cell, NavConfig, NavGrid};
 use dwell_scene::random::Key;
@@ -10,8 +11,9 @@ use dwell_scene::{House, LevelId, State};
 use glam::Vec3;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use serde_json::json;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// How close a point must be to a place to stand, m.
 const NEAR_M: f32 = 0.5;
@@ -22,37 +24,63 @@ const MOST_SAMPLES: usize = 10_000_000;
 #[pyclass(name = "Navigation", module = "dwell._native", frozen)]
 pub(crate) struct PyNavigation {
     house: Arc<House>,
-    grid: Mutex<NavGrid>,
+    moment: Mutex<Moment>,
+}
+
+/// A house as it stands: the grid, which others may have too until this one follows something.
+struct Moment {
+    grid: Arc<NavGrid>,
+    /// Where everything stands; `None`: as the house starts.
+    state: Option<State>,
 }
 
 impl PyNavigation {
+    /// Of a house as it starts: every house keeps the grids of its latest walkers.
+    fn of_start(engines: &Engines, config_json: &str) -> Result<Self, Fault> {
+        let grid = engines.grid(&serde_json::from_str(config_json)?)?;
+        Ok(Self::at(engines.house(), grid, None))
+    }
+
+    /// Of a house as it stands in a state.
     pub(crate) fn build(
         house: &Arc<House>,
         state: &State,
         config_json: &str,
     ) -> Result<Self, Fault> {
         let config: NavConfig = serde_json::from_str(config_json)?;
-        Ok(Self {
+        let grid = Arc::new(NavGrid::build(house, state, &config)?);
+        Ok(Self::at(house, grid, Some(state.clone())))
+    }
+
+    fn at(house: &Arc<House>, grid: Arc<NavGrid>, state: Option<State>) -> Self {
+        Self {
             house: house.clone(),
-            grid: Mutex::new(NavGrid::build(house, state, &config)?),
-        })
+            moment: Mutex::new(Moment { grid, state }),
+        }
     }
 
     /// Follows what has moved; returns how many columns were looked at again.
     pub(crate) fn follow(&self, state: &State) -> Result<usize, Fault> {
-        Ok(self
-            .with(|grid| grid.update(&self.house, state))??
-            .looked_at)
+        let mut moment = self.moment()?;
+        interrupt::whole(|| {
+            // A grid that others have, too, is theirs.
+            let rebuilt = Arc::make_mut(&mut moment.grid).update(&self.house, state)?;
+            moment.state = Some(state.clone());
+            Ok(rebuilt.looked_at)
+        })
     }
 
     /// The grid for one call, which no signal ends half-way.
-    fn with<T>(&self, work: impl FnOnce(&mut NavGrid) -> T) -> Result<T, Fault> {
-        let refuse = |_| {
+    fn with<T>(&self, work: impl FnOnce(&NavGrid) -> T) -> Result<T, Fault> {
+        let moment = self.moment()?;
+        Ok(interrupt::whole(|| work(&moment.grid)))
+    }
+
+    fn moment(&self) -> Result<MutexGuard<'_, Moment>, Fault> {
+        self.moment.lock().map_err(|_| {
             let message = "a bug of the engine stopped this navigation; make a new one";
             Fault::Usage(message.to_owned())
-        };
-        let mut grid = self.grid.lock().map_err(refuse)?;
-        Ok(interrupt::whole(|| work(&mut grid)))
+        })
     }
 }
 
@@ -68,10 +96,31 @@ fn positions(py: Python<'_>, points: Vec<Vec3>) -> PyResult<Bound<'_, PyArray2<f
 #[pymethods]
 impl PyNavigation {
     #[new]
-    #[pyo3(signature = (house, config_json="{}"))]
-    fn new(py: Python<'_>, house: &Bound<'_, PyHouse>, config_json: &str) -> PyResult<Self> {
-        let house = house.get().engines.house().clone();
-        py.engine(|| Self::build(&house, &State::new(&house), config_json))
+    #[pyo3(signature = (house, config_json="{}", state=None))]
+    fn new(
+        py: Python<'_>,
+        house: &Bound<'_, PyHouse>,
+        config_json: &str,
+        state: Option<&[u8]>,
+    ) -> PyResult<Self> {
+        let engines = &house.get().engines;
+        py.engine(|| match state {
+            None => Self::of_start(engines, config_json),
+            Some(bytes) => {
+                let house = engines.house();
+                Self::build(house, &State::from_bytes(house, bytes)?, config_json)
+            }
+        })
+    }
+
+    /// Where everything stands, as the constructor takes it; `None`: as the house starts.
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
+        let bytes = py.engine(|| {
+            let moment = self.moment()?;
+            let state = moment.state.as_ref();
+            Ok::<_, Fault>(state.map(|state| state.to_bytes(&self.house)))
+        })?;
+        Ok(bytes.map(|bytes| PyBytes::new(py, &bytes)))
     }
 
     #[pyo3(signature = (start=None))]

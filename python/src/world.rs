@@ -216,13 +216,24 @@ impl PyWorld {
 
     fn agents_json(&self, py: Python<'_>) -> PyResult<String> {
         self.look(py, |running| {
-            Ok(serde_json::to_string(&running.world.state().agents)?)
+            Ok(serde_json::to_string(&dwell::agents_now(running.world))?)
         })
     }
 
     fn objects_json(&self, py: Python<'_>) -> PyResult<String> {
         self.look(py, |running| {
             Ok(serde_json::to_string(&dwell::objects_now(running.world))?)
+        })
+    }
+
+    /// One object, by its name or the sensors' id, in JSON both.
+    fn object_json(&self, py: Python<'_>, named_json: &str) -> PyResult<String> {
+        self.look(py, |running| {
+            let id = running.object(&serde_json::from_str(named_json)?)?;
+            Ok(serde_json::to_string(&dwell::object_now(
+                running.world,
+                id,
+            ))?)
         })
     }
 

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
 import dwell
+from dwell.navigation import Navigation
 
 
 def test_in_an_empty_room_the_way_is_the_straight_line(shoebox: dwell.House) -> None:
@@ -60,3 +64,33 @@ def test_a_grid_follows_its_world(apartment: dwell.House) -> None:
     assert navigation.update(world) == 0
     with pytest.raises(dwell.DwellError, match="cell_m"):
         world.navigation(dwell.Walker(cell_m=9.0))
+
+
+def test_the_grid_that_a_house_keeps_is_nobodys_to_change(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    door = next(joint for joint in world.joints() if joint["object"].startswith("door"))
+    places = {tuple(point) for point in apartment.navigation().points()}
+    mine = apartment.navigation()
+    at = door["limits"][0 if door["position"] == door["limits"][1] else 1]
+    world.set_joints({door["id"]: (at, 0.0)})
+    assert mine.update(world) > 0
+    moved = {tuple(point) for point in mine.points()}
+    assert moved == {tuple(point) for point in world.navigation().points()} != places
+    assert {tuple(point) for point in apartment.navigation().points()} == places
+
+
+def test_what_travels_is_the_same_afterwards(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    walker = dwell.Walker(cell_m=0.2, doors="priced")
+    followed = apartment.navigation(walker)
+    for joint in world.joints():
+        if joint["object"].startswith("door"):
+            world.set_joints({joint["id"]: (joint["limits"][1], 0.0)})
+    followed.update(world)
+    for navigation in (apartment.navigation(), world.navigation(walker), followed):
+        again = pickle.loads(pickle.dumps(navigation))
+        assert np.array_equal(again.points(), navigation.points())
+        assert again.doors() == navigation.doors()
+        assert again.update(world) == copy.copy(navigation).update(world)
+    with pytest.raises(dwell.SceneError):
+        Navigation._again(apartment, "{}", b"dwst")

@@ -55,7 +55,7 @@ fn physics_and_words_agree_on_what_rests_on_what() {
             ));
         }
         // In is one definition, asked in two ways.
-        let felt_in = state.lies_in(house, *thing);
+        let felt_in = state.lies_in(house, *thing, &house.object_boxes(state));
         let said_in: Vec<ObjectId> = house
             .objects
             .ids()

@@ -14,7 +14,10 @@ use dwell_scene::{House, SoundFileId, State};
 use dwell_semantics::Semantics;
 use glam::Vec3;
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+
+/// Grids of walkers that a house keeps: enough for the bodies of a world, few enough for large houses.
+const KEPT_GRIDS: usize = 8;
 
 /// A house with the engines' shared views of it. A thousand worlds over one house share one of these.
 #[derive(Debug)]
@@ -31,8 +34,8 @@ pub struct Engines {
     recordings: Recordings,
     /// From where the house's own sounds are heard. Shape (emitter,).
     emitter_places: OnceLock<Vec<Vec3>>,
-    /// For the walker whose radius, height and step these are; others get a grid of their own.
-    navigation: OnceLock<(NavConfig, Arc<NavGrid>)>,
+    /// Of the house as it starts, by walker, the latest at the end.
+    grids: Mutex<Vec<Arc<NavGrid>>>,
     /// Of the latest config, as long as a world of it is left.
     start: Mutex<Option<(WorldConfig, Weak<Start>)>>,
 }
@@ -50,7 +53,7 @@ impl Engines {
             heads: Mutex::default(),
             recordings: Recordings::default(),
             emitter_places: OnceLock::new(),
-            navigation: OnceLock::new(),
+            grids: Mutex::default(),
             start: Mutex::default(),
         })
     }
@@ -182,35 +185,83 @@ impl Engines {
         self.recordings.check_house(&self.house)
     }
 
-    /// Where a body can walk in the house as it starts, with all doors open. The first body's grid is shared.
+    /// Where a body can walk in the house as it starts, with all doors open; shared as that of [`Engines::grid`].
     ///
     /// # Errors
-    /// [`WorldError::Scene`] for a house too large for the grid.
+    /// As [`Engines::grid`].
     pub fn navigation(&self, body: &dwell_scene::AgentBody) -> Result<Arc<NavGrid>, WorldError> {
-        let config = NavConfig {
+        self.grid(&NavConfig {
             radius_m: body.radius_m,
             height_m: body.height_m,
             step_m: body.step_height_m,
             doors: Doors::Open,
             ..NavConfig::default()
-        };
-        if let Some((_, grid)) = self
-            .navigation
-            .get()
-            .filter(|(shared, _)| *shared == config)
-        {
-            return Ok(grid.clone());
-        }
-        let grid = Arc::new(NavGrid::build(
-            &self.house,
-            &State::new(&self.house),
-            &config,
-        )?);
-        let (shared, first) = self.navigation.get_or_init(|| (config, grid.clone()));
-        Ok(if *shared == config {
-            first.clone()
-        } else {
-            grid
         })
+    }
+
+    /// Where a walker can walk in the house as it starts. Grids of the latest eight walkers are kept and shared.
+    ///
+    /// # Errors
+    /// [`WorldError::Scene`] for a setting out of range, or a house too large for the grid.
+    pub fn grid(&self, config: &NavConfig) -> Result<Arc<NavGrid>, WorldError> {
+        let kept = |grids: &mut Vec<Arc<NavGrid>>| {
+            let place = grids.iter().position(|grid| grid.config() == config)?;
+            grids[place..].rotate_left(1);
+            grids.last().cloned()
+        };
+        if let Some(grid) = kept(&mut self.grids()) {
+            return Ok(grid);
+        }
+        // Without the lock: others go on meanwhile, and who is stopped leaves nothing behind.
+        let built = NavGrid::build(&self.house, &State::new(&self.house), config)?;
+        let mut grids = self.grids();
+        if let Some(first) = kept(&mut grids) {
+            return Ok(first);
+        }
+        let built = Arc::new(built);
+        grids.push(built.clone());
+        if grids.len() > KEPT_GRIDS {
+            grids.remove(0);
+        }
+        Ok(built)
+    }
+
+    fn grids(&self) -> MutexGuard<'_, Vec<Arc<NavGrid>>> {
+        self.grids.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_grids_of_the_latest_walkers_are_shared() {
+        let (house, _) = dwell_houses::open("builtin:studio").unwrap();
+        let engines = Engines::new(Arc::new(house));
+        let walker = |k: usize| NavConfig {
+            cell_m: 0.25 + 0.01 * k as f32,
+            ..NavConfig::default()
+        };
+        let first = engines.grid(&walker(0)).unwrap();
+        assert!(Arc::ptr_eq(&first, &engines.grid(&walker(0)).unwrap()));
+        for k in 1..=KEPT_GRIDS {
+            // Who is asked for again stays longest.
+            assert!(Arc::ptr_eq(&first, &engines.grid(&walker(0)).unwrap()));
+            assert_eq!(engines.grid(&walker(k)).unwrap().config(), &walker(k));
+        }
+        assert!(Arc::ptr_eq(&first, &engines.grid(&walker(0)).unwrap()));
+        assert_eq!(engines.grids().len(), KEPT_GRIDS);
+        assert!(
+            engines
+                .grid(&NavConfig {
+                    cell_m: f32::NAN,
+                    ..walker(0)
+                })
+                .is_err()
+        );
+        let body = dwell_scene::AgentBody::default();
+        let theirs = engines.navigation(&body).unwrap();
+        assert!(Arc::ptr_eq(&theirs, &engines.navigation(&body).unwrap()));
     }
 }

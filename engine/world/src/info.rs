@@ -2,7 +2,6 @@
 
 use crate::engines::Engines;
 use crate::error::WorldError;
-use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::math::{ln, wrap_angle};
 use dwell_scene::navigation::NavGrid;
@@ -169,73 +168,4 @@ fn worth(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
     seen.sort_unstable();
     seen.dedup();
     sum / (across * down) as f32 + 0.06 * seen.len() as f32
-}
-
-/// An object as it is now.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ObjectNow {
-    /// The sensors' id.
-    pub id: i32,
-    /// The name.
-    pub name: String,
-    /// The coarse category.
-    pub category: String,
-    /// The middle of the box around it, m.
-    pub center: [f32; 3],
-    /// The edges of the box around it, m.
-    pub size: [f32; 3],
-    /// The room that holds its middle.
-    pub room: Option<String>,
-    /// Whether a hand can take it, as far as shape and use say.
-    pub pickable: bool,
-    /// The agent that holds it.
-    pub held_by: Option<u32>,
-    /// Whether it is switched on; `None` without a switch.
-    pub on: Option<bool>,
-    /// How far it is open, 0 to 1; `None` without a joint.
-    pub openness: Option<f32>,
-    /// The names of the objects that it rests on; `"building"` for floors and walls. Empty for what never moves.
-    pub rests_on: Vec<String>,
-    /// The names of the objects that it lies in; only for what a hand can take.
-    pub lies_in: Vec<String>,
-    /// Whether it makes a sound of its own, such as a radio's, while it is switched on or has no switch.
-    pub sounds: bool,
-}
-
-/// All objects as they are now.
-pub fn objects_now(world: &World) -> Vec<ObjectNow> {
-    let (house, state) = (world.house(), world.state());
-    let called = |id: dwell_scene::ObjectId| house.objects[id].name.clone();
-    house
-        .objects
-        .iter_ids()
-        .map(|(id, object)| {
-            let bounds = house.object_bounds(state, id);
-            ObjectNow {
-                id: house.entity_of_object(id).0,
-                name: object.name.clone(),
-                category: object.category.coarse.clone(),
-                center: bounds.center().to_array(),
-                size: bounds.size().to_array(),
-                room: house
-                    .room_at(bounds.center())
-                    .map(|room| house.rooms[room].name.clone()),
-                pickable: object.pickable,
-                held_by: state.held_by[id].map(|agent| agent.0),
-                on: object.switch.map(|_| state.switched_on[id]),
-                openness: state.openness(house, id),
-                rests_on: state
-                    .rests_on(house, id)
-                    .into_iter()
-                    .map(|by| by.map_or_else(|| "building".to_owned(), called))
-                    .collect(),
-                lies_in: if object.pickable {
-                    state.lies_in(house, id).into_iter().map(called).collect()
-                } else {
-                    Vec::new()
-                },
-                sounds: house.emitters.iter().any(|emitter| emitter.object == id),
-            }
-        })
-        .collect()
 }

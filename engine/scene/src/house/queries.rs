@@ -157,6 +157,12 @@ impl House {
             })
     }
 
+    /// The boxes around all objects where they stand in `state`, m. Shape (object,).
+    pub fn object_boxes(&self, state: &State) -> Vec<crate::Aabb> {
+        let ids = self.objects.ids();
+        ids.map(|id| self.object_bounds(state, id)).collect()
+    }
+
     /// The number of triangles that a picture of the whole house shows: structure and every instance.
     pub fn triangle_count(&self) -> usize {
         let structure = self

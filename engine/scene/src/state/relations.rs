@@ -5,7 +5,7 @@ use super::State;
 use crate::bounds::Aabb;
 use crate::fixtures::Holding;
 use crate::house::House;
-use crate::ids::{ObjectId, PartId};
+use crate::ids::{Id, ObjectId, PartId};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -49,38 +49,63 @@ impl State {
         if self.held_by[object].is_some() {
             return Vec::new();
         }
-        let owner = |part: PartId| house.parts[part].object;
         let mut carriers: Vec<Option<ObjectId>> = self
-            .contacts
-            .iter()
-            .filter_map(|contact| {
-                let (a, b) = (owner(contact.a), contact.b.map(owner));
-                match contact.rest {
-                    Rest::AOnB if a == object => Some(b),
-                    Rest::BOnA if b == Some(object) => Some(Some(a)),
-                    _ => None,
-                }
-            })
-            .filter(|carrier| *carrier != Some(object))
+            .carried(house)
+            .filter_map(|(carried, by)| (carried == object).then_some(by))
             .collect();
         carriers.sort_unstable();
         carriers.dedup();
         carriers
     }
 
+    /// What carries each object, as [`State::rests_on`] says of one: of all at once, each contact looked at once. Shape
+    /// (object,).
+    pub fn carriers(&self, house: &House) -> Vec<Vec<Option<ObjectId>>> {
+        let mut all = vec![Vec::new(); house.objects.len()];
+        for (carried, by) in self.carried(house) {
+            if self.held_by[carried].is_none() {
+                all[carried.index()].push(by);
+            }
+        }
+        for carriers in &mut all {
+            carriers.sort_unstable();
+            carriers.dedup();
+        }
+        all
+    }
+
+    /// Of each contact in which one thing holds up another: what is carried, and by what.
+    fn carried(&self, house: &House) -> impl Iterator<Item = (ObjectId, Option<ObjectId>)> {
+        let owner = |part: PartId| house.parts[part].object;
+        let pairs = self.contacts.iter().filter_map(move |contact| {
+            let (a, b) = (owner(contact.a), contact.b.map(owner));
+            match contact.rest {
+                Rest::AOnB => Some((a, b)),
+                Rest::BOnA => b.map(|b| (b, Some(a))),
+                Rest::Beside => None,
+            }
+        });
+        pairs.filter(|(carried, by)| *by != Some(*carried))
+    }
+
     /// The objects that an object lies in, in order. Nothing that is held lies in anything.
-    pub fn lies_in(&self, house: &House, object: ObjectId) -> Vec<ObjectId> {
+    ///
+    /// `boxes`: the boxes around all objects where they stand, shape (object,), as [`House::object_boxes`] gives them.
+    pub fn lies_in(&self, house: &House, object: ObjectId, boxes: &[Aabb]) -> Vec<ObjectId> {
         if self.held_by[object].is_some() {
             return Vec::new();
         }
-        let inner = house.object_bounds(self, object);
+        let inner = boxes[object.index()];
+        let middle = inner.center();
         house
             .objects
             .ids()
             .filter(|container| *container != object)
             .filter(|container| {
-                let outer = house.object_bounds(self, *container);
-                house.encloses(self, *container, &outer, &inner)
+                let outer = boxes[container.index()];
+                // Of what four fifths lie inside, the middle does.
+                outer.grown(2.0 * BRIM_M).contains(middle)
+                    && house.encloses(self, *container, &outer, &inner)
             })
             .collect()
     }
@@ -170,7 +195,6 @@ fn ray_meets([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> bool {
 mod tests {
     use super::*;
     use crate::ShoeboxMaterials;
-    use crate::ids::Id;
 
     #[test]
     fn rays_meet_what_lies_ahead_from_both_sides() {
@@ -246,7 +270,12 @@ mod tests {
         ];
         assert_eq!(state.rests_on(&house, ObjectId(0)), [Some(ObjectId(1))]);
         assert_eq!(state.rests_on(&house, ObjectId(1)), [None]);
+        assert_eq!(
+            state.carriers(&house),
+            [vec![Some(ObjectId(1))], vec![None]]
+        );
         state.held_by[ObjectId(0)] = Some(crate::AgentId(0));
         assert!(state.rests_on(&house, ObjectId(0)).is_empty());
+        assert_eq!(state.carriers(&house), [vec![], vec![None]]);
     }
 }
