@@ -38,7 +38,7 @@ class AcousticScene:
 
         Args:
             house: A house or a HOUSE string.
-            laws: Laws to install, as ``{"id", "version", "target", "params"}``; or what calibration
+            laws: Laws to install, as :class:`dwell.World` takes them; or what calibration
                 found (laws and parameters), as a mapping or as the path of its ``found.json``.
                 Those of air and sources change energies and responses; those of microphones act on
                 what ``impulse_response`` returns, as on a recording of the impulse.

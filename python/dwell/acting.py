@@ -8,7 +8,7 @@ from typing import Any
 
 from dwell import ConfigError, _native
 from dwell.actions import Outcome, action_json
-from dwell.arguments import mapping, to_json, whole
+from dwell.arguments import mapping, shown, to_json, whole
 from dwell.telling import Telling
 
 #: Actions about what is in the hand.
@@ -77,7 +77,7 @@ class Acting(Telling):
         if not any(named in (row["name"], row["id"]) for row in held):
             holds = ", ".join(repr(row["name"]) for row in held) or "nothing"
             raise ConfigError(
-                f"object is {named!r}, which agent {agent} does not hold: it holds {holds}; "
+                f"object is {shown(named)}, which agent {agent} does not hold: it holds {holds}; "
                 f"{kind} needs no name"
             )
 
@@ -90,7 +90,7 @@ class Acting(Telling):
         """Makes one control step of a discrete action, by number or name (see :func:`actions`)."""
         names = _native.actions()
         if isinstance(action, str) and action not in names:
-            raise ConfigError(f"no action {action!r}; there are {', '.join(names)}")
+            raise ConfigError(f"no action {shown(action)}; there are {', '.join(names)}")
         number = names.index(action) if isinstance(action, str) else action
         number, agent = whole("action", number, high=len(names) - 1), whole("agent", agent)
         return Outcome._of(json.loads(self._native.act_discrete(agent, number)))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dwell.arguments import finite
+from dwell.arguments import finite, shown
 
 #: Octave bands, 63 Hz to 8 kHz.
 BANDS = 8
@@ -131,7 +131,7 @@ def _bands(name: str, value: float | Sequence[float]) -> npt.NDArray[np.float64]
     """One number for each octave."""
     numbers = np.asarray(value, dtype=np.float64)
     if numbers.shape not in ((), (BANDS,)) or not np.isfinite(numbers).all():
-        raise ValueError(f"{name} is {value!r}; allowed is a number, or {BANDS} of them")
+        raise ValueError(f"{name} is {shown(value)}; allowed is a number, or {BANDS} of them")
     return np.broadcast_to(numbers, (BANDS,))
 
 
@@ -152,6 +152,6 @@ def directivity_json(directivity: str | Directivity) -> Any:  # noqa: ANN401 - a
     if directivity not in DIRECTIVITIES:
         names = ", ".join(DIRECTIVITIES)
         raise ValueError(
-            f"directivity: no {directivity!r}; there are {names}, and dwell.Directivity"
+            f"directivity: no {shown(directivity)}; there are {names}, and dwell.Directivity"
         )
     return DIRECTIVITIES[directivity]

@@ -2,61 +2,136 @@
 
 from __future__ import annotations
 
+import difflib
+import functools
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from dwell import _native
 from dwell._native import ConfigError
-from dwell.arguments import fields, finite, mapping, path, text, whole
+from dwell.arguments import fields, finite, from_json, mapping, path, shown, text, whole
 from dwell.configs import WorldSettings, bodies, checked
 from dwell.heads import Head, head_of
 
-#: Laws to install; or what calibration found (laws and parameters), as a mapping or by path.
-Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[Mapping[str, Any]] | None
+#: Laws to install: a name, names, rows in full, or parameters by name; or what calibration found
+#: (laws and parameters), as a mapping or by path.
+Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] | None
 
 _FOUND = {"laws", "parameters"}
+_EXPECTED = (
+    "expected a law's name, a list of names and of {id, version, target, params}, parameters by "
+    "name as {'drag': {'c_d': 0.5}}, or the path of what calibration found"
+)
+
+
+@functools.cache
+def _laws() -> dict[str, dict[str, Any]]:
+    """What is known of each law, by id."""
+    return {law["id"]: law for law in json.loads(_native.laws_json())}
 
 
 def _read(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401 - any JSON value
     name = os.fspath(path)
     try:
-        return json.loads(Path(path).read_text(encoding="utf-8"))
+        written = Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise ConfigError(f"laws: {name}: {error.strerror or error}") from error
     except ValueError as error:
         raise ConfigError(f"laws: {name}: no JSON: {error}") from error
+    return from_json(f"laws: {name}", written)
+
+
+def _is_path(laws: str) -> bool:
+    """Whether text means a file rather than a law."""
+    is_like_one = laws.endswith(".json") or os.path.basename(laws) != laws
+    return laws not in _laws() and (is_like_one or Path(laws).exists())
 
 
 def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
     """Laws and parameters by address, from all forms in which they are given.
 
     Raises:
-        ConfigError: It is neither a list of laws nor an object with ``laws`` and ``parameters``.
+        ConfigError: It is none of them, or a law, a parameter or a number that there is not.
     """
     at = "laws"
-    if isinstance(laws, str | os.PathLike):
+    if isinstance(laws, os.PathLike) or (isinstance(laws, str) and _is_path(laws)):
         at = f"laws: {os.fspath(laws)}"
         laws = _read(laws)
+    elif isinstance(laws, str):
+        laws = [laws]
     if laws is None:
         return [], {}
     parameters: Mapping[str, float] = {}
-    if isinstance(laws, Mapping):
+    if isinstance(laws, Mapping) and _FOUND & set(laws):
         if unknown := sorted(set(laws) - _FOUND):
             raise ConfigError(f"{at}: no field {unknown[0]!r}; allowed are {sorted(_FOUND)}")
         parameters = laws.get("parameters", {})
         laws = laws.get("laws", [])
-    if not isinstance(laws, Sequence) or not all(isinstance(law, Mapping) for law in laws):
-        raise ConfigError(f"{at}: expected a list of laws, each {{id, version, target, params}}")
     if not isinstance(parameters, Mapping):
         raise ConfigError(f"{at}: parameters: expected values by address")
-    rows = [fields(f"laws[{k}]", law, _LAW) for k, law in enumerate(laws)]
-    for k, row in enumerate(rows):
-        for name in ("id", "version"):
-            if name not in row:
-                raise ConfigError(f"laws[{k}]: no field {name!r}; a law has {', '.join(_LAW)}")
+    if isinstance(laws, Mapping) and "id" not in laws:
+        by_name = mapping(at, laws, "parameters by the laws' names")
+        # No numbers: the usual ones.
+        rows = [
+            _row(f"{at}.{name}", {"id": name, **({"params": params} if params else {})})
+            for name, params in by_name.items()
+        ]
+        return rows, _values("parameters", parameters)
+    if isinstance(laws, Mapping):
+        laws = [laws]
+    if (
+        isinstance(laws, str | bytes)
+        or not isinstance(laws, Sequence)
+        or not all(isinstance(law, str | Mapping) for law in laws)
+    ):
+        raise ConfigError(f"{at}: found {shown(laws)}; {_EXPECTED}")
+    rows = [_row(f"{at}[{k}]", law) for k, law in enumerate(laws)]
     return rows, _values("parameters", parameters)
+
+
+def _row(at: str, given: str | Mapping[str, Any]) -> dict[str, Any]:
+    """A law in full."""
+    row = fields(at, {"id": given} if isinstance(given, str) else given, _LAW)
+    if "id" not in row:
+        raise ConfigError(f"{at}: no field 'id'; a law has {', '.join(_LAW)}")
+    name = row["id"]
+    if name not in _laws():
+        near = difflib.get_close_matches(name, _laws(), 3)
+        meant = f"did you mean {' or '.join(near)}? " if near else ""
+        raise ConfigError(f"{at}: no law {name!r}; {meant}allowed are {', '.join(_laws())}")
+    law = _laws()[name]
+    if "params" not in row:
+        if law["usual"] is None:
+            first = law["params"][0]
+            example = {name: {first["name"]: first["plausible"][1]}}
+            raise ConfigError(
+                f"{at}: {name} without numbers does nothing; give some, as {example}; {_has(law)}"
+            )
+        row["params"] = law["usual"]
+    known = {param["name"]: param for param in law["params"]}
+    for param, value in row["params"].items():
+        if param not in known:
+            near = difflib.get_close_matches(param, known, 1)
+            meant = f"did you mean {near[0]}? " if near else ""
+            raise ConfigError(f"{at}: {name} has no parameter {param!r}; {meant}{_has(law)}")
+        low, high = known[param]["low"], known[param]["high"]
+        if not low <= value <= high:
+            raise ConfigError(f"{at}: {name}.{param} is {value:g}; {_has(law)}")
+    return {"version": law["version"], **row}
+
+
+def _has(law: Mapping[str, Any]) -> str:
+    """The parameters of a law with their bounds."""
+    rows = []
+    for param in law["params"]:
+        unit = "" if param["unit"] == "1" else f" {param['unit']}"
+        low, high = param["plausible"]
+        bounds = f"{param['low']:g} to {param['high']:g}{unit}"
+        rows.append(f"{param['name']} ({bounds}, plausible {low:g} to {high:g})")
+    return f"{law['id']} has {', '.join(rows)}"
 
 
 def _values(name: str, parameters: object) -> dict[str, float]:
@@ -113,7 +188,7 @@ def world_settings(
         further = {**further, "agents": bodies(further["agents"])}
     if (head := further.get("sound_head")) is not None:
         if not isinstance(head, Head):
-            raise ConfigError(f"sound_head is {head!r}; allowed is a dwell.Head")
+            raise ConfigError(f"sound_head is {shown(head)}; allowed is a dwell.Head")
         further = {**further, "sound_head": head.id}
     if further.get("sound_root") is not None:
         further = {**further, "sound_root": path("sound_root", further["sound_root"])}

@@ -38,11 +38,25 @@ pub(crate) fn sensors_json() -> String {
     rows.collect::<Value>().to_string()
 }
 
-/// The laws with their equations, units, bounds and rivals.
+/// The laws with their equations, units, bounds and rivals, and as `usual` the numbers of those asked for by name alone.
 #[pyfunction]
 pub(crate) fn laws_json() -> PyResult<String> {
-    let laws: Vec<_> = dwell::laws::all().collect();
-    serde_json::to_string(&laws).map_err(|error| crate::errors::to_python(error.into()))
+    let row = |info| -> Result<Value, serde_json::Error> {
+        let mut row = serde_json::to_value(info)?;
+        let usual = dwell::laws::USUAL
+            .iter()
+            .find(|usual| row["id"] == usual.id);
+        row["usual"] = usual.map_or(Value::Null, |usual| {
+            let params = usual.params.iter();
+            params
+                .map(|(name, value)| ((*name).to_owned(), json!(value)))
+                .collect()
+        });
+        Ok(row)
+    };
+    let laws: Result<Value, _> = dwell::laws::all().map(row).collect();
+    let laws = laws.map_err(|error| crate::errors::to_python(error.into()))?;
+    Ok(laws.to_string())
 }
 
 /// The kinds of furniture with their categories: `{kind: category}`.

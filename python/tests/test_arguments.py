@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -94,7 +95,8 @@ def test_what_calibration_found_reaches_worlds_and_environments(
     ("text", "said"),
     [
         ("{junk", "no JSON"),
-        ("7", "list of laws"),
+        ("7", "found 7; expected a law's name"),
+        ("[" * 100_000, "nested too deep"),
         ('{"lows": []}', "lows"),
         ('{"parameters": [1]}', "by address"),
     ],
@@ -109,3 +111,90 @@ def test_files_of_laws_that_are_none_are_refused_by_name(
     assert str(path) in str(caught.value)
     with pytest.raises(dwell.ConfigError, match=r"nothing\.json"):
         dwell.World(apartment, laws=tmp_path / "nothing.json")
+
+
+@pytest.mark.parametrize(
+    "laws",
+    [
+        "drag",
+        ["drag"],
+        {"drag": {}},
+        {"drag": {"c_d": 0.47}},
+        [{"id": "drag"}],
+        {"id": "drag", "params": {"c_d": 0.47}},
+        {"laws": {"drag": {"c_d": 0.47}}},
+        [{"id": "drag", "version": 1, "target": None, "params": {"c_d": 0.47}}],
+    ],
+    ids=str,
+)
+def test_laws_are_given_in_short_or_in_full(shoebox: dwell.House, laws: Any) -> None:  # noqa: ANN401
+    world = dwell.World(shoebox, laws=laws)
+    assert world.parameter("law/drag/c_d")["value"] == pytest.approx(0.47)
+    in_full = [{"id": "drag", "version": 1, "params": {"c_d": 0.47}}]
+    assert world.state_hash() == dwell.World(shoebox, laws=in_full).state_hash()
+
+
+@pytest.mark.parametrize(
+    ("laws", "said"),
+    [
+        ("dragg", "laws[0]: no law 'dragg'; did you mean drag? allowed are drag, visc"),
+        (
+            "wind",
+            "laws[0]: wind without numbers does nothing; give some, as {'wind': {'x_m_s': 1.0}}",
+        ),
+        (["drag", "latency"], "laws[1]: latency without numbers does nothing"),
+        ({"latency": {}}, "latency has delay_s (0 to 2 s, plausible 0.002 to 0.15)"),
+        ({"drag": {"cd": 1}}, "laws.drag: drag has no parameter 'cd'; did you mean c_d? drag has"),
+        ({"drag": {"c_d": 21}}, "laws.drag: drag.c_d is 21; drag has c_d (0 to 20, plausible"),
+        ({"drag": {"c_d": "a"}}, "laws.drag.params.c_d is 'a'"),
+        ({"drag": 5}, "laws.drag.params is 5"),
+        ({"drag": {"c_d": 1}, "laws": []}, "laws: no field 'drag'"),
+        ([{"params": {}}], "laws[0]: no field 'id'"),
+        ([{"id": "drag", "parms": {}}], "laws[0]: no field 'parms'; did you mean params"),
+        ([{"id": "drag", "version": 9}], "version is 9"),
+    ],
+    ids=str,
+)
+def test_laws_that_there_are_not_are_answered_with_those_there_are(
+    shoebox: dwell.House,
+    laws: Any,  # noqa: ANN401
+    said: str,
+) -> None:
+    with pytest.raises(dwell.DwellError) as caught:
+        dwell.World(shoebox, laws=laws)
+    assert said in str(caught.value)
+
+
+def nested(depth: int) -> list[Any]:
+    whole: list[Any] = []
+    for _ in range(depth):
+        whole = [whole]
+    return whole
+
+
+DEEP = nested(100_000)
+ENDLESS: list[Any] = []
+ENDLESS.append(ENDLESS)
+
+
+@pytest.mark.parametrize("deep", [DEEP, ENDLESS], ids=["deep", "endless"])
+@pytest.mark.parametrize(
+    "give",
+    [
+        lambda deep: dwell.World(HOUSE, laws=deep),
+        lambda deep: dwell.World(HOUSE, parameters=deep),
+        lambda deep: dwell.World(HOUSE, agents=deep),
+        lambda deep: dwell.World(HOUSE, seed=deep),
+        lambda deep: dwell.World(HOUSE, sound_preset=deep),
+        lambda deep: dwell.House.generate(1, rooms=deep),
+        lambda deep: DwellEnv(task_settings={"kinds": deep}),
+        lambda deep: DwellEnv(sensors={"rgb": {"width": deep}}),
+        lambda deep: DwellEnv(sensors=deep),
+        lambda deep: DwellEnv(task=deep),
+    ],
+    ids=range(10),
+)
+def test_what_is_nested_too_deep_is_refused(give: Callable[[Any], object], deep: Any) -> None:  # noqa: ANN401
+    with pytest.raises(dwell.DwellError) as caught:
+        give(deep)
+    assert len(str(caught.value)) < 1000

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import math
 import multiprocessing
 import os
 import pickle
+import threading
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import dwell
-from dwell import _native
+from dwell import Camera, World, _native
+from dwell.envs import DwellEnv
 
 
 def test_errors_form_one_tree_that_callers_expect() -> None:
@@ -92,7 +95,7 @@ def test_laws_of_sound_act_on_responses() -> None:
     warm = response(law("temperature_error", offset_k=30.0))
     arrival = 3.0 / (343.2 * (323.15 / 293.15) ** 0.5) * 16_000
     assert abs(np.argmax(np.abs(warm)) - arrival) < 1.0
-    with pytest.raises(ValueError, match="gain_db = 200"):
+    with pytest.raises(ValueError, match="gain_db is 200"):
         response(law("microphone_gain", gain_db=200.0))
     with pytest.raises(ValueError, match="microphone_gain"):
         response(law("nope"))
@@ -348,3 +351,87 @@ def test_a_body_that_begins_too_large_is_refused_with_a_sentence() -> None:
         with pytest.raises(dwell.DwellError, match=r"agent 0.*no room of the house"):
             dwell.World(house, **given)
     dwell.World(house, agents=[{"radius_m": 0.8, "height_m": 2.2}])
+
+
+def test_one_object_is_asked_for_by_its_name_or_id(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    rows = world.objects()
+    held = next(row for row in rows if row["lies_in"])
+    for row in (rows[0], held, rows[-1]):
+        assert world.object(row["name"]) == row == world.object(np.int32(row["id"]))
+    with pytest.raises(dwell.ConfigError, match=r'no object "radio"; .*"radio_1"'):
+        world.object("radio")
+    with pytest.raises(dwell.ConfigError, match="no object 0"):
+        world.object(0)
+    for wrong in (-1, 1.5, None, True, ["radio_1"]):
+        with pytest.raises(dwell.ConfigError, match="name is"):
+            world.object(wrong)  # type: ignore[arg-type] # the fault
+
+
+@pytest.mark.parametrize("body", ["walking", "differential_drive", "holonomic"])
+def test_agents_tell_every_number_that_is_in_force(shoebox: dwell.House, body: str) -> None:
+    world = dwell.World(shoebox, agents=[{"locomotion": {body: {}}}])
+    env = DwellEnv(houses=shoebox, task="Free", sensors=["gps"])
+    env.reset(seed=1)
+    of_env = World.of_env(env._shelf[0], env._runner.batch.world(0))
+    for one, told in ((world, world.agents), (of_env, env.agents)):
+        for address, row in one.parameters("agent/0/").items():
+            value = (row["value"] + (row["low"] if row["value"] > row["low"] else row["high"])) / 2
+            one.set_parameter(address, value)
+            _, _, group, name = address.split("/")
+            now = told()[0]["body"]
+            if group == "base":
+                now = now["locomotion"][next(iter(now["locomotion"]))]
+            shown = now["camera_fov_deg" if group == "camera" else name]
+            assert shown == pytest.approx(one.parameter(address)["value"]), address
+            assert shown == pytest.approx(value, rel=1e-5), address
+
+
+def test_goals_of_instructions_are_the_ids_of_sensors_and_graph(apartment: dwell.House) -> None:
+    world = dwell.World(apartment, agents=0)
+    graph = json.loads(apartment.describe("graph")[0])
+    nouns = {node["id"]: node["noun"] for node in graph["objects"]}
+    rows = [json.loads(line) for line in apartment.describe("instructions")]
+    asked = {k: row["text"] for row in rows for k in row["goal"]["objects"]}
+    assert asked
+    assert all(nouns[k] in text for k, text in asked.items())
+    # As cameras see them that look down from above; many stand under or in something.
+    seen = 0
+    for k in asked:
+        row = world.object(k)
+        x, y, z = row["center"]
+        eye = (x, y + row["size"][1] / 2 + 0.15, z)
+        view = world.render(
+            position=eye, pitch_deg=-90.0, camera=Camera(3, 3), channels=["instance"]
+        )
+        seen += view["instance"][1, 1, 0] == k
+    assert seen > len(asked) * 3 // 4
+
+
+def test_calls_of_several_threads_wait_for_each_other(shoebox: dwell.House) -> None:
+    world = dwell.World(shoebox)
+    saved = world.snapshot()
+    navigation = world.navigation()
+    raised: list[BaseException] = []
+    ready = threading.Barrier(4)
+
+    def work() -> None:
+        ready.wait()
+        try:
+            for _ in range(10):
+                world.step()
+                world.render(camera=Camera(8, 8))
+                navigation.update(world)
+                world.snapshot()
+        except BaseException as error:
+            raised.append(error)
+
+    workers = [threading.Thread(target=work) for _ in range(4)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert not raised
+    # None was lost.
+    assert world.native.step_count == 40
+    world.restore(saved)

@@ -9,9 +9,25 @@ use std::path::Path;
 
 const HEAD: &str = "# Laws
 
-Physical effects that the basic model lacks. A law at its default is not installed and changes no bit. `World` takes laws as
-`{id, version, target, params}`; parameters that are left out have their defaults, values out of bounds are refused. This page is
+Physical effects that the basic model lacks. A law at its default is not installed and changes no bit. This page is
 written by the test `laws_page` (`UPDATE_GOLDEN=1 cargo test -p dwell-tests --test laws_page`) from what the engines say.
+
+Worlds, environments and acoustic scenes take laws as a name, a list or a mapping:
+
+```python
+import dwell
+
+kitchen = dwell.House.open(\"builtin:studio\")
+world = dwell.World(kitchen, laws=\"drag\")  # with its usual numbers
+world = dwell.World(kitchen, laws={\"drag\": {\"c_d\": 1.0}, \"wind\": {\"x_m_s\": 0.5}})
+world = dwell.World(kitchen, laws=[\"drag\", {\"id\": \"rolling_resistance\", \"target\": \"bowl_1\", \"params\": {\"c_rr\": 0.02}}])
+world.set_parameter(\"law/drag/c_d\", 0.8)
+print(world.parameters(\"law/drag/\"))
+```
+
+In full a law is `{id, version, target, params}`. Without a version it is this build's, without a target it acts on all it can.
+Parameters that are left out have their defaults, values out of bounds are refused. A law that is given no numbers has its *usual*
+ones, stated below; one that has none, since all would be arbitrary (the direction of a wind), is refused with a list of what it takes.
 
 What a target names: a law on an *object* takes an object's name (all of its bodies, free or moved by joints) or `OBJECT/PART`,
 one on a *joint* a joint's name, `OBJECT/JOINT` or a number, one on an *agent* its number (laws of cameras act on what it carries), one on *contacts* `NAME` (all contacts
@@ -85,6 +101,14 @@ fn entry(law: &LawInfo, page: &mut String) {
                 param.name, param.unit, param.default, param.low, param.high
             ),
         );
+    }
+    if let Some(usual) = dwell::laws::USUAL.iter().find(|usual| usual.id == *id) {
+        let numbers = usual
+            .params
+            .iter()
+            .map(|(name, value)| format!("`{name}` {value}"));
+        let numbers = numbers.collect::<Vec<_>>().join(", ");
+        row(page, format!("\nUsual: {numbers} ({}).", usual.about));
     }
     row(
         page,

@@ -12,6 +12,51 @@ pub fn all() -> impl Iterator<Item = &'static LawInfo> {
         .chain(dwell_render::laws::all())
 }
 
+/// What a law does that is asked for by its name alone: numbers that need no choice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Usual {
+    /// The law's id.
+    pub id: &'static str,
+    /// Values by parameter name; the others have their defaults.
+    pub params: &'static [(&'static str, f64)],
+    /// What they mean, and where they come from.
+    pub about: &'static str,
+}
+
+/// The laws that have usual numbers. The others need some: a wind has no usual direction.
+pub const USUAL: &[Usual] = &[
+    Usual {
+        id: "drag",
+        params: &[("c_d", 0.47)],
+        about: "that of a sphere at Reynolds numbers of 1e4 to 1e5: S. F. Hoerner, Fluid-Dynamic Drag (1965), chapter 3",
+    },
+    Usual {
+        id: "buoyancy",
+        params: &[("fluid_density_kg_m3", 1.204)],
+        about: "dry air at 20 degrees Celsius and 101325 Pa",
+    },
+    Usual {
+        id: "no_air_absorption",
+        params: &[("missing", 1.0)],
+        about: "all of it is missing",
+    },
+    Usual {
+        id: "vignetting",
+        params: &[("strength", 1.0)],
+        about: "the law of the fourth power",
+    },
+    Usual {
+        id: "redwood_depth",
+        params: &[("strength", 1.0)],
+        about: "the published noise",
+    },
+    Usual {
+        id: "kinect_depth",
+        params: &[("axial", 1.0), ("lateral", 1.0)],
+        about: "the published noise",
+    },
+];
+
 /// Checks laws and leaves out those at their default: such a law changes nothing, bit for bit. Their targets are kept in one
 /// spelling ([`LawSpec::canonical_target`]).
 ///
@@ -102,4 +147,36 @@ pub(crate) fn set_parameters(
         (state.overrides, state.agents) = before;
     }
     set
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_numbers_are_plausible_and_do_something() {
+        for usual in USUAL {
+            let info = all().find(|info| info.id == usual.id).unwrap();
+            for (name, value) in usual.params {
+                let param = info
+                    .params
+                    .iter()
+                    .find(|param| param.name == *name)
+                    .unwrap();
+                let [low, high] = param.plausible;
+                assert!((low..=high).contains(value), "{} {name}", usual.id);
+            }
+            let params = usual.params.iter();
+            let spec = LawSpec {
+                id: usual.id.to_owned(),
+                version: info.version,
+                target: None,
+                params: params
+                    .map(|(name, value)| ((*name).to_owned(), *value))
+                    .collect(),
+            };
+            spec.check(info).unwrap();
+            assert!(!spec.is_default(info), "{}", usual.id);
+        }
+    }
 }
