@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 import importlib
 import inspect
+import types
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from dwell import ConfigError
-from dwell.arguments import mapping, refuse_unknown, text
+from dwell.arguments import mapping, refuse_unknown, shown, text
 
 _Part = TypeVar("_Part", bound="Part")
 
@@ -28,7 +30,9 @@ class Part:
 def factory(
     at: str, given: object, kind: type[_Part], settings: Mapping[str, Any] | None = None
 ) -> Callable[[], _Part]:
-    """What makes parts of a kind: a class, a function, or ``"module:Name"`` of one.
+    """What makes parts of a kind: a class, a function, or ``"module:Name"`` of a class.
+
+    What a name stands for is called only if it is a class of the kind.
 
     Args:
         at: What the argument is called, for errors.
@@ -46,10 +50,17 @@ def factory(
             f"{at} is a {name} that exists already; expected the class {name} itself, of which "
             "every environment makes its own"
         )
-    if not callable(make) or (isinstance(make, type) and not issubclass(make, kind)):
-        expected = f"a subclass of dwell.{kind.__name__}, what makes one, or its 'module:Name'"
-        raise ConfigError(f"{at} is {given!r}; expected {expected}")
-    if missing := sorted(getattr(make, "__abstractmethods__", ())):
+    # What a partial calls in the end.
+    called = make
+    while isinstance(called, functools.partial):
+        called = called.func
+    is_class = isinstance(called, type) and issubclass(called, kind)
+    # Nobody is called who only happens to be callable, as os.abort is.
+    is_function = isinstance(called, types.FunctionType | types.MethodType)
+    if not callable(make) or not (is_class or (is_function and not isinstance(given, str))):
+        expected = f"a subclass of dwell.{kind.__name__}, a function that makes one, or "
+        raise ConfigError(f"{at} is {shown(given)}; expected {expected}'module:Name' of a subclass")
+    if missing := sorted(getattr(called, "__abstractmethods__", ())):
         raise ConfigError(f"{at}: {given!r} lacks the method {missing[0]}")
     fields = {} if settings is None else mapping(f"settings of {at}", settings)
     if fields:
@@ -58,7 +69,9 @@ def factory(
     def made() -> _Part:
         part = make(**fields)
         if not isinstance(part, kind):
-            raise ConfigError(f"{at}: {make!r} made {part!r}; expected a dwell.{kind.__name__}")
+            raise ConfigError(
+                f"{at}: {make!r} made {shown(part)}; expected a dwell.{kind.__name__}"
+            )
         part.state = {}
         return part
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import types
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from dwell import UsageError
 from dwell.parts import Part
 
 if TYPE_CHECKING:
+    import gymnasium
     import numpy as np
 
     from dwell.world import World
@@ -65,6 +66,9 @@ class Task(Part):
             :class:`dwell.envs.DwellEnv`; ``None``: those of ``base``.
         max_steps: Steps after which an episode is cut off by ``gymnasium.make``, if the task is
             registered by :func:`dwell.register_task`.
+        spaces: What the task itself observes, by name, beside the sensors: spaces as those of
+            :class:`dwell.Sensor`. They are part of the environment's observations whichever
+            sensors it has. Where they follow from the task's settings, ``__init__`` sets them.
 
     Examples:
         >>> import dwell
@@ -84,6 +88,7 @@ class Task(Part):
     base_settings: ClassVar[Mapping[str, Any] | None] = None
     sensors: ClassVar[Sequence[Any] | Mapping[str, Any] | None] = None
     max_steps: ClassVar[int] = 1000
+    spaces: Mapping[str, gymnasium.Space[Any]] = types.MappingProxyType({})
 
     def reset(self, world: World, rng: np.random.Generator) -> Ask | None:
         """Arranges a new episode: ``base`` has put the agent to a start.
@@ -112,7 +117,22 @@ class Task(Part):
         del world, action
         return verdict
 
-    def expert(self, world: World) -> str:
-        """The name of the action that somebody who knows the house would take now."""
+    def observe(self, world: World, rng: np.random.Generator) -> Mapping[str, Any]:
+        """What the task observes now: an element of each of :attr:`spaces`, by name.
+
+        Args:
+            world: The environment's world.
+            rng: The source of everything random, such as noise; it comes from the episode's seed
+                and the step, so that it is the same after a restored snapshot.
+        """
+        del world, rng
+        return {}
+
+    def expert(self, world: World) -> str | None:
+        """The name of the action that somebody who knows the house would take now.
+
+        Returns:
+            ``None``: what the expert of ``base`` takes. ``Free`` has no expert.
+        """
         del world
-        raise UsageError(f"the task {type(self).__name__} has no expert; write its method expert")
+        return None

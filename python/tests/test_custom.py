@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
+import os
 import pickle
+import sys
 from typing import Any
 
 import gymnasium
@@ -335,6 +337,17 @@ def observing(value: object, space: gymnasium.Space[Any]) -> type[dwell.Sensor]:
     return Observing
 
 
+def observed(value: object, **spaces: Any) -> type[dwell.Task]:  # noqa: ANN401 - also wrong ones
+    class Observed(dwell.Task):
+        sensors = ("gps",)
+
+        def observe(self, world: dwell.World, rng: np.random.Generator) -> Any:  # noqa: ANN401
+            return value
+
+    Observed.spaces = spaces
+    return Observed
+
+
 BOX = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
 MAKING: list[tuple[dict[str, Any], str]] = [
     ({"task": GoThere()}, "exists already"),
@@ -354,6 +367,10 @@ MAKING: list[tuple[dict[str, Any], str]] = [
     ({"sensors": {"mine": 5}}, "mine"),
     ({"sensors": ["gps", Blind]}, "lacks the method observe"),
     ({"reward": Unrewarding}, "lacks the method reward"),
+    ({"task": observed({})}, "Observed has a method observe and no spaces"),
+    ({"task": observed({}, goal=5)}, "Observed.spaces: goal is 5; allowed are Box, Discrete"),
+    ({"task": observed({}, gps=BOX)}, "found 'gps' twice"),
+    ({"task": observed({}, noisy=BOX), "sensors": ["gps", Noisy]}, "found 'noisy' twice"),
 ]
 
 
@@ -362,6 +379,116 @@ def test_what_is_no_part_is_refused(arguments: dict[str, Any], said: str) -> Non
     with pytest.raises(dwell.ConfigError) as refused:
         DwellEnv(**{"task": "Free", "sensors": ["gps"], **arguments})
     assert said in str(refused.value)
+
+
+class Pointing(GoThere):
+    """Observes its goal, with noise, and one of its settings decides how."""
+
+    def __init__(self, near_m: float = 0.4, size: int = 3) -> None:
+        super().__init__(near_m)
+        self.spaces = {
+            "goal": gymnasium.spaces.Box(-100.0, 100.0, (size,), np.float32),
+            "said": gymnasium.spaces.Text(10),
+        }
+
+    def observe(self, world: dwell.World, rng: np.random.Generator) -> dict[str, Any]:
+        left = np.subtract(self.state["goal"], world.agents()[0]["position"])
+        size = self.spaces["goal"].shape
+        return {"said": "go", "goal": np.resize(left, size or ()) + rng.normal(0.0, 0.01)}
+
+
+def test_a_task_observes_alone_and_in_many() -> None:
+    dwell.register_task("tests/Pointing-v0", Pointing, sensors=["gps", Number])
+    check_env(gymnasium.make("tests/Pointing-v0", disable_env_checker=True).unwrapped)
+    one = DwellEnv(Pointing, task_settings={"size": 2}, sensors=["gps", Noisy])
+    assert set(one.observation_space.spaces) == {"gps", "noisy", "goal", "said"}  # type: ignore[attr-defined]
+    many = DwellVectorEnv(3, Pointing, task_settings={"size": 2}, sensors=["gps", Noisy], copy=True)
+    alone, _ = one.reset(seed=22)
+    assert alone in one.observation_space
+    batch, _ = many.reset(seed=20)
+    assert batch["goal"].shape == (3, 2)
+    for action in (1, 2, 1):
+        for name, value in alone.items():
+            assert np.array_equal(batch[name][2], value), name
+        alone = one.step(action)[0]
+        batch = many.step(np.full(3, action))[0]
+    saved, others = one.snapshot(), many.snapshot()
+    after = play(one, [1, 3, 1])
+    assert same(
+        [DwellEnv(Pointing, task_settings={"size": 2}, sensors=["gps", Noisy]).restore(saved)[0]],
+        [alone],
+    )
+    observation, _ = one.restore(saved)
+    assert same([observation], [alone])
+    assert same(after, play(one, [1, 3, 1]))
+    many.reset(seed=1)
+    assert np.array_equal(many.restore(others)[0]["goal"], batch["goal"])
+
+
+class Following(dwell.Task):
+    base = "InstructionFollowing"
+    sensors = ("instruction",)
+
+
+def test_a_task_upon_another_has_its_expert() -> None:
+    own, base = DwellEnv(Following), DwellEnv(sensors=["instruction"])
+    many = DwellVectorEnv(2, Following)
+    many.reset(seed=[6, 7])
+    own.reset(seed=7)
+    base.reset(seed=7)
+    assert own.instruction() == base.instruction()
+    actions = []
+    for _ in range(60):
+        actions.append(own.expert_action())
+        assert actions[-1] == base.expert_action()
+        together = many.expert_actions()
+        assert together[1] == actions[-1]
+        is_over = own.step(actions[-1])[2]
+        base.step(actions[-1])
+        if is_over:
+            break
+        if many.step(together)[2].any():
+            break
+    assert len(set(actions)) > 1
+
+
+def test_nothing_is_called_that_makes_no_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    called: list[str] = []
+    module = sys.modules[__name__]
+    monkeypatch.setattr(module, "trap", lambda: called.append("trap"), raising=False)
+    for kind in ("task", "reward"):
+        for given in ("os:abort", "os:getcwd", "sys:exit", "builtins:dict", f"{__name__}:trap"):
+            with pytest.raises(dwell.ConfigError, match=f"{kind} is {given!r}; expected a subcl"):
+                DwellEnv(**{"task": "Free", "sensors": ["gps"], kind: given})
+    for sensors in (["gps", "os:abort"], {"mine": "os:abort"}, ["gps", os.abort]):
+        with pytest.raises(dwell.ConfigError, match=r"expected a subclass of dwell\.Sensor"):
+            DwellEnv("Free", sensors=sensors)
+    for given in (os.abort, functools.partial(os.abort), functools.partial(Noisy)):
+        with pytest.raises(dwell.ConfigError, match=r"expected a subclass of dwell\.Task"):
+            DwellEnv(given)  # type: ignore[arg-type] # the fault
+    assert not called
+
+
+def test_what_parts_remember_is_no_deeper_than_json_is_read() -> None:
+    deep: list[Any] = []
+    for _ in range(50_000):
+        deep = [deep]
+
+    class Deep(dwell.Task):
+        sensors = ("gps",)
+
+        def reset(self, world: dwell.World, rng: np.random.Generator) -> None:
+            self.state["deep"] = deep
+
+    env = DwellEnv(Deep)
+    env.reset(seed=1)
+    with pytest.raises(dwell.ConfigError, match="nested too deep"):
+        env.snapshot()
+    plain = DwellEnv("Free", sensors=["gps", Noisy])
+    plain.reset(seed=1)
+    episode, _, rest = plain.snapshot().split(b"\0", 2)
+    with pytest.raises(dwell.ConfigError, match="its parts: JSON is nested too deep"):
+        plain.restore(b"\0".join((episode, b"[" * 100_000, rest)))
 
 
 def play_a_step(env: DwellEnv) -> None:
@@ -380,6 +507,11 @@ PLAYING: list[tuple[dict[str, Any], str]] = [
     ({"task": asking(dwell.Ask(""))}, "instruction is"),
     ({"task": asking(dwell.Ask("Find the xylotheque."))}, "xylotheque"),
     ({"task": asking(dwell.Ask(distance_m=float("inf")))}, "distance_m is inf"),
+    ({"task": observed(None, goal=BOX)}, "Observed.observe is None"),
+    ({"task": observed({}, goal=BOX)}, "Observed.observe gave []; its spaces are ['goal']"),
+    ({"task": observed({"goal": [0, 0], "x": 1}, goal=BOX)}, "gave ['goal', 'x']; its spaces are"),
+    ({"task": observed({"goal": [0, 2]}, goal=BOX)}, "Observed.observe: goal observed [0, 2]; its"),
+    ({"task": observed({"goal": "a"}, goal=BOX)}, "goal observed 'a'; its space is Box"),
     ({"sensors": [observing([0.0, 2.0], BOX)]}, "sensor observing observed"),
     ({"sensors": [observing([0.0, float("nan")], BOX)]}, "sensor observing observed"),
     ({"sensors": [observing([0.0] * 3, BOX)]}, "sensor observing observed"),

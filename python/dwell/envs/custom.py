@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -10,10 +11,9 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
 
-from dwell import ConfigError, _native
-from dwell.arguments import finite, flag, mapping, text, to_json
+from dwell import ConfigError, UsageError, _native
+from dwell.arguments import finite, flag, from_json, mapping, shown, text, to_json
 from dwell.house import House
 from dwell.parts import factory
 from dwell.rewards import Reward
@@ -96,7 +96,7 @@ def _sensors(
     try:
         rows = list(sensors)
     except TypeError:
-        raise ConfigError(f"sensors is {sensors!r}; expected names or classes") from None
+        raise ConfigError(f"sensors is {shown(sensors)}; expected names or classes") from None
     names = []
     for k, row in enumerate(rows):
         if not isinstance(row, str) or ":" in row:
@@ -155,7 +155,9 @@ class Play:
             self._batch.ask(self._env)
             return
         if not isinstance(asked, Ask):
-            raise ConfigError(f"{self._name()}.reset gave {asked!r}; expected a dwell.Ask or None")
+            raise ConfigError(
+                f"{self._name()}.reset gave {shown(asked)}; expected a dwell.Ask or None"
+            )
         distance_m = asked.distance_m
         if distance_m is not None:
             distance_m = finite("distance_m", distance_m)
@@ -202,25 +204,58 @@ class Play:
         """The number of the expert's action; ``None`` where the task is the engine's."""
         if self._task is None:
             return None
-        name = text("the expert's action", self._task.expert(self._world))
+        given = self._task.expert(self._world)
+        if given is None:
+            if not _asks(self._task.base):
+                raise UsageError(
+                    f"the task {self._name()} has no expert, nor has its base {self._task.base}; "
+                    "write its method expert"
+                )
+            return self._batch.expert_action(self._env)
+        name = text("the expert's action", given)
         names = _native.actions()
         if name not in names:
-            raise ConfigError(f"the expert's action is {name!r}; allowed are {', '.join(names)}")
+            raise ConfigError(
+                f"the expert's action is {shown(name)}; allowed are {', '.join(names)}"
+            )
         return names.index(name)
 
+    def spaces(self, native: Mapping[str, spaces.Space[Any]]) -> dict[str, spaces.Space[Any]]:
+        """The spaces of the task and the sensors by name, beside those of the engine.
+
+        Raises:
+            ConfigError: A name or a space is missing, wrong, or there already.
+        """
+        found: dict[str, spaces.Space[Any]] = {}
+        if self._task is not None:
+            at = f"{self._name()}.spaces"
+            for name, space in mapping(at, self._task.spaces, "spaces by name").items():
+                _add(found, native, f"{at}: {name}", name, space)
+            if not found and type(self._task).observe is not Task.observe:
+                raise ConfigError(
+                    f"{self._name()} has a method observe and no spaces; name there what it "
+                    "observes, as spaces = {'goal': gymnasium.spaces.Box(...)}"
+                )
+        for sensor in self.sensors:
+            name = text(f"{type(sensor).__name__}.name", getattr(sensor, "name", None))
+            _add(found, native, f"sensor {name}: space", name, getattr(sensor, "space", None))
+        return found
+
     def observe(self) -> dict[str, Any]:
-        """What the sensors observe now, by name, each in its space."""
+        """What task and sensors observe now, by name, each in its space."""
         step = self._world.native.step_count
         seen = {}
+        if self._task is not None and self._task.spaces:
+            at, rng = f"{self._name()}.observe", self._rng(_TASK_STREAM, step)
+            values = mapping(at, self._task.observe(self._world, rng))
+            if set(values) != set(self._task.spaces):
+                wanted = sorted(self._task.spaces)
+                raise ConfigError(f"{at} gave {sorted(values)}; its spaces are {wanted}")
+            for name, space in self._task.spaces.items():
+                seen[name] = _element(f"{at}: {name}", space, values[name])
         for stream, sensor in enumerate(self.sensors, _TASK_STREAM + 1):
             value = sensor.observe(self._world, self._rng(stream, step))
-            if not isinstance(sensor.space, spaces.Text):
-                value = _array(sensor, value)
-            if not _contains(sensor.space, value):
-                raise ConfigError(
-                    f"sensor {sensor.name} observed {value!r:.200}; its space is {sensor.space}"
-                )
-            seen[sensor.name] = value
+            seen[sensor.name] = _element(f"sensor {sensor.name}", sensor.space, value)
         return seen
 
     def save(self) -> bytes:
@@ -234,10 +269,7 @@ class Play:
             ConfigError: It is of other parts, or was cut.
         """
         at = "snapshot refused: its parts"
-        try:
-            states = mapping(at, json.loads(saved))
-        except ValueError as error:
-            raise ConfigError(f"{at} are no JSON: {error}") from None
+        states = mapping(at, from_json(at, saved))
         names = [*self._parts()]
         if set(states) != set(names):
             raise ConfigError(f"{at} are {[*states]}; expected {names}")
@@ -252,7 +284,7 @@ class Play:
 
 def _checked(task: str, verdict: object) -> Verdict:
     if not isinstance(verdict, Verdict):
-        raise ConfigError(f"{task}.judge gave {verdict!r}; expected a dwell.Verdict")
+        raise ConfigError(f"{task}.judge gave {shown(verdict)}; expected a dwell.Verdict")
     distance_m = verdict.distance_m
     return dataclasses.replace(
         verdict,
@@ -263,39 +295,42 @@ def _checked(task: str, verdict: object) -> Verdict:
     )
 
 
-def _array(sensor: Sensor, value: object) -> NDArray[Any]:
-    space = sensor.space
-    try:
-        array = np.asarray(value)
-        return array.astype(space.dtype, casting="same_kind")
-    except (TypeError, ValueError):
-        raise ConfigError(
-            f"sensor {sensor.name} observed {value!r:.200}; its space is {space}"
-        ) from None
+@functools.cache
+def _asks(base: str) -> bool:
+    """Whether a task of the engine asks for something, so that its expert knows what to do."""
+    return any(row["name"] == base and row["asks"] for row in json.loads(_native.tasks_json()))
 
 
-def _contains(space: spaces.Space[Any], value: Any) -> bool:  # noqa: ANN401 - what a user gave
-    if isinstance(space, spaces.Discrete):
-        return value.shape == () and bool(space.contains(value[()]))
-    return bool(space.contains(value))
-
-
-def checked_spaces(
-    sensors: Sequence[Sensor], native: Mapping[str, spaces.Space[Any]]
-) -> dict[str, spaces.Space[Any]]:
-    """The spaces of Python sensors by name, beside those of the engine.
+def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: ANN401 - of the space
+    """What was observed, in the form of its space.
 
     Raises:
-        ConfigError: A name or a space is missing, wrong, or there already.
+        ConfigError: It is no element; the message begins with ``at``.
     """
-    found: dict[str, spaces.Space[Any]] = {}
-    for sensor in sensors:
-        name = text(f"{type(sensor).__name__}.name", getattr(sensor, "name", None))
-        if name in found or name in native:
-            raise ConfigError(f"sensors: found {name!r} twice; allowed is each sensor once")
-        space = getattr(sensor, "space", None)
-        if not isinstance(space, _SPACES):
-            known = ", ".join(kind.__name__ for kind in _SPACES)
-            raise ConfigError(f"sensor {name}: space is {space!r}; allowed are {known}")
-        found[name] = space
-    return found
+    element: Any = value
+    if not isinstance(space, spaces.Text):
+        try:
+            element = np.asarray(value).astype(space.dtype, casting="same_kind")
+        except (TypeError, ValueError):
+            element = None
+    # A Discrete space wants its elements as scalars.
+    is_scalar = isinstance(space, spaces.Discrete) and element is not None and element.shape == ()
+    if element is None or not space.contains(element[()] if is_scalar else element):
+        raise ConfigError(f"{at} observed {shown(value)}; its space is {space}")
+    return element
+
+
+def _add(
+    found: dict[str, spaces.Space[Any]],
+    native: Mapping[str, spaces.Space[Any]],
+    at: str,
+    name: str,
+    space: object,
+) -> None:
+    """Notes one more space; ``at``: whose it is, for errors."""
+    if name in found or name in native:
+        raise ConfigError(f"observations: found {name!r} twice; allowed is each name once")
+    if not isinstance(space, _SPACES):
+        known = ", ".join(kind.__name__ for kind in _SPACES)
+        raise ConfigError(f"{at} is {shown(space)}; allowed are {known}")
+    found[name] = space

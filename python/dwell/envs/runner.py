@@ -10,7 +10,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.envs.custom import Custom, Play, checked_spaces
+from dwell.envs.custom import Custom, Play
 from dwell.envs.spaces import specs
 from dwell.heads import Head
 from dwell.house import House
@@ -59,7 +59,7 @@ class Runner:
             else []
         )
         native = {spec.name: spec.space() for spec in self.specs}
-        own = checked_spaces(self.plays[0].sensors, native) if self.plays else {}
+        own = self.plays[0].spaces(native) if self.plays else {}
         #: The space of one environment's observation.
         self.space = spaces.Dict({**native, **own})
         self._own: dict[str, Any] = {
