@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dwell import MeasuredDataError, UsageError, _native
-from dwell.arguments import mapping, text, texts, to_json, whole
+from dwell import ConfigError, DwellError, MeasuredDataError, UsageError, _native
+from dwell.arguments import flag, from_json, mapping, shown, text, texts, to_json, whole
 from dwell.cli.common import atomic
 from dwell.house import House
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from dwell.world import World
 
 #: What a file says of itself.
-_FORMAT, _VERSION = "dwell-replay", 1
+_FORMAT, _VERSION = "dwell-replay", 2
 #: More than any episode is long.
 _MOST_STEPS = 10_000_000
 #: A file larger than this is none of ours, bytes.
@@ -38,6 +40,8 @@ class Moment:
         action: The name of the last action; ``None`` at the start.
         reward: What the last step gave; 0 at the start.
         world: The world as it is, to look at and listen to; the same object at every step.
+        instruction: What the episode asks.
+        success: Whether it is done after the last step.
         is_same: Whether its bits are those that were recorded; not once somebody has listened to
             ``world``, since the sound that ears keep is among them.
     """
@@ -47,6 +51,8 @@ class Moment:
     reward: float
     world: World
     is_same: bool
+    instruction: str
+    success: bool
 
 
 @dataclasses.dataclass(frozen=True)
@@ -63,6 +69,8 @@ class Replay:
         instruction: What was asked.
         success: Whether it was done at the end.
         made_by: The version of dwell that recorded it.
+        path: The file it was read from, if it was.
+        sums: The check sums of all fields of the file; files of version 1 have none.
     """
 
     house: str
@@ -74,29 +82,37 @@ class Replay:
     instruction: str
     success: bool
     made_by: str
+    path: str | None = dataclasses.field(default=None, compare=False)
+    sums: Mapping[str, str] | None = dataclasses.field(default=None, compare=False, repr=False)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Replay:
         """Reads a file.
 
         Raises:
-            MeasuredDataError: It is no replay, of a later version, or its numbers do not fit.
+            MeasuredDataError: It is no replay, of another version, or its numbers do not fit.
         """
         path = Path(path)
-        if path.exists() and path.stat().st_size > _MOST_BYTES:
-            raise MeasuredDataError(f"{path} is larger than {_MOST_BYTES} bytes")
         try:
-            row = json.loads(path.read_bytes())
-            if not isinstance(row, dict) or row.get("format") != _FORMAT:
-                raise MeasuredDataError(f"{path}: no {_FORMAT} file")
-            if row.get("version") != _VERSION:
-                raise MeasuredDataError(
-                    f"{path}: version is {row.get('version')!r}; this dwell reads {_VERSION}"
-                )
-            known = {field.name for field in dataclasses.fields(cls)} | {"format", "version"}
-            if wrong := sorted(known ^ set(row)):
-                what = "unknown" if wrong[0] in row else "missing"
-                raise MeasuredDataError(f"{path}: field {wrong[0]!r} is {what}")
+            if path.stat().st_size > _MOST_BYTES:
+                raise MeasuredDataError(f"{path} is larger than {_MOST_BYTES} bytes")
+            row = from_json(str(path), path.read_bytes())
+        except OSError as error:
+            raise MeasuredDataError(f"{path}: {error.strerror or error}") from error
+        except ConfigError as error:
+            raise MeasuredDataError(str(error)) from None
+        if not isinstance(row, dict) or row.get("format") != _FORMAT:
+            raise MeasuredDataError(f"{path}: format: no {_FORMAT} file")
+        version = row.get("version")
+        if version not in (1, _VERSION):
+            raise MeasuredDataError(
+                f"{path}: version is {shown(version)}; this dwell reads 1 and {_VERSION}"
+            )
+        known = set(_FIELDS) - ({"sums"} if version == 1 else set())
+        if wrong := sorted(known ^ set(row)):
+            what = "unknown" if wrong[0] in row else "missing"
+            raise MeasuredDataError(f"{path}: field {wrong[0]!r} is {what} in version {version}")
+        try:
             replay = cls(
                 house=text("house", row["house"]),
                 seed=whole("seed", row["seed"]),
@@ -105,38 +121,48 @@ class Replay:
                 actions=tuple(texts("actions", row["actions"])),
                 hashes=tuple(texts("hashes", row["hashes"])),
                 instruction=text("instruction", row["instruction"]),
-                success=row["success"] is True,
+                success=flag("success", row["success"]),
                 made_by=text("made_by", row["made_by"]),
+                path=str(path),
+                sums=None if version == 1 else mapping("sums", row["sums"]),
             )
-        except MeasuredDataError:
-            raise
-        except (ValueError, RecursionError) as error:
+            replay.check()
+        except ConfigError as error:
             raise MeasuredDataError(f"{path}: {error}") from None
-        replay.check(str(path))
         return replay
 
-    def check(self, at: str = "replay") -> None:
+    def _at(self) -> str:
+        return "replay" if self.path is None else self.path
+
+    def check(self) -> None:
         """Refuses actions that do not exist, and hashes that are not one more than actions.
 
         Raises:
-            MeasuredDataError: The message begins with ``at``.
+            MeasuredDataError: The message begins with the file, where there is one.
         """
         names = _native.actions()
         for k, action in enumerate(self.actions):
             if action not in names:
                 raise MeasuredDataError(
-                    f"{at}: actions[{k}] is {action!r}; allowed are {', '.join(names)}"
+                    f"{self._at()}: actions[{k}] is {shown(action)}; allowed are {', '.join(names)}"
                 )
         if len(self.hashes) != len(self.actions) + 1 or len(self.actions) > _MOST_STEPS:
             raise MeasuredDataError(
-                f"{at}: {len(self.actions)} actions and {len(self.hashes)} hashes; expected at "
-                f"most {_MOST_STEPS} actions and one hash more"
+                f"{self._at()}: {len(self.actions)} actions and {len(self.hashes)} hashes; "
+                f"expected at most {_MOST_STEPS} actions and one hash more"
             )
+
+    def _stated(self) -> dict[str, Any]:
+        """What a file states, by field, but for its check sums."""
+        row = {"format": _FORMAT, "version": _VERSION}
+        row |= {name: getattr(self, name) for name in _FIELDS if name not in (*row, "sums")}
+        row["config"] = json.loads(self.config)
+        return row
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Writes a file, whole or not at all."""
-        row = {"format": _FORMAT, "version": _VERSION, **dataclasses.asdict(self)}
-        row["config"] = json.loads(self.config)
+        row = self._stated()
+        row["sums"] = {name: _sum(value) for name, value in row.items()}
         with atomic(Path(path)) as draft:
             draft.write_text(json.dumps(row, indent=1) + "\n", "utf-8")
 
@@ -160,16 +186,20 @@ class Replay:
             HouseError: The house cannot be opened.
             UsageError: It was played with parts in Python that are not given.
         """
-        runner = self._runner(task, reward, renderer, house)
         from dwell.world import World
 
-        runner.reset([self.seed])
-        world = World.of_env(runner.houses[0], runner.batch.world(0))
-        yield self._moment(0, 0.0, world)
+        with self._named():
+            runner = self._runner(task, reward, renderer, house)
+            runner.reset([self.seed])
+            world = World.of_env(runner.houses[0], runner.batch.world(0))
+            moment = self._moment(0, runner, world)
+        yield moment
         numbers = {name: number for number, name in enumerate(_native.actions())}
         for step, action in enumerate(self.actions, 1):
-            answer, _ = runner.step(np.array([numbers[action]], np.int64))
-            yield self._moment(step, float(answer["reward"][0]), world)
+            with self._named(f"actions[{step - 1}]: "):
+                answer, _ = runner.step(np.array([numbers[action]], np.int64))
+                moment = self._moment(step, runner, world, answer)
+            yield moment
 
     def _runner(
         self,
@@ -198,13 +228,25 @@ class Replay:
         opened = House.open(self.house) if house is None else house
         return Runner([opened], to_json(config), None, custom=custom)
 
-    def _moment(self, step: int, reward: float, world: World) -> Moment:
+    @contextmanager
+    def _named(self, place: str = "") -> Iterator[None]:
+        """Errors begin with the file and the place in it."""
+        try:
+            yield
+        except DwellError as error:
+            raise type(error)(f"{self._at()}: {place}{error}") from error
+
+    def _moment(
+        self, step: int, runner: Runner, world: World, answer: Mapping[str, Any] | None = None
+    ) -> Moment:
         return Moment(
             step=step,
             action=self.actions[step - 1] if step else None,
-            reward=reward,
+            reward=0.0 if answer is None else float(answer["reward"][0]),
             world=world,
             is_same=f"{world.state_hash():016x}" == self.hashes[step],
+            instruction=runner.batch.instruction(0),
+            success=answer is not None and bool(answer["success"][0]),
         )
 
     def first_difference(self, **parts: Any) -> int | None:  # noqa: ANN401 - as :meth:`play`
@@ -217,3 +259,63 @@ class Replay:
             if not moment.is_same:
                 return moment.step
         return None
+
+    def differences(self, **parts: Any) -> list[str]:  # noqa: ANN401 - as :meth:`play`
+        """What the replay states and what does not hold, a sentence each that begins with a field.
+
+        Every field is held against its check sum, so that nothing was changed by accident since it
+        was recorded; and the episode is played: the hash after each step, the instruction and the
+        success at the end are those that are stated.
+
+        Args:
+            **parts: As :meth:`play`.
+
+        Returns:
+            Nothing where all holds.
+        """
+        told = []
+        if self.sums is not None:
+            stated = self._stated()
+            for name in sorted({*stated, *self.sums}):
+                if name not in stated or self.sums.get(name) != _sum(stated[name]):
+                    told.append(
+                        f"{name}: changed since it was recorded: its check sum in sums differs"
+                    )
+        try:
+            told += self._played_otherwise(parts)
+        except DwellError as error:
+            told.append(str(error).removeprefix(f"{self._at()}: "))
+        return told
+
+    def _played_otherwise(self, parts: Mapping[str, Any]) -> Iterator[str]:
+        """What is not as stated when the episode is played."""
+        differs = False
+        for moment in self.play(**parts):
+            if moment.step == 0 and moment.instruction != self.instruction:
+                yield (
+                    f"instruction: the file states {shown(self.instruction)}, "
+                    f"played it is {shown(moment.instruction)}"
+                )
+            if not moment.is_same and not differs:
+                differs = True
+                yield (
+                    f"hashes[{moment.step}]: the file states {self.hashes[moment.step]}, played it "
+                    f"is {moment.world.state_hash():016x}"
+                )
+        if moment.success != self.success:
+            yield f"success: the file states {self.success}, played it is {moment.success}"
+
+
+#: The fields of a file.
+_FIELDS = (
+    "format",
+    "version",
+    *(field.name for field in dataclasses.fields(Replay) if field.name not in ("path", "sums")),
+    "sums",
+)
+
+
+def _sum(value: object) -> str:
+    """A check sum of what JSON holds."""
+    written = json.dumps(value, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(written.encode()).hexdigest()[:16]

@@ -125,7 +125,8 @@ def test_what_no_file_can_hold_is_refused(tmp_path: Path, apartment: dwell.House
 
 WRONG: list[tuple[str, object, str]] = [
     ("format", "other", "no dwell-replay"),
-    ("version", 2, "version is 2"),
+    ("version", 3, "version is 3"),
+    ("success", "yes", "success is 'yes'"),
     ("seed", -1, "seed is -1"),
     ("seed", 1e39, "seed is 1e+39"),
     ("house", 5, "house is 5"),
@@ -175,3 +176,102 @@ def test_a_house_or_setting_that_is_not_there_is_told(file: Path, tmp_path: Path
         wrong.write_text(json.dumps(row), "utf-8")
         with pytest.raises(dwell.DwellError):
             dwell.Replay.read(wrong).first_difference()
+
+
+@pytest.fixture(scope="module")
+def instructed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("instructed")
+    return recorded(folder, task="InstructionFollowing", houses="seed:3?home=studio")
+
+
+EDITED: list[tuple[str, Any]] = [
+    ("format", "dwell-replays"),
+    ("version", 1),
+    ("house", "seed:3?home=apartment"),
+    ("house", "seed:3?home=studio&style=modern"),
+    ("house", "seed:3?home=studio&furniture_density=2"),
+    ("seed", 5),
+    ("config", lambda config: {**config, "task": "Free"}),
+    ("config", lambda config: {**config, "sensors": [{"kind": "compass", "settings": {}}]}),
+    ("config", lambda config: {**config, "nothing": 5}),
+    ("parts", ["Shouting"]),
+    ("actions", lambda actions: ["turn_right", *actions[1:]]),
+    ("actions", lambda actions: ["stop", *actions[1:]]),
+    ("actions", lambda actions: actions[:-1]),
+    ("hashes", lambda hashes: [*hashes[:-1], "0123456789abcdef"]),
+    ("hashes", lambda hashes: [*hashes[:-1], hashes[-1].upper()]),
+    ("instruction", "Do nothing."),
+    ("success", True),
+    ("made_by", "0.0.0"),
+    ("sums", lambda sums: {**sums, "seed": "0" * 16}),
+    ("sums", {}),
+]
+
+
+@pytest.mark.parametrize(("field", "value"), EDITED)
+def test_whatever_is_edited_is_found_and_named(
+    instructed: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    field: str,
+    value: Any,  # noqa: ANN401 - what JSON holds, or what changes it
+) -> None:
+    row = json.loads(instructed.read_text("utf-8"))
+    row[field] = value(row[field]) if callable(value) else value
+    edited = tmp_path / "edited.replay"
+    edited.write_text(json.dumps(row), "utf-8")
+    assert cli.main(["replay", str(edited), "--verify"]) == 1
+    told = capsys.readouterr().err
+    assert str(edited) in told
+    assert field in told
+
+
+def test_every_field_of_a_file_is_among_those_edited(
+    instructed: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert set(json.loads(instructed.read_text("utf-8"))) == {field for field, _ in EDITED}
+    assert dwell.Replay.read(instructed).differences() == []
+    assert cli.main(["replay", str(instructed), "--verify", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["differences"] == []
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "said"),
+    [
+        ("instruction", "Do nothing.", "instruction: the file states 'Do nothing.', played it is "),
+        ("success", True, "success: the file states True, played it is False"),
+        ("hashes", ["0" * 16] * (len(ACTIONS) + 1), "hashes[0]: the file states 0000000000000000"),
+    ],
+)
+def test_forged_check_sums_do_not_help(
+    instructed: Path, tmp_path: Path, field: str, value: object, said: str
+) -> None:
+    row = {**json.loads(instructed.read_text("utf-8")), field: value, "version": 1}
+    del row["sums"]
+    old = tmp_path / "old.replay"
+    old.write_text(json.dumps(row), "utf-8")
+    # As a file of its own, with sums of what it states now.
+    dwell.Replay.read(old).write(tmp_path / "forged.replay")
+    for file in (old, tmp_path / "forged.replay"):
+        (told,) = dwell.Replay.read(file).differences()
+        assert told.startswith(said)
+
+
+def test_errors_name_the_file(file: Path, tmp_path: Path) -> None:
+    nowhere = tmp_path / "nowhere.replay"
+    for path in (nowhere, tmp_path):
+        with pytest.raises(dwell.MeasuredDataError, match=str(path)):
+            dwell.Replay.read(path)
+    faults = [
+        ("house", "nowhere.glb", "nowhere.glb"),
+        ("config", {"task": "Nothing"}, "Nothing"),
+        ("parts", ["Shouting"], "Shouting"),
+    ]
+    for field, value, said in faults:
+        row = {**json.loads(file.read_text("utf-8")), field: value}
+        wrong = tmp_path / "wrong.replay"
+        wrong.write_text(json.dumps(row), "utf-8")
+        with pytest.raises(dwell.DwellError) as refused:
+            next(dwell.Replay.read(wrong).play())
+        assert str(refused.value).startswith(f"{wrong}: ")
+        assert said in str(refused.value)

@@ -44,8 +44,10 @@ def number(text: str) -> float:
 
 def count(text: str) -> int:
     """Reads a whole number that is not negative: a seed, a size, how many."""
-    if not re.fullmatch(r"\+?[0-9]{1,19}", text.strip()):
-        raise argparse.ArgumentTypeError(f"expected a whole number from 0, found {text!r}")
+    # What Python counts with.
+    if not re.fullmatch(r"\+?[0-9]{1,19}", text.strip()) or int(text) > sys.maxsize:
+        allowed = f"a whole number from 0 to {sys.maxsize}"
+        raise argparse.ArgumentTypeError(f"expected {allowed}, found {text[:60]!r}")
     return int(text)
 
 

@@ -91,9 +91,11 @@ def _report(report: Any) -> list[str]:  # noqa: ANN401 - JSON
     warnings = report.get("warnings", []) if isinstance(report, dict) else []
     if not warnings:
         return ["report: nothing to report"]
-    total = len(warnings) + int(report.get("not_kept", 0))
-    lines = [f"report: {_many(total, 'warning')}"]
+    not_kept = int(report.get("not_kept", 0))
+    lines = [f"report: {_many(len(warnings) + not_kept, 'warning')}"]
     lines += [f"  {warning['sentence']}" for warning in warnings[:_MOST_WARNINGS]]
-    if total > _MOST_WARNINGS:
-        lines.append(f"  and {total - _MOST_WARNINGS} more (--json has them)")
+    if more := max(len(warnings) - _MOST_WARNINGS, 0):
+        lines.append(f"  and {more} more (--json has them)")
+    if not_kept:
+        lines.append(f"  and {not_kept} that were counted and not kept")
     return lines

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -22,7 +23,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("file", metavar="FILE", type=Path, help="as ReplayRecorder writes it")
     parser.add_argument(
-        "--verify", action="store_true", help="every step has the bits that were recorded, or fail"
+        "--verify",
+        action="store_true",
+        help="all that the file states holds, every step's bits too, or fail",
     )
     parser.add_argument(
         "--sensors",
@@ -55,16 +58,19 @@ def run(args: argparse.Namespace) -> int:
         "success": replay.success,
     }
     if args.verify:
-        told["first_difference"] = replay.first_difference()
+        told["differences"] = replay.differences()
     if taker is not None:
         _take(replay, args, taker)
         told["files"] = taker.files
+    different = told.get("differences", [])
     if args.json:
         print_json(told)
     else:
         for name, value in told.items():
-            print(f"{name}: {value}")
-    return 1 if args.verify and told["first_difference"] is not None else 0
+            print(f"{name}: {(value or 'none') if name == 'differences' else value}")
+    for sentence in different:
+        print(f"{args.file}: {sentence}", file=sys.stderr)
+    return 1 if different else 0
 
 
 def _take(replay: Replay, args: argparse.Namespace, taker: _Taker) -> None:
