@@ -47,7 +47,7 @@ def _read(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401 - any JSON value
 def _is_path(laws: str) -> bool:
     """Whether text means a file rather than a law."""
     is_like_one = laws.endswith(".json") or os.path.basename(laws) != laws
-    return laws not in _laws() and (is_like_one or Path(laws).exists())
+    return laws not in _laws() and (is_like_one or (laws != "" and Path(laws).exists()))
 
 
 def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
@@ -60,8 +60,6 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
     if isinstance(laws, os.PathLike) or (isinstance(laws, str) and _is_path(laws)):
         at = f"laws: {os.fspath(laws)}"
         laws = _read(laws)
-    elif isinstance(laws, str):
-        laws = [laws]
     if laws is None:
         return [], {}
     parameters: Mapping[str, float] = {}
@@ -80,10 +78,10 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
             for name, params in by_name.items()
         ]
         return rows, _values("parameters", parameters)
-    if isinstance(laws, Mapping):
+    if isinstance(laws, str | Mapping):
         laws = [laws]
     if (
-        isinstance(laws, str | bytes)
+        isinstance(laws, bytes)
         or not isinstance(laws, Sequence)
         or not all(isinstance(law, str | Mapping) for law in laws)
     ):
