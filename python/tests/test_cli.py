@@ -11,6 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from dwell import cli
+from dwell.cli import info
+
 HOUSE = "builtin:apartment"
 
 
@@ -307,3 +310,26 @@ def test_sensors_maps_and_dolls_houses_are_all_written(
     several = dwell("render", "seed:1", "seed:2", "--sheet", "--sensors", "rgb", "--out", tmp_path)
     assert several.returncode != 0
     assert "without --sensors" in several.stderr
+
+
+def test_a_report_promises_no_more_than_it_holds() -> None:
+    kept = [{"sentence": f"fault {k}"} for k in range(10_000)]
+    lines = info._report({"warnings": kept, "not_kept": 990_000})
+    assert lines[0] == "report: 1000000 warnings"
+    assert lines[1:21] == [f"  fault {k}" for k in range(20)]
+    assert lines[21:] == [
+        "  and 9980 more (--json has them)",
+        "  and 990000 that were counted and not kept",
+    ]
+    assert info._report({"warnings": kept[:3], "not_kept": 0})[1:] == [
+        f"  fault {k}" for k in range(3)
+    ]
+
+
+def test_counts_that_nothing_counts_to_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["generate", "--count", "9" * 19, "--out", str(tmp_path / "houses")]) == 2
+    told = capsys.readouterr().err
+    assert "expected a whole number from 0 to 9223372036854775807, found '999999" in told
+    assert "islice" not in told
