@@ -264,9 +264,8 @@ def from_json(at: str, written: str | bytes) -> Any:  # noqa: ANN401 - any JSON 
     Raises:
         ConfigError: It is no JSON, or nested too deep.
     """
+    raw = written.encode(errors="surrogatepass") if isinstance(written, str) else written
     try:
-        return json.loads(written)
-    except RecursionError:
-        raise ConfigError(f"{at}: JSON is nested too deep") from None
+        return parse_json(raw, at)
     except ValueError as error:
-        raise ConfigError(f"{at}: no JSON: {error}") from None
+        raise ConfigError(str(error)) from None

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from dwell import ConfigError, _native, arguments
 from dwell.arguments import choice, finite, flag, pair, path, text, whole
 from dwell.editing import Edits, Rgb, rgb
+from dwell.files import atomic
 from dwell.house import House
 
 if TYPE_CHECKING:
@@ -224,7 +225,8 @@ class HouseBuilder(Edits):
         to = Path(path("file", file))
         if not to.name.endswith(".plan.json"):
             raise ConfigError(f"file is {to.name!r}; expected a name that ends in .plan.json")
-        to.write_text(json.dumps(self.plan(), indent=1) + "\n", encoding="utf-8")
+        with atomic(to) as draft:
+            draft.write_text(json.dumps(self.plan(), indent=1) + "\n", encoding="utf-8")
         return to
 
     def build(self) -> House:

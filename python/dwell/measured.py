@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import io
 import json
 import math
 import os
@@ -13,7 +14,12 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from dwell.files import open_file, read_json
+
 Row = dict[str, Any]
+
+#: A table has at most so many bytes, as for the reader of bundles.
+_MOST_BYTES = 256 * 2**20
 
 #: What ``--init`` prints. Keys that do not apply are left out; ``null`` is "not known".
 TEMPLATE: Row = {
@@ -140,16 +146,22 @@ def import_files(
 
 def read_map(path: Path) -> Row:
     """The map, with every key known."""
-    try:
-        mapping = json.loads(path.read_text("utf-8"))
-    except json.JSONDecodeError as error:
-        raise ValueError(f"{path} line {error.lineno}: {error.msg}") from None
+    mapping = read_json(path)
     kind = mapping.get("kind") if isinstance(mapping, dict) else None
-    if kind not in TEMPLATES:
+    if not isinstance(kind, str) or kind not in TEMPLATES:
         raise ValueError(f"{path}: kind is {kind!r}; allowed is one of {sorted(TEMPLATES)}")
     known(mapping, TEMPLATES[kind], str(path))
     result: Row = mapping
     return result
+
+
+#: What a map holds where its template holds such a thing.
+_KINDS: dict[type, tuple[tuple[type, ...], str]] = {
+    str: ((str,), "text"),
+    float: ((int, float), "a number"),
+    list: ((list,), "a list"),
+    dict: ((dict,), "an object"),
+}
 
 
 def known(found: Row, template: Row, at: str) -> None:
@@ -159,8 +171,11 @@ def known(found: Row, template: Row, at: str) -> None:
             raise ValueError(f"{at}: no key {key!r}; allowed are {list(template)}")
         if isinstance(template[key], dict) and key != "channels" and value is not None:
             if not isinstance(value, dict):
-                raise ValueError(f"{at}: {key} is {value!r}; an object is needed")
+                raise ValueError(f"{at}: {key} is {value!r:.60}; an object is needed")
             known(value, template[key], f"{at}: {key}")
+        kinds, expected = _KINDS.get(type(template[key]), ((object,), ""))
+        if value is not None and (isinstance(value, bool) or not isinstance(value, kinds)):
+            raise ValueError(f"{at}: {key} is {value!r:.60}; {expected} is needed")
 
 
 def need(mapping: Mapping[str, Any], key: str, at: str) -> Any:  # noqa: ANN401 - any JSON value
@@ -168,6 +183,12 @@ def need(mapping: Mapping[str, Any], key: str, at: str) -> Any:  # noqa: ANN401 
     if mapping.get(key) is None:
         raise ValueError(f"{at}: {key!r} is missing")
     return mapping[key]
+
+
+def metres_per_unit(part: Mapping[str, Any]) -> float:
+    """How long the unit of a table's places is, m; not said is 1."""
+    said = part.get("metres_per_unit")
+    return 1.0 if said is None else float(said)
 
 
 class Table:
@@ -202,20 +223,27 @@ def open_table(path: Path) -> tuple[list[str], Iterator[tuple[int, Row]]]:
             raise ModuleNotFoundError(
                 f"{path}: Parquet needs pyarrow; pip install 'dwell[data]'"
             ) from None
-        file = parquet.ParquetFile(path)
+        file = parquet.ParquetFile(open_file(path, _MOST_BYTES))
         batches = (row for batch in file.iter_batches() for row in batch.to_pylist())
         return list(file.schema_arrow.names), enumerate(batches, start=1)
     if path.suffix != ".csv":
         raise ValueError(f"{path}: {path.suffix or 'no suffix'}; .csv and .parquet are read")
-    with path.open(newline="", encoding="utf-8-sig") as head:
-        columns = next(csv.reader(head), [])
-    return columns, enumerate(csv_rows(path), start=1)
+    rows = csv_rows(path)
+    return list(next(rows, {})), enumerate(rows, start=1)
 
 
 def csv_rows(path: Path) -> Iterator[Row]:
-    """The rows of a CSV file."""
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        yield from csv.DictReader(file)
+    """The names of the columns as they are, and the rows of a CSV file."""
+    opened = open_file(path, _MOST_BYTES)
+    with io.TextIOWrapper(opened, encoding="utf-8-sig", newline="") as file:
+        reader = csv.DictReader(file)
+        try:
+            yield {name: name for name in reader.fieldnames or []}
+            yield from reader
+        except csv.Error as error:
+            raise ValueError(f"{path} line {reader.line_num}: {error}") from None
+        except UnicodeDecodeError:
+            raise ValueError(f"{path} line {reader.line_num + 1}: no text in UTF-8") from None
 
 
 def number(at: str, row: Row, column: str) -> float:
@@ -324,7 +352,7 @@ def pose_bundle(
     episode, clock = need(part, "episode", here), need(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *place, *quaternion, *rates[0], *rates[1]])
-    metres = float(part.get("metres_per_unit", 1.0))
+    metres = metres_per_unit(part)
     in_body = form.get("angular_velocity") == "body"
     groups: dict[str, str] = {}
     head = "episode,t_s,entity,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz"
@@ -404,7 +432,7 @@ def flight_bundle(
     episode, clock = need(part, "episode", here), need(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *channels.values()])
-    metres = float(part.get("metres_per_unit", 1.0))
+    metres = metres_per_unit(part)
     groups: dict[str, str] = {}
     left_out: set[str] = set()
     rows = 0
@@ -455,7 +483,7 @@ def drive_bundle(
     wheels = [need(part, key, here) for key in ("ticks_left", "ticks_right")]
     episode = need(part, "episode", here)
     table.has([episode, clock, *place, heading, *wheels])
-    metres = float(part.get("metres_per_unit", 1.0))
+    metres = metres_per_unit(part)
     groups: dict[str, str] = {}
     rows = 0
     head = "episode,t_s,x,y,heading,left_rad,right_rad"

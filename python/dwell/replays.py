@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dwell import ConfigError, DwellError, MeasuredDataError, UsageError, _native
-from dwell.arguments import flag, from_json, mapping, shown, text, texts, to_json, whole
-from dwell.cli.common import atomic
+from dwell.arguments import flag, mapping, shown, text, texts, to_json, whole
+from dwell.files import atomic, read_json
 from dwell.house import House
 
 if TYPE_CHECKING:
@@ -25,10 +25,8 @@ if TYPE_CHECKING:
 
 #: What a file says of itself.
 _FORMAT, _VERSION = "dwell-replay", 2
-#: More than any episode is long.
-_MOST_STEPS = 10_000_000
-#: A file larger than this is none of ours, bytes.
-_MOST_BYTES = 2**30
+#: More than any episode is long; its file stays below what is read.
+MOST_STEPS = 1_000_000
 
 
 @dataclasses.dataclass(frozen=True)
@@ -91,15 +89,11 @@ class Replay:
 
         Raises:
             MeasuredDataError: It is no replay, of another version, or its numbers do not fit.
+            OSError: The system refuses, or it is no regular file.
         """
-        path = Path(path)
         try:
-            if path.stat().st_size > _MOST_BYTES:
-                raise MeasuredDataError(f"{path} is larger than {_MOST_BYTES} bytes")
-            row = from_json(str(path), path.read_bytes())
-        except OSError as error:
-            raise MeasuredDataError(f"{path}: {error.strerror or error}") from error
-        except ConfigError as error:
+            row = read_json(path)
+        except ValueError as error:
             raise MeasuredDataError(str(error)) from None
         if not isinstance(row, dict) or row.get("format") != _FORMAT:
             raise MeasuredDataError(f"{path}: format: no {_FORMAT} file")
@@ -146,10 +140,10 @@ class Replay:
                 raise MeasuredDataError(
                     f"{self._at()}: actions[{k}] is {shown(action)}; allowed are {', '.join(names)}"
                 )
-        if len(self.hashes) != len(self.actions) + 1 or len(self.actions) > _MOST_STEPS:
+        if len(self.hashes) != len(self.actions) + 1 or len(self.actions) > MOST_STEPS:
             raise MeasuredDataError(
                 f"{self._at()}: {len(self.actions)} actions and {len(self.hashes)} hashes; "
-                f"expected at most {_MOST_STEPS} actions and one hash more"
+                f"expected at most {MOST_STEPS} actions and one hash more"
             )
 
     def _stated(self) -> dict[str, Any]:
@@ -159,11 +153,19 @@ class Replay:
         row["config"] = json.loads(self.config)
         return row
 
-    def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes a file, whole or not at all."""
+    def write(self, path: str | os.PathLike[str], *, new: bool = False) -> None:
+        """Writes a file, whole or not at all.
+
+        Args:
+            path: The file.
+            new: Nothing may stand there, not even from another process in this moment.
+
+        Raises:
+            FileExistsError: It shall be new and is not.
+        """
         row = self._stated()
         row["sums"] = {name: _sum(value) for name, value in row.items()}
-        with atomic(Path(path)) as draft:
+        with atomic(path, new=new) as draft:
             draft.write_text(json.dumps(row, indent=1) + "\n", "utf-8")
 
     def play(

@@ -12,8 +12,9 @@ from typing import Any
 
 from dwell import _native
 from dwell._native import ConfigError
-from dwell.arguments import fields, finite, from_json, mapping, path, shown, text, whole
+from dwell.arguments import fields, finite, mapping, path, shown, text, whole
 from dwell.configs import WorldSettings, bodies, checked
+from dwell.files import read_json
 from dwell.heads import Head, head_of
 
 #: Laws to install: a name, names, rows in full, or parameters by name; or what calibration found
@@ -34,14 +35,12 @@ def _laws() -> dict[str, dict[str, Any]]:
 
 
 def _read(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401 - any JSON value
-    name = os.fspath(path)
     try:
-        written = Path(path).read_text(encoding="utf-8")
+        return read_json(path)
     except OSError as error:
-        raise ConfigError(f"laws: {name}: {error.strerror or error}") from error
+        raise ConfigError(f"laws: {os.fspath(path)}: {error.strerror or error}") from error
     except ValueError as error:
-        raise ConfigError(f"laws: {name}: no JSON: {error}") from error
-    return from_json(f"laws: {name}", written)
+        raise ConfigError(f"laws: {error}") from error
 
 
 def _is_path(laws: str) -> bool:

@@ -11,6 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
+from dwell.files import open_file
+
+#: A sound file has at most so many bytes.
+_MOST_BYTES = 512 * 2**20
 
 
 def write_wav(
@@ -33,8 +37,13 @@ def write_wav(
 
 
 def read_wav(path: str | os.PathLike[str]) -> tuple[NDArray[np.float32], int]:
-    """Reads 16-bit WAV: shape (channel, sample) in [-1, 1], and the samples a second."""
-    with wave.open(os.fspath(path), "rb") as file:
+    """Reads 16-bit WAV: shape (channel, sample) in [-1, 1], and the samples a second.
+
+    Raises:
+        ValueError: It has more than 512 MiB.
+        OSError: The system refuses, or it is no regular file.
+    """
+    with open_file(path, _MOST_BYTES) as opened, wave.open(opened) as file:
         frames = np.frombuffer(file.readframes(file.getnframes()), "<i2")
         channels = file.getnchannels()
         rate_hz = file.getframerate()

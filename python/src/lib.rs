@@ -18,6 +18,7 @@ mod facts;
 mod forks;
 mod head;
 mod house;
+mod json;
 mod logs;
 mod navigation;
 mod picture;
@@ -58,6 +59,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(calibrate::calibrate, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::calibration_example, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::check_measured, module)?)?;
+    module.add_function(wrap_pyfunction!(json::json_extent, module)?)?;
     module.add_function(wrap_pyfunction!(show::map, module)?)?;
     module.add_function(wrap_pyfunction!(show::dollhouse, module)?)?;
     module.add_function(wrap_pyfunction!(show::floor_plan_json, module)?)?;

@@ -25,6 +25,7 @@ mod wav;
 
 use file::{CommandRow, DriveRow, Kind, Manifest};
 use glam::{DQuat, DVec3};
+pub(crate) use read::refused;
 
 /// A bundle that was read and checked.
 #[derive(Clone, Debug)]

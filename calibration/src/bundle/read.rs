@@ -5,6 +5,7 @@ use super::file::{CommandRow, EpisodeRow, Kind, Manifest, ResponseRow, Trajector
 use super::limits;
 use super::{Bundle, Episode, Response, Sample, drive, poses, wav};
 use crate::error::CalibrationError;
+use dwell_scene::file::{self, ReadError};
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -80,26 +81,24 @@ fn open(folder: &Path, relative: &str, limit: u64) -> Result<(fs::File, String),
             "a file inside the bundle",
         ));
     }
-    let file = fs::File::open(&real).map_err(fault(path.clone()))?;
-    let facts = file.metadata().map_err(fault(path))?;
-    if !facts.is_file() {
-        return Err(CalibrationError::field(
-            at,
-            "file",
-            "no plain file",
-            "a plain file",
-        ));
-    }
-    if facts.len() > limit {
-        let found = facts.len();
-        return Err(CalibrationError::TooLarge {
-            at,
+    let file = file::open(&real, limit).map_err(refused(&path))?;
+    Ok((file, at))
+}
+
+/// The error of a file that was not read.
+pub(crate) fn refused(path: &Path) -> impl FnOnce(ReadError) -> CalibrationError {
+    move |error| match error {
+        ReadError::Io(source) => {
+            let path = path.to_owned();
+            CalibrationError::Read { path, source }
+        }
+        ReadError::TooLarge { found, allowed } => CalibrationError::TooLarge {
+            at: path.display().to_string(),
             what: "bytes",
             found,
-            limit,
-        });
+            limit: allowed,
+        },
     }
-    Ok((file, at))
 }
 
 fn manifest(folder: &Path) -> Result<Manifest, CalibrationError> {

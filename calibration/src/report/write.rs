@@ -2,9 +2,9 @@
 
 use super::data::Report;
 use crate::error::CalibrationError;
+use dwell_scene::file;
 use serde_json::Value;
 use std::fs;
-use std::io::Write as _;
 use std::path::Path;
 
 impl Report {
@@ -43,13 +43,5 @@ impl Report {
 /// Writes a file beside its place and moves it there.
 pub(crate) fn whole(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), CalibrationError> {
     let path = folder.join(name);
-    let beside = folder.join(format!(".{name}.{}.part", std::process::id()));
-    let written = fs::File::create(&beside)
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&beside, &path));
-    written.map_err(|source| {
-        // What is left of a failed attempt is of no use to anyone.
-        let _ = fs::remove_file(&beside);
-        CalibrationError::Write { path, source }
-    })
+    file::write(&path, bytes).map_err(|source| CalibrationError::Write { path, source })
 }

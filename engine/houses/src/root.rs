@@ -1,8 +1,8 @@
 //! A folder that bounds every path: nothing a file names can lead out of it.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
+
+use dwell_scene::file::{self, ReadError};
 
 use crate::error::HousesError;
 use crate::limits::MAX_FOLDER_ENTRIES;
@@ -166,44 +166,20 @@ pub(crate) fn is_json_with(path: &Path, words: &[&str]) -> bool {
     words.iter().all(holds)
 }
 
-/// Reads a file of at most `max_bytes`; `name` stands in the error.
+/// Reads a regular file of at most `max_bytes`; `name` stands in the error.
 ///
 /// # Errors
 /// [`HousesError::TooLarge`] and [`HousesError::Io`].
 pub(crate) fn read_capped(path: &Path, name: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
-    let regular = |meta: &std::fs::Metadata| {
-        if meta.is_file() {
-            return Ok(());
-        }
-        let source = std::io::Error::new(std::io::ErrorKind::InvalidInput, "is not a regular file");
-        Err(HousesError::Io {
-            path: path.into(),
-            source,
-        })
-    };
-    // To open a named pipe is to wait for somebody who writes into it.
-    regular(&std::fs::metadata(path).map_err(HousesError::io(path))?)?;
-    let file = File::open(path).map_err(HousesError::io(path))?;
-    let meta = file.metadata().map_err(HousesError::io(path))?;
-    regular(&meta)?;
-    let too_large = |found| HousesError::TooLarge {
-        at: At::file(name),
-        what: "file size in bytes",
-        found,
-        allowed: max_bytes,
-    };
-    if meta.len() > max_bytes {
-        return Err(too_large(meta.len()));
-    }
-    let mut bytes = Vec::with_capacity(meta.len() as usize + 1);
-    // A file that grows while it is read still ends at the cap.
-    file.take(max_bytes + 1)
-        .read_to_end(&mut bytes)
-        .map_err(HousesError::io(path))?;
-    if bytes.len() as u64 > max_bytes {
-        return Err(too_large(bytes.len() as u64));
-    }
-    Ok(bytes)
+    file::read(path, max_bytes).map_err(|error| match error {
+        ReadError::Io(source) => HousesError::io(path)(source),
+        ReadError::TooLarge { found, allowed } => HousesError::TooLarge {
+            at: At::file(name),
+            what: "file size in bytes",
+            found,
+            allowed,
+        },
+    })
 }
 
 /// The folder part of a path inside a root: `object/83` of `object/83/83.obj`.

@@ -10,6 +10,7 @@ pub mod bvh;
 mod collider;
 pub mod columns;
 mod error;
+pub mod file;
 mod fixtures;
 mod house;
 mod ids;

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from dwell.camera import PRESETS
-from dwell.cli.common import add_back_end, back_end, count, print_json, read_json
+from dwell.cli.common import add_back_end, back_end, count, print_json
+from dwell.files import read_json
 
 _STAGES = ("load", "render", "physics", "acoustics", "env")
 

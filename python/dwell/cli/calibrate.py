@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from dwell.cli.common import Bar, atomic, print_json
+from dwell.cli.common import Bar, print_json
+from dwell.files import atomic
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

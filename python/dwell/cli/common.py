@@ -1,4 +1,4 @@
-"""What several commands share: JSON on standard output, atomic files, points, progress."""
+"""What several commands share: JSON on standard output, points, progress."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import math
 import os
 import re
 import sys
-import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from pathlib import Path
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, TextIO
+
+#: A name of which an error shows the beginning alone.
+_LONG_WORD = re.compile(r"(\S{200})\S{100,}")
 
 
 def print_json(value: Any) -> None:  # noqa: ANN401 - any JSON value
@@ -88,27 +88,40 @@ def join_negative_points(arguments: Sequence[str]) -> list[str]:
     return joined
 
 
-def read_json(path: Path) -> Any:  # noqa: ANN401 - any JSON value
-    """Reads a JSON file; what is none is refused by name."""
-    try:
-        return json.loads(path.read_text("utf-8"))
-    except ValueError as error:
-        raise ValueError(f"{path}: no JSON: {error}") from error
+#: What commands a terminal or turns the direction of writing, and what is no text at all.
+_COMMANDS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
-@contextmanager
-def atomic(path: Path) -> Iterator[Path]:
-    """A temporary file beside ``path`` that takes its place when all went well."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    os.close(handle)
-    try:
-        yield Path(name)
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+def printable(text: str) -> str:
+    """Text in which names of strangers command no terminal: they are escaped as in JSON."""
+    return _COMMANDS.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+class Printable:
+    """A stream that passes on printable text alone: all that commands print goes through it."""
+
+    def __init__(self, stream: TextIO) -> None:
+        """Writes to ``stream``, which goes on taking anything itself."""
+        self.stream = stream
+
+    def write(self, text: str) -> int:
+        """Passes text on."""
+        self.stream.write(printable(text))
+        return len(text)
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - whatever the stream has
+        """All else is the stream's own."""
+        return getattr(self.stream, name)
+
+
+def sentence(error: BaseException) -> str:
+    """What an error says to people."""
+    if isinstance(error, MemoryError):
+        return "not enough memory"
+    said = str(error)
+    if isinstance(error, OSError) and error.strerror is not None and error.filename is not None:
+        said = f"{os.fsdecode(error.filename)}: {error.strerror}"
+    return _LONG_WORD.sub(lambda word: f"{word[1]}...({len(word[0])} characters)", said)
 
 
 class Bar:
@@ -116,12 +129,14 @@ class Bar:
 
     def __init__(self) -> None:
         """Shows nothing yet."""
-        self._shows = sys.stderr.isatty()
+        # Goes back to the beginning of the line, which text for people may not.
+        self._stream = getattr(sys.stderr, "stream", sys.stderr)
+        self._shows = self._stream.isatty()
 
     def __call__(self, fraction: float, what: str) -> None:
         """Shows a fraction (0 to 1) and what is being done."""
         if self._shows:
             done = round(30 * min(max(fraction, 0.0), 1.0))
-            line = f"\r[{'#' * done}{'.' * (30 - done)}] {what[:60]:<60}"
+            line = f"\r[{'#' * done}{'.' * (30 - done)}] {printable(what)[:60]:<60}"
             end = "\n" if fraction >= 1.0 else ""
-            print(line, end=end, file=sys.stderr, flush=True)
+            print(line, end=end, file=self._stream, flush=True)

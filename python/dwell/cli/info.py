@@ -8,6 +8,7 @@ from typing import Any
 
 from dwell import ConfigError
 from dwell.cli.common import print_json
+from dwell.files import atomic
 
 _MOST_WARNINGS = 20
 
@@ -61,8 +62,8 @@ def run(args: argparse.Namespace) -> int:
 def _write_new(path: Path, text: str) -> None:
     """Writes a file that is not there yet: a map that somebody filled in stays."""
     try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
+        with atomic(path, new=True) as draft:
+            draft.write_text(text, "utf-8")
     except FileExistsError:
         raise ConfigError(f"--init-map: {path} is there already; name a new file") from None
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from dwell.cli import ir_grid, ir_picture, measured_room
-from dwell.cli.common import atomic, count, number, point, print_json
+from dwell.cli.common import count, number, point, print_json
+from dwell.files import atomic
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell.cli.common import Bar, atomic, number, print_json, read_json
+from dwell.cli.common import Bar, number, print_json
 from dwell.cli.journal import claim
+from dwell.files import atomic, read, read_json
 from dwell.listening import Receiver
 
 #: Format and the suffix of its files.
@@ -166,7 +167,7 @@ def _begin(parts: Path, job: dict[str, Any]) -> None:
     """Keeps the parts of an interrupted run of the same job; those of another are deleted."""
     text = json.dumps(job, indent=2, sort_keys=True) + "\n"
     path = parts / _JOB
-    if path.exists() and path.read_text("utf-8") == text:
+    if path.exists() and read(path) == text.encode():
         return
     shutil.rmtree(parts, ignore_errors=True)
     with atomic(path) as draft:

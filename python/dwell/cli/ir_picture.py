@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dwell.cli.common import Bar, atomic, count, number, print_json
+from dwell.cli.common import Bar, count, number, print_json
+from dwell.files import atomic
 
 if TYPE_CHECKING:
     from PIL import Image

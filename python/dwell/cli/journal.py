@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
-from dwell.cli.common import atomic, read_json
+from dwell.files import DRAFT, atomic, lines, open_file, parse_json, read_json
 
 _JOB, _DONE = "job", "done"
 #: What is the same for a whole folder; it stands there from the beginning.
@@ -16,23 +17,27 @@ _DATASET = "dataset.json"
 
 
 def claim(out: Path, dataset: dict[str, Any]) -> None:
-    """Says what a folder holds.
+    """Says what a folder holds; several processes may do so at the same time.
 
     Raises:
         ValueError: It holds something else, or was begun by another job.
     """
     path = out / _DATASET
-    if path.exists():
-        found = read_json(path)
-        other = [key for key in dataset if found.get(key) != dataset[key]]
-        if other:
-            said = ", ".join(f"{key} {found.get(key)!r}" for key in other)
-            raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
-        return
-    if out.exists() and any(out.iterdir()):
-        raise ValueError(f"{out} holds something else; expected an empty or a new folder")
-    with atomic(path) as draft:
-        draft.write_text(json.dumps(dataset, indent=2) + "\n", "utf-8")
+    if not path.exists():
+        # What another process has just begun is no other thing than this.
+        if out.exists() and any(not name.startswith(DRAFT) for name in os.listdir(out)):
+            if not path.exists():
+                raise ValueError(f"{out} holds something else; expected an empty or a new folder")
+        else:
+            with contextlib.suppress(FileExistsError), atomic(path, new=True) as draft:
+                draft.write_text(json.dumps(dataset, indent=2) + "\n", "utf-8")
+    found = read_json(path)
+    if not isinstance(found, dict):
+        raise ValueError(f"{path}: expected an object, found {found!r:.60}")
+    other = [key for key in dataset if found.get(key) != dataset[key]]
+    if other:
+        said = ", ".join(f"{key} {found.get(key)!r:.60}" for key in other)
+        raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
 
 
 class Journal:
@@ -43,13 +48,16 @@ class Journal:
 
         Args:
             out: Where the result will stand.
-            job: What the rows depend on; a journal of another job is begun anew.
+            job: What the rows depend on.
+
+        Raises:
+            ValueError: There are rows of another job; they stay.
         """
         self._out = out
         self._path = out.with_name(f".{out.name}.part")
         out.parent.mkdir(parents=True, exist_ok=True)
         #: Items whose rows are there, in the order they came.
-        self.done: list[str] = []
+        self.done: dict[str, None] = {}
         keep = self._read(job)
         self._file: IO[bytes] = self._path.open("r+b" if keep else "wb")
         self._file.seek(keep)
@@ -58,22 +66,26 @@ class Journal:
             self._write([{_JOB: job}])
 
     def _read(self, job: dict[str, Any]) -> int:
-        """How many bytes of the old journal are whole; 0 for none, or for another job's."""
+        """How many bytes of the old journal are whole; 0 for none."""
         if not self._path.exists():
             return 0
         keep = at = 0
-        with self._path.open("rb") as file:
-            for k, line in enumerate(file):
+        with open_file(self._path) as file:
+            for k, line in enumerate(lines(file, self._path)):
                 at += len(line)
                 try:
-                    row = json.loads(line)
+                    row = parse_json(line, str(self._path))
                 except ValueError:
                     break
                 if k == 0 and row != {_JOB: job}:
-                    return 0
+                    raise ValueError(
+                        f"{self._path} keeps what another job has done for {self._out}; run that "
+                        f"one again to its end, give another --out, or remove {self._path}"
+                    )
                 if k == 0 or (isinstance(row, dict) and set(row) == {_DONE}):
                     keep = at
-                    self.done += [row[_DONE]] if k else []
+                    if k:
+                        self.done[str(row[_DONE])] = None
         return keep
 
     def _write(self, rows: Sequence[object]) -> None:
@@ -84,7 +96,7 @@ class Journal:
     def add(self, item: str, rows: Sequence[object]) -> None:
         """Keeps the rows of an item."""
         self._write([*rows, {_DONE: item}])
-        self.done.append(item)
+        self.done[item] = None
 
     def finish(self) -> None:
         """Writes the rows of all items into the result, and forgets the journal."""
@@ -96,10 +108,12 @@ class Journal:
 
     def close(self) -> None:
         """Leaves the journal for the next run."""
-        self._file.close()
+        # A row that has no room on the disk is cut, and left out by the next run.
+        with contextlib.suppress(OSError):
+            self._file.close()
 
     def _rows(self) -> Iterator[bytes]:
-        with self._path.open("rb") as file:
+        with open_file(self._path) as file:
             next(file)
             for line in file:
                 if set(json.loads(line)) != {_DONE}:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import time
 from dataclasses import dataclass
@@ -13,11 +12,10 @@ from typing import Any
 import numpy as np
 
 from dwell.arguments import finite, whole
-from dwell.cli.common import Bar, atomic, print_json
+from dwell.cli.common import Bar, print_json
+from dwell.files import MOST_TEXT_BYTES, atomic, read, read_json
 from dwell.listening import Receiver
 
-# Larger files are no scenes.
-_MOST_BYTES = 64 * 1024 * 1024
 # Receivers this near are one array, of at most so many microphones.
 _ARRAY_M = 0.5
 _MOST_MICROPHONES = 128
@@ -42,10 +40,7 @@ class MeasuredRoom:
         Raises:
             ValueError: A field is not what it must be; it names the field.
         """
-        try:
-            file = json.loads(path.read_text(encoding="utf-8"))
-        except (ValueError, RecursionError) as error:
-            raise ValueError(f"{path}: {error}") from None
+        file = read_json(path)
         if not isinstance(file, dict):
             raise ValueError(f"{path}: expected an object, found {type(file).__name__}")
         air = _object(path, "air", file.get("air", {}))
@@ -79,9 +74,9 @@ def is_measured_room(house: str) -> bool:
     path = Path(house)
     if path.suffix.lower() != ".json" or not path.is_file():
         return False
-    if path.stat().st_size > _MOST_BYTES:
+    if path.stat().st_size > MOST_TEXT_BYTES:
         return False
-    text = path.read_bytes()
+    text = read(path)
     return b'"receivers"' in text and b'"absorption"' in text
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from dwell.camera import PRESETS, Camera, Channel
-from dwell.cli.common import Bar, add_back_end, atomic, back_end, count, number, print_json
+from dwell.cli.common import Bar, add_back_end, back_end, count, number, print_json
+from dwell.files import atomic
 
 if TYPE_CHECKING:
     from dwell.replays import Moment, Replay

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dwell.cli.common import atomic
+from dwell.files import atomic
 
 if TYPE_CHECKING:
     from PIL import Image

@@ -7,7 +7,8 @@ import os
 import sys
 from pathlib import Path
 
-from dwell.cli.common import atomic, count, print_json
+from dwell.cli.common import count, print_json
+from dwell.files import atomic
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

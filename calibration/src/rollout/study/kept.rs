@@ -5,9 +5,13 @@ use super::model::ContactModel;
 use crate::error::CalibrationError;
 use crate::report::whole;
 use crate::rollout::Tracks;
+use dwell_scene::file;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
+
+/// Bytes of an answer that are read; ours have less than a thousand.
+const MOST_BYTES: u64 = 1 << 20;
 
 /// What decides about the end of a search: equal questions have equal answers.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -57,8 +61,8 @@ pub(super) fn or_search(
     };
     let name = format!("search-{}-{fold}.json", model.name);
     // What cannot be read is searched again.
-    let text = fs::read_to_string(folder.join(&name)).unwrap_or_default();
-    if let Ok(answer) = serde_json::from_str::<Answer>(&text)
+    let text = file::read(&folder.join(&name), MOST_BYTES).unwrap_or_default();
+    if let Ok(answer) = serde_json::from_slice::<Answer>(&text)
         && answer.question == question
         && answer.chosen.len() == model.parameters.len()
     {

@@ -1,8 +1,10 @@
 //! Scores of another simulator on the same episodes, compared episode by episode.
 
+use crate::bundle::refused;
 use crate::error::CalibrationError;
 use crate::fit::median;
 use crate::rollout::{Score, Summary, Tracks};
+use dwell_scene::file;
 use dwell_scene::random::Key;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -36,22 +38,12 @@ impl Peer {
     /// [`CalibrationError::Read`], [`CalibrationError::Syntax`], [`CalibrationError::TooLarge`] name file and line.
     pub fn read(path: &Path) -> Result<Self, CalibrationError> {
         let at = path.display().to_string();
-        let fault = |source| CalibrationError::Read {
-            path: path.to_owned(),
-            source,
-        };
-        let found = std::fs::metadata(path).map_err(fault)?.len();
-        if found > MOST_BYTES {
-            return Err(CalibrationError::TooLarge {
-                at,
-                what: "bytes",
-                found,
-                limit: MOST_BYTES,
-            });
-        }
-        let file = std::fs::File::open(path).map_err(fault)?;
+        let text = file::read(path, MOST_BYTES).map_err(refused(path))?;
         let mut scores = BTreeMap::new();
-        for (k, row) in csv::Reader::from_reader(file).deserialize().enumerate() {
+        for (k, row) in csv::Reader::from_reader(&text[..])
+            .deserialize()
+            .enumerate()
+        {
             let row: Row = row.map_err(|error| CalibrationError::Syntax {
                 at: format!("{at} line {}", k + 2),
                 what: error.to_string(),

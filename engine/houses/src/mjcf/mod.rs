@@ -9,9 +9,10 @@ mod house;
 mod includes;
 mod read;
 
+use std::io::Read as _;
 use std::path::Path;
 
-use dwell_scene::House;
+use dwell_scene::{House, file};
 
 use crate::error::HousesError;
 use crate::report::Report;
@@ -24,14 +25,16 @@ const HEAD: u64 = 4096;
 
 /// Whether `path` names an XML file whose root is `<mujoco>`.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    use std::io::Read as _;
-    let xml = path
+    let is_xml = path
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("xml"));
-    let mut head = Vec::new();
-    let mut read = || std::fs::File::open(path)?.take(HEAD).read_to_end(&mut head);
-    // To open a named pipe is to wait for somebody who writes into it.
-    xml && path.is_file() && read().is_ok() && String::from_utf8_lossy(&head).contains("<mujoco")
+    let head = || {
+        let mut head = Vec::new();
+        let file = file::open(path, u64::MAX).ok()?;
+        file.take(HEAD).read_to_end(&mut head).ok()?;
+        Some(head)
+    };
+    is_xml && head().is_some_and(|head| String::from_utf8_lossy(&head).contains("<mujoco"))
 }
 
 /// Opens a house of several bodies (`docs/formats/mjcf.md`), or a robot on a ground of its own.

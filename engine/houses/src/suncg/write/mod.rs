@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use dwell_scene::file::Draft;
 use dwell_scene::{Aabb, House, LevelId, Material, MaterialId, RoomId, State, TextureId, units};
 use glam::Vec3;
 
@@ -53,13 +54,8 @@ pub fn write_into(
 ) -> Result<(PathBuf, Vec<Loss>), HousesError> {
     let scene_id = plain_name(name);
     let mut losses = losses::of_house(house);
-    fs::create_dir_all(root).map_err(HousesError::io(root))?;
-    let draft = root.join(format!(".draft-{scene_id}"));
-    write_folder(
-        &draft,
-        |_| true,
-        |folder| Writer::new(house, folder, scene_id.clone(), true).everything(&mut losses),
-    )?;
+    let draft = Draft::folder(&root.join(&scene_id)).map_err(HousesError::io(root))?;
+    Writer::new(house, draft.path(), scene_id.clone(), true).everything(&mut losses)?;
     // What is shared comes first and the house last: a house that is there is whole.
     for (folder, is_shared) in [
         ("texture", true),
@@ -67,9 +63,8 @@ pub fn write_into(
         ("room", false),
         ("house", false),
     ] {
-        move_all(&draft.join(folder), &root.join(folder), is_shared)?;
+        move_all(&draft.path().join(folder), &root.join(folder), is_shared)?;
     }
-    fs::remove_dir_all(&draft).map_err(HousesError::io(&draft))?;
     let file = root.join("house").join(scene_id).join("house.json");
     Ok((file, losses.into_vec()))
 }

@@ -48,6 +48,10 @@ impl Writer<'_> {
 /// [`HousesError::Io`] when the system refuses, [`HousesError::Syntax`] when a row is none.
 pub(super) fn read_rows(root: &DataRoot) -> Result<Vec<ModelRow>, HousesError> {
     let folder = root.folder().join("object");
+    // Where no house could be made there are no models.
+    if !folder.exists() {
+        return Ok(Vec::new());
+    }
     let mut names: Vec<_> = fs::read_dir(&folder)
         .map_err(HousesError::io(&folder))?
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())

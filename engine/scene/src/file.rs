@@ -1,0 +1,364 @@
+//! The one way to read a stranger's file, and the one way to write a file or a folder of ours.
+//!
+//! To open a named pipe is to wait for somebody who writes into it, and a device may have no end; so only regular files are
+//! read, to a cap. Only regular files are replaced, and what is written appears whole or not at all.
+
+use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
+use std::io::{self, Read as _, Write as _};
+use std::path::{Path, PathBuf};
+
+/// Deepest nesting of JSON, `serde_json`'s own limit.
+pub const MAX_JSON_DEPTH: usize = 128;
+/// Drafts of one name that may be in the making at once.
+const MOST_DRAFTS: usize = 10_000;
+/// Bytes that a draft's name takes from the name it is for; names have 255 at most.
+const DRAFT_NAME_BYTES: usize = 200;
+
+/// Why a file was not read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The system refuses, or it is no regular file.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// More bytes than are read.
+    #[error("{found} bytes; at most {allowed} are read")]
+    TooLarge {
+        /// How many bytes it has; of a file that grows, more than are allowed.
+        found: u64,
+        /// How many are read.
+        allowed: u64,
+    },
+}
+
+/// Opens a regular file of at most `max_bytes`, without ever waiting for somebody else.
+///
+/// The file may still grow while it is read: who reads on [takes](io::Read::take) at most `max_bytes`.
+///
+/// # Errors
+/// [`ReadError::Io`] when the system refuses and for what is no regular file, [`ReadError::TooLarge`].
+pub fn open(path: &Path, max_bytes: u64) -> Result<File, ReadError> {
+    // Something may happen when a device is opened, so it is looked at before.
+    regular(&fs::metadata(path)?)?;
+    let file = without_waiting(path)?;
+    let meta = file.metadata()?;
+    // Another thing may stand there by now.
+    regular(&meta)?;
+    let (found, allowed) = (meta.len(), max_bytes);
+    if found > allowed {
+        return Err(ReadError::TooLarge { found, allowed });
+    }
+    Ok(file)
+}
+
+/// Reads a regular file of at most `max_bytes`.
+///
+/// # Errors
+/// Those of [`open`].
+pub fn read(path: &Path, max_bytes: u64) -> Result<Vec<u8>, ReadError> {
+    let file = open(path, max_bytes)?;
+    let length = file.metadata()?.len().min(max_bytes);
+    let mut bytes = Vec::with_capacity(length as usize + 1);
+    // A file that grows while it is read still ends at the cap.
+    file.take(max_bytes + 1).read_to_end(&mut bytes)?;
+    let found = bytes.len() as u64;
+    if found > max_bytes {
+        let allowed = max_bytes;
+        return Err(ReadError::TooLarge { found, allowed });
+    }
+    Ok(bytes)
+}
+
+/// Writes a file under another name and moves it into place.
+///
+/// A link is followed where it leads to a regular file, which is replaced.
+///
+/// # Errors
+/// When the system refuses, and where something stands that is no regular file; it stays as it is.
+pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let place = place(path)?;
+    let mut draft = Draft::file(&place)?;
+    draft.handle.write_all(bytes)?;
+    fs::rename(&draft.path, &place)
+}
+
+/// Where a file that is written to `path` stands afterwards: elsewhere when `path` is a link.
+///
+/// # Errors
+/// When something stands there that is no regular file, or a link that leads nowhere.
+fn place(path: &Path) -> io::Result<PathBuf> {
+    let meta = match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(path.to_owned()),
+        meta => meta?,
+    };
+    if !meta.is_symlink() {
+        regular(&meta)?;
+        return Ok(path.to_owned());
+    }
+    let real = fs::canonicalize(path).map_err(|error| {
+        let what = format!("is a link that leads to no file: {error}");
+        io::Error::new(error.kind(), what)
+    })?;
+    regular(&fs::metadata(&real)?)?;
+    Ok(real)
+}
+
+/// A file or folder in the making, beside the place it is for. It is removed when it goes out of scope and was not moved.
+///
+/// Its lock says that its process is alive: whoever makes a draft for the same name removes those of processes that were
+/// ended before they could.
+#[derive(Debug)]
+pub struct Draft {
+    path: PathBuf,
+    /// Holds the lock, which the system lets go when the process ends.
+    handle: File,
+}
+
+impl Draft {
+    /// An empty file beside `place`.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    fn file(place: &Path) -> io::Result<Self> {
+        let make = |path: &Path| OpenOptions::new().write(true).create_new(true).open(path);
+        Self::claim(place, make, |path| fs::remove_file(path))
+    }
+
+    /// An empty folder beside `place`; the folders above it are made where they are missing.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn folder(place: &Path) -> io::Result<Self> {
+        if let Some(above) = place.parent() {
+            fs::create_dir_all(above)?;
+        }
+        let make = |path: &Path| fs::create_dir(path).and_then(|()| without_waiting(path));
+        Self::claim(place, make, |path| fs::remove_dir_all(path))
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn claim(
+        place: &Path,
+        make: impl Fn(&Path) -> io::Result<File>,
+        remove: impl Fn(&Path) -> io::Result<()>,
+    ) -> io::Result<Self> {
+        for number in 0..MOST_DRAFTS {
+            let path = draft_name(place, number);
+            let made = match make(&path) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                    // Held until it is gone, so that nobody removes what comes after it.
+                    let Some(held) = left_behind(&path) else {
+                        continue;
+                    };
+                    if remove(&path).is_err() {
+                        continue;
+                    }
+                    drop(held);
+                    make(&path)
+                }
+                made => made,
+            };
+            match made {
+                Ok(handle) => {
+                    // Some file systems have no locks; their drafts are nobody's to remove.
+                    let is_held = matches!(handle.try_lock(), Err(TryLockError::WouldBlock));
+                    if !is_held && is_at(&handle, &path) {
+                        return Ok(Self { path, handle });
+                    }
+                }
+                // Somebody was quicker.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
+            }
+        }
+        let what = format!("{MOST_DRAFTS} drafts of this name are in the making");
+        Err(io::Error::new(io::ErrorKind::AlreadyExists, what))
+    }
+}
+
+impl Drop for Draft {
+    fn drop(&mut self) {
+        // Moved into place, it is no draft any more, and another one may have its name.
+        if is_at(&self.handle, &self.path) {
+            let is_folder = self.handle.metadata().is_ok_and(|meta| meta.is_dir());
+            let remove = if is_folder {
+                fs::remove_dir_all
+            } else {
+                fs::remove_file
+            };
+            // Nobody is there to be told; the next draft of this name tries again.
+            let _ = remove(&self.path);
+        }
+    }
+}
+
+/// The name of a draft: hidden, and never too long.
+fn draft_name(place: &Path, number: usize) -> PathBuf {
+    let name = place.file_name().unwrap_or_default().to_string_lossy();
+    let name = &name[..name.floor_char_boundary(DRAFT_NAME_BYTES)];
+    place.with_file_name(format!(".{name}.partial-{number}"))
+}
+
+/// The lock of a draft whose process has ended.
+fn left_behind(path: &Path) -> Option<File> {
+    let meta = fs::symlink_metadata(path).ok()?;
+    if !meta.is_file() && !meta.is_dir() {
+        return None;
+    }
+    let handle = without_waiting(path).ok()?;
+    (handle.try_lock().is_ok() && is_at(&handle, path)).then_some(handle)
+}
+
+/// Whether a handle is that of what stands at `path` now.
+#[cfg(unix)]
+fn is_at(handle: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    let same = |a: Metadata, b: Metadata| (a.dev(), a.ino()) == (b.dev(), b.ino());
+    let there = fs::symlink_metadata(path);
+    handle
+        .metadata()
+        .is_ok_and(|own| there.is_ok_and(|there| same(own, there)))
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+/// Opens for reading; a named pipe that nobody writes into, too.
+fn without_waiting(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.read(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt as _;
+        options.custom_flags(libc::O_NONBLOCK);
+    }
+    options.open(path)
+}
+
+/// Refuses what is no regular file.
+fn regular(meta: &Metadata) -> io::Result<()> {
+    if meta.is_file() {
+        return Ok(());
+    }
+    let what = format!("is {}, not a regular file", kind(meta));
+    Err(io::Error::new(io::ErrorKind::InvalidInput, what))
+}
+
+#[cfg(unix)]
+fn kind(meta: &Metadata) -> &'static str {
+    use std::os::unix::fs::FileTypeExt as _;
+    let kind = meta.file_type();
+    match kind {
+        _ if kind.is_dir() => "a folder",
+        _ if kind.is_fifo() => "a named pipe",
+        _ if kind.is_socket() => "a socket",
+        _ => "a device",
+    }
+}
+
+#[cfg(not(unix))]
+fn kind(meta: &Metadata) -> &'static str {
+    if meta.is_dir() {
+        "a folder"
+    } else {
+        "a device"
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    fn pipe(path: &Path) {
+        let made = std::process::Command::new("mkfifo").arg(path).status();
+        assert!(made.unwrap().success());
+    }
+
+    #[test]
+    fn what_is_no_regular_file_is_neither_read_nor_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        pipe(&at("pipe"));
+        fs::create_dir(at("folder")).unwrap();
+        symlink("/dev/null", at("device")).unwrap();
+        symlink("nowhere", at("nowhere-link")).unwrap();
+        for (name, said) in [
+            ("pipe", "a named pipe"),
+            ("folder", "a folder"),
+            ("device", "a device"),
+        ] {
+            let told = read(&at(name), 10).unwrap_err().to_string();
+            assert_eq!(told, format!("is {said}, not a regular file"));
+            let told = write(&at(name), b"x").unwrap_err().to_string();
+            assert_eq!(told, format!("is {said}, not a regular file"));
+            assert!(!fs::symlink_metadata(at(name)).unwrap().is_file());
+        }
+        let told = write(&at("nowhere-link"), b"x").unwrap_err().to_string();
+        assert!(told.contains("leads to no file"), "{told}");
+        // No draft is left.
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4);
+    }
+
+    #[test]
+    fn devices_without_an_end_are_refused() {
+        let told = read(Path::new("/dev/zero"), 10).unwrap_err().to_string();
+        assert_eq!(told, "is a device, not a regular file");
+    }
+
+    #[test]
+    fn a_file_above_the_cap_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        write(&path, b"12345").unwrap();
+        assert_eq!(read(&path, 5).unwrap(), b"12345");
+        let told = read(&path, 4).unwrap_err().to_string();
+        assert_eq!(told, "5 bytes; at most 4 are read");
+    }
+
+    #[test]
+    fn a_link_to_a_file_is_followed_and_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, link) = (folder.path().join("a"), folder.path().join("link"));
+        write(&path, b"old").unwrap();
+        symlink(&path, &link).unwrap();
+        write(&link, b"new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(read(&path, 10).unwrap(), b"new");
+    }
+
+    #[test]
+    fn the_longest_name_that_the_system_allows_can_be_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("ä".repeat(127));
+        write(&path, b"x").unwrap();
+        assert_eq!(read(&path, 1).unwrap(), b"x");
+    }
+
+    #[test]
+    fn drafts_of_the_living_stay_and_those_of_the_dead_go() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("house");
+        // As a process leaves it that was killed: nobody holds its lock.
+        let left = folder.path().join(".house.partial-0");
+        fs::create_dir(&left).unwrap();
+        fs::write(left.join("mesh"), "half").unwrap();
+        let mine = Draft::folder(&place).unwrap();
+        assert_eq!(mine.path(), left);
+        assert_eq!(fs::read_dir(&left).unwrap().count(), 0);
+        let other = Draft::folder(&place).unwrap();
+        assert_ne!(mine.path(), other.path());
+        assert!(mine.path().exists());
+        drop((mine, other));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        // A folder in the way of a file's draft stays.
+        fs::create_dir(&left).unwrap();
+        write(&place, b"x").unwrap();
+        assert!(place.is_file() && left.is_dir());
+    }
+}
