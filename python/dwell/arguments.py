@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from dwell._native import ConfigError
+from dwell.files import parse_json
 
 #: What the border holds: seeds and counts are unsigned and have 64 bits.
 _MOST = 2**64 - 1
@@ -73,6 +74,11 @@ def text(name: str, value: object) -> str:
     """Text."""
     if not isinstance(value, str):
         raise ConfigError(f"{name} is {shown(value)}; expected text")
+    if not value.isascii():
+        try:
+            value.encode()
+        except UnicodeEncodeError:
+            raise ConfigError(f"{name} is {shown(value)}; expected text that UTF-8 can hold") from None
     return value
 
 

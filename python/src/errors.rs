@@ -13,6 +13,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
 use pyo3::{PyTypeInfo, create_exception};
+use std::fmt::Write as _;
 
 create_exception!(
     dwell,
@@ -27,6 +28,8 @@ pub(crate) enum Fault {
     Scene(String),
     House(String),
     HouseNotFound(String),
+    /// The system refused to read or write a file of a house.
+    HouseFile(String),
     Config(String),
     Usage(String),
     Measured(String),
@@ -38,7 +41,7 @@ pub(crate) enum Fault {
 static KINDS: PyOnceLock<Vec<(&'static str, Py<PyType>)>> = PyOnceLock::new();
 
 /// (name, the built-in it also is, its dwell base, what it means)
-const TREE: [(&str, &str, &str, &str); 7] = [
+const TREE: [(&str, &str, &str, &str); 8] = [
     (
         "SceneError",
         "ValueError",
@@ -56,6 +59,12 @@ const TREE: [(&str, &str, &str, &str); 7] = [
         "FileNotFoundError",
         "HouseError",
         "A house that does not exist.",
+    ),
+    (
+        "HouseFileError",
+        "OSError",
+        "HouseError",
+        "A file of a house that the system refuses to read or to write.",
     ),
     (
         "ConfigError",
@@ -118,10 +127,32 @@ fn kind(py: Python<'_>, name: &str, message: String) -> PyErr {
                 .iter()
                 .find(|(other, _)| *other == name)
                 .unwrap_or(&kinds[0]);
-            PyErr::from_type(found.1.bind(py).clone(), (message,))
+            PyErr::from_type(found.1.bind(py).clone(), (printable(message),))
         }
         Err(error) => error,
     }
+}
+
+/// Text for people: control characters, which would command their terminal, and marks that turn the direction of writing
+/// become `\u001b` and the like. They come from names in strangers' files.
+pub(crate) fn printable(text: String) -> String {
+    let commands = |c: char| {
+        let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        turns || c.is_control() && !matches!(c, '\n' | '\t')
+    };
+    if !text.contains(commands) {
+        return text;
+    }
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        // Writing into a string never fails.
+        let _ = if commands(c) {
+            write!(shown, "\\u{:04x}", u32::from(c))
+        } else {
+            shown.write_char(c)
+        };
+    }
+    shown
 }
 
 /// Adds the tree to the module.
@@ -147,6 +178,7 @@ pub(crate) fn to_python(fault: Fault) -> PyErr {
         Fault::Scene(message) => ("SceneError", message),
         Fault::House(message) => ("HouseError", message),
         Fault::HouseNotFound(message) => ("HouseNotFoundError", message),
+        Fault::HouseFile(message) => ("HouseFileError", message),
         Fault::Config(message) => ("ConfigError", message),
         Fault::Usage(message) => ("UsageError", message),
         Fault::Measured(message) => ("MeasuredDataError", message),
@@ -174,15 +206,15 @@ impl From<Interrupted> for Fault {
 
 impl From<HousesError> for Fault {
     fn from(error: HousesError) -> Self {
-        let missing = match &error {
-            HousesError::Io { source, .. } => source.kind() == std::io::ErrorKind::NotFound,
-            HousesError::UnknownHouse { .. } | HousesError::UnknownBuiltin { .. } => true,
-            _ => false,
-        };
-        if missing {
-            Self::HouseNotFound(error.to_string())
-        } else {
-            Self::House(error.to_string())
+        let message = error.to_string();
+        match error {
+            HousesError::Io { source, .. } if source.kind() != std::io::ErrorKind::NotFound => {
+                Self::HouseFile(message)
+            }
+            HousesError::Io { .. }
+            | HousesError::UnknownHouse { .. }
+            | HousesError::UnknownBuiltin { .. } => Self::HouseNotFound(message),
+            _ => Self::House(message),
         }
     }
 }

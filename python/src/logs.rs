@@ -5,6 +5,7 @@
 //! in long calls on the main thread, every 25 ms. The level of the logger `dwell` (or of the root, where it has none) says
 //! what is recorded at all; it is looked at when a call begins. Loggers below can only say less.
 
+use crate::errors::printable;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -141,7 +142,7 @@ impl Subscriber for Sink {
         queue.records.push_back(Line {
             logger: logger(event.metadata().target()),
             level: number(*event.metadata().level()),
-            text,
+            text: printable(text),
         });
         IS_WAITING.store(true, Ordering::Release);
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib
 import os
 import sys
@@ -47,8 +48,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         0 done, 1 failed with a sentence on standard error, 2 bad usage, 130 interrupted.
     """
+    from dwell.cli.common import Printable
+
+    # One place for all that is printed: names come from strangers.
+    with (
+        contextlib.redirect_stdout(Printable(sys.stdout)),
+        contextlib.redirect_stderr(Printable(sys.stderr)),
+    ):
+        return _run(arguments)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
     from dwell import DwellError, __version__
-    from dwell.cli.common import join_negative_points
+    from dwell.cli.common import join_negative_points, sentence
 
     arguments = join_negative_points(sys.argv[1:] if arguments is None else arguments)
     top = parser(next((word for word in arguments if not word.startswith("-")), None))
@@ -69,8 +81,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
     except BrokenPipeError:
         return 1
-    except (DwellError, OSError, ValueError, ModuleNotFoundError) as error:
-        print(f"dwell {args.command}: {error}", file=sys.stderr)
+    except (DwellError, OSError, ValueError, ModuleNotFoundError, MemoryError) as error:
+        print(f"dwell {args.command}: {sentence(error)}", file=sys.stderr)
         return 1
     except Exception as error:
         # A fault of ours. People get a sentence; who looks for it sets the variable.
