@@ -38,7 +38,6 @@ __all__ = [
     "doctor_json",
     "dollhouse",
     "ear_metrics_json",
-    "expand",
     "fixtures_json",
     "floor_plan_json",
     "furniture_kinds",
@@ -48,6 +47,7 @@ __all__ = [
     "max_text_length",
     "panic_for_tests",
     "response_metrics_json",
+    "seed_range",
     "sensors_json",
     "signals_json",
     "surfaces",
@@ -333,7 +333,7 @@ def furniture_kinds() -> dict[str, str]: ...
 def json_extent(text: bytes) -> tuple[int, int]: ...
 def max_text_length() -> int: ...
 def doctor_json() -> str: ...
-def expand(house: str) -> list[str]: ...
+def seed_range(house: str) -> tuple[int, int, str] | None: ...
 def panic_for_tests(world: World | None = None) -> None:
     """Panics on purpose: in a thread of a pool, or while ``world`` is being changed."""
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, UsageError, _native, arguments
 from dwell.arguments import file_name, finite, flag, point, text, whole
+from dwell.house_names import HouseNames
 from dwell.navigation import Navigation, Walker, walker_json
 
 if TYPE_CHECKING:
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 Level = Literal["object", "room", "house", "graph", "instructions"]
 Form = Literal["dwell", "suncg", "glb"]
 Table = Literal["coarse", "fine", "nyu40"]
+
+#: Houses that a list of names holds at most.
+_MOST_LISTED = 1_000_000
 
 
 class House:
@@ -77,12 +81,16 @@ class House:
         """The houses that a HOUSE string stands for where several are taken.
 
         ``seed:3..5?home=studio`` is ``seed:3?home=studio`` and ``seed:4?home=studio``; any other
-        string is itself.
+        string is itself. :class:`dwell.house_names.HouseNames` holds longer ranges.
 
         Raises:
             HouseError: The range is empty or none of whole numbers.
+            ConfigError: It is longer than 1,000,000 seeds.
         """
-        return _native.expand(house)
+        names = HouseNames([house])
+        if len(names) > _MOST_LISTED:
+            raise ConfigError(f"{house}: {len(names)} seeds; at most {_MOST_LISTED} are listed")
+        return list(names)
 
     @staticmethod
     def builtins() -> list[str]:

@@ -83,10 +83,13 @@ pub(crate) fn max_text_length() -> usize {
     dwell_semantics::instruct::MAX_TEXT_LEN
 }
 
-/// The houses that a HOUSE string stands for where several are taken.
+/// First seed, end and fields of a HOUSE string that stands for several houses; nothing for any other.
 #[pyfunction]
-pub(crate) fn expand(py: Python<'_>, house: &str) -> PyResult<Vec<String>> {
-    py.engine(|| -> Result<_, Fault> { Ok(dwell_houses::expand(house)?) })
+pub(crate) fn seed_range(py: Python<'_>, house: &str) -> PyResult<Option<(u64, u64, String)>> {
+    py.engine(|| -> Result<_, Fault> {
+        let found = dwell_houses::seed_range(house)?;
+        Ok(found.map(|(seeds, fields)| (seeds.start, seeds.end, fields.to_owned())))
+    })
 }
 
 /// Versions, threads and features: what `dwell doctor` prints.

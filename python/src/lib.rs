@@ -51,7 +51,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(facts::charset, module)?)?;
     module.add_function(wrap_pyfunction!(facts::max_text_length, module)?)?;
     module.add_function(wrap_pyfunction!(facts::doctor_json, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::expand, module)?)?;
+    module.add_function(wrap_pyfunction!(facts::seed_range, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::response_metrics_json, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::ear_metrics_json, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::synthesize, module)?)?;

@@ -162,7 +162,12 @@ fn main() -> Found<()> {
     let file = arguments.get(1).ok_or("the file to write")?;
     let mut houses = Vec::new();
     for house in &arguments[2..] {
-        houses.extend(dwell_houses::expand(house)?);
+        match dwell_houses::seed_range(house)? {
+            Some((seeds, fields)) => {
+                houses.extend(seeds.map(|seed| format!("seed:{seed}{fields}")));
+            }
+            None => houses.push(house.to_owned()),
+        }
     }
     let count = houses.len() as u32;
     let rows = count.div_ceil(COLUMNS);

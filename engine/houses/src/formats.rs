@@ -1,5 +1,6 @@
 //! HOUSE strings: the list of formats, and the one function that opens them all.
 
+use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
@@ -128,38 +129,32 @@ pub fn open(house: &str) -> Result<(House, Report), HousesError> {
     open_with(house, Threads::default())
 }
 
-/// The most houses that one HOUSE string stands for.
-pub const MAX_EXPANDED: u64 = 1_000_000;
-
-/// The houses that a HOUSE string stands for where several are taken: `seed:3..6` is `seed:3`, `seed:4` and `seed:5`, and
-/// `seed:3..6?home=studio` gives each of them the fields. Any other string is one house.
+/// The seeds and the fields of a HOUSE string that stands for several houses: `seed:3..6?home=studio` is
+/// `seed:3?home=studio`, `seed:4?home=studio` and `seed:5?home=studio`. Nothing for any other string, which is one house.
 ///
 /// # Errors
-/// [`HousesError::Spec`] for a range that is empty, no range of whole numbers, or longer than [`MAX_EXPANDED`].
+/// [`HousesError::Spec`] for a range that is empty, or none of whole numbers.
 ///
 /// ```
-/// let houses = dwell_houses::expand("seed:3..5?home=studio")?;
-/// assert_eq!(houses, ["seed:3?home=studio", "seed:4?home=studio"]);
+/// let found = dwell_houses::seed_range("seed:3..5?home=studio")?;
+/// assert_eq!(found, Some((3..5, "?home=studio")));
 /// # Ok::<(), dwell_houses::HousesError>(())
 /// ```
-pub fn expand(house: &str) -> Result<Vec<String>, HousesError> {
+pub fn seed_range(house: &str) -> Result<Option<(Range<u64>, &str)>, HousesError> {
     let seeds = house.strip_prefix("seed:").unwrap_or_default();
     let (range, fields) = seeds.find('?').map_or((seeds, ""), |at| seeds.split_at(at));
     let Some((from, to)) = range.split_once("..") else {
-        return Ok(vec![house.to_owned()]);
+        return Ok(None);
     };
     let ends = from.parse::<u64>().ok().zip(to.parse::<u64>().ok());
-    let fits = |(from, to): &(u64, u64)| from < to && to - from <= MAX_EXPANDED;
-    let Some((from, to)) = ends.filter(fits) else {
+    let Some((from, to)) = ends.filter(|(from, to)| from < to) else {
         return Err(HousesError::Spec {
             field: "seed".to_owned(),
             found: range.to_owned(),
-            possible: format!("A..B with whole numbers A < B, at most {MAX_EXPANDED} seeds"),
+            possible: format!("A..B with whole numbers A < B, up to {}", u64::MAX),
         });
     };
-    Ok((from..to)
-        .map(|seed| format!("seed:{seed}{fields}"))
-        .collect())
+    Ok(Some((from..to, fields)))
 }
 
 /// [`open`] on `threads` threads.
@@ -208,17 +203,19 @@ mod tests {
 
     #[test]
     fn a_range_of_seeds_is_its_houses_and_all_else_is_itself() {
-        let one = |house: &str| expand(house).unwrap() == [house];
+        let one = |house: &str| seed_range(house).unwrap().is_none();
         assert!(one("seed:7") && one("seed:7?home=studio") && one("a..b/house.json"));
-        assert_eq!(expand("seed:0..3").unwrap(), ["seed:0", "seed:1", "seed:2"]);
+        let all = "seed:0..18446744073709551615";
+        assert_eq!(seed_range("seed:0..3").unwrap(), Some((0..3, "")));
+        assert_eq!(seed_range(all).unwrap(), Some((0..u64::MAX, "")));
         for wrong in [
             "seed:3..3",
             "seed:4..3",
             "seed:..3",
             "seed:a..b",
-            "seed:0..1000002",
+            "seed:0..18446744073709551616",
         ] {
-            let told = expand(wrong).unwrap_err().to_string();
+            let told = seed_range(wrong).unwrap_err().to_string();
             assert!(told.starts_with("seed: found"), "{told}");
         }
     }

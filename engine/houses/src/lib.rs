@@ -29,7 +29,7 @@ mod xml;
 
 pub use damage::{Damage, Unmapped};
 pub use error::HousesError;
-pub use formats::{Format, MAX_EXPANDED, Opened, expand, formats, open, open_with};
+pub use formats::{Format, Opened, formats, open, open_with, seed_range};
 pub use loss::Loss;
 pub use nearest::nearest;
 pub use report::{At, Report, Warning};

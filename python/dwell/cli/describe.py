@@ -10,6 +10,7 @@ from typing import Any
 
 from dwell.cli.common import Bar, count
 from dwell.cli.journal import Journal
+from dwell.files import open_file
 
 _LEVELS = ("object", "room", "house", "graph", "instructions")
 
@@ -30,17 +31,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Describes every house; one that cannot be opened is reported and skipped (status 1)."""
-    from dwell.house import House
+    from dwell.house_names import HouseNames
 
-    houses = list(dict.fromkeys(one for name in args.houses for one in House.expand(name)))
-    job = {"command": "describe", "level": args.level, "seed": args.seed, "houses": houses}
+    houses = HouseNames(args.houses)
+    job = {"command": "describe", "level": args.level, "seed": args.seed, "houses": args.houses}
     journal = Journal(args.out, job) if args.out else None
     printer = _Printer(args.level) if args.json else None
-    failed = 0
+    told, failed = set() if journal is None else set(journal.done), 0
     bar = Bar()
     try:
         for k, name in enumerate(houses):
-            if journal is None or name not in journal.done:
+            if name not in told:
+                told.add(name)
                 rows = _describe(name, args.level, args.seed)
                 failed += rows is None
                 if journal is not None and rows is not None:
@@ -59,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     if journal is not None:
         journal.finish()
         if printer:
-            with args.out.open(encoding="utf-8") as file:
+            with open_file(args.out) as file:
                 for line in file:
                     printer(json.loads(line))
     if printer:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import itertools
-import json
 import os
 import re
 import sys
@@ -17,8 +16,11 @@ from typing import Any
 
 from dwell.cli.common import Bar, count, print_json
 from dwell.cli.journal import Journal, claim
+from dwell.files import lines, open_file, parse_json
 
 _FORMS = ("dwell", "suncg", "glb")
+#: Houses that failed and are told of on standard error.
+_MOST_TOLD = 10
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -64,18 +66,25 @@ def run(args: argparse.Namespace) -> int:
     }
     claim(args.out, dataset)
     shard, shards = args.shard
-    seeds = list(itertools.islice(_seeds(args.seed, args.split), args.count))[shard::shards]
     name = "manifest" if shards == 1 else f"manifest-{shard:05}-of-{shards:05}"
     manifest = args.out / f"{name}.jsonl"
     start, made = time.perf_counter(), 0
     if not manifest.exists():
-        made = _make(args, seeds, manifest, {**dataset, "shard": [shard, shards]})
+        made = _make(args, manifest, {**dataset, "shard": [shard, shards]})
     seconds = time.perf_counter() - start
-    rows = [json.loads(line) for line in manifest.read_text("utf-8").splitlines()]
-    failed = [row for row in rows if "error" in row]
+    rows, failed, told = 0, 0, []
+    with open_file(manifest) as file:
+        for line in lines(file, manifest):
+            row, rows = parse_json(line, str(manifest)), rows + 1
+            if not isinstance(row, dict):
+                raise ValueError(f"{manifest} line {rows}: expected an object, found {row!r:.60}")
+            if "error" in row:
+                failed += 1
+                if failed <= _MOST_TOLD:
+                    told.append(f"{row.get('house')}: {row['error']}")
     summary = {
-        "houses": len(rows) - len(failed),
-        "failed": len(failed),
+        "houses": rows - failed,
+        "failed": failed,
         "made_now": made,
         "houses_per_s": made / seconds if made else None,
         "manifest": str(manifest),
@@ -85,24 +94,27 @@ def run(args: argparse.Namespace) -> int:
     else:
         rate = f", {summary['houses_per_s']:.1f} a second" if made else ""
         print(f"{summary['houses']} houses ({made} made now{rate}); {manifest}")
-    for row in failed[:10]:
-        print(f"dwell generate: {row['house']}: {row['error']}", file=sys.stderr)
+    for sentence in told:
+        print(f"dwell generate: {sentence}", file=sys.stderr)
     return 1 if failed else 0
 
 
-def _make(args: argparse.Namespace, seeds: list[int], manifest: Path, job: dict[str, Any]) -> int:
+def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
     """Makes what is not there yet; returns how many."""
     from dwell.house import House
 
     journal = Journal(manifest, job)
-    done = {int(seed) for seed in journal.done}
-    wanted = [seed for seed in seeds if seed not in done]
+    first, step = args.shard
+    all_seeds = len(range(first, args.count, step))
+    seeds = itertools.islice(_seeds(args.seed, args.split), first, args.count, step)
+    # Seeds are many, and drawn one by one.
+    left = (seed for seed in seeds if str(seed) not in journal.done)
+    made = 0
     workers = args.workers or os.cpu_count() or 1
     bar = Bar()
     pool = ThreadPoolExecutor(workers)
     # A few houses ahead, in order: the manifest is the same for any number of workers.
     ahead: deque[tuple[int, Future[dict[str, Any]]]] = deque()
-    left = iter(wanted)
     try:
         while True:
             for seed in itertools.islice(left, 2 * workers - len(ahead)):
@@ -111,21 +123,27 @@ def _make(args: argparse.Namespace, seeds: list[int], manifest: Path, job: dict[
                 break
             seed, future = ahead.popleft()
             journal.add(str(seed), [future.result()])
-            bar(len(journal.done) / len(seeds), f"seed {seed}")
+            made += 1
+            bar(len(journal.done) / all_seeds, f"seed {seed}")
+        House.finish_folder(args.out, args.format)
+        journal.finish()
     except BaseException:
         journal.close()
-        kept = f"{len(journal.done)} of {len(seeds)} are kept; run again"
+        kept = f"{len(journal.done)} of {all_seeds} are kept; run again"
         print(f"dwell generate: {kept}", file=sys.stderr)
         raise
     finally:
         pool.shutdown(cancel_futures=True)
-    House.finish_folder(args.out, args.format)
-    journal.finish()
-    return len(wanted)
+    return made
 
 
 def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
-    """Makes and writes one house; returns its row of the manifest."""
+    """Makes and writes one house; returns its row of the manifest.
+
+    Raises:
+        OSError: There is no room for it, or the system refuses for another reason. That is no
+            fault of the house, which the next run tries again.
+    """
     from dwell import HouseError
     from dwell.house import House, split_of_seed
 
@@ -135,6 +153,8 @@ def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
     try:
         house = House.open(name)
         path, _ = house.write_into(args.out, f"seed_{seed}", args.format)
+    except OSError:
+        raise
     except HouseError as error:
         return {"seed": seed, "split": split, "house": name, "error": str(error)}
     return {

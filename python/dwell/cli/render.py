@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -92,13 +93,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Renders, writes PNG (pictures) and NPY (exact depth and ids), and names the files."""
     from dwell.house import House
+    from dwell.house_names import HouseNames
     from dwell.world import World
 
     pictured, refused = args.map or args.dollhouse or args.sheet, 0
     if args.sensors is None and not (pictured and args.at is None):
         args.sensors = "rgb"
     channels = [] if args.sensors is None else [_sensor(name) for name in args.sensors.split(",")]
-    houses = [one for name in args.house for one in House.expand(name)]
+    houses = HouseNames(args.house)
     files: list[str] = []
     if args.sheet and len(houses) > 1:
         if channels or args.map or args.dollhouse:
@@ -128,7 +130,7 @@ def _sensor(name: str) -> Channel:
     raise ValueError(f"--sensors: no {name!r}; allowed are {', '.join(_SENSORS)}")
 
 
-def _sheet(args: argparse.Namespace, houses: list[str]) -> tuple[list[str], int]:
+def _sheet(args: argparse.Namespace, houses: Sequence[str]) -> tuple[list[str], int]:
     """The doll's houses of many; one that cannot be opened is told of and left out."""
     from dwell import DwellError, plans
 

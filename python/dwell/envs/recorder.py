@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from pathlib import Path
 from typing import Any
@@ -12,14 +13,16 @@ import numpy as np
 from dwell import ConfigError, UsageError, __version__
 from dwell.arguments import path
 from dwell.envs.single import DwellEnv
-from dwell.replays import Replay
+from dwell.replays import MOST_STEPS, Replay
 
 
 class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any], np.int64]):
     """Writes every episode of an environment into a folder, as ``episode_0000.replay`` and so on.
 
     A file is written when its episode ends, when the next one begins, or at ``close``; numbers go
-    on behind the files that are there. :class:`dwell.Replay` reads them.
+    on behind the files that are there, also where several processes record into one folder. Where
+    it cannot be written, as on a full disk, an ``OSError`` says so, and the episode is kept:
+    ``reset`` and ``close`` write it once there is room. :class:`dwell.Replay` reads the files.
 
     Examples:
         >>> import tempfile
@@ -79,13 +82,19 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
 
         Raises:
             UsageError: Something else changed the world since the last step, such as a restored
-                snapshot; no file can hold that.
+                snapshot; no file can hold that. Or the episode is longer than any file holds.
+            OSError: The episode ended and cannot be written; it is kept.
         """
         if self._running is not None and self._hash() != self._hashes[-1]:
             self._running = None
             raise UsageError(
                 "the world was changed since the last step by something else than an action; its "
                 "episode cannot be recorded further; reset begins another"
+            )
+        if self._running is not None and len(self._actions) == MOST_STEPS:
+            self._write()
+            raise UsageError(
+                f"{MOST_STEPS} steps are written, all that a file holds; reset begins another"
             )
         observation, reward, terminated, truncated, info = self.env.step(action)
         self._actions.append(self._env.actions()[int(action)])
@@ -104,17 +113,37 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         return f"{self._env.state_hash():016x}"
 
     def _write(self) -> None:
-        running, self._running = self._running, None
-        if running is None or not self._actions:
-            return
-        number = sum(1 for _ in self._folder.glob("episode_*.replay"))
-        while (file := self._folder / f"episode_{number:04}.replay").exists():
-            number += 1
-        Replay(
-            **{
-                **vars(running),
+        if self._running is not None and self._actions:
+            played = {
                 "actions": tuple(self._actions),
                 "hashes": tuple(self._hashes),
                 "success": self._success,
             }
-        ).write(file)
+            write_numbered(dataclasses.replace(self._running, **played), self._folder)
+        self._running = None
+
+
+def write_numbered(replay: Replay, folder: Path) -> Path:
+    """Writes an episode as the next ``episode_NNNN.replay`` of a folder.
+
+    Others, of this process or not, may write into the folder at the same time: each episode gets a
+    number of its own.
+
+    Raises:
+        OSError: The system refuses; nothing was written.
+    """
+    number = sum(1 for _ in folder.glob("episode_*.replay"))
+    while True:
+        file = folder / f"episode_{number:04}.replay"
+        try:
+            if not os.path.lexists(file):
+                replay.write(file, new=True)
+                return file
+        except FileExistsError:
+            # Somebody was quicker.
+            pass
+        except OSError as error:
+            kept = f"{len(replay.actions)} steps are kept, and the next reset or close writes them"
+            error.strerror = f"{error.strerror}; {kept}"
+            raise
+        number += 1

@@ -1,0 +1,99 @@
+"""Names of many houses, those of ranges of seeds made when they are asked for."""
+
+from __future__ import annotations
+
+import bisect
+import itertools
+import operator
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import overload
+
+from dwell import ConfigError, _native
+
+
+class HouseNames(Sequence[str]):
+    """HOUSE strings in order; ``seed:A..B`` stands for its houses and takes no memory for them.
+
+    >>> from dwell.house_names import HouseNames
+    >>> names = HouseNames(["builtin:studio", "seed:0..1000000000?home=studio"])
+    >>> len(names), names[1000000000], names.index("seed:7?home=studio")
+    (1000000001, 'seed:999999999?home=studio', 8)
+    """
+
+    def __init__(self, houses: Iterable[str]) -> None:
+        """Keeps what it is given; opens nothing.
+
+        Raises:
+            HouseError: A range is empty or none of whole numbers.
+            ConfigError: There are more than any sequence of Python holds.
+        """
+        #: One house by its name, or seeds and what follows them.
+        self._parts: list[str | tuple[range, str]] = []
+        for house in houses:
+            found = _native.seed_range(house)
+            self._parts.append(house if found is None else (range(found[0], found[1]), found[2]))
+        sizes = (
+            1 if isinstance(part, str) else part[0].stop - part[0].start for part in self._parts
+        )
+        #: How many houses there are up to the end of each part.
+        self._ends = list(itertools.accumulate(sizes))
+        if self._ends and self._ends[-1] >= 2**63:
+            raise ConfigError(f"{self._ends[-1]} houses; allowed are fewer than 2**63")
+
+    def __len__(self) -> int:
+        """How many houses there are, equal ones counted each time."""
+        return self._ends[-1] if self._ends else 0
+
+    def __iter__(self) -> Iterator[str]:
+        """The names in order."""
+        for part in self._parts:
+            if isinstance(part, str):
+                yield part
+            else:
+                yield from (f"seed:{seed}{part[1]}" for seed in part[0])
+
+    @overload
+    def __getitem__(self, index: int) -> str: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[str]: ...
+    def __getitem__(self, index: int | slice) -> str | list[str]:
+        """A name; a slice is a list."""
+        if isinstance(index, slice):
+            return [self[k] for k in range(*index.indices(len(self)))]
+        at = operator.index(index)
+        at += len(self) if at < 0 else 0
+        if not 0 <= at < len(self):
+            raise IndexError(f"house {index} of {len(self)}")
+        which = bisect.bisect_right(self._ends, at)
+        part = self._parts[which]
+        if isinstance(part, str):
+            return part
+        return f"seed:{part[0][at - self._ends[which]]}{part[1]}"
+
+    def __contains__(self, name: object) -> bool:
+        """Whether a house of this name is among them; none is made to find it."""
+        return self._find(name) is not None
+
+    def index(self, name: object, start: int = 0, stop: int | None = None) -> int:
+        """The first place of a name.
+
+        Raises:
+            ValueError: It is not there.
+        """
+        found = self._find(name)
+        if found is None or not start <= found < (len(self) if stop is None else stop):
+            raise ValueError(f"no house {name!r}")
+        return found
+
+    def _find(self, name: object) -> int | None:
+        wanted = re.fullmatch(r"seed:(0|[1-9][0-9]{0,19})((?s:\?.*)?)", str(name))
+        begin = 0
+        for part, end in zip(self._parts, self._ends, strict=True):
+            if isinstance(part, str):
+                if part == name:
+                    return begin
+            elif wanted and wanted[2] == part[1] and int(wanted[1]) in part[0]:
+                return begin + part[0].index(int(wanted[1]))
+            begin = end
+        return None
