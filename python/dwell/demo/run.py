@@ -31,6 +31,8 @@ def run(house: str, out: Path, progress: Progress) -> dict[str, Any]:
     Raises:
         FileExistsError: ``out`` holds something that no demo wrote.
     """
+    # A link stays; the folder that it leads to is the one that is replaced.
+    out = out.resolve() if out.is_symlink() else out
     if out.exists() and any(out.iterdir()) and not (out / "index.html").exists():
         raise FileExistsError(f"{out}: holds files that no demo wrote; choose another folder")
     out.parent.mkdir(parents=True, exist_ok=True)

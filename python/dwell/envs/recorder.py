@@ -114,12 +114,13 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
 
     def _write(self) -> None:
         if self._running is not None and self._actions:
-            played = {
-                "actions": tuple(self._actions),
-                "hashes": tuple(self._hashes),
-                "success": self._success,
-            }
-            write_numbered(dataclasses.replace(self._running, **played), self._folder)
+            replay = dataclasses.replace(
+                self._running,
+                actions=tuple(self._actions),
+                hashes=tuple(self._hashes),
+                success=self._success,
+            )
+            write_numbered(replay, self._folder)
         self._running = None
 
 
