@@ -167,7 +167,7 @@ fn check(run: &Run, before: &Run, told: &str) {
         );
         assert!(
             !state
-                .lies_in(&run.house, object, &run.house.object_boxes(&state))
+                .lies_in(&run.house, object, &run.house.object_boxes(state))
                 .contains(&object),
             "{told}"
         );
