@@ -280,6 +280,23 @@ def test_rows_of_another_job_are_not_discarded(
     assert not out.exists()
 
 
+def test_two_processes_do_not_write_one_journal(tmp_path: Path) -> None:
+    from dwell.cli.journal import Journal
+
+    job = {"command": "x"}
+    first = Journal(tmp_path / "rows", job)
+    first.add("a", [{"x": 1}])
+    with pytest.raises(ValueError, match="written by another process"):
+        Journal(tmp_path / "rows", job)
+    first.close()
+    second = Journal(tmp_path / "rows", job)
+    assert [*second.done] == ["a"]
+    second.add("b", [{"x": 2}])
+    second.finish()
+    assert (tmp_path / "rows").read_text() == '{"x": 1}\n{"x": 2}\n'
+    assert [path.name for path in tmp_path.iterdir()] == ["rows"]
+
+
 def test_drafts_of_killed_processes_are_removed(tmp_path: Path) -> None:
     left = tmp_path / ".seed_0.partial-0" / "object"
     left.mkdir(parents=True)

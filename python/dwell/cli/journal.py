@@ -40,6 +40,22 @@ def claim(out: Path, dataset: dict[str, Any]) -> None:
         raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
 
 
+def _lock(file: IO[bytes]) -> bool:
+    """Locks a file until it is closed; whether no other process has locked it."""
+    try:
+        import fcntl
+    except ImportError:  # Windows has none.
+        return True
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        # A file system without locks.
+        return True
+    return True
+
+
 class Journal:
     """A file beside the result: rows of each item, then a mark that they are whole."""
 
@@ -51,41 +67,61 @@ class Journal:
             job: What the rows depend on.
 
         Raises:
-            ValueError: There are rows of another job; they stay.
+            ValueError: There are rows of another job, which stay, or another process writes them.
         """
         self._out = out
         self._path = out.with_name(f".{out.name}.part")
         out.parent.mkdir(parents=True, exist_ok=True)
         #: Items whose rows are there, in the order they came.
         self.done: dict[str, None] = {}
-        keep = self._read(job)
-        self._file: IO[bytes] = self._path.open("r+b" if keep else "wb")
-        self._file.seek(keep)
-        self._file.truncate()
-        if not keep:
-            self._write([{_JOB: job}])
+        self._file: IO[bytes] = self._open()
+        try:
+            keep = self._read(job)
+            self._file.seek(keep)
+            self._file.truncate()
+            if not keep:
+                self._write([{_JOB: job}])
+        except BaseException:
+            self.close()
+            raise
+
+    def _open(self) -> IO[bytes]:
+        """The journal's file, which no other process has as long as it is open."""
+        while True:
+            if os.path.lexists(self._path):
+                # Refuses what is no regular file.
+                open_file(self._path).close()
+            file = os.fdopen(os.open(self._path, os.O_RDWR | os.O_CREAT, 0o644), "r+b")
+            if not _lock(file):
+                file.close()
+                raise ValueError(
+                    f"{self._path} is being written by another process; wait for its end, or give "
+                    "another --out"
+                )
+            with contextlib.suppress(FileNotFoundError):
+                if os.path.samestat(os.fstat(file.fileno()), os.stat(self._path)):
+                    return file
+            # Its process came to its end in this moment, and has taken it away.
+            file.close()
 
     def _read(self, job: dict[str, Any]) -> int:
         """How many bytes of the old journal are whole; 0 for none."""
-        if not self._path.exists():
-            return 0
         keep = at = 0
-        with open_file(self._path) as file:
-            for k, line in enumerate(lines(file, self._path)):
-                at += len(line)
-                try:
-                    row = parse_json(line, str(self._path))
-                except ValueError:
-                    break
-                if k == 0 and row != {_JOB: job}:
-                    raise ValueError(
-                        f"{self._path} keeps what another job has done for {self._out}; run that "
-                        f"one again to its end, give another --out, or remove {self._path}"
-                    )
-                if k == 0 or (isinstance(row, dict) and set(row) == {_DONE}):
-                    keep = at
-                    if k:
-                        self.done[str(row[_DONE])] = None
+        for k, line in enumerate(lines(self._file, self._path)):
+            at += len(line)
+            try:
+                row = parse_json(line, str(self._path))
+            except ValueError:
+                break
+            if k == 0 and row != {_JOB: job}:
+                raise ValueError(
+                    f"{self._path} keeps what another job has done for {self._out}; run that one "
+                    f"again to its end, give another --out, or remove {self._path}"
+                )
+            if k == 0 or (isinstance(row, dict) and set(row) == {_DONE}):
+                keep = at
+                if k:
+                    self.done[str(row[_DONE])] = None
         return keep
 
     def _write(self, rows: Sequence[object]) -> None:
@@ -100,11 +136,13 @@ class Journal:
 
     def finish(self) -> None:
         """Writes the rows of all items into the result, and forgets the journal."""
-        self._file.close()
+        self._file.flush()
         with atomic(self._out) as path, path.open("wb") as result:
             for line in self._rows():
                 result.write(line)
+        # Locked to the end: another process of this job finds the result, or this journal.
         os.unlink(self._path)
+        self._file.close()
 
     def close(self) -> None:
         """Leaves the journal for the next run."""
