@@ -228,7 +228,7 @@ fn is_at(_: &File, path: &Path) -> bool {
     path.exists()
 }
 
-/// Opens for reading; a named pipe that nobody writes into, too.
+/// Opens for reading: folders, too, and named pipes that nobody writes into.
 fn without_waiting(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
@@ -236,6 +236,12 @@ fn without_waiting(path: &Path) -> io::Result<File> {
     {
         use std::os::unix::fs::OpenOptionsExt as _;
         options.custom_flags(libc::O_NONBLOCK);
+    }
+    #[cfg(windows)]
+    {
+        use std::os::windows::fs::OpenOptionsExt as _;
+        // FILE_FLAG_BACKUP_SEMANTICS: folders can be opened, too.
+        options.custom_flags(0x0200_0000);
     }
     options.open(path)
 }
