@@ -63,6 +63,12 @@ pub enum Damage {
         /// Why.
         reason: String,
     },
+    /// An image that ends too early; what is missing of it is grey.
+    #[error("texture {path:?} ends too early; what is missing of it is grey")]
+    CutTexture {
+        /// Relative to the data root.
+        path: String,
+    },
     /// A material file that does not exist; grey is used.
     #[error("material file {path:?} does not exist; its materials are grey")]
     MissingMaterialFile {

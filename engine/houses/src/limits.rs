@@ -22,6 +22,8 @@ pub(crate) const MAX_LIBRARIES: usize = 1000;
 pub(crate) const MAX_XML_FILES: usize = 64;
 /// Most XML elements, those of included files counted each time.
 pub(crate) const MAX_XML_ELEMENTS: u64 = 1_000_000;
+/// Most attributes of an XML element, and most namespaces that a file declares: the parser compares each with all others.
+pub(crate) const MAX_XML_ATTRIBUTES: u64 = 128;
 /// Deepest nesting of XML elements.
 pub(crate) const MAX_XML_DEPTH: usize = 200;
 /// Deepest nesting of folders that a pattern of a data set names.
@@ -67,6 +69,7 @@ mod tests {
             ("MAX_LIBRARIES", MAX_LIBRARIES as u64),
             ("MAX_XML_FILES", MAX_XML_FILES as u64),
             ("MAX_XML_ELEMENTS", MAX_XML_ELEMENTS),
+            ("MAX_XML_ATTRIBUTES", MAX_XML_ATTRIBUTES),
             ("MAX_XML_DEPTH", MAX_XML_DEPTH as u64),
             ("MAX_PATTERN_WORDS", MAX_PATTERN_WORDS as u64),
             ("MAX_VOXEL_SIDE", u64::from(MAX_VOXEL_SIDE)),

@@ -1,28 +1,19 @@
 //! XML text into a document, bounded: the parser calls itself for every nested element, and takes memory for every node.
 
+use dwell_scene::interrupt;
 use roxmltree::{Document, ParsingOptions};
 
 use crate::error::HousesError;
-use crate::limits::{MAX_XML_DEPTH, MAX_XML_ELEMENTS};
+use crate::limits::{MAX_XML_ATTRIBUTES, MAX_XML_DEPTH, MAX_XML_ELEMENTS};
 use crate::report::At;
 
 /// Parses a text.
 ///
 /// # Errors
-/// [`HousesError::TooLarge`] for elements nested too deep, [`HousesError::Syntax`] with the line for what is no XML, or has a
-/// document type, or too many nodes.
+/// [`HousesError::TooLarge`] for elements nested too deep, and for too many attributes or namespaces, [`HousesError::Syntax`] with
+/// the line for what is no XML, or has a document type, or too many nodes.
 pub(crate) fn parse<'a>(text: &'a str, at: &At) -> Result<Document<'a>, HousesError> {
-    if let Some(start) = too_deep(text) {
-        let line = text.as_bytes()[..start]
-            .split(|byte| *byte == b'\n')
-            .count();
-        return Err(HousesError::TooLarge {
-            at: at.line(u32::try_from(line).unwrap_or(u32::MAX)),
-            what: "depth of elements",
-            found: MAX_XML_DEPTH as u64 + 1,
-            allowed: MAX_XML_DEPTH as u64,
-        });
-    }
+    check(text, at)?;
     let options = ParsingOptions {
         // Elements, and the white space around them.
         nodes_limit: 4 * MAX_XML_ELEMENTS as u32,
@@ -34,12 +25,19 @@ pub(crate) fn parse<'a>(text: &'a str, at: &At) -> Result<Document<'a>, HousesEr
     })
 }
 
-/// Where the first element begins that is nested deeper than is read. As long as the text is XML, the count is exact; what
-/// comes after a fault is not parsed.
-fn too_deep(text: &str) -> Option<usize> {
-    let mut depth = 0_usize;
+/// Refuses elements that are nested deeper than is read, and those with more attributes. As long as the text is XML, the counts
+/// are exact; what comes after a fault is not parsed.
+fn check(text: &str, at: &At) -> Result<(), HousesError> {
+    let mut depth = 0_u64;
+    let mut namespaces = 0;
     let mut from = 0;
-    while let Some(start) = text[from..].find('<').map(|at| from + at) {
+    for piece in 0_u32.. {
+        if piece % 1024 == 0 {
+            interrupt::check();
+        }
+        let Some(start) = text[from..].find('<').map(|at| from + at) else {
+            break;
+        };
         let rest = &text[start..];
         let skip = |end: &str| rest.find(end).map(|at| at + end.len());
         let length = if rest.starts_with("<!--") {
@@ -52,33 +50,82 @@ fn too_deep(text: &str) -> Option<usize> {
             depth = depth.saturating_sub(1);
             skip(">")
         } else {
-            let tag = tag(rest);
-            if tag.is_some_and(|length| !rest[..length].ends_with("/>")) {
-                depth += 1;
+            let tag = Tag::read(rest);
+            if !rest[..tag.length.unwrap_or(0)].ends_with("/>") {
+                depth += u64::from(tag.length.is_some());
             }
-            tag
+            namespaces += tag.namespaces;
+            let counts = [
+                ("depth of elements", depth, MAX_XML_DEPTH as u64),
+                ("count of attributes", tag.attributes, MAX_XML_ATTRIBUTES),
+                ("count of namespaces", namespaces, MAX_XML_ATTRIBUTES),
+            ];
+            for (what, found, allowed) in counts {
+                if found > allowed {
+                    let line = 1 + text[..start].matches('\n').count();
+                    return Err(HousesError::TooLarge {
+                        at: at.line(u32::try_from(line).unwrap_or(u32::MAX)),
+                        what,
+                        found,
+                        allowed,
+                    });
+                }
+            }
+            tag.length
         };
-        if depth > MAX_XML_DEPTH {
-            return Some(start);
-        }
         // Without an end the text is no XML.
-        from = start + length?;
+        let Some(length) = length else {
+            break;
+        };
+        from = start + length;
     }
-    None
+    Ok(())
 }
 
-/// Bytes up to the end of a tag; `>` in quotes ends none.
-fn tag(text: &str) -> Option<usize> {
-    let mut quote = None;
-    for (k, byte) in text.bytes().enumerate() {
-        match (quote, byte) {
-            (None, b'>') => return Some(k + 1),
-            (None, b'"' | b'\'') => quote = Some(byte),
-            (Some(open), _) if open == byte => quote = None,
-            _ => {}
+/// What stands between `<` and `>`; `>` in quotes ends nothing.
+#[derive(Default)]
+struct Tag {
+    /// Its bytes; none for a tag without an end.
+    length: Option<usize>,
+    attributes: u64,
+    /// Those of its attributes that declare a namespace.
+    namespaces: u64,
+}
+
+impl Tag {
+    fn read(text: &str) -> Self {
+        let mut tag = Self::default();
+        let mut quote = None;
+        // Where the attribute's name may begin.
+        let mut word = 0;
+        for (k, byte) in text.bytes().enumerate() {
+            match (quote, byte) {
+                (None, b'>') => {
+                    tag.length = Some(k + 1);
+                    break;
+                }
+                (None, b'"' | b'\'') => quote = Some(byte),
+                (None, b'=') => {
+                    tag.attributes += 1;
+                    tag.namespaces += u64::from(text.as_bytes()[word..].starts_with(b"xmlns"));
+                }
+                (None, b' ' | b'\t' | b'\r' | b'\n')
+                    if text
+                        .as_bytes()
+                        .get(k + 1)
+                        .is_some_and(u8::is_ascii_alphabetic) =>
+                {
+                    word = k + 1;
+                }
+                (Some(open), _) if open == byte => {
+                    quote = None;
+                    word = k + 1;
+                }
+                _ => {}
+            }
         }
+        tag
     }
-    None
 }
 
 #[cfg(test)]
@@ -102,6 +149,23 @@ mod tests {
         assert!(parse(&format!("<b>{flat}</b>"), &At::file("a.xml")).is_ok());
         let quoted = "<a b='/>'>".repeat(1000);
         assert_eq!(told(&quoted), found.replace(":201:", ":1:"));
+    }
+
+    #[test]
+    fn attributes_and_namespaces_end_at_the_cap() {
+        let of = |count: u64, name: &str| {
+            let all: Vec<String> = (0..count).map(|k| format!("{name}{k}=\"=\"")).collect();
+            format!("<b>\n<a {}/></b>", all.join(" "))
+        };
+        assert!(parse(&of(MAX_XML_ATTRIBUTES, "x"), &At::file("a.xml")).is_ok());
+        let found = "a.xml:2: count of attributes 300000 is more than the 128 that are read";
+        assert_eq!(told(&of(300_000, "x")), found);
+        // Namespaces are those of the whole file.
+        let some = of(100, "xmlns:n").replace("=\"=\"", "=\"n\"");
+        assert!(parse(&some, &At::file("a.xml")).is_ok(), "{}", told(&some));
+        let twice = some.replace("</b>", &some[4..]);
+        let found = "a.xml:2: count of namespaces 200 is more than the 128 that are read";
+        assert_eq!(told(&twice), found);
     }
 
     #[test]

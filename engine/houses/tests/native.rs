@@ -168,6 +168,14 @@ fn a_storey_without_end_is_no_house() {
         error,
         "levels[0]: bounds is inf; allowed is coordinates within 32768 m of the origin"
     );
+    // Not all 39 digits of it.
+    let mut data: HouseData = shoebox().data().clone();
+    data.levels.as_mut_slice()[0].bounds.max.x = f32::MAX;
+    let error = House::new(data).unwrap_err().to_string();
+    assert!(
+        error.starts_with("levels[0]: bounds is 3.4e38; "),
+        "{error}"
+    );
 }
 
 fn broken(folder: &Path, edit: impl FnOnce(String) -> String) -> String {
@@ -201,7 +209,7 @@ fn foreign_and_broken_files_say_where_and_what() {
     assert_eq!(
         broken(folder.path(), |text| text
             .replace("\"triangles\":3", "\"triangles\":0")),
-        "house.json: mesh_accessors[0]: indices of type F32"
+        "house.json: mesh_accessors[0]: indices that are not whole numbers from 0"
     );
     let message = broken(folder.path(), |text| text[..text.len() / 2].to_owned());
     assert!(

@@ -109,8 +109,16 @@ pub(crate) fn range(
         Err(SceneError::Range {
             at: at.to_owned(),
             field,
-            found: found.to_string(),
+            found: short(found.to_string()),
             allowed,
         })
+    }
+}
+
+/// A number without the many zeros of a very large one.
+fn short(found: String) -> String {
+    match found.parse::<f64>() {
+        Ok(number) if found.len() > 20 => format!("{number:.1e}"),
+        _ => found,
     }
 }

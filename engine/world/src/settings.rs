@@ -26,7 +26,7 @@ pub(crate) fn read<T: DeserializeOwned>(of: &'static str, value: &Value) -> Resu
 
 /// What a reader of JSON says, in people's words and without the place in a text that nobody wrote.
 pub fn plain_json_error(error: &serde_json::Error) -> String {
-    let text = error.to_string();
+    let text = dwell_houses::plain(error);
     let text = text.split(" at line ").next().unwrap_or_default();
     let Some((found, expected)) = text
         .strip_prefix("invalid type: ")
@@ -34,18 +34,6 @@ pub fn plain_json_error(error: &serde_json::Error) -> String {
         .and_then(|rest| rest.split_once(", expected "))
     else {
         return text.to_owned();
-    };
-    let expected = match expected {
-        "f32" | "f64" => "a number",
-        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0",
-        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
-        "a boolean" => "true or false",
-        "a string" => "text",
-        "a map" => "values by name",
-        "a sequence" => "a list",
-        // Names of types of ours say nothing to anybody else.
-        other if other.starts_with("struct ") => "values by name",
-        other => other,
     };
     format!("found {found}, expected {expected}")
 }

@@ -134,7 +134,7 @@ impl Map {
     pub fn parse(text: &str, at: &At) -> Result<Self, HousesError> {
         let map: Self = toml::from_str(text).map_err(|error| HousesError::Syntax {
             at: at.clone(),
-            message: error.to_string(),
+            message: crate::plain(&error),
         })?;
         let count = map.materials.len() + map.nodes.len() + map.rooms.len();
         let too_large = |what, found: usize, allowed: usize| HousesError::TooLarge {
@@ -155,8 +155,42 @@ impl Map {
             Some(letters) if letters > MOST[1] => {
                 Err(too_large("letters of a pattern", letters, MOST[1]))
             }
-            _ => Ok(map),
+            _ => map.check_numbers(at).map(|()| map),
         }
+    }
+
+    /// Refuses numbers that are none, also in rows that no name of the house fits.
+    fn check_numbers(&self, at: &At) -> Result<(), HousesError> {
+        let materials = self
+            .materials
+            .iter()
+            .flat_map(|(pattern, MaterialRow(row))| {
+                let numbers = [("opacity", row.opacity), ("roughness", row.roughness)];
+                numbers.map(|(name, number)| (format!("materials.{pattern:?}.{name}"), number))
+            });
+        let nodes = self.nodes.iter().flat_map(|(pattern, NodeRow(row))| {
+            let place = row.hinge.and_then(|hinge| hinge.at);
+            let numbers = [
+                ("mass_kg", row.mass_kg),
+                ("density_kg_m3", row.density_kg_m3),
+                ("hinge.open_deg", row.hinge.map(|hinge| hinge.open_deg)),
+                ("hinge.closed_deg", row.hinge.map(|hinge| hinge.closed_deg)),
+                ("hinge.at[0]", place.map(|at| at[0])),
+                ("hinge.at[1]", place.map(|at| at[1])),
+                ("hinge.at[2]", place.map(|at| at[2])),
+            ];
+            numbers.map(|(name, number)| (format!("nodes.{pattern:?}.{name}"), number))
+        });
+        for (field, number) in materials.chain(nodes) {
+            if let Some(number) = number.filter(|number| !number.is_finite()) {
+                return Err(HousesError::Field {
+                    at: at.field(field),
+                    expected: "a finite number",
+                    found: number.to_string(),
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Reads a map file.

@@ -68,7 +68,7 @@ fn syntax(at: &At) -> impl FnOnce(serde_json::Error) -> HousesError {
     let at = at.clone();
     move |error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: error.to_string(),
+        message: crate::plain(&error),
     }
 }
 

@@ -22,4 +22,6 @@ pub(crate) use pieces::convex_pieces;
 pub(crate) use scene::{
     FileRoom, Role, Scene, Thing, category_of, room_over_floors, structure_kind,
 };
-pub(crate) use textures::{PixelBudget, decode, encode_png, pixels, read_images, texture_name};
+pub(crate) use textures::{
+    PixelBudget, decode, encode_png, is_cut, pixels, read_images, texture_name,
+};

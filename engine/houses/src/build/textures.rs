@@ -70,6 +70,41 @@ pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
     ))
 }
 
+/// Whether a JPEG image ends before its end marker: the decoder makes grey of what is missing.
+pub(crate) fn is_cut(bytes: &[u8]) -> bool {
+    const START: [u8; 2] = [0xff, 0xd8];
+    if !bytes.starts_with(&START) {
+        return false;
+    }
+    let mut at = START.len();
+    loop {
+        // In a scan, 0 behind 0xff stands for 0xff itself, and eight markers do not end it.
+        let Some(found) = bytes
+            .get(at..)
+            .and_then(|rest| rest.iter().position(|b| *b == 0xff))
+        else {
+            return true;
+        };
+        at += found + 1;
+        let length = |at: usize| {
+            let length = bytes.get(at..at + 2)?;
+            Some(usize::from(u16::from_be_bytes([length[0], length[1]])))
+        };
+        match bytes.get(at) {
+            None => return true,
+            // The end.
+            Some(0xd9) => return false,
+            // Filling: the next one counts.
+            Some(0xff) => {}
+            Some(0x00 | 0x01 | 0xd0..=0xd8) => at += 1,
+            Some(_) => match length(at + 1) {
+                Some(length) => at += 1 + length,
+                None => return true,
+            },
+        }
+    }
+}
+
 /// The images of a house as far as [`MAX_ALL_PIXELS`] reach, in order; what is above it is left out.
 #[derive(Default)]
 pub(crate) struct PixelBudget {
@@ -135,12 +170,17 @@ pub(crate) fn read_images(
             reason,
         };
         let bytes = within[k].as_ref().map_err(Clone::clone)?;
-        decode(&texture_name(path), bytes).map_err(unreadable)
+        let texture = decode(&texture_name(path), bytes).map_err(unreadable)?;
+        Ok((texture, is_cut(bytes)))
     });
     let mut textures = BTreeMap::new();
     for (path, result) in wanted.into_iter().zip(decoded) {
         match result {
-            Ok(texture) => {
+            Ok((texture, cut)) => {
+                if cut {
+                    let damage = Damage::CutTexture { path: path.clone() };
+                    report.warn(At::file(path.as_str()), damage);
+                }
                 textures.insert(path, Arc::new(texture));
             }
             Err(damage) => report.warn(At::file(path), damage),
@@ -175,4 +215,27 @@ pub(crate) fn encode_png(texture: &Texture) -> Result<Vec<u8>, String> {
         )
         .map_err(|error| format!("texture {:?}: {error}", texture.name))?;
     Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_image_is_cut_unless_its_end_marker_is_there() {
+        let mut bytes = Vec::new();
+        let picture =
+            image::RgbImage::from_fn(40, 30, |x, y| image::Rgb([x as u8 * 6, y as u8 * 8, 0xff]));
+        let jpeg = image::ImageFormat::Jpeg;
+        picture
+            .write_to(&mut Cursor::new(&mut bytes), jpeg)
+            .unwrap();
+        assert!(!is_cut(&bytes));
+        assert!(!is_cut(&[&bytes[..], b"more"].concat()));
+        for length in 2..bytes.len() {
+            assert!(is_cut(&bytes[..length]), "{length} of {}", bytes.len());
+        }
+        // Other forms say themselves where they end.
+        assert!(!is_cut(b"\x89PNG"));
+    }
 }

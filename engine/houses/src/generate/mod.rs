@@ -202,13 +202,13 @@ fn parsed(fields: serde_json::Map<String, serde_json::Value>) -> Result<HouseSpe
         let alone = [(name.clone(), value.clone())].into_iter().collect();
         read(alone).map_err(|error| HousesError::Spec {
             field: name.clone(),
-            found: error.to_string(),
+            found: crate::plain(&error),
             possible: "the fields of a HouseSpec as field=value, joined by &".to_owned(),
         })?;
     }
     read(fields).map_err(|error| HousesError::Spec {
         field: "spec".to_owned(),
-        found: error.to_string(),
+        found: crate::plain(&error),
         possible: "the fields of a HouseSpec as field=value, joined by &".to_owned(),
     })
 }

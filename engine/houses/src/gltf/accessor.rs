@@ -51,7 +51,7 @@ pub(super) fn indices(
         component,
         ComponentType::U8 | ComponentType::U16 | ComponentType::U32
     ) {
-        return Err(format!("indices of type {component:?}"));
+        return Err("indices that are not whole numbers from 0".to_owned());
     }
     let whole = |element: Element<'_>| {
         element

@@ -5,6 +5,7 @@
 use ::gltf::json::{Root, deserialize};
 use serde_json::Value;
 
+use super::indices;
 use crate::limits::MAX_TEXT_BYTES;
 
 /// The tables and the binary chunk, empty when there is none. Text without the GLB header is glTF.
@@ -23,7 +24,8 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
             text.len()
         ));
     }
-    let invalid = |error: serde_json::Error| format!("no valid glTF 2.0: {error}");
+    let invalid = |error: serde_json::Error| format!("no valid glTF 2.0: {}", crate::plain(&error));
+    indices::check(text).map_err(invalid)?;
     // Only files that need it are read as a tree: that is slower, and places in the text are lost.
     let mut json: Root = if contains(text, BASISU.as_bytes()) {
         let mut tree: Value = serde_json::from_slice(text).map_err(invalid)?;

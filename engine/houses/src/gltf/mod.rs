@@ -6,6 +6,7 @@ mod container;
 mod convert;
 mod geometry;
 mod glb;
+mod indices;
 mod lights;
 mod nodes;
 mod surface;
@@ -111,6 +112,7 @@ fn read(
         message,
     };
     let (json, blob) = container::split(bytes).map_err(syntax)?;
+    check_version(&json.asset, &at)?;
     check_positions(&json, &at)?;
     // The crate's document checks every index and required field.
     let document = ::gltf::Document::from_json(json)
@@ -118,6 +120,31 @@ fn read(
     let json = document.into_json();
     let buffers = buffers::Buffers::load(&json, blob, root, &at, report)?;
     convert::convert(&json, &buffers, root, name, trusted, threads, report)
+}
+
+/// Whether the asset is one of glTF 2: by the version that it asks of readers, else by its own.
+fn check_version(asset: &::gltf::json::Asset, at: &At) -> Result<(), HousesError> {
+    let (field, found) = match &asset.min_version {
+        Some(needed) => ("asset.minVersion", needed),
+        None => ("asset.version", &asset.version),
+    };
+    let numbers = found.split_once('.').and_then(|(major, minor)| {
+        let minor: u32 = minor.parse().ok()?;
+        Some((major.parse::<u32>().ok()?, minor))
+    });
+    // Files of a later minor version can be read, unless they ask for it.
+    let is_read = match numbers {
+        Some((major, minor)) => major == 2 && (asset.min_version.is_none() || minor == 0),
+        None => false,
+    };
+    if is_read {
+        return Ok(());
+    }
+    Err(HousesError::Version {
+        at: at.field(field),
+        found: found.clone(),
+        allowed: vec!["2.0".to_owned()],
+    })
 }
 
 /// Whether the positions of all primitives are accessors that exist: the `gltf` crate (1.4) looks them up before it checks them, which

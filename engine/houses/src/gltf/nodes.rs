@@ -263,7 +263,10 @@ fn given<T: DeserializeOwned>(node: &Node, at: &At, report: &mut Report) -> Opti
     let read: Result<Extras<T>, _> = serde_json::from_str(text);
     read.map(|extras| extras.dwell)
         .map_err(|error| {
-            let what = format!("what extras.dwell says of an object is not read: {error}");
+            let what = format!(
+                "what extras.dwell says of an object is not read: {}",
+                crate::plain(&error)
+            );
             report.warn(at.field("extras"), Damage::Simplified { what });
         })
         .ok()
@@ -279,7 +282,7 @@ fn known(node: &Node, at: &At, report: &mut Report) -> Known {
     }
     serde_json::from_str(text).map_or_else(
         |error| {
-            let what = format!("extras.dwell is not read: {error}");
+            let what = format!("extras.dwell is not read: {}", crate::plain(&error));
             report.warn(at.field("extras"), Damage::Simplified { what });
             Known::default()
         },

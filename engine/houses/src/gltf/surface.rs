@@ -11,7 +11,9 @@ use dwell_scene::{Material, MaterialId, Texture, TextureId, units};
 use serde::Deserialize;
 
 use super::buffers::{Buffers, read_uri};
-use crate::build::{Look, LookTable, PixelBudget, decode, pixels, substance_of, texture_name};
+use crate::build::{
+    Look, LookTable, PixelBudget, decode, is_cut, pixels, substance_of, texture_name,
+};
 use crate::damage::Damage;
 use crate::limits::MAX_IMAGE_BYTES;
 use crate::report::{At, Report};
@@ -90,7 +92,9 @@ pub(super) fn images(
         .collect();
     let decoded = threads.map(used.len(), |k| {
         within[k].clone()?;
-        decode(&name_of(k), &bytes_of(k)?).map_err(unreadable(k))
+        let bytes = bytes_of(k)?;
+        let texture = decode(&name_of(k), &bytes).map_err(unreadable(k))?;
+        Ok((texture, is_cut(&bytes)))
     });
     let mut images = Images {
         textures: Vec::new(),
@@ -98,7 +102,12 @@ pub(super) fn images(
     };
     for (k, result) in used.into_iter().zip(decoded) {
         match result {
-            Ok(texture) => {
+            Ok((texture, cut)) => {
+                if cut {
+                    let path = texture.name.clone();
+                    let at = at.field(format_args!("images[{k}]"));
+                    report.warn(at, Damage::CutTexture { path });
+                }
                 images.ids[k] = Some(TextureId(images.textures.len() as u32));
                 images.textures.push(Arc::new(texture));
             }
@@ -145,7 +154,7 @@ impl Known {
         };
         serde_json::from_str(text).map_or_else(
             |error| {
-                let what = format!("extras.dwell is not read: {error}");
+                let what = format!("extras.dwell is not read: {}", crate::plain(&error));
                 report.warn(at.field("extras"), Damage::Simplified { what });
                 Self::default()
             },
@@ -190,9 +199,29 @@ pub(super) fn materials(
             .filter(|name| !name.is_empty())
             .unwrap_or_else(|| format!("material_{k}"));
         let pbr = &material.pbr_metallic_roughness;
+        let mut not_finite = 0_u64;
+        let mut finite = |factor: f32, usual: f32| {
+            if factor.is_finite() {
+                return factor;
+            }
+            not_finite += 1;
+            usual
+        };
+        let base_color = pbr.base_color_factor.0.map(|x| finite(x, 1.0));
+        let emission = material.emissive_factor.0.map(|x| finite(x, 0.0));
+        let roughness = finite(pbr.roughness_factor.0, 1.0);
+        let metallic = finite(pbr.metallic_factor.0, 1.0);
+        if not_finite > 0 {
+            let damage = Damage::BadField {
+                found: "a factor that is too large".to_owned(),
+                expected: "0 to 1".to_owned(),
+            };
+            let at = at.field(format_args!("materials[{k}]"));
+            report.warn_times(at, damage, not_finite);
+        }
         let texture =
             image_of(json, material).and_then(|image| images.ids.get(image).copied().flatten());
-        let [r, g, b, a] = pbr.base_color_factor.0;
+        let [r, g, b, a] = base_color;
         let opacity = if material.alpha_mode == Checked::Valid(AlphaMode::Blend) {
             a
         } else {
@@ -203,7 +232,7 @@ pub(super) fn materials(
         let usual = || {
             let of_look = if opacity < 1.0 {
                 "glass"
-            } else if pbr.metallic_factor.0 > 0.5 {
+            } else if metallic > 0.5 {
                 "steel"
             } else {
                 ""
@@ -222,9 +251,9 @@ pub(super) fn materials(
             srgb: [r, g, b].map(units::srgb_from_linear),
             texture,
             opacity,
-            emission: material.emissive_factor.0,
-            roughness: Some(pbr.roughness_factor.0),
-            metallic: Some(pbr.metallic_factor.0),
+            emission,
+            roughness: Some(roughness),
+            metallic: Some(metallic),
             ..Look::plain(&name, substance)
         });
         looks.refine(id, |material| {

@@ -297,7 +297,7 @@ pub(super) fn read_json<T: DeserializeOwned>(
     let bytes = root.read(path, MAX_TEXT_BYTES)?;
     serde_json::from_slice(&bytes).map_err(|error| HousesError::Syntax {
         at: At::file(path).line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: error.to_string(),
+        message: crate::plain(&error),
     })
 }
 

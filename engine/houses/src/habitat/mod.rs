@@ -154,7 +154,7 @@ impl Reader<'_> {
     fn instance(&mut self, value: Value, at: &At) -> Option<Instance> {
         serde_json::from_value(value)
             .map_err(|error| {
-                let reason = error.to_string();
+                let reason = crate::plain(&error);
                 self.report.warn(at.clone(), Damage::BadRow { reason });
             })
             .ok()
@@ -174,7 +174,7 @@ impl Reader<'_> {
     fn parse<T: DeserializeOwned>(&mut self, found: &Found) -> Option<T> {
         serde_json::from_value(Value::Object(found.attributes.clone()))
             .map_err(|error| {
-                let reason = error.to_string();
+                let reason = crate::plain(&error);
                 self.report
                     .warn(found.at.clone(), Damage::BadRow { reason });
             })

@@ -40,7 +40,7 @@ pub(super) fn regions(file: SemanticFile, at: &At, report: &mut Report) -> Vec<R
         let region: Region = match serde_json::from_value(value) {
             Ok(region) => region,
             Err(error) => {
-                let reason = error.to_string();
+                let reason = crate::plain(&error);
                 report.warn(at, Damage::BadRow { reason });
                 continue;
             }

@@ -34,7 +34,7 @@ pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
     let at = At::file(&*name);
     let file: RoomFile = serde_json::from_slice(&bytes).map_err(|error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: error.to_string(),
+        message: crate::plain(&error),
     })?;
     let stem = name.rsplit_once('.').map_or(&*name, |(stem, _)| stem);
     let mut report = Report::new();

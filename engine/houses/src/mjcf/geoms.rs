@@ -152,7 +152,7 @@ fn shape(
     Ok(Some(Shape {
         link_from_shape,
         solid,
-        rgba: rgba.map(|rgba| rgba.map(|x| x as f32)),
+        rgba: rgba.map(|rgba| rgba.map(|x| x.clamp(0.0, 1.0) as f32)),
         material,
         image,
     }))

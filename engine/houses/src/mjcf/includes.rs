@@ -2,8 +2,10 @@
 //!
 //! `mjcf-rs` opens them itself, as large and as often as files say, so all of them are looked at beforehand.
 
+use dwell_scene::interrupt;
 use roxmltree::Node;
 
+use super::numbers;
 use crate::error::HousesError;
 use crate::limits::{MAX_TEXT_BYTES, MAX_XML_ELEMENTS, MAX_XML_FILES};
 use crate::report::At;
@@ -11,11 +13,11 @@ use crate::robot::Files;
 use crate::root::folder_of;
 use crate::xml;
 
-/// Checks the text of `files` and everything it includes or attaches.
+/// Checks the text of `files` and everything it includes or attaches; also that all its numbers are finite.
 ///
 /// # Errors
 /// [`HousesError::PathLeavesRoot`], [`HousesError::Syntax`] for what is no XML or includes itself without end,
-/// [`HousesError::TooLarge`] for elements nested too deep, or too many.
+/// [`HousesError::TooLarge`] for elements nested too deep, or too many, [`HousesError::Field`] for numbers that are not finite.
 pub(super) fn check(files: &Files, text: &str) -> Result<(), HousesError> {
     let mut walk = Walk {
         files,
@@ -62,6 +64,10 @@ impl Walk<'_> {
         let (mut elements, mut largest) = (0_u64, 0_u64);
         for node in document.descendants().filter(Node::is_element) {
             elements = elements.saturating_add(1);
+            if elements % 4096 == 0 {
+                interrupt::check();
+            }
+            numbers::check(node, &at)?;
             match node.tag_name().name() {
                 "include" => elements = elements.saturating_add(self.named(node, name)?),
                 // Models of `<asset>` are copied by each `<attach>`.

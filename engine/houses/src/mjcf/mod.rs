@@ -7,6 +7,7 @@ mod actuators;
 mod geoms;
 mod house;
 mod includes;
+mod numbers;
 mod read;
 
 use std::io::Read as _;

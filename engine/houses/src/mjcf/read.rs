@@ -1,8 +1,9 @@
 //! The parsed model into a [`Robot`].
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use dwell_scene::Pose;
+use dwell_scene::{Pose, interrupt};
 use glam::{DMat3, DVec3, Vec3};
 use mjcf_rs::body::{Body, InertiaSpec, Inertial, JointType};
 use mjcf_rs::equality::Equality;
@@ -22,6 +23,8 @@ pub(super) struct Source {
     pub(super) model: Model,
     files: Files,
     pub(super) at: At,
+    /// The bodies that hang on each body.
+    children: Vec<Vec<BodyId>>,
 }
 
 impl Source {
@@ -48,7 +51,18 @@ impl Source {
                 allowed: MAX_NODES as u64,
             });
         }
-        Ok(Self { model, files, at })
+        let mut children = vec![Vec::new(); count];
+        for (id, entry) in model.bodies_iter() {
+            if let Some(parent) = entry.parent {
+                children[parent].push(id);
+            }
+        }
+        Ok(Self {
+            model,
+            files,
+            at,
+            children,
+        })
     }
 
     /// The file's name inside its folder.
@@ -61,6 +75,17 @@ impl Source {
         let roots = self.model.bodies_iter();
         let roots = roots.filter(|(_, entry)| entry.parent == Some(0));
         roots.map(|(id, _)| id).collect()
+    }
+
+    /// A body and what hangs on it, parents first.
+    fn below(&self, root: BodyId) -> Vec<BodyId> {
+        let mut found = vec![root];
+        let mut next = 0;
+        while let Some(&id) = found.get(next) {
+            found.extend(&self.children[id]);
+            next += 1;
+        }
+        found
     }
 
     /// The geoms of a body.
@@ -87,7 +112,7 @@ impl Source {
         root: BodyId,
         report: &mut Report,
     ) -> Result<Robot, HousesError> {
-        let bodies = below(&self.model, root);
+        let bodies = self.below(root);
         let (mut links, mut joints) = (Vec::new(), Vec::new());
         let root_at = self
             .at
@@ -102,7 +127,9 @@ impl Source {
                 collisions: Vec::new(),
             });
         }
+        let places: BTreeMap<BodyId, usize> = bodies.iter().copied().zip(hung..).collect();
         for id in &bodies {
+            interrupt::check();
             let pieces = self.pieces(*id, report)?;
             let entry = &self.model.bodies[*id];
             let name = name_of(&self.model, *id);
@@ -117,8 +144,7 @@ impl Source {
                 visuals: of(|piece| piece.seen),
                 collisions: of(|piece| piece.touches),
             });
-            let place =
-                |id: BodyId| hung + bodies.iter().position(|other| *other == id).unwrap_or(0);
+            let place = |id: BodyId| places.get(&id).copied().unwrap_or(hung);
             if *id == root {
                 if base == Base::Hung {
                     let mut joint = joint(&self.model, root, [0, 1], &at)?;
@@ -183,19 +209,6 @@ fn joint_name(model: &Model, id: BodyId) -> String {
     let joint = model.bodies[id].body.joints.first();
     let name = joint.and_then(|joint| joint.name.clone());
     name.unwrap_or_else(|| format!("{}_joint", name_of(model, id)))
-}
-
-fn below(model: &Model, root: BodyId) -> Vec<BodyId> {
-    let mut found = vec![root];
-    let mut next = 0;
-    while let Some(&id) = found.get(next) {
-        let children = model
-            .bodies_iter()
-            .filter(|(_, entry)| entry.parent == Some(id));
-        found.extend(children.map(|(child, _)| child));
-        next += 1;
-    }
-    found
 }
 
 /// A pose in the scene's numbers.

@@ -28,7 +28,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
     let at = At::file(TABLES);
     let syntax = |error: serde_json::Error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: error.to_string(),
+        message: crate::plain(&error),
     };
     let head: Head = serde_json::from_slice(&text).map_err(syntax)?;
     if head.format != FORMAT {

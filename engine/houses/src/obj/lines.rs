@@ -8,6 +8,9 @@ pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = (u32, std::borrow::Cow<
     std::iter::from_fn(move || {
         loop {
             let (line, number) = raw.next()?;
+            if number % 4096 == 0 {
+                dwell_scene::interrupt::check();
+            }
             let mut line = std::borrow::Cow::Borrowed(line.trim_ascii());
             while line.last() == Some(&b'\\') {
                 let joined = line.to_mut();

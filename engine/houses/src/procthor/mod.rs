@@ -54,7 +54,7 @@ fn convert(
     let at = At::file(name);
     let file: HouseFile = serde_json::from_slice(bytes).map_err(|error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: error.to_string(),
+        message: crate::plain(&error),
     })?;
     let openings = file.doors.len() + file.windows.len();
     let lamps = file.procedural_parameters.lights.len();

@@ -8,7 +8,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Mesh, Texture};
 
 use super::stl;
-use crate::build::{PixelBudget, decode, pixels, texture_name};
+use crate::build::{PixelBudget, decode, is_cut, pixels, texture_name};
 use crate::damage::Damage;
 use crate::error::HousesError;
 use crate::limits::{MAX_IMAGE_BYTES, MAX_MESH_BYTES, MAX_TEXT_BYTES};
@@ -108,7 +108,12 @@ impl Files {
         let bytes = bytes.map_err(|error| error.reason());
         let image = bytes.and_then(|bytes| {
             self.pixels.take(pixels(&bytes)?)?;
-            decode(&texture_name(path), &bytes)
+            let texture = decode(&texture_name(path), &bytes)?;
+            if is_cut(&bytes) {
+                let path = path.to_owned();
+                report.warn(at.clone(), Damage::CutTexture { path });
+            }
+            Ok(texture)
         });
         let image = match image {
             Ok(image) => Some(Arc::new(image)),

@@ -66,7 +66,11 @@ pub fn read_binvox(bytes: &[u8], file: &str) -> Result<Voxels, HousesError> {
             .collect();
         match (keyword, numbers.as_slice()) {
             ("#binvox", _) if line_number == 1 => {}
-            ("dim", &[x, y, z]) if line_number > 1 => dims = Some([x as u32, y as u32, z as u32]),
+            ("dim", &[x, y, z])
+                if line_number > 1 && [x, y, z].iter().all(|side| side.fract() == 0.0) =>
+            {
+                dims = Some([x as u32, y as u32, z as u32])
+            }
             ("translate", &[x, y, z]) if line_number > 1 => translate = [x, y, z],
             ("scale", &[s]) if line_number > 1 && s > 0.0 => scale = s,
             ("data", _) if line_number > 1 => break,
@@ -74,7 +78,7 @@ pub fn read_binvox(bytes: &[u8], file: &str) -> Result<Voxels, HousesError> {
                 let expected = if line_number == 1 {
                     "\"#binvox 1\""
                 } else {
-                    "dim, translate, scale or data with numbers"
+                    "dim with whole numbers, or translate, scale or data with numbers"
                 };
                 return Err(syntax(
                     line_number,

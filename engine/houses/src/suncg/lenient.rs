@@ -47,7 +47,7 @@ pub(super) fn shorten(value: &Value) -> String {
 fn as_number(value: &Value) -> Option<f64> {
     match value {
         Value::Number(number) => number.as_f64(),
-        Value::String(text) => text.trim().parse().ok(),
+        Value::String(text) => text.trim().parse().ok().filter(|x: &f64| x.is_finite()),
         Value::Bool(flag) => Some(f64::from(u8::from(*flag))),
         _ => None,
     }

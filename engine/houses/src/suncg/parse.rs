@@ -161,7 +161,12 @@ fn fields<T: DeserializeOwned + Default>(
         let message = error.to_string();
         let (found, expected) = match message.split_once(SEPARATOR) {
             Some((found, expected)) => (found.to_owned(), expected.to_owned()),
-            None => (shorten(value), message),
+            None => {
+                let told = crate::plain(message);
+                let expected = told.rsplit_once("expected ");
+                let expected = expected.map_or(told.as_str(), |(_, expected)| expected);
+                (shorten(value), expected.to_owned())
+            }
         };
         report.warn(at.field(key), Damage::BadField { found, expected });
         false
@@ -233,7 +238,7 @@ mod tests {
         assert!(!house.levels[0].nodes[1].is_valid());
         assert_eq!(
             report.to_string(),
-            "house.json: levels[0].nodes[0].bbox: found 3, expected invalid type: integer `3`, expected struct BoundsFile; treated as absent\n\
+            "house.json: levels[0].nodes[0].bbox: found 3, expected values by name; treated as absent\n\
              house.json: levels[0].nodes[0].modelId: found [\"83\"], expected a string; treated as absent\n\
              house.json: levels[0].nodes[0].transform: found \"no\", expected a list of numbers; treated as absent\n\
              house.json: levels[0].nodes[1]: found 7, expected an object; treated as absent\n\

@@ -173,7 +173,8 @@ impl Reader<'_> {
     fn material(&mut self, node: Node<'_, '_>) -> Result<(), HousesError> {
         if let (Some(name), Some(color)) = (node.attribute("name"), first(node, "color")) {
             let rgba = self.numbers(color, "rgba", [0.8, 0.8, 0.8, 1.0])?;
-            self.colours.insert(name.to_owned(), rgba.map(|x| x as f32));
+            let rgba = rgba.map(|x| x.clamp(0.0, 1.0) as f32);
+            self.colours.insert(name.to_owned(), rgba);
         }
         if first(node, "texture").is_some() {
             let what = "textures of robots are not read; the plain colour is used".to_owned();
@@ -309,7 +310,10 @@ impl Reader<'_> {
             let name = first(node, tag).and_then(|end| end.attribute("link"));
             match name.and_then(|name| places.get(name)) {
                 Some(place) => Ok(*place),
-                None => self.fault(node, tag, "the name of a link", format!("{name:?}")),
+                None => {
+                    let found = name.map_or_else(|| "none".to_owned(), |name| format!("{name:?}"));
+                    self.fault(node, tag, "the name of a link", found)
+                }
             }
         };
         let (parent, child) = (link("parent")?, link("child")?);

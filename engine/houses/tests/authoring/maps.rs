@@ -203,7 +203,7 @@ fn a_node_hangs_on_the_hinge_that_the_map_says() {
             "nodes.\"leaf*\".hinge.open_deg",
         ),
         (
-            "{ hinge = { edge = \"+x\", open_deg = nan } }",
+            "{ hinge = { edge = \"+x\", open_deg = 400 } }",
             "-360 to 360",
         ),
         ("{ hinge = { edge = \"north\" } }", "unknown variant"),
@@ -214,5 +214,39 @@ fn a_node_hangs_on_the_hinge_that_the_map_says() {
     ] {
         let told = with(hinge).unwrap_err().to_string();
         assert!(told.contains(words), "{told}");
+    }
+}
+
+/// Also in rows that no name of the house fits.
+#[test]
+fn numbers_of_a_map_are_finite() {
+    let (folder, path) = folder();
+    let map = folder.path().join("house-map.toml");
+    for (row, field) in [
+        (
+            "[nodes]\n\"nothing\" = { hinge = { edge = \"-x\", open_deg = nan } }",
+            "nodes.\"nothing\".hinge.open_deg",
+        ),
+        (
+            "[nodes]\n\"nothing\" = { hinge = { at = [0.0, inf, 0.0] } }",
+            "nodes.\"nothing\".hinge.at[1]",
+        ),
+        (
+            "[nodes]\n\"nothing\" = { mass_kg = nan }",
+            "nodes.\"nothing\".mass_kg",
+        ),
+        (
+            "[materials]\n\"nothing\" = { opacity = -inf }",
+            "materials.\"nothing\".opacity",
+        ),
+    ] {
+        fs::write(&map, row).unwrap();
+        let told = open(&format!("{path}?map={}", map.display()))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            told.contains(field) && told.contains("expected a finite number"),
+            "{told}"
+        );
     }
 }

@@ -54,6 +54,62 @@ pub(crate) const CASES: &[Case] = &[
         &["a.glb", "GLB version 3; only 2 is read"],
     ),
     fails(
+        "a version of the tables that is another",
+        |d| put_glb(d, &with(triangle(), "/asset/version", json!("3.0"))),
+        &["a.glb", "asset.version", "version \"3.0\" is not read"],
+    ),
+    fails(
+        "a version that is none",
+        |d| put_glb(d, &with(triangle(), "/asset/version", json!("2"))),
+        &["a.glb", "asset.version", "version \"2\" is not read"],
+    ),
+    fails(
+        "a later version that readers need",
+        |d| put_glb(d, &with(triangle(), "/asset/minVersion", json!("2.1"))),
+        &["a.glb", "asset.minVersion", "version \"2.1\" is not read"],
+    ),
+    fails(
+        "a mesh of 2^32",
+        |d| put_glb(d, &with(triangle(), "/nodes/0/mesh", json!(1_u64 << 32))),
+        &["a.glb", "4294967296; allowed are 0 to 4294967295"],
+    ),
+    fails(
+        "an accessor of 2^32",
+        |d| {
+            let pointer = "/meshes/0/primitives/0/attributes/POSITION";
+            put_glb(d, &with(triangle(), pointer, json!(1_u64 << 32)))
+        },
+        &["a.glb", "4294967296; allowed are 0 to 4294967295"],
+    ),
+    warns(
+        "a colour of 1e39",
+        |d| {
+            let look = json!({"baseColorFactor": [1e39, 0, 0, 1]});
+            // Such files are read another way, by which such numbers come through.
+            let file = with(triangle(), "/extensionsUsed", json!(["KHR_texture_basisu"]));
+            put_glb(d, &with(file, "/materials/0/pbrMetallicRoughness", look))
+        },
+        &["a.glb", "materials[0]", "too large"],
+    ),
+    warns(
+        "an image that is cut",
+        |d| {
+            let mut bytes = Vec::new();
+            image::RgbImage::from_fn(64, 64, |x, y| image::Rgb([x as u8 * 4, y as u8 * 4, 99]))
+                .write_to(
+                    &mut std::io::Cursor::new(&mut bytes),
+                    image::ImageFormat::Jpeg,
+                )
+                .unwrap();
+            put(d, "cut.jpg", &bytes[..bytes.len() - 40]);
+            let mut file = with(triangle(), "/images", json!([{"uri": "cut.jpg"}]));
+            file = with(file, "/textures", json!([{"source": 0}]));
+            let look = json!({"baseColorTexture": {"index": 0}});
+            put_glb(d, &with(file, "/materials/0/pbrMetallicRoughness", look))
+        },
+        &["a.glb", "images[0]", "ends too early"],
+    ),
+    fails(
         "lists nested without end",
         |d| {
             put(

@@ -36,6 +36,12 @@ const MOST_BYTES: u64 = 2 << 30;
 /// The same of one that is refused at sight.
 const MOST_PLAIN_BYTES: u64 = 192 << 20;
 
+/// What no sentence says to who opens a house.
+const JARGON: [&str; 14] = [
+    "Some(", "None,", "usize", "u8 ", "u16", "u32", "u64", "i32", "i64", "f32", "f64", "Vec3",
+    "struct ", "islice",
+];
+
 /// Everything that was ever asked for, bytes.
 fn asked() -> u64 {
     HEAP.stats().bytes_allocated as u64
@@ -78,6 +84,14 @@ fn wrong<'a>(cases: impl IntoIterator<Item = &'a Case>) -> Vec<String> {
             (Ends::Fails(_), Ok(report)) => (false, format!("it was opened: {report}")),
             (Ends::Warns(_), Err(error)) => (false, format!("it was refused: {error}")),
         };
+        // Words that say something to programmers of Rust or Python alone.
+        let spoken = |word: &&&str| {
+            let mut found = told.match_indices(**word).map(|(at, _)| at);
+            found.any(|at| !told[..at].ends_with(|c: char| c.is_alphanumeric()))
+        };
+        if let Some(word) = JARGON.iter().find(spoken) {
+            wrong.push(format!("{}: it says {word:?}: {told:.600}", case.name));
+        }
         if !good {
             wrong.push(format!(
                 "{}: {}",

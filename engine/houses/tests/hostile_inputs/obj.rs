@@ -130,6 +130,14 @@ pub(crate) const CASES: &[Case] = &[
         &["a.mtl:2", "is not understood"],
     ),
     warns(
+        "a colour of nan",
+        |d| {
+            put(d, "a.mtl", "newmtl a\nKd nan inf 0\n");
+            put(d, "a.obj", obj_of("a.mtl"))
+        },
+        &["a.mtl:2", "is not understood"],
+    ),
+    warns(
         "a material twice",
         |d| {
             put(d, "a.mtl", "newmtl a\nnewmtl a\n");

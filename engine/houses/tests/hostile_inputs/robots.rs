@@ -72,6 +72,19 @@ pub(crate) const URDF_CASES: &[Case] = &[
         &["r.urdf:3", "link[a]", "size"],
     ),
     fails(
+        "a colour of nan",
+        |d| {
+            let color = "<material name=\"m\"><color rgba=\"nan 0 0 1\"/></material></visual>";
+            urdf(d, "</visual>", color)
+        },
+        &["r.urdf:3", "rgba", "finite numbers"],
+    ),
+    fails(
+        "a joint without a parent that exists",
+        |d| urdf(d, "parent link=\"a\"", "parent link=\"zz\""),
+        &["r.urdf:5", "the name of a link, found \"zz\""],
+    ),
+    fails(
         "a mass of 1e39",
         |d| urdf(d, "mass value=\"1\"", "mass value=\"1e39\""),
         &["r.urdf:2", "link[a]", "mass", "1e-6 to 1e6 kg"],
@@ -292,7 +305,30 @@ pub(crate) const MJCF_CASES: &[Case] = &[
     fails(
         "a place of nan",
         |d| mjcf(d, "<body name=\"b\">", "<body name=\"b\" pos=\"nan 0 0\">"),
-        &["m.xml", "objects[1] \"b\"", "world_from_part"],
+        &["m.xml:6", "body.pos", "finite numbers", "nan"],
+    ),
+    fails(
+        "a place of nan in the root's geom",
+        |d| mjcf(d, "size=\"4 4 1\"", "size=\"4 4 1\" pos=\"0 nan 0\""),
+        &["m.xml:4", "geom.pos", "finite numbers"],
+    ),
+    fails(
+        "a turn of infinity in the root's geom",
+        |d| mjcf(d, "size=\"4 4 1\"", "size=\"4 4 1\" quat=\"inf 0 0 0\""),
+        &["m.xml:4", "geom.quat", "finite numbers"],
+    ),
+    fails(
+        "a colour of nan",
+        |d| mjcf(d, "size=\"4 4 1\"", "size=\"4 4 1\" rgba=\"nan 1 1 1\""),
+        &["m.xml:4", "geom.rgba", "finite numbers"],
+    ),
+    fails(
+        "300,000 attributes",
+        |d| {
+            let all: String = (0..300_000).map(|k| format!(" a{k}=\"\"")).collect();
+            mjcf(d, "<geom", &format!("<geom{all}"))
+        },
+        &["m.xml:4", "count of attributes", "128"],
     ),
     warns(
         "a mesh that does not exist",

@@ -55,7 +55,7 @@ impl LightTable {
             Ok(models) => models,
             Err(error) => {
                 let damage = Damage::BadRow {
-                    reason: error.to_string(),
+                    reason: crate::plain(&error),
                 };
                 report.warn(at.line(error.line() as u32), damage);
                 return table;
@@ -80,7 +80,7 @@ impl LightTable {
                         report.warn(
                             at,
                             Damage::BadRow {
-                                reason: error.to_string(),
+                                reason: crate::plain(&error),
                             },
                         );
                     }

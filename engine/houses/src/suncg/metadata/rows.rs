@@ -81,6 +81,9 @@ impl<'a> Rows<'a> {
     ) {
         let mut record = csv::StringRecord::new();
         loop {
+            if self.reader.position().line() % 4096 == 0 {
+                dwell_scene::interrupt::check();
+            }
             let result = match self.reader.read_record(&mut record) {
                 Ok(false) => return,
                 Ok(true) => row(&Row {
@@ -88,7 +91,7 @@ impl<'a> Rows<'a> {
                     columns: &self.columns,
                 })
                 .map_err(str::to_owned),
-                Err(error) => Err(error.to_string()),
+                Err(error) => Err(crate::plain(&error)),
             };
             if let Err(reason) = result {
                 let line = record

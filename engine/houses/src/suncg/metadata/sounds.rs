@@ -58,7 +58,7 @@ impl SoundTable {
             Ok(entries) => Self { entries },
             Err(error) => {
                 let damage = Damage::BadRow {
-                    reason: error.to_string(),
+                    reason: crate::plain(&error),
                 };
                 report.warn(At::file(file).line(error.line() as u32), damage);
                 Self::default()

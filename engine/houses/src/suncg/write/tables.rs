@@ -36,7 +36,7 @@ impl Writer<'_> {
         let path = format!("object/{}/{ROW}", row.id);
         let text = serde_json::to_vec(row).map_err(|error| HousesError::Unwritable {
             path: self.folder.join(&path),
-            message: error.to_string(),
+            message: crate::plain(&error),
         })?;
         self.file(&path, &text)
     }
@@ -65,7 +65,7 @@ pub(super) fn read_rows(root: &DataRoot) -> Result<Vec<ModelRow>, HousesError> {
         let text = root.read(&path, MAX_TEXT_BYTES)?;
         serde_json::from_slice(&text).map_err(|error| HousesError::Syntax {
             at: At::file(&path),
-            message: error.to_string(),
+            message: crate::plain(&error),
         })
     })
     .collect()

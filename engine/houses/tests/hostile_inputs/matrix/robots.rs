@@ -180,7 +180,7 @@ pub(super) const MJCF: Column = Column {
             Is(fails(
                 "inf",
                 |d| mjcf(d, "<body name=\"b\">", "<body name=\"b\" pos=\"inf 0 0\">"),
-                &["m.xml", "objects[1] \"b\""],
+                &["m.xml:6", "body.pos", "finite numbers", "inf"],
             )),
         ),
         (Row::Huge, Has("a body of 1e39 m")),

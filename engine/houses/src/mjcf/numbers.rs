@@ -1,0 +1,74 @@
+//! Numbers of MJCF: finite, wherever they stand.
+//!
+//! `mjcf-rs` reads `nan` and `inf` as any other number, and what it makes of the root goes into every place below.
+
+use roxmltree::Node;
+
+use crate::error::HousesError;
+use crate::report::At;
+
+/// Attributes that hold numbers of which each must be finite.
+const FINITE: [&str; 34] = [
+    "pos",
+    "quat",
+    "axisangle",
+    "xyaxes",
+    "zaxis",
+    "euler",
+    "size",
+    "fromto",
+    "rgba",
+    "rgb1",
+    "rgb2",
+    "scale",
+    "refpos",
+    "refquat",
+    "axis",
+    "mass",
+    "density",
+    "diaginertia",
+    "fullinertia",
+    "friction",
+    "frictionloss",
+    "damping",
+    "stiffness",
+    "armature",
+    "ref",
+    "springref",
+    "polycoef",
+    "gear",
+    "kp",
+    "kv",
+    "gravity",
+    "timestep",
+    "boundmass",
+    "boundinertia",
+];
+/// Attributes whose ends may be infinite.
+const RANGES: [&str; 4] = ["range", "ctrlrange", "forcerange", "actfrcrange"];
+
+/// Refuses an element with a number that is none; `at` is its file.
+///
+/// # Errors
+/// [`HousesError::Field`] names line, element and attribute.
+pub(super) fn check(node: Node<'_, '_>, at: &At) -> Result<(), HousesError> {
+    for attribute in node.attributes() {
+        let name = attribute.name();
+        let finite = FINITE.contains(&name);
+        if !finite && !RANGES.contains(&name) {
+            continue;
+        }
+        let is_bad = |x: f64| x.is_nan() || (finite && x.is_infinite());
+        let mut words = attribute.value().split_ascii_whitespace();
+        if let Some(word) = words.find(|word| word.parse().is_ok_and(is_bad)) {
+            let row = node.document().text_pos_at(node.range().start).row;
+            let field = format!("{}.{name}", node.tag_name().name());
+            return Err(HousesError::Field {
+                at: at.line(row).field(field),
+                expected: "finite numbers",
+                found: word.to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
