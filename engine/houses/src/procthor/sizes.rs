@@ -9,7 +9,7 @@ use super::file::AssetsFile;
 use crate::damage::Damage;
 use crate::limits::MAX_TEXT_BYTES;
 use crate::report::{At, Report};
-use crate::root::read_capped;
+use crate::root::DataRoot;
 
 /// The file's name.
 const FILE: &str = "asset-database.json";
@@ -26,11 +26,14 @@ impl Sizes {
     /// Reads the nearest file at or above `folder`; none is no fault, one that cannot be read is reported.
     pub(super) fn around(folder: &Path, report: &mut Report) -> Self {
         let folder = folder.canonicalize().unwrap_or_default();
-        let mut paths = folder.ancestors().take(FOLDERS).map(|f| f.join(FILE));
-        let Some(path) = paths.find(|path| path.is_file()) else {
+        let mut folders = folder.ancestors().take(FOLDERS);
+        let Some(folder) = folders.find(|folder| folder.join(FILE).is_file()) else {
             return Self::default();
         };
-        let text = read_capped(&path, FILE, MAX_TEXT_BYTES).map_err(|error| error.reason());
+        // It belongs to the folder that it stands in: a link out of there is not followed.
+        let text = DataRoot::new(folder)
+            .and_then(|root| root.read(FILE, MAX_TEXT_BYTES))
+            .map_err(|error| error.reason());
         match text.and_then(|text| Self::read(&text)) {
             Ok(sizes) => sizes,
             Err(reason) => {
@@ -43,7 +46,7 @@ impl Sizes {
 
     /// Reads the table; sizes that no thing can have are left out.
     fn read(text: &[u8]) -> Result<Self, String> {
-        let file: AssetsFile = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        let file: AssetsFile = serde_json::from_slice(text).map_err(crate::plain)?;
         let mut known = BTreeMap::new();
         for (kind, assets) in file {
             for asset in assets {

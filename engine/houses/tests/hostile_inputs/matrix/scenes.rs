@@ -247,7 +247,7 @@ pub(super) const PROCTHOR: Column = Column {
                     link(d, "asset-database.json");
                     house
                 },
-                &["asset-database.json"],
+                &["asset-database.json", "leaves"],
             )),
         ),
         (Row::TextureParent, Cannot(BOXES)),
