@@ -63,6 +63,9 @@ pub enum AcousticsError {
     /// A measurement that is no head.
     #[error("the head's responses: {0}")]
     Head(String),
+    /// A file that cannot be read as HDF5.
+    #[error("{0}")]
+    Hdf5(String),
     /// A receiver wears a head that the scene was not given.
     #[error("the receiver wears head {id}, which the scene does not know: add it first")]
     UnknownHead {

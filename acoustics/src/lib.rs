@@ -35,6 +35,7 @@ mod echogram;
 mod error;
 mod explain;
 mod fft;
+pub mod hdf5;
 pub mod head;
 mod images;
 pub mod laws;

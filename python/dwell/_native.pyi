@@ -70,6 +70,19 @@ class MeasuredDataError(DwellError, ValueError): ...
 class EngineBug(DwellError, RuntimeError): ...
 
 @final
+class Hdf5:
+    """An HDF5 file that is read, itself alone: links and values elsewhere are refused."""
+
+    @staticmethod
+    def open(path: str) -> Hdf5: ...
+    def shape(self, name: str) -> list[int] | None:
+        """The lengths of a variable's axes; ``None`` where there is no such variable."""
+    def text(self, variable: str | None, name: str) -> str | None:
+        """The text of an attribute of a variable, or of the file; ``None`` where there is none."""
+    def numbers(self, name: str) -> tuple[NDArray[np.float64], list[int]]:
+        """A variable's numbers, the last axis first, and the lengths of its axes."""
+
+@final
 class Head:
     """A head that receivers and agents can wear."""
 

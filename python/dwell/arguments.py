@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dwell._native import ConfigError
 from dwell.files import parse_json
@@ -54,9 +55,10 @@ def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
 
 
 def finite(name: str, value: object) -> float:
-    """A finite number as Python's own float; ``True`` and ``"1"`` are none."""
+    """A finite number as Python's own float; ``True``, ``"1"`` and complex numbers are none."""
     try:
-        if isinstance(value, bool | str | bytes):
+        # NumPy drops the imaginary part of what is complex.
+        if isinstance(value, bool | str | bytes) or np.iscomplexobj(value):
             raise TypeError
         number = float(value)  # type: ignore[arg-type] # what this finds out
     except (TypeError, ValueError, OverflowError):
@@ -68,6 +70,19 @@ def finite(name: str, value: object) -> float:
             f"{name} is {number}; allowed are numbers up to {_LARGEST:.3g} either way"
         )
     return number
+
+
+def numbers(name: str, values: object, dtype: type[np.floating[Any]]) -> NDArray[Any]:
+    """An array of real numbers, as C has them; NumPy alone would drop the imaginary part."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "fiu" and array.size > 0:
+            raise TypeError
+    except (TypeError, ValueError):
+        raise ConfigError(f"{name}: expected real numbers, found {values!r:.200}") from None
+    # What the type does not hold becomes infinite, and is refused by its place.
+    with np.errstate(over="ignore"):
+        return np.ascontiguousarray(array, dtype)
 
 
 def text(name: str, value: object) -> str:

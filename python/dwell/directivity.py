@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dwell.arguments import finite, shown
+from dwell.arguments import finite, numbers, shown
 
 #: Octave bands, 63 Hz to 8 kHz.
 BANDS = 8
@@ -62,7 +62,7 @@ class Directivity:
         Raises:
             ValueError: For another shape, NaN, or a level more than 6 dB above that on the axis.
         """
-        levels = np.asarray(level_db, dtype=np.float64)
+        levels = numbers("level_db", level_db, np.float64)
         if levels.ndim == 1:
             levels = np.repeat(levels[:, None], BANDS, axis=1)
         if levels.ndim != 2 or levels.shape[1] != BANDS or not 2 <= len(levels) <= 361:
@@ -129,10 +129,10 @@ class Directivity:
 
 def _bands(name: str, value: float | Sequence[float]) -> npt.NDArray[np.float64]:
     """One number for each octave."""
-    numbers = np.asarray(value, dtype=np.float64)
-    if numbers.shape not in ((), (BANDS,)) or not np.isfinite(numbers).all():
+    bands = np.asarray(numbers(name, value, np.float64)).reshape(np.shape(value))
+    if bands.shape not in ((), (BANDS,)) or not np.isfinite(bands).all():
         raise ValueError(f"{name} is {shown(value)}; allowed is a number, or {BANDS} of them")
-    return np.broadcast_to(numbers, (BANDS,))
+    return np.broadcast_to(bands, (BANDS,))
 
 
 #: Directivities by name; ``loudspeaker`` and ``talker`` are points on rigid spheres.

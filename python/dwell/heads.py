@@ -83,12 +83,9 @@ class Head:
     def from_sofa(cls, path: str | os.PathLike[str]) -> Head:
         """The head of a SOFA file (AES69), convention ``SimpleFreeFieldHRIR``.
 
-        Needs ``pip install 'dwell[hdf5]'``.
-
         Raises:
             MeasuredDataError: The file cannot be read or is none of a head; the message names
                 file and variable.
-            ModuleNotFoundError: ``h5py`` is missing.
         """
         from dwell.sofa import read_head
 
@@ -166,10 +163,7 @@ def _from_arrays(
 
 
 def _array(name: str, values: ArrayLike, axes: int, dtype: Any = np.float64) -> NDArray[Any]:  # noqa: ANN401
-    try:
-        array = np.ascontiguousarray(values, dtype)
-    except (TypeError, ValueError) as error:
-        raise ConfigError(f"{name}: {error}") from error
+    array = arguments.numbers(name, values, dtype)
     if array.ndim != axes:
         raise ConfigError(f"{name}: expected {axes} axes, found shape {array.shape}")
     return array

@@ -1,20 +1,16 @@
-"""Measured heads from SOFA files: ``SimpleFreeFieldHRIR`` of AES69, netCDF-4 read by h5py."""
+"""Measured heads from SOFA files: ``SimpleFreeFieldHRIR`` of AES69, netCDF-4, which is HDF5."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import MeasuredDataError
-from dwell.responses.dataset import hdf5_module
+from dwell import MeasuredDataError, _native
 
 CONVENTION = "SimpleFreeFieldHRIR"
-#: Numbers of all responses together: 2 GiB as they stand in the file.
-_MOST_NUMBERS = 2**28
 _LENGTHS = {"metre", "metres", "meter", "meters", "m"}
 _ANGLES = {"degree": 1.0, "degrees": 1.0, "radian": 180.0 / np.pi, "radians": 180.0 / np.pi}
 
@@ -44,23 +40,16 @@ def read_head(path: str) -> HeadFile:
 
     Raises:
         MeasuredDataError: The message names file and variable.
-        ModuleNotFoundError: ``h5py`` is missing.
     """
-    h5py = hdf5_module("SOFA")
-    if not Path(path).is_file():
+    if not Path(path).exists():
         raise MeasuredDataError(f"{path}: there is no such file")
-    try:
-        file = h5py.File(path, "r")
-    except OSError as error:
-        raise MeasuredDataError(f"{path}: no HDF5, which SOFA files are: {error}") from error
-    with file:
-        return _Reader(path, file).head()
+    return _Reader(path, _native.Hdf5.open(path)).head()
 
 
 class _Reader:
     """One open file."""
 
-    def __init__(self, path: str, file: Any) -> None:  # noqa: ANN401 - h5py has no types
+    def __init__(self, path: str, file: _native.Hdf5) -> None:
         self.path = path
         self.file = file
 
@@ -70,22 +59,24 @@ class _Reader:
     def head(self) -> HeadFile:
         """All of it, checked."""
         self.check_convention()
-        variable = self.variable("Data.IR")
-        if len(variable.shape) != 3:
-            raise self.fault("Data.IR", f"expected axes (M, R, N), found shape {variable.shape}")
-        count, receivers, samples = variable.shape
+        shape = self.shape("Data.IR")
+        if len(shape) != 3:
+            raise self.fault("Data.IR", f"expected axes (M, R, N), found shape {shape}")
+        count, receivers, samples = shape
         if receivers != 2:
             raise self.fault("Data.IR", f"{receivers} receivers; a head has 2 ears")
-        if not 0 < count * samples <= _MOST_NUMBERS // 2:
-            raise self.fault("Data.IR", f"{count} directions of {samples} samples are too many")
+        if count * samples == 0:
+            raise self.fault(
+                "Data.IR", f"{count} directions of {samples} samples; both are at least 1"
+            )
         responses = self.numbers("Data.IR")
         rates = self.numbers("Data.SamplingRate").ravel()
-        units = self.text(self.variable("Data.SamplingRate"), "Units") or "hertz"
+        units = self.file.text("Data.SamplingRate", "Units") or "hertz"
         if units.lower() not in ("hertz", "hz"):
             raise self.fault("Data.SamplingRate", f"Units is {units!r}; allowed is 'hertz'")
         if rates.size == 0 or rates[0] <= 0.0 or (rates != rates[0]).any():
             raise self.fault("Data.SamplingRate", f"{rates}; allowed is one rate above 0 Hz")
-        delays = self.rows("Data.Delay", count, 2) if "Data.Delay" in self.file else None
+        delays = self.rows("Data.Delay", count, 2) if self.has("Data.Delay") else None
         late = np.zeros((count, 2)) if delays is None else delays
         if self.left_is_second():
             responses, late = responses[:, ::-1], late[:, ::-1]
@@ -97,7 +88,7 @@ class _Reader:
         )
 
     def check_convention(self) -> None:
-        found = self.text(self.file, "SOFAConventions")
+        found = self.file.text(None, "SOFAConventions")
         if found is None:
             raise self.fault("SOFAConventions", "missing; this is no SOFA file")
         if found != CONVENTION:
@@ -105,7 +96,7 @@ class _Reader:
             raise self.fault(
                 "SOFAConventions", f"{found!r}{spectra}; heads are read from {CONVENTION!r}"
             )
-        if (data := self.text(self.file, "DataType") or "FIR") != "FIR":
+        if (data := self.file.text(None, "DataType") or "FIR") != "FIR":
             raise self.fault("DataType", f"{data!r}; allowed is 'FIR'")
 
     def left_is_second(self) -> bool:
@@ -131,13 +122,13 @@ class _Reader:
             return self.cartesian(name, self.rows(name, count, 3), like)
 
         sources = place("SourcePosition")
-        if "ListenerPosition" in self.file:
+        if self.has("ListenerPosition"):
             sources = sources - place("ListenerPosition")
         front, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
         front, up = np.tile(front, (count, 1)), np.tile(up, (count, 1))
-        if "ListenerView" in self.file:
+        if self.has("ListenerView"):
             front = self.unit("ListenerView", place("ListenerView"))
-        if "ListenerUp" in self.file:
+        if self.has("ListenerUp"):
             up = place("ListenerUp", "ListenerView")
         upright = up - front * (front * up).sum(axis=1, keepdims=True)
         up = self.unit("ListenerUp", upright)
@@ -156,13 +147,13 @@ class _Reader:
         self, name: str, rows: NDArray[np.float64], like: str | None = None
     ) -> NDArray[np.float64]:
         """Coordinates as x, y, z by the variable's Type and Units, or those of ``like``."""
-        variable = self.variable(name)
-        kind = self.text(variable, "Type")
-        if kind is None and like is not None and like in self.file:
-            variable = self.variable(like)
-            kind = self.text(variable, "Type")
+        holder, kind = name, self.file.text(name, "Type")
+        if kind is None and like is not None and self.has(like):
+            holder, kind = like, self.file.text(like, "Type")
         kind = (kind or "cartesian").lower()
-        units = [part.strip().lower() for part in (self.text(variable, "Units") or "").split(",")]
+        units = [
+            part.strip().lower() for part in (self.file.text(holder, "Units") or "").split(",")
+        ]
         if kind == "cartesian":
             if units != [""] and not set(units) <= _LENGTHS:
                 raise self.fault(name, f"Units is {', '.join(units)!r}; allowed is 'metre'")
@@ -196,24 +187,17 @@ class _Reader:
         return np.broadcast_to(values, (count, columns))
 
     def numbers(self, name: str) -> NDArray[np.float64]:
-        variable = self.variable(name)
-        try:
-            values = np.asarray(variable[()], np.float64)
-        except (TypeError, ValueError, OSError) as error:
-            raise self.fault(name, f"cannot be read as numbers: {error}") from error
-        if not np.isfinite(values).all():
+        self.shape(name)
+        numbers, shape = self.file.numbers(name)
+        if not np.isfinite(numbers).all():
             raise self.fault(name, "holds values that are not finite")
-        return values
+        return numbers.reshape(shape)
 
-    def variable(self, name: str) -> Any:  # noqa: ANN401 - h5py has no types
-        if name not in self.file or not hasattr(self.file[name], "shape"):
+    def shape(self, name: str) -> tuple[int, ...]:
+        shape = self.file.shape(name)
+        if shape is None:
             raise self.fault(name, "missing")
-        return self.file[name]
+        return tuple(shape)
 
-    def text(self, holder: Any, name: str) -> str | None:  # noqa: ANN401 - h5py has no types
-        value = holder.attrs.get(name)
-        if isinstance(value, np.ndarray) and value.size == 1:
-            value = value.ravel()[0]
-        if isinstance(value, bytes):
-            return value.decode("utf-8", "replace").strip("\0 ")
-        return value.strip() if isinstance(value, str) else None
+    def has(self, name: str) -> bool:
+        return self.file.shape(name) is not None

@@ -16,6 +16,7 @@ mod doorway;
 mod errors;
 mod facts;
 mod forks;
+mod hdf5;
 mod head;
 mod house;
 mod json;
@@ -41,6 +42,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<navigation::PyNavigation>()?;
     module.add_class::<batch::PyBatch>()?;
     module.add_class::<acoustics::PyAcousticScene>()?;
+    module.add_class::<hdf5::PyHdf5>()?;
     module.add_class::<head::PyHead>()?;
     module.add_function(wrap_pyfunction!(facts::actions, module)?)?;
     module.add_function(wrap_pyfunction!(facts::tasks_json, module)?)?;

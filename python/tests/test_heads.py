@@ -288,6 +288,15 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
         dwell.Head.sphere(0.5)
     with pytest.raises(dwell.ConfigError, match="responses: expected shape"):
         dwell.Head.measured(np.ones((9, 3)), np.ones((9, 1, 64)), 48_000)
+    whole = (np.ones((9, 3)), np.ones((9, 2, 64)), 48_000)
+    for at, name in enumerate(("sources", "responses", "rate_hz")):
+        parts = [part + 1j if k == at else part for k, part in enumerate(whole)]
+        with pytest.raises(dwell.ConfigError, match=f"{name}.* number"):
+            dwell.Head.measured(*parts)  # type: ignore[arg-type]
+    with pytest.raises(dwell.ConfigError, match=r"rate_hz is .* expected a number"):
+        dwell.Head.measured(*whole[:2], np.complex64(48_000))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="level_db: expected real numbers"):
+        dwell.Directivity.polar(np.zeros((3, 8), complex))
     with pytest.raises(dwell.ConfigError, match="head is 7"):
         dwell.Receiver.binaural((0.0, 0.0, 0.0), head=7)  # type: ignore[arg-type]
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use dwell_acoustics::Recording;
+use dwell_acoustics::hdf5::Hdf5;
 use dwell_calibration::{Options, calibrate};
 use tempfile::TempDir;
 
@@ -14,7 +15,7 @@ use super::bodies::{live_in, read};
 use super::samples::{NAMES, Sample, files_below, sample};
 
 /// Targets beside those of [`NAMES`].
-pub const OTHERS: [&str; 2] = ["bundle", "sound"];
+pub const OTHERS: [&str; 3] = ["bundle", "sound", "head"];
 
 /// Files with one ending that a corpus begins with. The studio has some hundred of them, all alike.
 const SEEDS_AN_ENDING: usize = 8;
@@ -74,6 +75,42 @@ impl Target for Sounds {
             }
             Err(error) => assert!(!error.to_string().is_empty()),
         }
+    }
+}
+
+/// A measured head: an HDF5 file.
+struct Heads;
+
+impl Target for Heads {
+    fn files(&self) -> Vec<(String, Vec<u8>)> {
+        let earliest = include_bytes!("../../../acoustics/tests/data/earliest.sofa");
+        let latest = include_bytes!("../../../acoustics/tests/data/latest.sofa");
+        vec![
+            ("earliest.sofa".to_owned(), earliest.to_vec()),
+            ("latest.sofa".to_owned(), latest.to_vec()),
+        ]
+    }
+
+    fn take(&self, _: usize, bytes: &[u8]) {
+        let Ok(file) = Hdf5::open(bytes.to_vec()) else {
+            return;
+        };
+        for name in [
+            "Data.IR",
+            "SourcePosition",
+            "Data.SamplingRate",
+            "ListenerView",
+        ] {
+            let told = file.text(Some(name), "Units");
+            assert!(told.is_ok() || told.is_err_and(|error| !error.to_string().is_empty()));
+            if let Ok(numbers) = file.numbers(name) {
+                assert_eq!(
+                    numbers.values.len(),
+                    numbers.shape.iter().product::<usize>()
+                );
+            }
+        }
+        let _ = file.text(None, "SOFAConventions");
     }
 }
 
@@ -148,6 +185,7 @@ fn target(name: &str) -> Box<dyn Target> {
     match name {
         "bundle" => Box::new(Measured::new()),
         "sound" => Box::new(Sounds),
+        "head" => Box::new(Heads),
         _ if NAMES.contains(&name) => Box::new(sample(name)),
         _ => panic!("no target {name:?}; there are {NAMES:?} and {OTHERS:?}"),
     }

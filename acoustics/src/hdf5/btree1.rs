@@ -1,0 +1,44 @@
+//! B-trees of version 1: the entries of a group, and where chunks are.
+
+use super::bytes::{Cursor, Fault, Read, Source};
+
+/// Hands every leaf's entry to `each`: its key, and the address that it stands for.
+///
+/// `kind` is 0 for groups and 1 for chunks, `key` the bytes of a key.
+pub(super) fn entries(
+    source: &Source<'_>,
+    root: u64,
+    kind: u8,
+    key: usize,
+    each: &mut impl FnMut(Cursor<'_>, u64) -> Read<()>,
+) -> Read<()> {
+    // Levels fall from node to child, so that loops end.
+    let mut open: Vec<(u64, Option<u8>)> = vec![(root, None)];
+    while let Some((address, expected)) = open.pop() {
+        let mut node = source.at(address)?;
+        let fault = || {
+            Fault(format!(
+                "damaged at byte {address}: expected a node of a tree"
+            ))
+        };
+        if node.take(4)? != b"TREE" || node.u8()? != kind {
+            return Err(fault());
+        }
+        let level = node.u8()?;
+        if expected.is_some_and(|expected| expected != level) {
+            return Err(fault());
+        }
+        let count = node.u16()?;
+        node.address()?;
+        node.address()?;
+        for _ in 0..count {
+            let key = node.part(key)?;
+            let child = node.place()?;
+            match level.checked_sub(1) {
+                Some(below) => open.push((child, Some(below))),
+                None => each(key, child)?,
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,200 @@
+//! The bytes of a file, with bounds: nothing outside of it is read, and no more of its structure than a budget.
+
+use dwell_scene::interrupt;
+use std::cell::Cell;
+
+/// Most bytes of structure (headers, trees, heaps; values not counted) that one question may read. Trees that loop or share
+/// their nodes end here.
+const MOST_STRUCTURE_BYTES: u64 = 32 << 20;
+
+/// What is wrong with a file, as a sentence.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Fault(pub(super) String);
+
+pub(super) type Read<T> = Result<T, Fault>;
+
+/// Refuses with a sentence.
+pub(super) fn refuse<T>(message: impl Into<String>) -> Read<T> {
+    Err(Fault(message.into()))
+}
+
+/// How many bytes an address and a length take in a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Widths {
+    pub(super) address: usize,
+    pub(super) length: usize,
+}
+
+/// A file's bytes from its superblock on, and what may still be read of its structure.
+#[derive(Debug)]
+pub(super) struct Source<'a> {
+    bytes: &'a [u8],
+    widths: Widths,
+    left: Cell<u64>,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(bytes: &'a [u8], widths: Widths) -> Self {
+        Self {
+            bytes,
+            widths,
+            left: Cell::new(MOST_STRUCTURE_BYTES),
+        }
+    }
+
+    /// A cursor at an address, up to the end of the file.
+    pub(super) fn at(&self, address: u64) -> Read<Cursor<'_>> {
+        self.block(address, (self.bytes.len() as u64).saturating_sub(address))
+    }
+
+    /// A cursor at an address, over `length` bytes.
+    pub(super) fn block(&self, address: u64, length: u64) -> Read<Cursor<'_>> {
+        interrupt::check();
+        Ok(Cursor {
+            bytes: self.values(address, length)?,
+            start: address,
+            at: 0,
+            widths: self.widths,
+            left: &self.left,
+        })
+    }
+
+    /// Values: bytes that the budget does not count.
+    pub(super) fn values(&self, address: u64, length: u64) -> Read<&'a [u8]> {
+        let range = || {
+            let start = usize::try_from(address).ok()?;
+            let end = start.checked_add(usize::try_from(length).ok()?)?;
+            self.bytes.get(start..end)
+        };
+        range().ok_or_else(|| {
+            let size = self.bytes.len();
+            Fault(format!(
+                "damaged: it points at {length} bytes from byte {address} on, and the file has {size}"
+            ))
+        })
+    }
+}
+
+/// A place in a file, from which bytes are taken in order.
+#[derive(Debug, Clone)]
+pub(super) struct Cursor<'a> {
+    bytes: &'a [u8],
+    /// Where `bytes` begin in the file.
+    start: u64,
+    at: usize,
+    pub(super) widths: Widths,
+    left: &'a Cell<u64>,
+}
+
+impl<'a> Cursor<'a> {
+    /// Where the next byte stands in the file.
+    pub(super) fn position(&self) -> u64 {
+        self.start + self.at as u64
+    }
+
+    /// How many bytes are left.
+    pub(super) fn remaining(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+
+    /// Takes `length` bytes as a cursor of their own.
+    pub(super) fn part(&mut self, length: usize) -> Read<Self> {
+        let start = self.position();
+        Ok(Self {
+            bytes: self.take(length)?,
+            start,
+            at: 0,
+            ..*self
+        })
+    }
+
+    pub(super) fn take(&mut self, length: usize) -> Read<&'a [u8]> {
+        let Some(taken) = self.bytes[self.at..].get(..length) else {
+            return refuse(format!(
+                "damaged at byte {}: expected {length} more bytes, found {}",
+                self.position(),
+                self.remaining()
+            ));
+        };
+        let Some(left) = self.left.get().checked_sub(length as u64) else {
+            return refuse(format!(
+                "damaged: its headers and trees loop, or take more than {MOST_STRUCTURE_BYTES} bytes"
+            ));
+        };
+        self.left.set(left);
+        self.at += length;
+        Ok(taken)
+    }
+
+    pub(super) fn skip(&mut self, length: usize) -> Read<()> {
+        self.take(length).map(|_| ())
+    }
+
+    /// Skips to a multiple of 8 bytes behind the cursor's start.
+    pub(super) fn align(&mut self) -> Read<()> {
+        self.skip(self.at.next_multiple_of(8) - self.at)
+    }
+
+    /// An unsigned integer of at most 8 bytes.
+    pub(super) fn uint(&mut self, width: usize) -> Read<u64> {
+        if width > 8 {
+            return refuse(format!(
+                "damaged at byte {}: an integer of {width} bytes; allowed are 8",
+                self.position()
+            ));
+        }
+        let bytes = self.take(width)?.iter().rev();
+        Ok(bytes.fold(0, |value, byte| (value << 8) | u64::from(*byte)))
+    }
+
+    pub(super) fn u8(&mut self) -> Read<u8> {
+        Ok(self.take(1)?[0])
+    }
+
+    pub(super) fn u16(&mut self) -> Read<u16> {
+        Ok(self.uint(2)? as u16)
+    }
+
+    pub(super) fn u32(&mut self) -> Read<u32> {
+        Ok(self.uint(4)? as u32)
+    }
+
+    /// A length in the file's width.
+    pub(super) fn length(&mut self) -> Read<u64> {
+        self.uint(self.widths.length)
+    }
+
+    /// An address in the file's width; none where all bits are set.
+    pub(super) fn address(&mut self) -> Read<Option<u64>> {
+        let width = self.widths.address;
+        let found = self.uint(width)?;
+        Ok((found != u64::MAX >> (64 - 8 * width)).then_some(found))
+    }
+
+    /// An address that must be one.
+    pub(super) fn place(&mut self) -> Read<u64> {
+        let at = self.position();
+        let found = self.address()?;
+        found.ok_or_else(|| {
+            Fault(format!(
+                "damaged at byte {at}: expected an address, found none"
+            ))
+        })
+    }
+
+    /// Takes a signature and a version.
+    pub(super) fn signed(&mut self, signature: &[u8; 4], version: u8) -> Read<()> {
+        let at = self.position();
+        let name = String::from_utf8_lossy(signature);
+        if self.take(4)? != signature {
+            return refuse(format!("damaged at byte {at}: expected a block {name}"));
+        }
+        let found = self.u8()?;
+        if found != version {
+            return refuse(format!(
+                "a block {name} of version {found}; read is version {version}"
+            ));
+        }
+        Ok(())
+    }
+}

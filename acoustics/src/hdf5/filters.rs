@@ -1,0 +1,156 @@
+//! Filters: what was done to a chunk before it was stored.
+
+use super::bytes::{Cursor, Read, refuse};
+use dwell_scene::interrupt;
+use flate2::read::ZlibDecoder;
+use std::io::Read as _;
+
+/// Most filters of a variable.
+const MOST_FILTERS: u8 = 8;
+/// Bytes that are inflated at once.
+const PIECE: u64 = 1 << 20;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Filter {
+    Deflate,
+    /// Bytes of values, sorted by their place in the value: so many bytes a value.
+    Shuffle(usize),
+    Fletcher32,
+}
+
+/// Filters in the order in which they were applied.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Filters(Vec<Filter>);
+
+impl Filters {
+    pub(super) fn read(mut cursor: Cursor<'_>) -> Read<Self> {
+        let version = cursor.u8()?;
+        let count = cursor.u8()?;
+        if !(1..=2).contains(&version) || count > MOST_FILTERS {
+            return refuse(format!(
+                "{count} filters of version {version}; allowed are {MOST_FILTERS} of versions 1 and 2"
+            ));
+        }
+        if version == 1 {
+            cursor.skip(6)?;
+        }
+        let mut filters = Vec::new();
+        for _ in 0..count {
+            let id = cursor.u16()?;
+            let name = if version == 1 || id >= 256 {
+                cursor.u16()?
+            } else {
+                0
+            };
+            cursor.skip(2)?;
+            let values = usize::from(cursor.u16()?);
+            cursor.skip(usize::from(name))?;
+            let mut of = cursor.part(4 * values)?;
+            if version == 1 {
+                cursor.skip(4 * (values % 2))?;
+            }
+            filters.push(match id {
+                1 => Filter::Deflate,
+                2 => Filter::Shuffle(of.u32()? as usize),
+                3 => Filter::Fletcher32,
+                _ => {
+                    return refuse(format!(
+                        "compressed by filter {id}; read are deflate (1), shuffle (2) and Fletcher-32 (3)"
+                    ));
+                }
+            });
+        }
+        Ok(Self(filters))
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The bytes of a chunk that has `size` of them, from those that are stored; the filters of `skipped` were not applied.
+    pub(super) fn undo(&self, stored: &[u8], skipped: u32, size: usize) -> Read<Vec<u8>> {
+        let mut bytes = stored.to_vec();
+        for (k, filter) in self.0.iter().enumerate().rev() {
+            if skipped & (1 << k) != 0 {
+                continue;
+            }
+            bytes = match filter {
+                // Behind the values there may be a check sum.
+                Filter::Deflate => inflate(&bytes, size as u64 + 64)?,
+                Filter::Shuffle(width) => in_order(&bytes, *width),
+                Filter::Fletcher32 => checked(bytes)?,
+            };
+        }
+        if bytes.len() != size {
+            return refuse(format!(
+                "damaged: a chunk of {} bytes; expected {size}",
+                bytes.len()
+            ));
+        }
+        Ok(bytes)
+    }
+}
+
+fn inflate(bytes: &[u8], most: u64) -> Read<Vec<u8>> {
+    let mut stream = ZlibDecoder::new(bytes).take(most + 1);
+    let mut inflated = Vec::new();
+    loop {
+        interrupt::check();
+        match (&mut stream).take(PIECE).read_to_end(&mut inflated) {
+            Ok(0) => break,
+            Ok(_) => {}
+            Err(error) => return refuse(format!("damaged: a chunk cannot be inflated: {error}")),
+        }
+    }
+    if inflated.len() as u64 > most {
+        return refuse("damaged: a chunk inflates to more bytes than it has");
+    }
+    Ok(inflated)
+}
+
+/// Values whose first bytes stand first, then their second bytes, and so on; what is left at the end stays.
+fn in_order(bytes: &[u8], width: usize) -> Vec<u8> {
+    let count = bytes.len() / width.max(1);
+    if width < 2 || count < 2 {
+        return bytes.to_vec();
+    }
+    let whole = count * width;
+    let mut ordered = vec![0; whole];
+    for (place, of_place) in bytes[..whole].chunks_exact(count).enumerate() {
+        for (value, byte) in ordered.chunks_exact_mut(width).zip(of_place) {
+            value[place] = *byte;
+        }
+    }
+    ordered.extend_from_slice(&bytes[whole..]);
+    ordered
+}
+
+/// The bytes before their check sum, if it is theirs.
+fn checked(mut bytes: Vec<u8>) -> Read<Vec<u8>> {
+    let Some(at) = bytes.len().checked_sub(4) else {
+        return refuse("damaged: a chunk without its check sum");
+    };
+    let mut stated = [0; 4];
+    stated.copy_from_slice(&bytes[at..]);
+    bytes.truncate(at);
+    if fletcher32(&bytes) != u32::from_le_bytes(stated) {
+        return refuse("damaged: a chunk whose check sum is another");
+    }
+    Ok(bytes)
+}
+
+/// Fletcher's sums of big-endian words of 16 bits, modulo 65535.
+fn fletcher32(bytes: &[u8]) -> u32 {
+    // Words, so many that no sum overflows.
+    const PIECE: usize = 2 * 360;
+    let fold = |sum: u32| (sum & 0xffff) + (sum >> 16);
+    let (mut low, mut high) = (0_u32, 0_u32);
+    for piece in bytes.chunks(PIECE) {
+        for word in piece.chunks(2) {
+            low += u32::from(word[0]) << 8 | u32::from(word.get(1).copied().unwrap_or(0));
+            high += low;
+        }
+        (low, high) = (fold(low), fold(high));
+    }
+    fold(high) << 16 | fold(low)
+}

@@ -1,0 +1,37 @@
+//! The heap for texts of any length.
+
+use super::bytes::{Read, Source, refuse};
+use super::header::as_size;
+
+/// The first `length` bytes of an object of a collection.
+pub(super) fn object<'a>(
+    source: &'a Source<'_>,
+    address: u64,
+    index: u32,
+    length: usize,
+) -> Read<&'a [u8]> {
+    let mut collection = source.at(address)?;
+    collection.signed(b"GCOL", 1)?;
+    collection.skip(3)?;
+    let size = as_size(collection.length()?)?;
+    let begun = 8 + collection.widths.length;
+    let mut objects = collection.part(size.saturating_sub(begun))?;
+    let prefix = 8 + objects.widths.length;
+    while objects.remaining() >= prefix {
+        let found = u32::from(objects.u16()?);
+        objects.skip(6)?;
+        let size = as_size(objects.length()?)?;
+        // Number 0 is the room that is left.
+        if found == 0 {
+            break;
+        }
+        let mut content = objects.part(size)?;
+        if found == index {
+            return content.take(length);
+        }
+        objects.align()?;
+    }
+    refuse(format!(
+        "damaged: text {index} is missing in the heap at byte {address}"
+    ))
+}

@@ -1,0 +1,153 @@
+//! Headers of objects: lists of messages, in two versions of the format.
+
+use super::bytes::{Cursor, Read, Source, refuse};
+use std::collections::VecDeque;
+
+/// Kinds of messages that are read.
+pub(super) mod kind {
+    pub(in super::super) const DATASPACE: u16 = 0x01;
+    pub(in super::super) const LINK_INFO: u16 = 0x02;
+    pub(in super::super) const DATATYPE: u16 = 0x03;
+    pub(in super::super) const LINK: u16 = 0x06;
+    pub(in super::super) const EXTERNAL_FILES: u16 = 0x07;
+    pub(in super::super) const LAYOUT: u16 = 0x08;
+    pub(in super::super) const FILTERS: u16 = 0x0b;
+    pub(in super::super) const ATTRIBUTE: u16 = 0x0c;
+    pub(in super::super) const CONTINUATION: u16 = 0x10;
+    pub(in super::super) const SYMBOL_TABLE: u16 = 0x11;
+    pub(in super::super) const ATTRIBUTE_INFO: u16 = 0x15;
+}
+
+/// Most messages of a header: with more, it has too many attributes, or blocks that name each other.
+const MOST_MESSAGES: usize = 65_536;
+
+/// A message of a header.
+#[derive(Debug, Clone)]
+pub(super) struct Message<'a> {
+    pub(super) kind: u16,
+    /// Its content stands elsewhere.
+    pub(super) shared: bool,
+    content: Cursor<'a>,
+}
+
+/// The header of a group or a dataset.
+#[derive(Debug)]
+pub(super) struct Header<'a> {
+    messages: Vec<Message<'a>>,
+}
+
+impl<'a> Header<'a> {
+    pub(super) fn read(source: &'a Source<'_>, address: u64) -> Read<Self> {
+        let mut messages = Vec::new();
+        let mut cursor = source.at(address)?;
+        let mut blocks = VecDeque::new();
+        let tracked = if cursor.clone().take(4)? == b"OHDR" {
+            cursor.signed(b"OHDR", 2)?;
+            let flags = cursor.u8()?;
+            let times = if flags & 0x20 == 0 { 0 } else { 16 };
+            let phases = if flags & 0x10 == 0 { 0 } else { 4 };
+            cursor.skip(times + phases)?;
+            let size = cursor.uint(1 << (flags & 3))?;
+            blocks.push_back(cursor.part(as_size(size)?)?);
+            Some(flags & 0x04 != 0)
+        } else {
+            let version = cursor.u8()?;
+            if version != 1 {
+                return refuse(format!(
+                    "damaged at byte {address}: expected the header of an object"
+                ));
+            }
+            cursor.skip(7)?;
+            let size = cursor.u32()?;
+            // Messages begin at a multiple of 8 bytes.
+            cursor.skip(4)?;
+            blocks.push_back(cursor.part(size as usize)?);
+            None
+        };
+        let mut count = 0;
+        while let Some(mut block) = blocks.pop_front() {
+            while let Some(message) = Message::next(&mut block, tracked)? {
+                count += 1;
+                if count > MOST_MESSAGES {
+                    return refuse(format!(
+                        "damaged: its header loops, or has more than {MOST_MESSAGES} messages"
+                    ));
+                }
+                if message.kind != kind::CONTINUATION {
+                    messages.push(message);
+                    continue;
+                }
+                let mut content = message.content;
+                let (place, length) = (content.place()?, content.length()?);
+                let mut more = source.block(place, length)?;
+                if tracked.is_some() {
+                    if more.take(4)? != b"OCHK" {
+                        return refuse(format!("damaged at byte {place}: expected a block OCHK"));
+                    }
+                    // Behind the messages stands a check sum.
+                    let length = more.remaining().saturating_sub(4);
+                    more = more.part(length)?;
+                }
+                blocks.push_back(more);
+            }
+        }
+        Ok(Self { messages })
+    }
+
+    /// The messages of a kind.
+    pub(super) fn all(&self, kind: u16) -> impl Iterator<Item = &Message<'a>> {
+        self.messages
+            .iter()
+            .filter(move |message| message.kind == kind)
+    }
+
+    /// The first message of a kind.
+    pub(super) fn first(&self, kind: u16) -> Option<&Message<'a>> {
+        self.all(kind).next()
+    }
+}
+
+impl<'a> Message<'a> {
+    /// The next of a block; `tracked` says for headers of version 2 whether messages have numbers.
+    fn next(block: &mut Cursor<'a>, tracked: Option<bool>) -> Read<Option<Self>> {
+        let prefix = match tracked {
+            None => 8,
+            Some(false) => 4,
+            Some(true) => 6,
+        };
+        // What is left of a block of version 2 may be too little for a message.
+        if block.remaining() < prefix {
+            return Ok(None);
+        }
+        let kind = if tracked.is_none() {
+            block.u16()?
+        } else {
+            u16::from(block.u8()?)
+        };
+        let size = usize::from(block.u16()?);
+        let flags = block.u8()?;
+        block.skip(match tracked {
+            None => 3,
+            Some(false) => 0,
+            Some(true) => 2,
+        })?;
+        Ok(Some(Self {
+            kind,
+            shared: flags & 0x02 != 0,
+            content: block.part(size)?,
+        }))
+    }
+
+    /// Its content.
+    pub(super) fn content(&self) -> Read<Cursor<'a>> {
+        if self.shared {
+            return refuse("it shares its description with another object; not read");
+        }
+        Ok(self.content.clone())
+    }
+}
+
+/// A number of bytes.
+pub(super) fn as_size(found: u64) -> Read<usize> {
+    usize::try_from(found).or_else(|_| refuse(format!("damaged: a size of {found} bytes")))
+}

@@ -1,0 +1,109 @@
+//! Where a variable's values are.
+
+use super::bytes::{Cursor, Read, refuse};
+
+/// The storage of a variable.
+#[derive(Debug)]
+pub(super) enum Layout<'a> {
+    /// In the header.
+    Compact(Cursor<'a>),
+    /// In one piece of so many bytes.
+    Contiguous(Option<u64>, u64),
+    /// In chunks.
+    Chunked(Chunked),
+}
+
+/// Chunks: their shape, and how to find them.
+#[derive(Debug)]
+pub(super) struct Chunked {
+    /// Values of a chunk along each axis.
+    pub(super) shape: Vec<u64>,
+    pub(super) index: Index,
+    /// Of the index; none where nothing was ever written.
+    pub(super) address: Option<u64>,
+}
+
+/// How chunks are found.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Index {
+    /// A B-tree of version 1.
+    Tree1,
+    /// One chunk: bytes as stored, if not as many as it has, and which filters it skipped.
+    Single {
+        size: Option<u64>,
+        skipped: u32,
+    },
+    /// One behind the other, in order.
+    Implicit,
+    Fixed,
+    Extensible,
+    /// A B-tree of version 2.
+    Tree2,
+}
+
+impl<'a> Layout<'a> {
+    pub(super) fn read(mut cursor: Cursor<'a>) -> Read<Self> {
+        let version = cursor.u8()?;
+        if !(3..=5).contains(&version) {
+            return refuse(format!("a layout of version {version}; read are 3 to 5"));
+        }
+        match cursor.u8()? {
+            0 => {
+                let size = usize::from(cursor.u16()?);
+                Ok(Self::Compact(cursor.part(size)?))
+            }
+            1 => Ok(Self::Contiguous(cursor.address()?, cursor.length()?)),
+            2 if version == 3 => {
+                let axes = cursor.u8()?;
+                let address = cursor.address()?;
+                let shape = (0..axes).map(|_| cursor.u32().map(u64::from)).collect();
+                chunked(shape, Index::Tree1, address)
+            }
+            2 => {
+                let flags = cursor.u8()?;
+                if flags & 0x01 != 0 {
+                    return refuse("chunks at its edges without filters; not read");
+                }
+                let axes = cursor.u8()?;
+                let width = usize::from(cursor.u8()?);
+                let shape = (0..axes).map(|_| cursor.uint(width)).collect();
+                let index = match cursor.u8()? {
+                    1 if flags & 0x02 != 0 => Index::Single {
+                        size: Some(cursor.length()?),
+                        skipped: cursor.u32()?,
+                    },
+                    1 => Index::Single {
+                        size: None,
+                        skipped: 0,
+                    },
+                    2 => Index::Implicit,
+                    // What follows stands in the index's header, too.
+                    3 => cursor.skip(1).map(|()| Index::Fixed)?,
+                    4 => cursor.skip(5).map(|()| Index::Extensible)?,
+                    5 => cursor.skip(6).map(|()| Index::Tree2)?,
+                    other => {
+                        return refuse(format!(
+                            "chunks with an index of kind {other}; read are 1 to 5"
+                        ));
+                    }
+                };
+                chunked(shape, index, cursor.address()?)
+            }
+            3 => refuse(
+                "a virtual dataset, whose values stand in other files; only the file itself is read",
+            ),
+            other => refuse(format!("a layout of class {other}; read are 0 to 2")),
+        }
+    }
+}
+
+/// The last axis of the stored shape is the bytes of a value.
+fn chunked<'a>(shape: Read<Vec<u64>>, index: Index, address: Option<u64>) -> Read<Layout<'a>> {
+    let mut shape = shape?;
+    shape.pop();
+    Ok(Layout::Chunked(Chunked {
+        shape,
+        index,
+        address,
+    }))
+}

@@ -1,0 +1,137 @@
+//! What a group holds, by name.
+
+use super::btree1;
+use super::btree2;
+use super::bytes::{Cursor, Read, Source, refuse};
+use super::fractal_heap::FractalHeap;
+use super::header::{Header, as_size, kind};
+
+/// What a name stands for.
+enum Link {
+    /// An object of this file, by its header's address.
+    Object(u64),
+    /// Another name in this file.
+    Name,
+    /// A name in another file.
+    OtherFile,
+    /// A kind that users define.
+    Unknown,
+}
+
+/// The address of the header that `name` stands for; none where the group has no such name.
+pub(super) fn find(source: &Source<'_>, group: &Header<'_>, name: &str) -> Read<Option<u64>> {
+    let mut found = None;
+    if let Some(table) = group.first(kind::SYMBOL_TABLE) {
+        found = in_table(source, table.content()?, name)?;
+    }
+    for message in group.all(kind::LINK) {
+        if found.is_none() {
+            found = link_of(message.content()?, name)?;
+        }
+    }
+    if found.is_none()
+        && let Some(info) = group.first(kind::LINK_INFO)
+    {
+        found = in_heap(source, info.content()?, name)?;
+    }
+    match found {
+        None => Ok(None),
+        Some(Link::Object(address)) => Ok(Some(address)),
+        Some(Link::Name) => {
+            refuse("is a soft link; read is what the file holds under its own name")
+        }
+        Some(Link::OtherFile) => refuse("is a link to another file; only the file itself is read"),
+        Some(Link::Unknown) => refuse("is a link of an unknown kind; only the file itself is read"),
+    }
+}
+
+/// Groups of older files: a tree of tables, with names in a heap.
+fn in_table(source: &Source<'_>, mut table: Cursor<'_>, name: &str) -> Read<Option<Link>> {
+    let (tree, heap) = (table.place()?, table.place()?);
+    let mut heap = source.at(heap)?;
+    heap.signed(b"HEAP", 0)?;
+    heap.skip(3)?;
+    let size = heap.length()?;
+    heap.length()?;
+    let names = source.values(heap.place()?, size)?;
+    let mut found = None;
+    btree1::entries(source, tree, 0, table.widths.length, &mut |_, address| {
+        let mut node = source.at(address)?;
+        node.signed(b"SNOD", 1)?;
+        node.skip(1)?;
+        for _ in 0..node.u16()? {
+            let name_at = as_size(node.address()?.unwrap_or(u64::MAX))?;
+            let object = node.address()?;
+            let cache = node.u32()?;
+            node.skip(20)?;
+            let Some(rest) = names.get(name_at..) else {
+                return refuse(format!(
+                    "damaged: a name at {name_at} of a heap of {size} bytes"
+                ));
+            };
+            let is_it = rest
+                .strip_prefix(name.as_bytes())
+                .is_some_and(|rest| rest.first() == Some(&0));
+            if is_it {
+                found = Some(match (cache, object) {
+                    (0 | 1, Some(object)) => Link::Object(object),
+                    (2, _) => Link::Name,
+                    _ => Link::Unknown,
+                });
+            }
+        }
+        Ok(())
+    })?;
+    Ok(found)
+}
+
+/// Groups with many links.
+fn in_heap(source: &Source<'_>, mut info: Cursor<'_>, name: &str) -> Read<Option<Link>> {
+    info.skip(1)?;
+    if info.u8()? & 1 != 0 {
+        info.skip(8)?;
+    }
+    let (Some(heap), Some(tree)) = (info.address()?, info.address()?) else {
+        return Ok(None);
+    };
+    let heap = FractalHeap::read(source, heap)?;
+    let mut found = None;
+    btree2::records(source, tree, &mut |mut record| {
+        // The name's hash.
+        record.skip(4)?;
+        let id = record.part(heap.id_length())?;
+        if found.is_none()
+            && let Some(link) = heap.object(source, id)?
+        {
+            found = link_of(link, name)?;
+        }
+        Ok(())
+    })?;
+    Ok(found)
+}
+
+/// What a link message stands for if it has that name.
+fn link_of(mut cursor: Cursor<'_>, name: &str) -> Read<Option<Link>> {
+    let version = cursor.u8()?;
+    if version != 1 {
+        return refuse(format!("a link of version {version}; read is version 1"));
+    }
+    let flags = cursor.u8()?;
+    let class = if flags & 0x08 == 0 { 0 } else { cursor.u8()? };
+    if flags & 0x04 != 0 {
+        cursor.skip(8)?;
+    }
+    if flags & 0x10 != 0 {
+        cursor.skip(1)?;
+    }
+    let length = as_size(cursor.uint(1 << (flags & 3))?)?;
+    if cursor.take(length)? != name.as_bytes() {
+        return Ok(None);
+    }
+    Ok(Some(match class {
+        0 => Link::Object(cursor.place()?),
+        1 => Link::Name,
+        64 => Link::OtherFile,
+        _ => Link::Unknown,
+    }))
+}

@@ -1,0 +1,193 @@
+//! HDF5 files, read: as much of the format as files of measured heads (SOFA, which is netCDF-4) are written in.
+//!
+//! A file is hostile until it is read. Only its own bytes are: links, values in other files and virtual datasets are refused.
+//! Whatever it states is checked against what it has before memory is taken; trees that loop end at a budget.
+//!
+//! What is read: superblocks 0 to 3; the variables of the root group, by any kind of index; integers and IEEE floats of either byte
+//! order; values in the header, in one piece and in chunks, behind deflate, shuffle and Fletcher-32; attributes of one text each.
+//! Names follow the HDF5 File Format Specification 3.0.
+
+mod arrays;
+mod attribute;
+mod btree1;
+mod btree2;
+mod bytes;
+mod datatype;
+mod filters;
+mod fractal_heap;
+mod global_heap;
+mod grid;
+mod header;
+mod index;
+mod layout;
+mod links;
+mod shape;
+mod superblock;
+
+use crate::error::AcousticsError;
+use bytes::{Fault, Read, Source, refuse};
+use datatype::Datatype;
+use filters::Filters;
+use header::{Header, kind};
+use layout::Layout;
+use shape::Shape;
+use superblock::Superblock;
+
+/// Most bytes of a file.
+pub const MOST_BYTES: u64 = 1 << 30;
+/// Most numbers of a variable.
+pub const MOST_NUMBERS: u64 = 1 << 26;
+
+/// The bytes of a file, and where its root is.
+#[derive(Debug)]
+pub struct Hdf5 {
+    bytes: Vec<u8>,
+    superblock: Superblock,
+}
+
+/// The numbers of a variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Numbers {
+    /// The lengths of its axes.
+    pub shape: Vec<usize>,
+    /// Its values, the last axis first.
+    pub values: Vec<f64>,
+}
+
+impl Hdf5 {
+    /// Opens a file by its bytes.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Hdf5`] when they are none of an HDF5 file.
+    pub fn open(bytes: Vec<u8>) -> Result<Self, AcousticsError> {
+        let superblock =
+            superblock::read(&bytes).map_err(|Fault(why)| AcousticsError::Hdf5(why))?;
+        Ok(Self { bytes, superblock })
+    }
+
+    /// The lengths of the axes of a variable; none where there is no variable of that name.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Hdf5`] when the file is damaged, or the name leads elsewhere.
+    pub fn shape(&self, name: &str) -> Result<Option<Vec<u64>>, AcousticsError> {
+        self.told(name, |source| {
+            let Some(header) = self.variable(source, name)? else {
+                return Ok(None);
+            };
+            let Some(space) = header.first(kind::DATASPACE) else {
+                return Ok(None);
+            };
+            let shape = Shape::read(space.content()?)?;
+            Ok(shape.map(|shape| shape.lengths))
+        })
+    }
+
+    /// The text of an attribute of a variable, or of the file; none where there is none of that name.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Hdf5`] when the file is damaged, the name leads elsewhere, or the attribute is no text.
+    pub fn text(&self, of: Option<&str>, name: &str) -> Result<Option<String>, AcousticsError> {
+        self.told(of.unwrap_or("the file"), |source| {
+            let header = match of {
+                Some(variable) => self.variable(source, variable)?,
+                None => Some(self.root(source)?),
+            };
+            header.map_or(Ok(None), |header| attribute::text(source, &header, name))
+        })
+    }
+
+    /// The numbers of a variable.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Hdf5`] when there is no such variable, it is damaged or no numbers, its values stand elsewhere, or it has more
+    /// than [`MOST_NUMBERS`].
+    pub fn numbers(&self, name: &str) -> Result<Numbers, AcousticsError> {
+        self.told(name, |source| match self.variable(source, name)? {
+            Some(header) => numbers(source, &header),
+            None => refuse("missing"),
+        })
+    }
+
+    /// Does what is told of a place in the file.
+    fn told<T>(
+        &self,
+        at: &str,
+        work: impl FnOnce(&Source<'_>) -> Read<T>,
+    ) -> Result<T, AcousticsError> {
+        let source = Source::new(&self.bytes[self.superblock.start..], self.superblock.widths);
+        work(&source).map_err(|Fault(why)| AcousticsError::Hdf5(format!("{at}: {why}")))
+    }
+
+    fn root<'s>(&self, source: &'s Source<'_>) -> Read<Header<'s>> {
+        Header::read(source, self.superblock.root)
+    }
+
+    fn variable<'s>(&self, source: &'s Source<'_>, name: &str) -> Read<Option<Header<'s>>> {
+        let found = links::find(source, &self.root(source)?, name)?;
+        found
+            .map(|address| Header::read(source, address))
+            .transpose()
+    }
+}
+
+fn numbers(source: &Source<'_>, header: &Header<'_>) -> Read<Numbers> {
+    let content = |kind, what: &str| match header.first(kind) {
+        Some(message) => message.content(),
+        None => refuse(format!("{what} is missing; it is no variable")),
+    };
+    if header.first(kind::EXTERNAL_FILES).is_some() {
+        return refuse("its values stand in another file; only the file itself is read");
+    }
+    let Some(shape) = Shape::read(content(kind::DATASPACE, "its dataspace")?)? else {
+        return refuse("has no values");
+    };
+    let count = shape.count().filter(|count| *count <= MOST_NUMBERS);
+    let Some(count) = count else {
+        return refuse(format!(
+            "shape {:?} has more than the {MOST_NUMBERS} numbers that are read",
+            shape.lengths
+        ));
+    };
+    let datatype = Datatype::read(content(kind::DATATYPE, "its datatype")?)?;
+    let Some(size) = datatype.number_size() else {
+        return refuse("is text; expected numbers");
+    };
+    let layout = Layout::read(content(kind::LAYOUT, "its layout")?)?;
+    let filters = match header.first(kind::FILTERS) {
+        Some(message) => Filters::read(message.content()?)?,
+        None => Filters::default(),
+    };
+    let needed = count * size as u64;
+    let plain = |bytes: &[u8], stated: u64| {
+        if stated != needed || !filters.is_empty() {
+            return refuse(format!(
+                "damaged: {stated} bytes of values; its shape {:?} takes {needed}",
+                shape.lengths
+            ));
+        }
+        Ok(bytes
+            .chunks_exact(size)
+            .map(|bytes| datatype.number(bytes))
+            .collect())
+    };
+    let values = match layout {
+        _ if count == 0 => Vec::new(),
+        Layout::Compact(mut bytes) => {
+            let stated = bytes.remaining();
+            plain(bytes.take(stated)?, stated as u64)?
+        }
+        Layout::Contiguous(Some(address), stated) => {
+            plain(source.values(address, stated)?, stated)?
+        }
+        Layout::Contiguous(None, _) => return refuse("its values were never written"),
+        Layout::Chunked(chunked) => {
+            grid::numbers(source, &shape, &chunked, &filters, datatype, size)?
+        }
+    };
+    let shape = shape
+        .lengths
+        .iter()
+        .map(|length| *length as usize)
+        .collect();
+    Ok(Numbers { shape, values })
+}

@@ -1,0 +1,63 @@
+//! Dataspaces: how many values there are.
+
+use super::bytes::{Cursor, Read, refuse};
+
+/// Most axes of a variable; SOFA's have at most 4.
+const MOST_AXES: u8 = 8;
+
+/// The axes of a variable; none for one value alone.
+#[derive(Debug, Clone)]
+pub(super) struct Shape {
+    /// Their lengths.
+    pub(super) lengths: Vec<u64>,
+    /// To what they may grow; none without an end.
+    pub(super) longest: Vec<Option<u64>>,
+}
+
+impl Shape {
+    /// The axes; none of what has no values at all.
+    pub(super) fn read(mut cursor: Cursor<'_>) -> Read<Option<Self>> {
+        let version = cursor.u8()?;
+        let axes = cursor.u8()?;
+        let flags = cursor.u8()?;
+        match version {
+            1 => cursor.skip(5)?,
+            2 => {
+                if cursor.u8()? == 2 {
+                    return Ok(None);
+                }
+            }
+            _ => {
+                return refuse(format!(
+                    "a dataspace of version {version}; read are 1 and 2"
+                ));
+            }
+        }
+        if axes > MOST_AXES {
+            return refuse(format!("{axes} axes; allowed are {MOST_AXES}"));
+        }
+        let lengths = (0..axes)
+            .map(|_| cursor.length())
+            .collect::<Read<Vec<_>>>()?;
+        let longest = if flags & 1 == 0 {
+            lengths.iter().copied().map(Some).collect()
+        } else {
+            let unlimited = u64::MAX >> (64 - 8 * cursor.widths.length);
+            let longest = (0..axes).map(|_| cursor.length());
+            longest
+                .map(|found| Ok(Some(found?).filter(|found| *found != unlimited)))
+                .collect::<Read<_>>()?
+        };
+        Ok(Some(Self { lengths, longest }))
+    }
+
+    /// How many values that are, if the number can be held.
+    pub(super) fn count(&self) -> Option<u64> {
+        product(&self.lengths)
+    }
+}
+
+/// The product, if the number can be held.
+pub(super) fn product(numbers: &[u64]) -> Option<u64> {
+    numbers.iter().try_fold(1_u64, |all, n| all.checked_mul(*n))
+}

@@ -1,0 +1,90 @@
+//! Where a file begins: its widths and its root.
+
+use super::bytes::{Cursor, Read, Source, Widths, refuse};
+
+const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
+/// Before the superblock there may be a block of the user's: 512 bytes, or a power of two above.
+const LONGEST_USER_BLOCK: usize = 1 << 16;
+
+/// What the superblock says.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Superblock {
+    /// Where it begins; all addresses count from here.
+    pub(super) start: usize,
+    pub(super) widths: Widths,
+    /// The address of the root group's header.
+    pub(super) root: u64,
+}
+
+pub(super) fn read(bytes: &[u8]) -> Read<Superblock> {
+    let starts = std::iter::once(0).chain((9..).map(|k| 1 << k));
+    let begins = |start: &usize| {
+        bytes
+            .get(*start..)
+            .is_some_and(|b| b.starts_with(&SIGNATURE))
+    };
+    let Some(start) = starts
+        .take_while(|start| *start <= LONGEST_USER_BLOCK)
+        .find(begins)
+    else {
+        return refuse("no HDF5, which SOFA files are: found no signature of it");
+    };
+    // Until the widths are known, none is asked for.
+    let (address, length) = (8, 8);
+    let source = Source::new(&bytes[start..], Widths { address, length });
+    let mut cursor = source.at(SIGNATURE.len() as u64)?;
+    let end = match cursor.u8()? {
+        version @ (0 | 1) => {
+            cursor.skip(4)?;
+            read_widths(&mut cursor)?;
+            // The trees' parameters and the flags.
+            cursor.skip(if version == 0 { 9 } else { 13 })?;
+            // Base, free space; behind the end the driver, and the root's entry, which begins with its name.
+            for _ in 0..2 {
+                cursor.address()?;
+            }
+            let end = cursor.place()?;
+            for _ in 0..2 {
+                cursor.address()?;
+            }
+            end
+        }
+        2 | 3 => {
+            read_widths(&mut cursor)?;
+            cursor.skip(1)?;
+            // Base, extension.
+            for _ in 0..2 {
+                cursor.address()?;
+            }
+            cursor.place()?
+        }
+        version => {
+            return refuse(format!(
+                "a superblock of version {version}; allowed are 0 to 3"
+            ));
+        }
+    };
+    if end > bytes.len() as u64 {
+        return refuse(format!(
+            "the file is cut: it has {} bytes and should have {end}",
+            bytes.len()
+        ));
+    }
+    Ok(Superblock {
+        start,
+        root: cursor.place()?,
+        widths: cursor.widths,
+    })
+}
+
+fn read_widths(cursor: &mut Cursor<'_>) -> Read<()> {
+    let (address, length) = (usize::from(cursor.u8()?), usize::from(cursor.u8()?));
+    let allowed = [2, 4, 8];
+    if !allowed.contains(&address) || !allowed.contains(&length) {
+        return refuse(format!(
+            "addresses of {address} and lengths of {length} bytes; allowed are 2, 4 and 8"
+        ));
+    }
+    cursor.widths = Widths { address, length };
+    Ok(())
+}
