@@ -3,6 +3,8 @@
 //! [`TriangleBvh`] is built once for a mesh or for the static geometry of a house, [`InstanceSet`] holds the moving things
 //! of one world, and [`SceneBvh`] asks both. A ray finds the nearest surface; surfaces that coincide count as one, and the
 //! lower id wins, whatever the order of storage, the tree or the kernel.
+//!
+//! [`BoxTree`] finds boxes near a box.
 
 #![expect(
     clippy::inline_always,
@@ -15,6 +17,7 @@
 )]
 
 mod binary;
+mod boxes;
 mod build;
 pub mod flat;
 mod instances;
@@ -26,6 +29,7 @@ mod scene;
 mod triangles;
 mod wide;
 
+pub use boxes::BoxTree;
 pub use instances::{Instance, InstanceSet};
 pub use packet::{PacketHits, RayPacket};
 pub use ray::{Hit, Ray, RayMask};

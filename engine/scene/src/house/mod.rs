@@ -16,6 +16,8 @@ pub use geometry::{Geometry, Placed, StaticTriangle, Surface, SurfaceOwner};
 pub use shoebox::ShoeboxMaterials;
 
 use crate::error::SceneError;
+use crate::fixtures::Receptacle;
+use crate::ids::{IdVec, ObjectId};
 use std::ops::Deref;
 use std::sync::OnceLock;
 
@@ -28,6 +30,7 @@ pub struct House {
     data: HouseData,
     geometry: OnceLock<Geometry>,
     fingerprint: OnceLock<u64>,
+    spaces: OnceLock<IdVec<ObjectId, Vec<u32>>>,
 }
 
 impl House {
@@ -41,6 +44,7 @@ impl House {
             data,
             geometry: OnceLock::new(),
             fingerprint: OnceLock::new(),
+            spaces: OnceLock::new(),
         })
     }
 
@@ -55,6 +59,19 @@ impl House {
         *self.fingerprint.get_or_init(|| fingerprint::of(&self.data))
     }
 
+    /// The marked spaces of an object, in order.
+    pub fn receptacles_of(&self, object: ObjectId) -> impl Iterator<Item = &Receptacle> {
+        let spaces = self.spaces.get_or_init(|| {
+            let mut spaces = IdVec::filled(Vec::new(), self.data.objects.len());
+            for (k, space) in self.data.receptacles.iter().enumerate() {
+                spaces[space.object].push(k as u32);
+            }
+            spaces
+        });
+        let own = spaces[object].iter();
+        own.map(|k| &self.data.receptacles[*k as usize])
+    }
+
     /// The plain data, for editing and writing.
     pub fn data(&self) -> &HouseData {
         &self.data
@@ -67,6 +84,7 @@ impl Clone for House {
             data: self.data.clone(),
             geometry: OnceLock::new(),
             fingerprint: OnceLock::new(),
+            spaces: OnceLock::new(),
         }
     }
 }

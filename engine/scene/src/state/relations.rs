@@ -3,9 +3,10 @@
 
 use super::State;
 use crate::bounds::Aabb;
-use crate::fixtures::Holding;
-use crate::house::House;
+use crate::fixtures::{Holding, Receptacle};
+use crate::house::{House, HouseData};
 use crate::ids::{Id, ObjectId, PartId};
+use crate::space::Pose;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -120,48 +121,76 @@ impl House {
     /// bowl, a drawer, a sink and a shelf's compartment (open in front) contain things; a table does not contain what
     /// lies under it.
     pub fn encloses(&self, state: &State, container: ObjectId, outer: &Aabb, inner: &Aabb) -> bool {
+        let pose = |part: PartId| state.part_pose[part];
+        let spaces = || self.receptacles_of(container);
+        encloses(self.data(), &pose, spaces, (container, outer), inner)
+    }
+
+    /// Whether [`Self::encloses`] can hold between the boxes: four fifths of `inner` lie in `outer`, the larger one, grown by
+    /// 2 cm.
+    pub fn fits_in(outer: &Aabb, inner: &Aabb) -> bool {
         // The smaller volume is the content; this keeps the relation one way.
-        let fits = inner.volume() < outer.volume()
-            && share_inside(inner, &outer.grown(BRIM_M)) >= INSIDE_SHARE;
-        let middle = inner.center();
-        fits && (self.in_marked_space(state, container, middle)
-            || self.surrounds(state, container, middle))
+        inner.volume() < outer.volume() && share_inside(inner, &outer.grown(BRIM_M)) >= INSIDE_SHARE
     }
+}
 
-    fn in_marked_space(&self, state: &State, container: ObjectId, point: Vec3) -> bool {
-        self.receptacles
-            .iter()
-            .filter(|space| space.object == container && space.holding == Holding::In)
-            .any(|space| {
-                let part_from_world = state.part_pose[space.part].inverse();
-                space
-                    .space_in_part
-                    .grown(SPACE_MARGIN_M)
-                    .contains(part_from_world.transform_point(point))
-            })
+impl HouseData {
+    /// As [`House::encloses`], with every part where the house puts it.
+    pub fn encloses_at_start(&self, container: ObjectId, outer: &Aabb, inner: &Aabb) -> bool {
+        let pose = |part: PartId| self.parts[part].world_from_part;
+        let spaces = || {
+            let all = self.receptacles.iter();
+            all.filter(|space| space.object == container)
+        };
+        encloses(self, &pose, spaces, (container, outer), inner)
     }
+}
 
-    fn surrounds(&self, state: &State, container: ObjectId, point: Vec3) -> bool {
-        let root = self.objects[container].first_part;
-        let axes = state.part_pose[root].rotation;
-        let rays =
-            [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z, Vec3::NEG_Y].map(|axis| axes * axis);
-        let mut met = [false; 5];
-        for id in self.objects[container].parts() {
-            let part = &self.parts[id];
-            let mesh = &self.meshes[part.mesh];
-            let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
-            for triangle in 0..mesh.triangles.len() {
-                let corners = mesh
-                    .corners(triangle)
-                    .map(|corner| world_from_mesh.transform_point3(corner));
-                for (met, ray) in met.iter_mut().zip(rays) {
-                    *met = *met || ray_meets(corners, point, ray);
-                }
+fn encloses<'a, I: Iterator<Item = &'a Receptacle>>(
+    data: &HouseData,
+    pose: &dyn Fn(PartId) -> Pose,
+    spaces: impl FnOnce() -> I,
+    (container, outer): (ObjectId, &Aabb),
+    inner: &Aabb,
+) -> bool {
+    let middle = inner.center();
+    let marked = |space: &Receptacle| {
+        space.holding == Holding::In && {
+            let part_from_world = pose(space.part).inverse();
+            space
+                .space_in_part
+                .grown(SPACE_MARGIN_M)
+                .contains(part_from_world.transform_point(middle))
+        }
+    };
+    House::fits_in(outer, inner)
+        && (spaces().any(marked) || surrounds(data, pose, container, middle))
+}
+
+fn surrounds(
+    data: &HouseData,
+    pose: &dyn Fn(PartId) -> Pose,
+    container: ObjectId,
+    point: Vec3,
+) -> bool {
+    let root = data.objects[container].first_part;
+    let axes = pose(root).rotation;
+    let rays = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z, Vec3::NEG_Y].map(|axis| axes * axis);
+    let mut met = [false; 5];
+    for id in data.objects[container].parts() {
+        let part = &data.parts[id];
+        let mesh = &data.meshes[part.mesh];
+        let world_from_mesh = pose(id).to_affine() * part.part_from_mesh;
+        for triangle in 0..mesh.triangles.len() {
+            let corners = mesh
+                .corners(triangle)
+                .map(|corner| world_from_mesh.transform_point3(corner));
+            for (met, ray) in met.iter_mut().zip(rays) {
+                *met = *met || ray_meets(corners, point, ray);
             }
         }
-        met.iter().filter(|met| **met).count() >= WALLS
     }
+    met.iter().filter(|met| **met).count() >= WALLS
 }
 
 fn share_inside(inner: &Aabb, outer: &Aabb) -> f32 {
