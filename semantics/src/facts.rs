@@ -145,6 +145,12 @@ impl Facts {
             .then_some(substance.adjective.as_str())
     }
 
+    /// The adjectives of the substances on at least a fifth of its surface, largest share first.
+    pub(crate) fn adjectives(&self) -> impl Iterator<Item = &'static str> {
+        let large = self.substances.iter().filter(|(_, share)| *share >= 0.2);
+        large.map(|(substance, _)| substance.adjective.as_str())
+    }
+
     /// Whether it belongs to a hole in a wall: a door, a window, a curtain. It marks no place of other things.
     pub fn is_opening(&self) -> bool {
         let classes = ["door", "window", "curtain", "blinds"];

@@ -3,7 +3,11 @@
 use crate::predicates;
 use crate::scene::{Scene, Term, Viewer};
 use dwell_scene::ObjectId;
+use dwell_scene::interrupt;
 use serde::{Deserialize, Serialize};
+
+/// Of how many things left and right are told: each has a side of each other.
+const MOST_IN_FRONT: usize = 1000;
 
 /// What is where. Ids are those of sensors; rooms are counted from 0.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -99,7 +103,25 @@ fn node(scene: &Scene<'_>, id: ObjectId) -> ObjectNode {
     }
 }
 
-/// Everything that can be said about the scene, as data; with a viewer, left and right too.
+/// The objects and pieces of the building whose middles are in front of a viewer, the nearest of them; in order.
+fn in_front(scene: &Scene<'_>, viewer: &Viewer) -> Vec<Term> {
+    let house = scene.house();
+    let objects = house.objects.ids().map(Term::Object);
+    let terms = objects.chain(house.structure.ids().map(Term::Structure));
+    let eye = viewer.world_from_camera.position;
+    let mut front: Vec<(f32, Term)> = terms
+        .filter(|term| predicates::is_in_front(scene, viewer, *term))
+        .filter_map(|term| Some((scene.center(term)?.distance_squared(eye), term)))
+        .collect();
+    front.sort_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
+    front.truncate(MOST_IN_FRONT);
+    let mut front: Vec<Term> = front.into_iter().map(|(_, term)| term).collect();
+    front.sort_unstable();
+    front
+}
+
+/// Everything that can be said about the scene, as data; with a viewer, left and right too, of the 1,000 things nearest before
+/// it.
 ///
 /// Relations are those between objects, between an object and a structure piece it rests or hangs on, and `in_room`.
 pub fn scene_graph(scene: &Scene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
@@ -113,39 +135,31 @@ pub fn scene_graph(scene: &Scene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
             passages: facts.passages.iter().map(|room| room.0).collect(),
         }
     });
+    let front = viewer.map_or_else(Vec::new, |viewer| in_front(scene, viewer));
     let mut relations = Vec::new();
     for subject in house.objects.ids() {
-        let others = house
-            .objects
-            .ids()
-            .filter(|other| *other != subject)
-            .map(Term::Object);
-        let pieces = house.structure.ids().map(Term::Structure);
-        let terms: Vec<Term> = house
-            .rooms
-            .ids()
-            .map(Term::Room)
-            .chain(others)
-            .chain(pieces)
-            .collect();
+        interrupt::check();
+        let own = Term::Object(subject);
         for predicate in predicates::all() {
-            for term in &terms {
-                if !predicate.holds(scene, Term::Object(subject), *term, viewer) {
-                    continue;
-                }
-                let object = match *term {
+            let found = if !predicate.needs_viewer() {
+                predicate.related(scene, subject)
+            } else if front.binary_search(&own).is_ok() {
+                let holds =
+                    |term: &&Term| **term != own && predicate.holds(scene, own, **term, viewer);
+                front.iter().filter(holds).copied().collect()
+            } else {
+                Vec::new()
+            };
+            relations.extend(found.into_iter().map(|term| Edge {
+                subject: house.entity_of_object(subject).0,
+                predicate: predicate.name().to_owned(),
+                object: match term {
                     Term::Object(id) => house.entity_of_object(id).0,
                     Term::Structure(id) => house.entity_of_structure(id).0,
                     Term::Room(id) => id.0 as i32,
                     Term::Agent(id) => house.entity_of_agent(id).0,
-                };
-                let subject = house.entity_of_object(subject).0;
-                relations.push(Edge {
-                    subject,
-                    predicate: predicate.name().to_owned(),
-                    object,
-                });
-            }
+                },
+            }));
         }
     }
     relations.sort_by(|p, q| {

@@ -10,6 +10,7 @@ mod facts;
 pub mod geometry;
 pub mod graph;
 pub mod instruct;
+mod kinds;
 mod passages;
 pub mod predicates;
 pub mod refer;

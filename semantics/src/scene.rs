@@ -2,15 +2,24 @@
 
 use crate::facts::Facts;
 use crate::geometry::Extent;
-use crate::predicates::{Support, supports_of};
+use crate::predicates::{Support, around, beside, near, supports_of};
+use crate::refer::Alike;
 use crate::semantics::Semantics;
+use dwell_scene::bvh::BoxTree;
+use dwell_scene::interrupt;
 use dwell_scene::{
-    AgentId, Entity, EntityId, Holding, House, IdVec, ObjectId, Pose, Receptacle, RoomId, State,
+    Aabb, AgentId, Entity, EntityId, Holding, House, Id, IdVec, ObjectId, Pose, RoomId, State,
     StructureId,
 };
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// Of how many things around it a thing is beside, on, or hung before one: where more lie in each other, those about its
+/// middle count.
+pub(crate) const MOST_NEAR: usize = 128;
 
 /// Something that a predicate speaks about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -80,9 +89,23 @@ pub struct Scene<'a> {
     pub semantics: &'a Semantics,
     /// The state.
     pub state: &'a State,
-    extents: IdVec<ObjectId, OnceCell<Extent>>,
-    supports: IdVec<ObjectId, OnceCell<Vec<Support>>>,
-    rooms: IdVec<ObjectId, OnceCell<Option<RoomId>>>,
+    known: IdVec<ObjectId, Known>,
+    boxes: OnceCell<BoxTree>,
+    in_rooms: OnceCell<IdVec<RoomId, Vec<ObjectId>>>,
+    windows: OnceCell<IdVec<RoomId, usize>>,
+    /// By noun.
+    alike: RefCell<BTreeMap<String, Rc<Alike>>>,
+}
+
+/// What was measured of an object.
+#[derive(Default)]
+struct Known {
+    extent: OnceCell<Extent>,
+    room: OnceCell<Option<RoomId>>,
+    supports: OnceCell<Vec<Support>>,
+    around: OnceCell<Vec<ObjectId>>,
+    near: OnceCell<Vec<ObjectId>>,
+    beside: OnceCell<Vec<ObjectId>>,
 }
 
 impl<'a> Scene<'a> {
@@ -91,9 +114,11 @@ impl<'a> Scene<'a> {
         Self {
             semantics,
             state,
-            extents: (0..count).map(|_| OnceCell::new()).collect(),
-            supports: (0..count).map(|_| OnceCell::new()).collect(),
-            rooms: (0..count).map(|_| OnceCell::new()).collect(),
+            known: (0..count).map(|_| Known::default()).collect(),
+            boxes: OnceCell::new(),
+            in_rooms: OnceCell::new(),
+            windows: OnceCell::new(),
+            alike: RefCell::default(),
         }
     }
 
@@ -120,21 +145,62 @@ impl<'a> Scene<'a> {
         if self.at_rest(object) {
             return self.semantics.rest_extent(object);
         }
-        self.extents[object].get_or_init(|| Extent::measure(self.house(), self.state, object))
+        let extent = &self.known[object].extent;
+        extent.get_or_init(|| Extent::measure(self.house(), self.state, object))
+    }
+
+    /// At most `most` things whose boxes share a point with `reach` and that `counts` wants, rising; of more than that those
+    /// about its middle.
+    pub(crate) fn within(
+        &self,
+        reach: &Aabb,
+        most: usize,
+        mut counts: impl FnMut(ObjectId) -> bool,
+    ) -> Vec<ObjectId> {
+        let boxes = self.boxes.get_or_init(|| {
+            let boxes = self.house().objects.ids().map(|object| {
+                interrupt::check();
+                self.extent(object).bounds
+            });
+            BoxTree::new(boxes.collect())
+        });
+        let counts = |k| counts(ObjectId::from_index(k));
+        let found = boxes.nearest(reach, most, counts).into_iter();
+        found.map(ObjectId::from_index).collect()
     }
 
     /// What the object rests on, the largest share first.
     pub fn supports(&self, object: ObjectId) -> &[Support] {
-        self.supports[object].get_or_init(|| supports_of(self, object))
+        let supports = &self.known[object].supports;
+        supports.get_or_init(|| supports_of(self, object))
+    }
+
+    /// What the object is in, rising; at most 32 things.
+    pub(crate) fn around(&self, object: ObjectId) -> &[ObjectId] {
+        self.known[object]
+            .around
+            .get_or_init(|| around(self, object))
+    }
+
+    /// What may be next to the object, rising; at most [`MOST_NEAR`] things.
+    pub(crate) fn near(&self, object: ObjectId) -> &[ObjectId] {
+        self.known[object].near.get_or_init(|| near(self, object))
+    }
+
+    /// What is next to the object, rising.
+    pub(crate) fn beside(&self, object: ObjectId) -> &[ObjectId] {
+        self.known[object]
+            .beside
+            .get_or_init(|| beside(self, object))
     }
 
     /// Whether people say of things that they lie on it, never in it: a book between the arms of a sofa lies on the sofa.
     pub(crate) fn is_lain_upon(&self, object: ObjectId) -> bool {
         let seats = ["chair", "sofa", "bed"];
         let row = self.facts(object).category;
-        let inside = |place: &Receptacle| place.object == object && place.holding == Holding::In;
+        let mut places = self.house().receptacles_of(object);
         row.is_some_and(|row| seats.contains(&row.nyu40_name) && !row.contains)
-            && !self.house().receptacles.iter().any(inside)
+            && !places.any(|place| place.holding == Holding::In)
     }
 
     /// Who holds the object.
@@ -145,7 +211,8 @@ impl<'a> Scene<'a> {
     /// The room an object is in: of its holder, else the one around the middle of its box (the smallest where rooms
     /// overlap), else, while it stands where the house puts it, the one that the house's file names. `None` outside.
     pub fn room_of(&self, object: ObjectId) -> Option<RoomId> {
-        *self.rooms[object].get_or_init(|| self.find_room(object))
+        let room = &self.known[object].room;
+        *room.get_or_init(|| self.find_room(object))
     }
 
     fn find_room(&self, object: ObjectId) -> Option<RoomId> {
@@ -167,12 +234,43 @@ impl<'a> Scene<'a> {
     }
 
     /// The objects in a room, in order.
-    pub fn objects_in(&self, room: RoomId) -> Vec<ObjectId> {
-        self.house()
-            .objects
-            .ids()
-            .filter(|object| self.room_of(*object) == Some(room))
-            .collect()
+    pub fn objects_in(&self, room: RoomId) -> &[ObjectId] {
+        let rooms = self.in_rooms.get_or_init(|| {
+            let mut rooms = IdVec::filled(Vec::new(), self.house().rooms.len());
+            for object in self.house().objects.ids() {
+                interrupt::check();
+                if let Some(room) = self.room_of(object) {
+                    rooms[room].push(object);
+                }
+            }
+            rooms
+        });
+        &rooms[room]
+    }
+
+    /// How many windows a room has.
+    pub(crate) fn windows_in(&self, room: RoomId) -> usize {
+        let rooms = self.windows.get_or_init(|| {
+            let mut rooms = IdVec::filled(0, self.house().rooms.len());
+            for window in self.semantics.kinds().windows() {
+                if let Some(room) = self.room_of(*window) {
+                    rooms[room] += 1;
+                }
+            }
+            rooms
+        });
+        rooms[room]
+    }
+
+    /// The things that may be called `noun`.
+    pub(crate) fn alike(&self, noun: &str) -> Rc<Alike> {
+        if let Some(known) = self.alike.borrow().get(noun) {
+            return known.clone();
+        }
+        let alike = Rc::new(Alike::gather(self, noun));
+        let mut all = self.alike.borrow_mut();
+        all.insert(noun.to_owned(), alike.clone());
+        alike
     }
 
     /// The middle of a thing, m; `None` for a room and for an unknown agent.

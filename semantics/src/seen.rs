@@ -1,6 +1,6 @@
 //! What of things is seen: their surfaces as they show where the things stand at the start.
 
-use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::bvh::{BoxTree, Ray, RayMask};
 use dwell_scene::math;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -19,9 +19,11 @@ const SLOPE: f32 = 0.35;
 const EYES_M: f32 = 1.7;
 /// How many rays must meet a thing for it to count as seen.
 const LEAST_HITS: usize = 12;
+/// What lies in the boxes of more others lies in a heap.
+const MOST_AROUND: usize = 64;
 
 /// For each object the area that shows of each of its materials, summed over the sides, m²; nothing for what is hidden, as a
-/// plate in a cupboard is. `bounds`: the box of each object.
+/// plate in a cupboard is, and for what lies in a heap: in the boxes of more than 64 others. `bounds`: the box of each object.
 ///
 /// Walls behind things, and other things before them, hide what they hide in the house: the back of a cupboard counts for
 /// nothing.
@@ -30,8 +32,19 @@ pub(crate) fn seen_surfaces(
     bounds: &IdVec<ObjectId, Aabb>,
 ) -> IdVec<ObjectId, Vec<(MaterialId, f32)>> {
     let ids: Vec<ObjectId> = bounds.ids().collect();
+    let tree = BoxTree::new(bounds.as_slice().to_vec());
     Threads::resolve(None)
-        .map(ids.len(), |k| seen(rays, &bounds[ids[k]], ids[k]))
+        .map(ids.len(), |k| {
+            let own = &bounds[ids[k]];
+            // Each ray would meet all the others.
+            let middle = Aabb::new(own.center(), own.center());
+            let others = tree.nearest(&middle, MOST_AROUND + 1, |other| other != k);
+            if others.len() > MOST_AROUND {
+                Vec::new()
+            } else {
+                seen(rays, own, ids[k])
+            }
+        })
         .into()
 }
 

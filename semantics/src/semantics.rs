@@ -5,12 +5,15 @@ use crate::doors::Doorway;
 use crate::error::SemanticsError;
 use crate::facts::Facts;
 use crate::geometry::{Extent, Hull};
+use crate::kinds::Kinds;
 use crate::predicates;
 use crate::rooms::RoomFacts;
 use crate::scene::{Scene, Term, Viewer};
 use crate::seen::seen_surfaces;
+use dwell_scene::bvh::BoxTree;
+use dwell_scene::interrupt;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, House, IdVec, MaterialId, ObjectId, RoomId, State, StructureId};
+use dwell_scene::{Aabb, House, Id, IdVec, MaterialId, ObjectId, RoomId, State, StructureId};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -20,8 +23,10 @@ use std::sync::Arc;
 pub struct Semantics {
     house: Arc<House>,
     facts: IdVec<ObjectId, Facts>,
+    kinds: Kinds,
     rest_extents: IdVec<ObjectId, Extent>,
     structure: IdVec<StructureId, (Aabb, Hull)>,
+    structure_boxes: BoxTree,
     rooms: IdVec<RoomId, RoomFacts>,
     doorways: BTreeMap<ObjectId, Doorway>,
     paints: IdVec<MaterialId, Paint>,
@@ -36,17 +41,25 @@ impl Semantics {
         let structure = house.structure.iter().map(|piece| {
             let mesh = &house.meshes[piece.mesh];
             let outline = mesh.positions.iter().map(|p| Vec2::new(p.x, p.z));
+            interrupt::check();
             (mesh.bounds(), Hull::around(outline))
         });
+        let structure: IdVec<StructureId, (Aabb, Hull)> = structure.collect();
         let rest_extents: IdVec<ObjectId, Extent> = objects()
-            .map(|id| Extent::measure(house, &state, id))
+            .map(|id| {
+                interrupt::check();
+                Extent::measure(house, &state, id)
+            })
             .collect();
         let rays = RayScene::new(house.clone());
         let bounds: IdVec<ObjectId, Aabb> =
             rest_extents.iter().map(|extent| extent.bounds).collect();
         let seen = seen_surfaces(&rays, &bounds);
         let facts: IdVec<ObjectId, Facts> = objects()
-            .map(|id| Facts::gather(house, &paints, &seen[id], id))
+            .map(|id| {
+                interrupt::check();
+                Facts::gather(house, &paints, &seen[id], id)
+            })
             .collect();
         let doors = facts.iter_ids().filter(|(_, facts)| facts.is_door());
         let doorways: BTreeMap<ObjectId, Doorway> = doors
@@ -54,7 +67,9 @@ impl Semantics {
             .collect();
         let doors: Vec<Aabb> = doorways.keys().map(|id| bounds[*id]).collect();
         Self {
-            structure: structure.collect(),
+            structure_boxes: BoxTree::new(structure.iter().map(|(bounds, _)| *bounds).collect()),
+            structure,
+            kinds: Kinds::gather(&facts),
             rooms: RoomFacts::gather(&rays, &paints, &doors),
             doorways,
             facts,
@@ -84,6 +99,11 @@ impl Semantics {
         self.doorways.get(&door)
     }
 
+    /// The doors and archways with where they lead, rising.
+    pub(crate) fn doorways(&self) -> impl Iterator<Item = (ObjectId, &Doorway)> {
+        self.doorways.iter().map(|(door, doorway)| (*door, doorway))
+    }
+
     /// Mean colour of a material in linear light: texture times base colour.
     pub fn material_color(&self, material: MaterialId) -> [f32; 3] {
         self.paints[material].mean
@@ -99,6 +119,21 @@ impl Semantics {
 
     pub(crate) fn structure_outline(&self, piece: StructureId) -> &Hull {
         &self.structure[piece].1
+    }
+
+    /// The structure pieces whose boxes share a point with `reach`, rising.
+    pub(crate) fn structure_at(&self, reach: &Aabb) -> impl Iterator<Item = StructureId> + use<> {
+        let touching = self.structure_boxes.touching(reach).into_iter();
+        touching.map(StructureId::from_index)
+    }
+
+    pub(crate) fn kinds(&self) -> &Kinds {
+        &self.kinds
+    }
+
+    /// The numbers of the kinds of things that may be called `noun`.
+    pub(crate) fn kinds_called(&self, noun: &str) -> Vec<u32> {
+        self.kinds.called(&self.facts, noun)
     }
 
     /// The house in `state`, ready for questions.

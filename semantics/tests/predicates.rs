@@ -355,3 +355,30 @@ fn a_thing_in_a_wall_keeps_the_room_of_its_file_until_it_moves() {
     state.part_pose[house.objects[window].first_part].position.z -= 3.0;
     assert_eq!(semantics.scene(&state).room_of(window), None);
 }
+
+/// What a relation leads to is found without asking for each pair; it is what asking for each pair finds.
+#[test]
+fn what_is_related_is_what_holds() {
+    let small = small_house();
+    let semantics = Semantics::new(&small.house);
+    let terms = terms(&small.house);
+    for seed in 0..8 {
+        let state = if seed == 0 {
+            State::new(&small.house)
+        } else {
+            shaken(&small.house, seed)
+        };
+        let scene = semantics.scene(&state);
+        for predicate in all() {
+            for id in small.house.objects.ids() {
+                let mut related = predicate.related(&scene, id);
+                related.sort_unstable();
+                let own = Term::Object(id);
+                let mut held = terms.clone();
+                held.retain(|term| predicate.holds(&scene, own, *term, None));
+                held.sort_unstable();
+                assert_eq!(related, held, "{} {id:?}, seed {seed}", predicate.name());
+            }
+        }
+    }
+}

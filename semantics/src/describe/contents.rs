@@ -4,6 +4,7 @@ use super::object::{adjectives, described, phrase};
 use crate::english::{counted, with_article};
 use crate::scene::Scene;
 use dwell_scene::ObjectId;
+use std::collections::BTreeMap;
 
 /// Things of one kind.
 pub(super) struct Group {
@@ -35,22 +36,24 @@ impl Group {
 /// `objects` by spoken noun, the largest things first (they are seen first), then by noun.
 pub(super) fn grouped(scene: &Scene<'_>, objects: &[ObjectId]) -> Vec<Group> {
     let mut groups: Vec<(f32, &str, Group)> = Vec::new();
+    let mut known: BTreeMap<&str, usize> = BTreeMap::new();
     for object in objects {
         let noun = scene.facts(*object).noun.as_str();
         let volume = scene.extent(*object).bounds.volume();
-        match groups.iter_mut().find(|(_, known, _)| *known == noun) {
-            Some((largest, _, group)) => {
-                *largest = largest.max(volume);
-                group.objects.push(*object);
-            }
-            None => groups.push((
+        let next = groups.len();
+        let k = *known.entry(noun).or_insert(next);
+        if k == next {
+            groups.push((
                 volume,
                 noun,
                 Group {
-                    objects: vec![*object],
+                    objects: Vec::new(),
                 },
-            )),
+            ));
         }
+        let (largest, _, group) = &mut groups[k];
+        *largest = largest.max(volume);
+        group.objects.push(*object);
     }
     groups.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(q.1)));
     groups.into_iter().map(|(_, _, group)| group).collect()

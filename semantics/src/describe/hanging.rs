@@ -1,7 +1,6 @@
 //! What hangs, and on what.
 
 use super::contents::grouped;
-use super::room::is_a;
 use crate::english::list;
 use crate::predicates::mount_of;
 use crate::scene::{Scene, Term};
@@ -52,10 +51,10 @@ impl Hanging {
             Term::Structure(_) => Hold::Wall,
             _ => Hold::Window,
         };
-        let window = |other: &ObjectId| is_a(scene, *other, &["window"]);
-        let windows = |room| scene.objects_in(room).iter().filter(|o| window(o)).count();
-        let other_windows =
-            hold == Hold::Window && scene.room_of(thing).is_some_and(|room| windows(room) > 1);
+        let other_windows = hold == Hold::Window
+            && scene
+                .room_of(thing)
+                .is_some_and(|room| scene.windows_in(room) > 1);
         Some(Self {
             thing,
             hold,

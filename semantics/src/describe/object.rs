@@ -3,7 +3,8 @@
 use super::hanging::Hanging;
 use crate::english::{qualified, with_article};
 use crate::predicates;
-use crate::scene::{Scene, Term};
+use crate::scene::Scene;
+use dwell_scene::interrupt;
 use dwell_scene::{ObjectId, RoomId};
 
 /// Openness above which a thing is called open, and below which closed.
@@ -54,9 +55,8 @@ pub(super) fn phrase(scene: &Scene<'_>, object: ObjectId) -> String {
 pub(super) fn alike(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> usize {
     let noun = &scene.facts(object).noun;
     room.map_or(2, |room| {
-        let here = scene.objects_in(room).into_iter();
-        here.filter(|other| scene.facts(*other).is_called(noun))
-            .count()
+        let alike = scene.alike(noun);
+        alike.in_rooms().get(&room).copied().unwrap_or_default()
     })
 }
 
@@ -72,10 +72,7 @@ pub(super) fn landmark(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>
 
 fn first_related(scene: &Scene<'_>, object: ObjectId, name: &str) -> Option<ObjectId> {
     let predicate = predicates::find(name).ok()?;
-    let holds = |other: &ObjectId| {
-        *other != object && predicate.holds(scene, Term::Object(object), Term::Object(*other), None)
-    };
-    let mut found: Vec<ObjectId> = scene.house().objects.ids().filter(holds).collect();
+    let mut found = predicates::related_objects(scene, predicate, object);
     // A thing is placed by something larger than itself; the largest is the easiest to find.
     let marks = |id: ObjectId| scene.facts(id).category.is_some() && !scene.facts(id).is_opening();
     found.retain(|other| name != "next_to" || marks(*other));
@@ -118,6 +115,7 @@ fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
 
 /// A caption: "a brown wooden chair next to the table in the kitchen".
 pub fn caption(scene: &Scene<'_>, object: ObjectId) -> String {
+    interrupt::check();
     let room = scene.room_of(object);
     let mut text = with_article(&phrase(scene, object));
     let between = between(scene, object, room);

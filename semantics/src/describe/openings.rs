@@ -1,9 +1,8 @@
 //! Windows, doors and passages of a room.
 
-use super::room::is_a;
 use crate::english::{counted, list};
 use crate::scene::Scene;
-use dwell_scene::{ObjectId, RoomId};
+use dwell_scene::RoomId;
 
 /// Where a door leads from a room.
 #[derive(Clone, PartialEq, Eq)]
@@ -33,10 +32,7 @@ fn names(scene: &Scene<'_>, rooms: &[RoomId]) -> String {
 
 fn doors_of<'a>(scene: &Scene<'a>, room: RoomId) -> Vec<Doors<'a>> {
     let mut groups: Vec<Doors<'a>> = Vec::new();
-    for door in scene.house().objects.ids() {
-        let Some(doorway) = scene.semantics.doorway(door) else {
-            continue;
-        };
+    for (door, doorway) in scene.semantics.doorways() {
         if scene.room_of(door) != Some(room) && !doorway.rooms.contains(&room) {
             continue;
         }
@@ -118,14 +114,10 @@ fn door_texts(scene: &Scene<'_>, room: RoomId) -> Vec<String> {
 
 /// What the room opens to: "It has two windows, a door to the hall and an open passage to the kitchen."
 pub(super) fn openings(scene: &Scene<'_>, room: RoomId) -> Option<String> {
-    let windows: Vec<ObjectId> = scene
-        .objects_in(room)
-        .into_iter()
-        .filter(|object| is_a(scene, *object, &["window"]))
-        .collect();
+    let windows = scene.windows_in(room);
     let mut parts = Vec::new();
-    if !windows.is_empty() {
-        parts.push(counted(windows.len(), "window", "windows"));
+    if windows > 0 {
+        parts.push(counted(windows, "window", "windows"));
     }
     parts.extend(door_texts(scene, room));
     let open = &scene.semantics.room(room).passages;

@@ -6,9 +6,10 @@ use super::object::landmark;
 use super::openings::openings;
 use crate::english::{be, capitalized, list, with_article};
 use crate::predicates;
-use crate::scene::{Scene, Term};
+use crate::scene::Scene;
+use dwell_scene::interrupt;
 use dwell_scene::{ObjectId, RoomId};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 pub(super) fn is_a(scene: &Scene<'_>, object: ObjectId, names: &[&str]) -> bool {
     scene
@@ -45,15 +46,13 @@ struct Placed {
 
 fn placed(scene: &Scene<'_>, room: RoomId, objects: &[ObjectId]) -> Placed {
     let mut placed = Placed::default();
-    let house = scene.house();
     for object in objects {
+        interrupt::check();
         let related = ["in", "on"].into_iter().find_map(|name| {
             let predicate = predicates::find(name).ok()?;
-            let carrier = house.objects.ids().find(|other| {
-                other != object
-                    && scene.room_of(*other) == Some(room)
-                    && !(name == "in" && scene.is_lain_upon(*other))
-                    && predicate.holds(scene, Term::Object(*object), Term::Object(*other), None)
+            let others = predicates::related_objects(scene, predicate, *object);
+            let carrier = others.into_iter().find(|other| {
+                scene.room_of(*other) == Some(room) && !(name == "in" && scene.is_lain_upon(*other))
             })?;
             Some((name, carrier))
         });
@@ -85,15 +84,15 @@ fn in_order(
     carriers.dedup();
     let groups = grouped(scene, &carriers);
     let mut ordered: Vec<(ObjectId, &'static str, Vec<ObjectId>)> = Vec::new();
-    let place = |carrier: ObjectId| {
-        let mut groups = groups.iter();
-        groups.position(|group| group.objects.contains(&carrier))
-    };
+    let mut places: BTreeMap<ObjectId, usize> = BTreeMap::new();
+    for (place, group) in groups.iter().enumerate() {
+        places.extend(group.objects.iter().map(|object| (*object, place)));
+    }
     for ((carrier, words), things) in carried {
         ordered.push((carrier, words, things));
     }
     // Stable: within a kind as the house has them.
-    ordered.sort_by_key(|(carrier, ..)| place(*carrier));
+    ordered.sort_by_key(|(carrier, ..)| places.get(carrier).copied());
     ordered
 }
 
@@ -103,19 +102,16 @@ pub fn describe_room(scene: &Scene<'_>, room: RoomId) -> String {
     sentences.extend(openings(scene, room));
     let objects: Vec<ObjectId> = scene
         .objects_in(room)
-        .into_iter()
+        .iter()
+        .copied()
         .filter(|object| !scene.facts(*object).is_door() && !is_a(scene, *object, &["window"]))
         .filter(|object| scene.holder(*object).is_none())
         .collect();
     let Placed { carried, hanging } = placed(scene, room, &objects);
-    let standing: Vec<ObjectId> = objects
-        .iter()
-        .filter(|object| {
-            !hanging.iter().any(|hanging| hanging.thing == **object)
-                && !carried.values().flatten().any(|other| other == *object)
-        })
-        .copied()
-        .collect();
+    let hung = hanging.iter().map(|hanging| hanging.thing);
+    let elsewhere: BTreeSet<ObjectId> = carried.values().flatten().copied().chain(hung).collect();
+    let standing = objects.iter().filter(|object| !elsewhere.contains(object));
+    let standing: Vec<ObjectId> = standing.copied().collect();
     let texts = |objects: &[ObjectId]| -> Vec<String> {
         grouped(scene, objects)
             .iter()
@@ -130,16 +126,17 @@ pub fn describe_room(scene: &Scene<'_>, room: RoomId) -> String {
         let first = grouped(scene, &standing)[0].objects.len();
         sentences.push(format!("There {} {}.", be(first), list(&texts(&standing))));
     }
-    let mut told: Vec<ObjectId> = Vec::new();
+    let mut last: Option<ObjectId> = None;
+    let mut told: BTreeSet<&str> = BTreeSet::new();
     for (carrier, words, things) in in_order(scene, carried) {
         let noun = &scene.facts(carrier).noun;
-        let is_other = |other: &ObjectId| scene.facts(*other).noun == *noun;
-        let place = match told.last() {
-            Some(last) if *last == carrier => "it".to_owned(),
-            _ if told.iter().any(is_other) => format!("another {noun}"),
+        let place = match last {
+            Some(last) if last == carrier => "it".to_owned(),
+            _ if told.contains(noun.as_str()) => format!("another {noun}"),
             _ => landmark(scene, carrier, Some(room)),
         };
-        told.push(carrier);
+        last = Some(carrier);
+        told.insert(noun);
         sentences.push(format!(
             "{} {place} {} {}.",
             capitalized(words),

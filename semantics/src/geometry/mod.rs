@@ -6,4 +6,6 @@ mod triangles;
 
 pub use extent::Extent;
 pub use hull::Hull;
-pub(crate) use triangles::{height_under, mapped_area_m2, object_triangles, structure_triangles};
+pub(crate) use triangles::{
+    height_under, mapped_area_m2, object_triangles_near, structure_triangles,
+};

@@ -1,6 +1,6 @@
 //! Triangles where they stand, and rays against them.
 
-use dwell_scene::{House, ObjectId, State, StructureId};
+use dwell_scene::{Aabb, House, ObjectId, State, StructureId};
 use glam::{Affine3A, Vec3};
 
 /// Calls `visit` with the corners of every triangle of an object where it stands in `state`, in world space, m.
@@ -19,6 +19,37 @@ pub(crate) fn object_triangles(
                 mesh.corners(triangle)
                     .map(|corner| world_from_mesh.transform_point3(corner)),
             );
+        }
+    }
+}
+
+/// As [`object_triangles`], without most of those that do not reach into `reach`.
+pub(crate) fn object_triangles_near(
+    house: &House,
+    state: &State,
+    object: ObjectId,
+    reach: &Aabb,
+    mut visit: impl FnMut([Vec3; 3]),
+) {
+    // Wider than what is lost in rounding.
+    let wider = |bounds: Aabb| {
+        let furthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+        bounds.grown(1e-5 * furthest)
+    };
+    for id in house.objects[object].parts() {
+        let part = &house.parts[id];
+        let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
+        let mesh_from_world = world_from_mesh.inverse();
+        let reach = wider(wider(reach.grown(1e-3)).transformed(&mesh_from_world));
+        // Of a flattened mesh there is no way back.
+        let all = !mesh_from_world.is_finite() || reach.is_empty();
+        let mesh = &house.meshes[part.mesh];
+        for triangle in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(triangle);
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            if all || (low.cmple(reach.max).all() && high.cmpge(reach.min).all()) {
+                visit([a, b, c].map(|corner| world_from_mesh.transform_point3(corner)));
+            }
         }
     }
 }

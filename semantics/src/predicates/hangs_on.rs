@@ -1,8 +1,9 @@
 //! Hangs on a wall, from a ceiling, or before a window.
 
-use super::mount::hangs_on;
+use super::mount::{hangs_on, mounts};
 use super::{Laws, Predicate};
 use crate::scene::{Scene, Term, Viewer};
+use dwell_scene::ObjectId;
 
 /// `a` hangs on `b`: nothing carries `a` from below, and `b` is a wall, at whose height it is, 10 cm above its foot or
 /// higher (cloth reaches the floor), with its outline from above at most 6 cm away; or a ceiling over it, 6 cm from
@@ -30,5 +31,9 @@ impl Predicate for HangsOn {
             return false;
         };
         hangs_on(scene, thing, object)
+    }
+
+    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
+        mounts(scene, subject)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Laws, Predicate};
 use crate::scene::{Scene, Term, Viewer};
+use dwell_scene::ObjectId;
 
 /// `a` is in room `b`: the middle of its box lies over the room's floor and between floor and ceiling (0.3 m of tolerance), in the
 /// smallest such room where floors overlap; a held thing is where its holder is; a thing in a wall (a window, a door) that
@@ -37,5 +38,9 @@ impl Predicate for InRoom {
             Term::Room(_) => None,
         };
         found == Some(room)
+    }
+
+    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
+        scene.room_of(subject).map(Term::Room).into_iter().collect()
     }
 }

@@ -2,10 +2,37 @@
 
 use super::{Laws, Predicate};
 use crate::scene::{Scene, Term, Viewer};
+use dwell_scene::{Aabb, House, ObjectId};
+
+/// In how many things a thing is at most.
+const MOST_AROUND: usize = 32;
+/// How far beside a container's box the middle of what it contains may lie, m: more than its brim.
+const BESIDE_M: f32 = 0.025;
 
 /// `a` is in `b`: as [`dwell_scene::House::encloses`] has it, and `a` is not held. So a bowl, a drawer, a sink and a
-/// shelf's compartment (open in front) contain things; a table does not contain what lies under it.
+/// shelf's compartment (open in front) contain things; a table does not contain what lies under it. Where the boxes of more
+/// than 32 things are around it, those about its middle count.
 pub(super) struct Inside;
+
+/// What `thing` is in, rising.
+pub(crate) fn around(scene: &Scene<'_>, thing: ObjectId) -> Vec<ObjectId> {
+    let inner = scene.extent(thing).bounds;
+    if scene.holder(thing).is_some() || inner.is_empty() {
+        return Vec::new();
+    }
+    // Four fifths of an edge hold its middle.
+    let middle = inner.center();
+    let reach = Aabb::new(middle, middle).grown(BESIDE_M + 1e-5 * middle.abs().max_element());
+    let mut found = scene.within(&reach, MOST_AROUND, |other| {
+        other != thing && House::fits_in(&scene.extent(other).bounds, &inner)
+    });
+    let house = scene.house();
+    found.retain(|other| {
+        let outer = scene.extent(*other).bounds;
+        house.encloses(scene.state, *other, &outer, &inner)
+    });
+    found
+}
 
 impl Predicate for Inside {
     fn name(&self) -> &'static str {
@@ -28,11 +55,14 @@ impl Predicate for Inside {
         let (Term::Object(thing), Term::Object(container)) = (subject, object) else {
             return false;
         };
-        if thing == container || scene.holder(thing).is_some() {
-            return false;
-        }
         let (inner, outer) = (scene.extent(thing).bounds, scene.extent(container).bounds);
-        let house = scene.house();
-        house.encloses(scene.state, container, &outer, &inner)
+        thing != container
+            && House::fits_in(&outer, &inner)
+            && scene.around(thing).binary_search(&container).is_ok()
+    }
+
+    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
+        let around = scene.around(subject).iter();
+        around.map(|id| Term::Object(*id)).collect()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Laws, Predicate};
 use crate::scene::{Scene, Term, Viewer};
+use dwell_scene::ObjectId;
 
 /// The least difference of direction that counts, as tangent in the picture: 0.035 is 2 degrees at the middle.
 const LEAST_TANGENT: f32 = 0.035;
@@ -17,6 +18,11 @@ pub(super) fn picture_x(scene: &Scene<'_>, viewer: &Viewer, term: Term) -> Optio
     let depth = -point.z;
     let x = point.x / depth;
     (depth >= LEAST_DEPTH_M && x.abs() <= WIDEST_TANGENT).then_some(x)
+}
+
+/// Whether a thing's middle is in front of a viewer.
+pub(crate) fn is_in_front(scene: &Scene<'_>, viewer: &Viewer, term: Term) -> bool {
+    picture_x(scene, viewer, term).is_some()
 }
 
 /// `a` is left of `b` for a viewer: both middles are in front of the viewer (at most 75 degrees to either side of where it looks,
@@ -54,5 +60,9 @@ impl Predicate for LeftOf {
     ) -> bool {
         let x = |term| picture_x(scene, viewer?, term);
         matches!((x(subject), x(object)), (Some(a), Some(b)) if b - a >= LEAST_TANGENT)
+    }
+
+    fn related(&self, _: &Scene<'_>, _: ObjectId) -> Vec<Term> {
+        Vec::new()
     }
 }

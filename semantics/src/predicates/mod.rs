@@ -12,12 +12,16 @@ mod on;
 mod right_of;
 mod support;
 
+pub(crate) use inside::around;
+pub(crate) use left_of::is_in_front;
 pub(crate) use mount::mount_of;
+pub(crate) use next_to::{beside, near};
 pub use support::Support;
 pub(crate) use support::supports_of;
 
 use crate::error::SemanticsError;
 use crate::scene::{Scene, Term, Viewer};
+use dwell_scene::ObjectId;
 
 /// What always holds of a relation; checked for every relation by the tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,6 +66,10 @@ pub trait Predicate: Sync {
         object: Term,
         viewer: Option<&Viewer>,
     ) -> bool;
+
+    /// Everything that `subject` has it to without a viewer, each once: what [`Self::holds`] says of all terms, without asking
+    /// for each.
+    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term>;
 }
 
 /// Every relation.
@@ -75,6 +83,18 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &left_of::LeftOf,
         &right_of::RightOf,
     ]
+}
+
+/// The objects that `subject` has a relation to, rising.
+pub(crate) fn related_objects(
+    scene: &Scene<'_>,
+    predicate: &dyn Predicate,
+    subject: ObjectId,
+) -> Vec<ObjectId> {
+    let terms = predicate.related(scene, subject).into_iter();
+    let mut objects: Vec<ObjectId> = terms.filter_map(Term::object).collect();
+    objects.sort_unstable();
+    objects
 }
 
 /// The relation called `name`.

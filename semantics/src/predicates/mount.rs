@@ -1,7 +1,7 @@
 //! What holds things that no surface below them carries: walls, ceilings, windows.
 
 use super::Support;
-use crate::scene::{Scene, Term};
+use crate::scene::{MOST_NEAR, Scene, Term};
 use dwell_scene::{Mobility, ObjectId, StructureId, StructureKind};
 
 /// The largest gap between a thing and the wall or ceiling it hangs on, m.
@@ -52,14 +52,20 @@ pub(super) fn hangs_despite(scene: &Scene<'_>, thing: ObjectId, supports: &[Supp
         let by = support.by.object();
         by.is_some_and(|by| house.encloses(scene.state, by, &scene.extent(by).bounds, &inner))
     };
-    let mut pieces = house.structure.ids();
-    if !pieces.any(|piece| is_at(scene, thing, piece)) || supports.iter().any(stands_in) {
+    if pieces_at(scene, thing).next().is_none() || supports.iter().any(stands_in) {
         return false;
     }
     let above = supports.iter().all(|support| support.gap_m >= ABOVE_M);
     let fixed = house.objects[thing].mobility != Mobility::Movable;
     let flat = facts.extents_m.min_element() < FLAT_M;
     above || (fixed && !MAY_STAND.contains(&row.name) && (flat || !MAY_LEAN.contains(&row.name)))
+}
+
+/// The pieces of the building at which a thing may hang, rising.
+fn pieces_at(scene: &Scene<'_>, thing: ObjectId) -> impl Iterator<Item = StructureId> {
+    let reach = scene.extent(thing).bounds.grown(WALL_GAP_M);
+    let pieces = scene.semantics.structure_at(&reach);
+    pieces.filter(move |piece| is_at(scene, thing, *piece))
 }
 
 /// Whether a thing is so near to a wall, at its height, or so close under a ceiling, that it may hang there.
@@ -89,7 +95,10 @@ fn is_at(scene: &Scene<'_>, thing: ObjectId, piece: StructureId) -> bool {
 /// Whether cloth hangs before a window: in its room, at its height, at most 0.3 m away from above.
 fn is_before(scene: &Scene<'_>, cloth: ObjectId, window: ObjectId) -> bool {
     let is_window = |row: &crate::category::CategoryRow| row.name == "window";
-    if !is_cloth(scene, cloth) || !scene.facts(window).category.is_some_and(is_window) {
+    if cloth == window
+        || !is_cloth(scene, cloth)
+        || !scene.facts(window).category.is_some_and(is_window)
+    {
         return false;
     }
     let (p, q) = (scene.extent(cloth), scene.extent(window));
@@ -111,33 +120,44 @@ pub(super) fn hangs_on(scene: &Scene<'_>, thing: ObjectId, mount: Term) -> bool 
     near && scene.holder(thing).is_none() && scene.supports(thing).is_empty()
 }
 
+/// All that `thing` hangs on: windows, then pieces of the building, each rising.
+pub(super) fn mounts(scene: &Scene<'_>, thing: ObjectId) -> Vec<Term> {
+    if scene.holder(thing).is_some() || !scene.supports(thing).is_empty() {
+        return Vec::new();
+    }
+    let windows = if is_cloth(scene, thing) {
+        let reach = scene.extent(thing).bounds.grown(WINDOW_GAP_M + 0.01);
+        scene.within(&reach, MOST_NEAR, |window| is_before(scene, thing, window))
+    } else {
+        Vec::new()
+    };
+    let windows = windows.into_iter().map(Term::Object);
+    windows
+        .chain(pieces_at(scene, thing).map(Term::Structure))
+        .collect()
+}
+
 /// What `thing` hangs on: the nearest window for cloth, else the nearest wall, else a ceiling; the first of equals. Doors
 /// and windows are part of their walls and hang on nothing.
 pub(crate) fn mount_of(scene: &Scene<'_>, thing: ObjectId) -> Option<Term> {
     if scene.facts(thing).is_opening() && !is_cloth(scene, thing) {
         return None;
     }
-    let house = scene.house();
-    let kind = |piece: &StructureId, kind| house.structure[*piece].kind == kind;
-    let of = |wanted| {
-        house
-            .structure
-            .ids()
-            .filter(move |piece| kind(piece, wanted))
-    };
-    let windows = house.objects.ids().filter(|other| *other != thing);
     let here = &scene.extent(thing).footprint;
-    let nearest = |mounts: &mut dyn Iterator<Item = Term>| {
-        let away_m = |mount: &Term| match *mount {
-            Term::Object(window) => here.distance(&scene.extent(window).footprint),
-            Term::Structure(piece) => here.distance(scene.semantics.structure_outline(piece)),
-            Term::Room(_) | Term::Agent(_) => f32::MAX,
-        };
-        mounts
-            .filter(|mount| hangs_on(scene, thing, *mount))
-            .min_by(|p, q| away_m(p).total_cmp(&away_m(q)))
+    let away_m = |mount: &Term| match *mount {
+        Term::Object(window) => here.distance(&scene.extent(window).footprint),
+        Term::Structure(piece) => here.distance(scene.semantics.structure_outline(piece)),
+        Term::Room(_) | Term::Agent(_) => f32::MAX,
     };
-    nearest(&mut windows.map(Term::Object))
-        .or_else(|| nearest(&mut of(StructureKind::Wall).map(Term::Structure)))
-        .or_else(|| nearest(&mut of(StructureKind::Ceiling).map(Term::Structure)))
+    let rank = |mount: &Term| match *mount {
+        Term::Structure(piece) => match scene.house().structure[piece].kind {
+            StructureKind::Ceiling => 2,
+            _ => 1,
+        },
+        _ => 0,
+    };
+    mounts(scene, thing).into_iter().min_by(|p, q| {
+        let by_rank = rank(p).cmp(&rank(q));
+        by_rank.then_with(|| away_m(p).total_cmp(&away_m(q)))
+    })
 }

@@ -1,16 +1,50 @@
 //! Next to.
 
 use super::{Laws, Predicate, on::On};
-use crate::scene::{Scene, Term, Viewer};
-use dwell_scene::ObjectId;
+use crate::scene::{MOST_NEAR, Scene, Term, Viewer};
+use dwell_scene::interrupt;
+use dwell_scene::{Aabb, ObjectId};
 
 /// The largest gap between neighbours, m.
 const NEIGHBOUR_GAP_M: f32 = 0.5;
 
 /// `a` is next to `b`: two objects in the same room whose outlines from above are at most 0.5 m apart, whose heights overlap by at
 /// least half of the lower one, neither of which carries or contains the other, and none of which is held. Outlines that
-/// overlap by more than half of the smaller one stand above each other rather than side by side, and do not count.
+/// overlap by more than half of the smaller one stand above each other rather than side by side, and do not count. Where more
+/// than 128 things are so near, those about the middle count, and only if it is so both ways.
 pub(super) struct NextTo;
+
+/// How much of their heights two boxes share, m, and how much that must be.
+fn shared_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
+    let shared = p.max.y.min(q.max.y) - p.min.y.max(q.min.y);
+    (shared, 0.5 * p.size().y.min(q.size().y))
+}
+
+/// What may be next to `object`, rising.
+pub(crate) fn near(scene: &Scene<'_>, object: ObjectId) -> Vec<ObjectId> {
+    let own = scene.extent(object).bounds;
+    scene.within(&own.grown(NEIGHBOUR_GAP_M), MOST_NEAR, |other| {
+        let (shared, least) = shared_m(&own, &scene.extent(other).bounds);
+        other != object && shared >= least && scene.holder(other).is_none()
+    })
+}
+
+/// What is next to `object`, rising.
+pub(crate) fn beside(scene: &Scene<'_>, object: ObjectId) -> Vec<ObjectId> {
+    interrupt::check();
+    let holds = |other: &ObjectId| {
+        let (a, b) = (Term::Object(object), Term::Object(*other));
+        NextTo.holds(scene, a, b, None)
+    };
+    let near = scene.near(object).iter().copied();
+    near.filter(holds).collect()
+}
+
+/// Whether `other` is among what may be next to `object`, where that is more than counts.
+fn counts(scene: &Scene<'_>, object: ObjectId, other: ObjectId) -> bool {
+    let near = scene.near(object);
+    near.len() < MOST_NEAR || near.binary_search(&other).is_ok()
+}
 
 fn stacked(scene: &Scene<'_>, a: ObjectId, b: ObjectId) -> bool {
     let (a, b) = (Term::Object(a), Term::Object(b));
@@ -47,14 +81,24 @@ impl Predicate for NextTo {
         if !p.bounds.grown(NEIGHBOUR_GAP_M).intersects(&q.bounds) {
             return false;
         }
-        let shared = p.bounds.max.y.min(q.bounds.max.y) - p.bounds.min.y.max(q.bounds.min.y);
-        let lower = p.bounds.size().y.min(q.bounds.size().y);
-        let above = p.footprint.overlap_m2(&q.footprint)
-            > 0.5 * p.footprint.area_m2().min(q.footprint.area_m2());
-        shared >= 0.5 * lower
-            && !above
-            && p.footprint.distance(&q.footprint) <= NEIGHBOUR_GAP_M
+        let (shared, least) = shared_m(&p.bounds, &q.bounds);
+        if shared < least {
+            return false;
+        }
+        let above = || {
+            p.footprint.overlap_m2(&q.footprint)
+                > 0.5 * p.footprint.area_m2().min(q.footprint.area_m2())
+        };
+        p.footprint.distance(&q.footprint) <= NEIGHBOUR_GAP_M
+            && !above()
             && scene.room_of(a) == scene.room_of(b)
+            && counts(scene, a, b)
+            && counts(scene, b, a)
             && !stacked(scene, a, b)
+    }
+
+    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
+        let beside = scene.beside(subject).iter();
+        beside.map(|id| Term::Object(*id)).collect()
     }
 }

@@ -3,6 +3,7 @@
 use super::support::REST_SHARE;
 use super::{Laws, Predicate};
 use crate::scene::{Scene, Term, Viewer};
+use dwell_scene::ObjectId;
 
 /// `a` is on `b`: at least a third of `a`'s sole (the faces of its lowest 2 cm) rests directly on `b`, an object or a
 /// structure piece: `b` has the highest surface flatter than 60 degrees within 3 cm of those points. Nothing that is
@@ -33,5 +34,11 @@ impl Predicate for On {
             .supports(thing)
             .iter()
             .any(|support| support.by == object && support.share >= REST_SHARE)
+    }
+
+    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
+        let supports = scene.supports(subject).iter();
+        let carries = supports.filter(|support| support.share >= REST_SHARE);
+        carries.map(|support| support.by).collect()
     }
 }

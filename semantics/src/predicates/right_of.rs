@@ -3,6 +3,7 @@
 use super::left_of::LeftOf;
 use super::{Laws, Predicate};
 use crate::scene::{Scene, Term, Viewer};
+use dwell_scene::ObjectId;
 
 /// `a` is right of `b` for a viewer exactly when `b` is left of `a` for it.
 pub(super) struct RightOf;
@@ -37,5 +38,9 @@ impl Predicate for RightOf {
         viewer: Option<&Viewer>,
     ) -> bool {
         LeftOf.holds(scene, object, subject, viewer)
+    }
+
+    fn related(&self, _: &Scene<'_>, _: ObjectId) -> Vec<Term> {
+        Vec::new()
     }
 }

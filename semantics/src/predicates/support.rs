@@ -1,9 +1,10 @@
 //! What a thing rests on.
 
 use super::mount::hangs_despite;
-use crate::geometry::{height_under, object_triangles, structure_triangles};
-use crate::scene::{Scene, Term};
-use dwell_scene::{ObjectId, StructureKind};
+use crate::geometry::{height_under, object_triangles_near, structure_triangles};
+use crate::scene::{MOST_NEAR, Scene, Term};
+use dwell_scene::interrupt;
+use dwell_scene::{Aabb, ObjectId, StructureKind};
 use glam::Vec3;
 
 /// How far a surface may lie below or above a point of the sole and still carry it, m: models float and sink a little.
@@ -28,6 +29,8 @@ pub struct Support {
 
 /// For every point of the sole the highest surface within [`REST_GAP_M`] of it, and whose it is.
 struct Search {
+    /// Around the sole, grown by [`REST_GAP_M`].
+    reach: Aabb,
     sole: Vec<Vec3>,
     best: Vec<Option<(f32, Term)>>,
 }
@@ -37,6 +40,9 @@ impl Search {
     fn offer(&mut self, corners: [Vec3; 3], owner: Term, least_m: f32) {
         let low = corners[0].min(corners[1]).min(corners[2]);
         let high = corners[0].max(corners[1]).max(corners[2]);
+        if low.cmpgt(self.reach.max).any() || high.cmplt(self.reach.min).any() {
+            return;
+        }
         for (point, best) in self.sole.iter().zip(&mut self.best) {
             let near =
                 point.x >= low.x && point.x <= high.x && point.z >= low.z && point.z <= high.z;
@@ -58,8 +64,9 @@ impl Search {
 ///
 /// Each point of its sole counts for the highest surface that lies within 3 cm of it and is flatter than 60 degrees, of
 /// whatever object or structure piece. Nothing carries a curtain that touches a desk, or a picture just above a sofa: they
-/// hang.
+/// hang. Where the boxes of more than 128 others touch its own, those about its middle count.
 pub(crate) fn supports_of(scene: &Scene<'_>, object: ObjectId) -> Vec<Support> {
+    interrupt::check();
     let house = scene.house();
     let extent = scene.extent(object);
     if scene.holder(object).is_some() || extent.sole.is_empty() {
@@ -67,29 +74,25 @@ pub(crate) fn supports_of(scene: &Scene<'_>, object: ObjectId) -> Vec<Support> {
     }
     let reach = extent.bounds.grown(REST_GAP_M);
     let mut search = Search {
+        reach,
         sole: extent.sole.clone(),
         best: vec![None; extent.sole.len()],
     };
-    for other in house.objects.ids().filter(|other| *other != object) {
+    let highest_foot = extent.bottom_m() + CARRIER_RISE_M;
+    let below = scene.within(&reach, MOST_NEAR, |other| {
+        other != object
+            && scene.holder(other).is_none()
+            && scene.extent(other).bounds.min.y <= highest_foot
+    });
+    for other in below {
         let bounds = scene.extent(other).bounds;
-        let carries = scene.holder(other).is_none();
-        if carries
-            && bounds.intersects(&reach)
-            && bounds.min.y <= extent.bottom_m() + CARRIER_RISE_M
-        {
-            let least_m = bounds.min.y + UNDERSIDE_M.min(0.1 * bounds.size().y);
-            object_triangles(house, scene.state, other, |corners| {
-                search.offer(corners, Term::Object(other), least_m);
-            });
-        }
+        let least_m = bounds.min.y + UNDERSIDE_M.min(0.1 * bounds.size().y);
+        object_triangles_near(house, scene.state, other, &reach, |corners| {
+            search.offer(corners, Term::Object(other), least_m);
+        });
     }
-    for (id, piece) in house
-        .structure
-        .iter_ids()
-        .filter(|(_, piece)| piece.kind != StructureKind::Ceiling)
-    {
-        let bounds = scene.semantics.structure_bounds(id);
-        if bounds.intersects(&reach) && !house.meshes[piece.mesh].triangles.is_empty() {
+    for id in scene.semantics.structure_at(&reach) {
+        if house.structure[id].kind != StructureKind::Ceiling {
             structure_triangles(house, id, |corners| {
                 search.offer(corners, Term::Structure(id), f32::MIN);
             });

@@ -1,12 +1,12 @@
 //! The shortest description that means exactly one thing.
 
+use super::alike::{TELLING, Things, common};
 use super::expression::{Expression, Relation};
 use crate::predicates;
-use crate::scene::{Scene, Term};
+use crate::scene::Scene;
 use dwell_scene::ObjectId;
-
-/// Relations that a landmark may stand in, the most telling first.
-const TELLING: [&str; 3] = ["in", "on", "next_to"];
+use dwell_scene::interrupt;
+use std::collections::BTreeSet;
 
 /// The descriptions of `target` by its own properties, shortest first.
 fn by_properties(scene: &Scene<'_>, target: ObjectId) -> Vec<Expression> {
@@ -59,40 +59,34 @@ fn by_properties(scene: &Scene<'_>, target: ObjectId) -> Vec<Expression> {
 /// The relations in which `target` stands to other things, each named by its noun and at most one adjective; each once.
 fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
     let mut found: Vec<Relation> = Vec::new();
+    let mut known: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
     for name in TELLING {
         let Ok(predicate) = predicates::find(name) else {
             continue;
         };
-        for landmark in scene
-            .house()
-            .objects
-            .ids()
-            .filter(|landmark| *landmark != target)
-        {
+        for landmark in predicates::related_objects(scene, predicate, target) {
             if scene.facts(landmark).category.is_none()
                 || scene.facts(landmark).is_opening()
                 || (name == "in" && scene.is_lain_upon(landmark))
-                || !predicate.holds(scene, Term::Object(target), Term::Object(landmark), None)
             {
                 continue;
             }
             let facts = scene.facts(landmark);
-            let mut words = vec![Expression::noun(&facts.noun)];
-            if let Some((color, _)) = facts.spoken_colors().first() {
-                words.push(Expression {
-                    colors: vec![(*color).to_owned()],
-                    ..words[0].clone()
-                });
-            }
-            for landmark in words {
-                let relation = Relation {
+            let color = facts.spoken_colors().first().map(|(color, _)| *color);
+            let words = [None].into_iter().chain(color.map(Some));
+            for color in words {
+                if !known.insert((name, facts.noun.as_str(), color)) {
+                    continue;
+                }
+                let landmark = Expression {
+                    colors: color.map(str::to_owned).into_iter().collect(),
+                    ..Expression::noun(&facts.noun)
+                };
+                found.push(Relation {
                     predicate: name.to_owned(),
                     landmark: Box::new(landmark),
                     definite: false,
-                };
-                if !found.contains(&relation) {
-                    found.push(relation);
-                }
+                });
             }
         }
     }
@@ -108,13 +102,8 @@ fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
 pub fn refer(scene: &Scene<'_>, target: ObjectId) -> Option<Expression> {
     // All candidates share the noun, so only what it may call can fit them.
     let facts = scene.facts(target);
-    let called = |object: &ObjectId| scene.facts(*object).is_called(&facts.noun);
-    let alike: Vec<ObjectId> = scene.house().objects.ids().filter(called).collect();
-    let unique = |expression: &Expression| {
-        alike
-            .iter()
-            .all(|object| expression.fits_object(scene, *object) == (*object == target))
-    };
+    let alike = scene.alike(&facts.noun);
+    let unique = |expression: &Expression| *alike.fitting(scene, expression) == [target];
     let room = scene
         .room_of(target)
         .map(|room| scene.semantics.room(room).noun.clone());
@@ -136,22 +125,23 @@ pub fn refer(scene: &Scene<'_>, target: ObjectId) -> Option<Expression> {
         return Some(found.clone());
     }
     let relations = by_relations(scene, target);
-    let with = |expression: &Expression, relation: &Relation| Expression {
-        relation: Some(relation.clone()),
-        ..expression.clone()
-    };
-    let mut found = own
-        .iter()
-        .chain(&in_room)
-        .take(8)
-        .flat_map(|expression| {
-            relations
-                .iter()
-                .map(move |relation| with(expression, relation))
-        })
-        .find(unique)?;
-    if let Some(relation) = &mut found.relation {
-        relation.definite = relation.landmark.matches(scene).len() == 1;
+    let marked = relations.iter().map(|relation| {
+        interrupt::check();
+        alike.marked(scene, relation)
+    });
+    let marked: Vec<Things> = marked.collect();
+    for expression in own.iter().chain(&in_room).take(8) {
+        let fitting = alike.fitting(scene, expression);
+        for (relation, marked) in relations.iter().zip(&marked) {
+            if common(&[&fitting, marked], 2) == [target] {
+                let mut relation = relation.clone();
+                relation.definite = relation.landmark.matches(scene).len() == 1;
+                return Some(Expression {
+                    relation: Some(relation),
+                    ..expression.clone()
+                });
+            }
+        }
     }
-    Some(found)
+    None
 }

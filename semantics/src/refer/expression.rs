@@ -4,9 +4,10 @@ use crate::english::{qualified, with_article};
 use crate::facts::Facts;
 use crate::predicates;
 use crate::room_kind::preposition;
-use crate::scene::{Scene, Term};
+use crate::scene::Scene;
 use crate::size::Size;
 use dwell_scene::ObjectId;
+use dwell_scene::interrupt;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
@@ -54,12 +55,7 @@ impl Expression {
 
     fn fits(&self, facts: &Facts) -> bool {
         let shows = |color: &String| facts.colors.iter().any(|(word, _)| word == color);
-        let made_of = |word: &String| {
-            facts
-                .substances
-                .iter()
-                .any(|(substance, share)| substance.adjective == *word && *share >= 0.2)
-        };
+        let made_of = |word: &String| facts.adjectives().any(|adjective| adjective == *word);
         facts.is_called(&self.noun)
             && self.colors.iter().all(shows)
             && self.material.as_ref().is_none_or(made_of)
@@ -77,11 +73,9 @@ impl Expression {
             let Ok(predicate) = predicates::find(&relation.predicate) else {
                 return false;
             };
-            scene.house().objects.ids().any(|landmark| {
-                landmark != object
-                    && relation.landmark.fits_object(scene, landmark)
-                    && predicate.holds(scene, Term::Object(object), Term::Object(landmark), None)
-            })
+            predicates::related_objects(scene, predicate, object)
+                .into_iter()
+                .any(|landmark| relation.landmark.fits_object(scene, landmark))
         };
         self.fits(scene.facts(object))
             && self.room.as_ref().is_none_or(in_room)
@@ -90,12 +84,15 @@ impl Expression {
 
     /// Every object that fits, in order.
     pub fn matches(&self, scene: &Scene<'_>) -> Vec<ObjectId> {
-        scene
-            .house()
-            .objects
-            .ids()
-            .filter(|object| self.fits_object(scene, *object))
-            .collect()
+        let alike = scene.alike(&self.noun);
+        let fitting = alike.fitting(scene, self);
+        let related = |object: &&ObjectId| {
+            self.relation.is_none() || {
+                interrupt::check();
+                self.fits_object(scene, **object)
+            }
+        };
+        fitting.iter().filter(related).copied().collect()
     }
 
     /// Adjectives and noun: "large brown wooden table".

@@ -3,6 +3,7 @@
 use crate::english::with_article;
 use crate::scene::Scene;
 use dwell_scene::RoomId;
+use dwell_scene::interrupt;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -18,18 +19,17 @@ pub struct RoomExpression {
 impl RoomExpression {
     /// Every room that fits, in order.
     pub fn matches(&self, scene: &Scene<'_>) -> Vec<RoomId> {
-        let holds = |room: RoomId, noun: &String| {
-            scene
-                .objects_in(room)
-                .iter()
-                .any(|object| scene.facts(*object).is_called(noun))
+        let with = self.with.as_ref().map(|noun| scene.alike(noun));
+        let holds = |room: &RoomId| {
+            let with = with.as_ref();
+            with.is_none_or(|things| things.in_rooms().contains_key(room))
         };
         scene
             .house()
             .rooms
             .ids()
             .filter(|room| scene.semantics.room(*room).is_called(&self.noun))
-            .filter(|room| self.with.as_ref().is_none_or(|noun| holds(*room, noun)))
+            .filter(holds)
             .collect()
     }
 
@@ -58,11 +58,12 @@ pub fn refer_to_room(scene: &Scene<'_>, room: RoomId) -> Option<RoomExpression> 
         return Some(plain);
     }
     let mut things: BTreeMap<&str, f32> = BTreeMap::new();
-    for object in scene.objects_in(room) {
+    for object in scene.objects_in(room).iter().copied() {
         let worth_naming = |row: &crate::category::CategoryRow| {
             !row.structure
                 && !["door", "window", "curtain", "blinds", "unknown"].contains(&row.name)
         };
+        interrupt::check();
         if scene.facts(object).category.is_some_and(worth_naming) {
             let volume = scene.extent(object).bounds.volume();
             let largest = things.entry(&scene.facts(object).noun).or_insert(0.0);

@@ -1,0 +1,72 @@
+//! Things by what they are called.
+
+use crate::facts::Facts;
+use dwell_scene::{IdVec, ObjectId};
+use std::collections::BTreeMap;
+
+/// Things that are called alike in every way.
+#[derive(Debug)]
+struct Kind {
+    /// One of them, for its words.
+    first: ObjectId,
+    /// All of them, rising.
+    things: Vec<ObjectId>,
+}
+
+/// The things of a house by their nouns, so that words are compared once for a kind of thing, not for each of them.
+#[derive(Debug, Default)]
+pub(crate) struct Kinds {
+    kinds: Vec<Kind>,
+    /// Shape (object,).
+    of: IdVec<ObjectId, u32>,
+    /// Rising.
+    windows: Vec<ObjectId>,
+}
+
+impl Kinds {
+    pub(crate) fn gather(facts: &IdVec<ObjectId, Facts>) -> Self {
+        let mut known: BTreeMap<(&str, Option<&str>), u32> = BTreeMap::new();
+        let mut kinds = Self::default();
+        for (id, facts) in facts.iter_ids() {
+            let row = facts.category.map(|row| row.name);
+            let next = kinds.kinds.len() as u32;
+            let kind = *known.entry((&facts.noun, row)).or_insert(next);
+            if kind == next {
+                let things = Vec::new();
+                kinds.kinds.push(Kind { first: id, things });
+            }
+            kinds.kinds[kind as usize].things.push(id);
+            kinds.of.push(kind);
+            if row == Some("window") {
+                kinds.windows.push(id);
+            }
+        }
+        kinds
+    }
+
+    /// The number of a thing's kind.
+    pub(crate) fn of(&self, object: ObjectId) -> u32 {
+        self.of[object]
+    }
+
+    /// The numbers of the kinds that may be called `noun`.
+    pub(crate) fn called(&self, facts: &IdVec<ObjectId, Facts>, noun: &str) -> Vec<u32> {
+        let kinds = self.kinds.iter().enumerate();
+        let called = kinds.filter(|(_, kind)| facts[kind.first].is_called(noun));
+        called.map(|(k, _)| k as u32).collect()
+    }
+
+    /// The things of some kinds, rising.
+    pub(crate) fn things(&self, kinds: &[u32]) -> Vec<ObjectId> {
+        let kinds = kinds.iter().map(|kind| &self.kinds[*kind as usize]);
+        let mut things: Vec<ObjectId> =
+            kinds.flat_map(|kind| kind.things.iter().copied()).collect();
+        things.sort_unstable();
+        things
+    }
+
+    /// All windows, rising.
+    pub(crate) fn windows(&self) -> &[ObjectId] {
+        &self.windows
+    }
+}
