@@ -78,12 +78,12 @@ pub(super) fn put(
     // Not yet counted with the others.
     let base = object.category.coarse.clone();
     object.name = String::new();
-    let name = name.map_or_else(|| desk.counted_name(&base), str::to_owned);
+    let name = name.map_or_else(|| desk.census.counted_name(&base), str::to_owned);
     let object = &mut desk.data.objects[id];
     object.source_id.clone_from(&name);
     object.name = name;
-    let change = place::movement(&desk.data, id, placing)?;
-    place::carry(&mut desk.data, &[id].into(), &change);
+    let change = place::movement(desk, id, placing)?;
+    place::carry(desk, &[id].into(), &change);
     place::settle(&mut desk.data, id);
     Ok(())
 }
@@ -159,9 +159,10 @@ fn first(ids: &[ObjectId]) -> ObjectId {
 fn copy(desk: &mut Desk<'_>, house: Option<&str>, name: &str) -> Result<ObjectId, HousesError> {
     let source: Arc<House> = match house {
         None => {
-            let id = super::apply::object(&desk.data, "object", name)?;
-            let own = desk.data.clone();
-            return Ok(first(&graft(&mut desk.data, &own, &[id])));
+            let id = desk.object("object", name)?;
+            let mut own = HouseData::default();
+            let alone = graft(&mut own, &desk.data, &[id]);
+            return Ok(first(&graft(&mut desk.data, &own, &alone)));
         }
         Some(house) => {
             let house = desk.files.house("house", house)?;
@@ -175,7 +176,10 @@ fn copy(desk: &mut Desk<'_>, house: Option<&str>, name: &str) -> Result<ObjectId
             }
         }
     };
-    let id = super::apply::object(&source, "object", name)?;
+    let id = source.object_named(name).ok_or_else(|| {
+        let names = source.objects.iter().map(|object| object.name.as_str());
+        unknown("object", name, "objects", names)
+    })?;
     Ok(first(&graft(&mut desk.data, &source, &[id])))
 }
 

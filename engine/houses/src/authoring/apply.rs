@@ -3,10 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use dwell_scene::{Aabb, House, HouseData, Level, ObjectId, Pose, State};
 use glam::{Quat, Vec3};
 
+use super::census::Census;
 use super::edits::{AddRobot, Edit, Move, Remove, Rename};
 use super::faults::{fault, inside, point, unknown, within};
 use super::files::Files;
@@ -58,9 +60,11 @@ pub fn edit(house: &House, edits: &[Edit], files: &Files) -> Result<(House, Repo
     }
     let mut desk = Desk::new(house.data().clone(), files);
     for (k, edit) in edits.iter().enumerate() {
+        interrupt::check();
         let place = format!("edits[{k}].{}", edit.word());
         desk.apply(edit).map_err(inside(place))?;
     }
+    desk.take_out();
     let at = At::file("edits");
     let edited = House::new(desk.data).map_err(HousesError::scene(&at))?;
     let mut report = desk.report;
@@ -68,6 +72,7 @@ pub fn edit(house: &House, edits: &[Edit], files: &Files) -> Result<(House, Repo
     let named = |id: ObjectId| &edited.objects[id].name;
     let state = State::new(&edited);
     for id in &put {
+        interrupt::check();
         if is_outside(&edited, &state, *id) {
             report.warn(at.field(named(*id)), Damage::OutsideRooms);
         } else if reaches_into_a_wall(&edited, *id) {
@@ -109,23 +114,13 @@ pub(super) struct Desk<'a> {
     pub(super) files: &'a Files,
     pub(super) threads: Threads,
     pub(super) report: Report,
+    pub(super) census: Census,
+    /// What is taken out before anything else is done.
+    gone: BTreeSet<ObjectId>,
     /// Mesh files by path, scale and axis.
     pub(super) meshes: BTreeMap<String, Arc<Loaded>>,
     /// Other houses by their HOUSE strings.
     pub(super) houses: BTreeMap<String, Arc<House>>,
-}
-
-/// The object of a name.
-///
-/// # Errors
-/// [`HousesError::Spec`] with the nearest names.
-pub(super) fn object(data: &HouseData, field: &str, name: &str) -> Result<ObjectId, HousesError> {
-    let mut all = data.objects.iter_ids();
-    let found = all.find_map(|(id, object)| (object.name == name).then_some(id));
-    found.ok_or_else(|| {
-        let names = data.objects.iter().map(|object| object.name.as_str());
-        unknown(field, name, "objects", names)
-    })
 }
 
 impl<'a> Desk<'a> {
@@ -139,28 +134,64 @@ impl<'a> Desk<'a> {
             files,
             threads: Threads::default(),
             report: Report::new(),
+            census: Census::default(),
+            gone: BTreeSet::new(),
             meshes: BTreeMap::new(),
             houses: BTreeMap::new(),
         }
     }
 
     fn apply(&mut self, edit: &Edit) -> Result<(), HousesError> {
+        if let Edit::Remove(remove) = edit
+            && !remove.with_things
+            && let Some(id) = self.census.find(&remove.object)
+            && self.gone.insert(id)
+        {
+            return Ok(());
+        }
+        self.take_out();
+        self.census.follow(&self.data);
         match edit {
             Edit::Add(add) => add::add(self, add).map(drop),
             Edit::Remove(remove) => self.remove(remove),
             Edit::Move(change) => self.shift(change),
-            Edit::ReMaterial(change) => surfaces::re_material(&mut self.data, change),
+            Edit::ReMaterial(change) => surfaces::re_material(self, change),
             Edit::AddEmitter(emitter) => fixtures::add_emitter(self, emitter),
             Edit::AddLamp(lamp) => fixtures::add_lamp(self, lamp),
             Edit::AddRobot(robot) => self.robot(robot),
             Edit::AgentStart(start) => agent_starts::set(self, start),
-            Edit::SetDoor(door) => doors::set_door(&mut self.data, door),
+            Edit::SetDoor(door) => {
+                let id = self.object("object", &door.object)?;
+                let joints = self.census.joints_of(&self.data, id);
+                self.census.moved([id]);
+                doors::set_door(&mut self.data, id, &joints, door)
+            }
             Edit::Describe(change) => {
-                let id = object(&self.data, "object", &change.object)?;
+                let id = self.object("object", &change.object)?;
                 describe::describe(&mut self.data, id, &change.traits).map_err(inside("traits"))
             }
             Edit::Rename(rename) => self.rename(rename),
         }
+    }
+
+    /// Takes out what edits in a row have named, all at once.
+    fn take_out(&mut self) {
+        if !self.gone.is_empty() {
+            prune::remove(&mut self.data, &self.gone);
+            self.gone.clear();
+            self.census.forget();
+        }
+    }
+
+    /// The object of a name.
+    ///
+    /// # Errors
+    /// [`HousesError::Spec`] with the nearest names.
+    pub(super) fn object(&self, field: &str, name: &str) -> Result<ObjectId, HousesError> {
+        self.census.find(name).ok_or_else(|| {
+            let names = self.data.objects.iter().map(|object| object.name.as_str());
+            unknown(field, name, "objects", names)
+        })
     }
 
     /// The house as it is now.
@@ -168,25 +199,29 @@ impl<'a> Desk<'a> {
         House::new(self.data.clone()).map_err(HousesError::scene(&At::file("edits")))
     }
 
+    /// An object, and what stands on it or lies in it where that goes with it.
+    fn group(
+        &mut self,
+        id: ObjectId,
+        with_things: bool,
+    ) -> Result<BTreeSet<ObjectId>, HousesError> {
+        if !with_things {
+            return Ok(BTreeSet::from([id]));
+        }
+        let boxes = self.census.boxes(&self.data);
+        place::with_things(&self.data, boxes, id)
+    }
+
     fn remove(&mut self, change: &Remove) -> Result<(), HousesError> {
-        let id = object(&self.data, "object", &change.object)?;
-        let gone = if change.with_things {
-            place::with_things(&self.checked()?, id)
-        } else {
-            BTreeSet::from([id])
-        };
-        prune::remove(&mut self.data, &gone);
+        let id = self.object("object", &change.object)?;
+        self.gone = self.group(id, change.with_things)?;
         Ok(())
     }
 
     fn shift(&mut self, change: &Move) -> Result<(), HousesError> {
-        let id = object(&self.data, "object", &change.object)?;
-        let all = if change.with_things {
-            place::with_things(&self.checked()?, id)
-        } else {
-            BTreeSet::from([id])
-        };
-        let first = place::movement(&self.data, id, &change.place)?;
+        let id = self.object("object", &change.object)?;
+        let all = self.group(id, change.with_things)?;
+        let first = place::movement(self, id, &change.place)?;
         let by = point("by", change.by)?;
         let turn_rad = within(
             "turn_deg",
@@ -195,18 +230,14 @@ impl<'a> Desk<'a> {
             "degrees",
         )?
         .to_radians();
-        place::carry(&mut self.data, &all, &first);
+        place::carry(self, &all, &first);
         let pivot = place::anchor_in_world(&self.data, id, change.place.anchor);
         let turn = if turn_rad == 0.0 {
             Quat::IDENTITY
         } else {
             dwell_scene::space::rotation_from_yaw_pitch(turn_rad, 0.0)
         };
-        place::carry(
-            &mut self.data,
-            &all,
-            &Pose::new(pivot + by - turn * pivot, turn),
-        );
+        place::carry(self, &all, &Pose::new(pivot + by - turn * pivot, turn));
         for object in all {
             place::settle(&mut self.data, object);
         }
@@ -236,11 +267,12 @@ impl<'a> Desk<'a> {
         match (&change.object, &change.room) {
             (Some(_), Some(_)) => Err(fault("object", "an object and a room", "one of them")),
             (Some(name), None) => {
-                let id = object(&self.data, "object", name)?;
+                let id = self.object("object", name)?;
                 if *name != change.to {
                     self.free_name("to", &change.to)?;
                 }
                 self.data.objects[id].name.clone_from(&change.to);
+                self.census.forget();
                 Ok(())
             }
             (None, Some(name)) => {
@@ -269,30 +301,11 @@ impl<'a> Desk<'a> {
 
     /// Refuses an object's name that is empty or taken.
     pub(super) fn free_name(&self, field: &str, name: &str) -> Result<(), HousesError> {
-        if name.trim().is_empty() || self.data.objects.iter().any(|object| object.name == name) {
+        if name.trim().is_empty() || self.census.find(name).is_some() {
             let possible = "a name that no other object has";
             return Err(fault(field, format_args!("{name:?}"), possible));
         }
         Ok(())
-    }
-
-    /// `base_1`, `base_2`, ...: the first that is free.
-    pub(super) fn counted_name(&self, base: &str) -> String {
-        let base = if base.is_empty() { "thing" } else { base };
-        let taken: BTreeSet<&str> = self
-            .data
-            .objects
-            .iter()
-            .map(|object| object.name.as_str())
-            .collect();
-        let mut number = 1_u64;
-        loop {
-            let name = format!("{base}_{number}");
-            if !taken.contains(name.as_str()) {
-                return name;
-            }
-            number += 1;
-        }
     }
 
     /// The middle of an object's root, in the space of that part, m.

@@ -2,24 +2,25 @@
 
 use std::collections::BTreeSet;
 
-use dwell_scene::{HouseData, JointId};
+use dwell_scene::{HouseData, JointId, ObjectId};
 
 use super::edits::SetDoor;
 use super::faults::{fault, unknown, within};
 use crate::error::HousesError;
 
-/// Sets the start of one joint, or of all joints of an object that open.
+/// Sets the start of one of an object's `joints`, or of all that open.
 ///
 /// # Errors
-/// [`HousesError::Spec`] for an object that does not exist or has nothing that opens.
-pub(super) fn set_door(data: &mut HouseData, change: &SetDoor) -> Result<(), HousesError> {
+/// [`HousesError::Spec`] for an object that has nothing that opens.
+pub(super) fn set_door(
+    data: &mut HouseData,
+    id: ObjectId,
+    joints: &[JointId],
+    change: &SetDoor,
+) -> Result<(), HousesError> {
     let open = within("open", change.open, [0.0, 1.0], "")?;
-    let id = super::apply::object(data, "object", &change.object)?;
-    let own = data
-        .joints
-        .iter_ids()
-        .filter(|(_, joint)| joint.object == id && joint.opens());
-    let own: Vec<JointId> = own.map(|(id, _)| id).collect();
+    let own = joints.iter().copied();
+    let own: Vec<JointId> = own.filter(|joint| data.joints[*joint].opens()).collect();
     if own.is_empty() {
         let openable = data.objects.iter_ids().filter(|(id, _)| {
             data.joints
@@ -48,12 +49,7 @@ pub(super) fn set_door(data: &mut HouseData, change: &SetDoor) -> Result<(), Hou
     }
     // Parents stand before their children, so that one pass moves all that hangs on a joint.
     let mut moved = BTreeSet::new();
-    let mut joints: Vec<JointId> = data
-        .joints
-        .iter_ids()
-        .filter(|(_, joint)| joint.object == id)
-        .map(|(id, _)| id)
-        .collect();
+    let mut joints = joints.to_vec();
     joints.sort_by_key(|joint| data.joints[*joint].child);
     for joint in joints {
         if chosen.contains(&joint) {

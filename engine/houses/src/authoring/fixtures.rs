@@ -10,7 +10,7 @@ use dwell_scene::{
 use glam::{Affine3A, Vec3};
 
 use super::add::{from_model, model, put};
-use super::apply::{Desk, object};
+use super::apply::Desk;
 use super::edits::{AddEmitter, AddLamp, Placing, Sound};
 use super::faults::{fault, inside, point, within};
 use super::graft::graft;
@@ -75,7 +75,7 @@ pub(super) fn sound_of(
 pub(super) fn add_emitter(desk: &mut Desk<'_>, wanted: &AddEmitter) -> Result<(), HousesError> {
     match (&wanted.object, wanted.at) {
         (Some(name), None) => {
-            let id = object(&desk.data, "object", name)?;
+            let id = desk.object("object", name)?;
             if wanted.name.is_some() {
                 return Err(fault(
                     "name",
@@ -93,7 +93,7 @@ pub(super) fn add_emitter(desk: &mut Desk<'_>, wanted: &AddEmitter) -> Result<()
             let id = disc(&mut desk.data);
             let name = match &wanted.name {
                 Some(name) => name.clone(),
-                None => desk.counted_name("source"),
+                None => desk.census.counted_name("source"),
             };
             let [_, _, below] = DISC_M;
             let place = Placing {
@@ -177,7 +177,7 @@ pub(super) fn add_lamp(desk: &mut Desk<'_>, wanted: &AddLamp) -> Result<(), Hous
         .srgb
         .map(|srgb| srgb.map(|c| units::linear_from_srgb(f32::from(c) / 255.0)));
     if let Some(name) = &wanted.object {
-        let id = object(&desk.data, "object", name)?;
+        let id = desk.object("object", name)?;
         let position = desk.middle_of_root(id);
         let object = &mut desk.data.objects[id];
         object.switch = Some(wanted.on);

@@ -1,9 +1,9 @@
 //! Where on top of a thing there is room for another one.
 
-use dwell_scene::{Aabb, HouseData, ObjectId};
+use dwell_scene::{Aabb, HouseData, Id, ObjectId};
 use glam::{Vec2, Vec3};
 
-use super::place::{height_over, triangles, world_box};
+use super::place::{height_over, triangles};
 
 /// How far apart the places are that are tried, m, and the most of them along a side.
 const STEP_M: f32 = 0.05;
@@ -14,6 +14,8 @@ const EVEN_M: f32 = 0.01;
 const INSET: f32 = 0.1;
 /// What is left between things, m.
 const APART_M: f32 = 0.01;
+/// More than that.
+const REACH_M: f32 = 0.1;
 
 /// The surfaces of an object.
 pub(super) struct Top {
@@ -44,26 +46,29 @@ pub(super) struct FreePlace<'a> {
 }
 
 impl<'a> FreePlace<'a> {
-    /// On `carrier`, for `thing`, which has the box `around` its anchor.
+    /// On `carrier`, for `thing`, which has the box `around` its anchor; `boxes`: those around all objects, m.
     pub(super) fn on(
         data: &HouseData,
+        boxes: &[Aabb],
         carrier: ObjectId,
         thing: ObjectId,
         around: &'a Aabb,
     ) -> Self {
-        let bounds = world_box(data, carrier);
-        let all = data.objects.ids();
-        let others = all.filter(|id| *id != carrier && *id != thing);
-        let boxes = others.map(|id| world_box(data, id));
+        let bounds = boxes[carrier.index()];
+        // Whatever the thing may reach with its anchor over the carrier.
+        let reach = Aabb {
+            min: bounds.min + around.min - REACH_M,
+            max: bounds.max + around.max + REACH_M,
+        };
+        let others = data.objects.ids().zip(boxes);
+        let others = others.filter(|(id, b)| *id != carrier && *id != thing && !b.is_empty());
         // A building is around all that stands in it.
-        let others = boxes
-            .filter(|b| !b.is_empty() && !b.encloses(&bounds))
-            .collect();
+        let others = others.filter(|(_, b)| b.intersects(&reach) && !b.encloses(&bounds));
         Self {
             top: Top::of(data, carrier),
             bounds,
             around,
-            others,
+            others: others.map(|(_, b)| *b).collect(),
         }
     }
 

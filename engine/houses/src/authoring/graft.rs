@@ -125,12 +125,22 @@ pub(super) fn material_of(
     mut material: Material,
 ) -> MaterialId {
     let base = material.name.clone();
+    // Numbers by which the same name is told apart already.
+    let number_of = |name: &str| -> Option<u64> {
+        match name.strip_prefix(&base)? {
+            "" => Some(1),
+            rest => rest.strip_prefix('_')?.parse().ok(),
+        }
+    };
+    let mut known: BTreeMap<String, MaterialId> = BTreeMap::new();
+    for (id, other) in materials.iter_ids() {
+        if number_of(&other.name).is_some() {
+            known.entry(other.name.clone()).or_insert(id);
+        }
+    }
     let mut number = 1;
     loop {
-        let known = materials
-            .iter()
-            .position(|other| other.name == material.name);
-        let Some(id) = known.map(MaterialId::from_index) else {
+        let Some(id) = known.get(&material.name).copied() else {
             return materials.push(material);
         };
         if materials[id] == material {

@@ -8,6 +8,7 @@ mod add;
 mod agent_starts;
 mod apply;
 mod building;
+mod census;
 mod describe;
 mod doors;
 mod edits;

@@ -1,5 +1,9 @@
 //! What was put into something else.
 
+use std::collections::BTreeSet;
+
+use dwell_scene::bvh::BoxTree;
+use dwell_scene::interrupt;
 use dwell_scene::{Aabb, House, Id, ObjectId, RoomId};
 use glam::{Vec2, Vec3};
 
@@ -9,6 +13,8 @@ use super::place::{points, triangles, world_box};
 const DEEP_M: f32 = 0.01;
 /// Points of a thing that are looked at, at most.
 const LOOKED_AT: usize = 64;
+/// With how many things one is compared, at most.
+const MOST_COMPARED: usize = 32;
 /// Ways out: what is inside is left through a surface an odd number of times on each of them. Askew, so that they meet no edge.
 const WAYS: [Vec3; 6] = [
     Vec3::new(0.98, 0.13, 0.15),
@@ -19,26 +25,37 @@ const WAYS: [Vec3; 6] = [
     Vec3::new(-0.13, 0.15, -0.98),
 ];
 
-/// The things that any of `put` is in, or that are in it: pairs, the one that was put first.
+/// The things that any of `put` is in, or that are in it: pairs, the one that was put first. Of more than 32 things in whose boxes one
+/// reaches, it is compared with those about its middle.
 pub(super) fn overlaps(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, ObjectId)> {
     let data = house.data();
-    let ids = data.objects.ids();
-    let boxes: Vec<Aabb> = ids.map(|id| world_box(data, id)).collect();
+    let boxes = data.objects.ids().map(|id| {
+        interrupt::check();
+        world_box(data, id)
+    });
+    let tree = BoxTree::new(boxes.collect());
+    let bounds = |id: ObjectId| tree.get(id.index()).copied().unwrap_or_default();
     let mut found = Vec::new();
+    let mut compared: BTreeSet<[ObjectId; 2]> = BTreeSet::new();
     // What came later was put into what was there.
     for one in put.iter().rev() {
-        let own = boxes[one.index()];
-        for other in data.objects.ids().filter(|other| other != one) {
-            let theirs = boxes[other.index()];
-            // A building is around what stands in it.
-            let known = found.contains(&(other, *one));
+        let own = bounds(*one);
+        let others = tree.nearest(&own, MOST_COMPARED, |other| {
+            let other = ObjectId::from_index(other);
+            let theirs = bounds(other);
             let deep = Vec3::splat(DEEP_M);
             let near =
                 own.min.cmplt(theirs.max - deep).all() && own.max.cmpgt(theirs.min + deep).all();
-            let structure = theirs.encloses(&own) && is_around_rooms(house, &theirs);
-            if !near || known || structure {
+            // A building is around what stands in it.
+            let structure = || theirs.encloses(&own) && is_around_rooms(house, &theirs);
+            other != *one && near && !structure()
+        });
+        for other in others {
+            let other = ObjectId::from_index(other);
+            if !compared.insert([other.min(*one), other.max(*one)]) {
                 continue;
             }
+            interrupt::check();
             if any_inside(house, *one, other) || any_inside(house, other, *one) {
                 found.push((*one, other));
             }

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use dwell_scene::interrupt;
 use dwell_scene::{
-    Aabb, House, HouseData, Id, LevelId, ObjectId, PartId, Pose, Room, RoomId, State, space,
+    Aabb, House, HouseData, Id, LevelId, ObjectId, PartId, Pose, Room, RoomId, space,
 };
 use glam::{Quat, Vec2, Vec3};
 
+use super::apply::Desk;
 use super::edits::{Anchor, Placing};
 use super::faults::{fault, point, within};
 use super::free_place::{FreePlace, Top};
@@ -16,6 +18,8 @@ use crate::error::HousesError;
 const GAP_M: f32 = 0.03;
 /// How far outside of a room's height its things may be, m.
 const ROOM_M: f32 = 0.3;
+/// How many pairs of things are looked at to find what goes with a thing.
+const MOST_PAIRS: usize = 10_000;
 
 /// The boxes that physics and eyes know of a part, as points in the world.
 pub(super) fn points(data: &HouseData, part: PartId) -> impl Iterator<Item = Vec3> {
@@ -80,25 +84,31 @@ pub(super) fn anchor_in_world(data: &HouseData, object: ObjectId, which: Anchor)
 }
 
 /// Shifts and turns objects, each part and each joint that hangs on the house.
-pub(super) fn carry(data: &mut HouseData, objects: &BTreeSet<ObjectId>, change: &Pose) {
+pub(super) fn carry(desk: &mut Desk<'_>, objects: &BTreeSet<ObjectId>, change: &Pose) {
+    desk.census.moved(objects.iter().copied());
     for object in objects {
+        let joints = desk.census.joints_of(&desk.data, *object);
+        let data = &mut desk.data;
         for part in data.objects[*object].parts() {
             let pose = &mut data.parts[part].world_from_part;
             *pose = *change * *pose;
         }
-    }
-    let joints = data.joints.iter_mut();
-    for joint in joints.filter(|joint| joint.parent.is_none() && objects.contains(&joint.object)) {
-        joint.parent_from_joint = *change * joint.parent_from_joint;
+        for joint in joints {
+            let joint = &mut data.joints[joint];
+            if joint.parent.is_none() {
+                joint.parent_from_joint = *change * joint.parent_from_joint;
+            }
+        }
     }
 }
 
 /// The movement that puts an object's anchor somewhere and turns it there; what `placing` leaves open stays.
 pub(super) fn movement(
-    data: &HouseData,
+    desk: &mut Desk<'_>,
     object: ObjectId,
     placing: &Placing,
 ) -> Result<Pose, HousesError> {
+    let data = &desk.data;
     let root = data.parts[data.objects[object].first_part].world_from_part;
     let own = anchor(data, object, placing.anchor);
     let old_yaw = yaw_of(&root);
@@ -120,13 +130,13 @@ pub(super) fn movement(
         .flat_map(|part| points(data, part))
         .map(|p| turn * (p - old));
     let around = Aabb::from_points(around);
-    let target = target(data, object, placing, &around)?.unwrap_or(old);
+    let target = target(desk, object, placing, &around)?.unwrap_or(old);
     Ok(Pose::new(target - turn * old, turn))
 }
 
 /// Where the anchor goes; `None`: it stays. `around`: the box of the thing around its anchor as it will be turned, m.
 fn target(
-    data: &HouseData,
+    desk: &mut Desk<'_>,
     object: ObjectId,
     placing: &Placing,
     around: &Aabb,
@@ -135,16 +145,18 @@ fn target(
     let Some(on) = &placing.on else {
         return Ok(at);
     };
-    let carrier = super::apply::object(data, "place.on", on)?;
-    if carrier == object {
+    if desk.data.objects[object].name == *on {
         return Err(fault(
             "place.on",
             format_args!("{on:?}, itself"),
             "another object",
         ));
     }
+    let carrier = desk.object("place.on", on)?;
+    let data = &desk.data;
     let Some(Vec3 { x, z, .. }) = at else {
-        let free = FreePlace::on(data, carrier, object, around).find();
+        let boxes = desk.census.boxes(data);
+        let free = FreePlace::on(data, boxes, carrier, object, around).find();
         let [wide, deep] = [around.size().x, around.size().z];
         return free.map(Some).ok_or_else(|| {
             fault(
@@ -184,47 +196,69 @@ pub(super) fn height_over([a, b, c]: [Vec3; 3], xz: Vec2) -> Option<f32> {
     meets.then_some(a.y + s * (b.y - a.y) + t * (c.y - a.y))
 }
 
-/// What stands on objects or lies in them, directly or on one another.
-pub(super) fn with_things(house: &House, object: ObjectId) -> BTreeSet<ObjectId> {
-    let state = State::new(house);
-    let boxes: Vec<Aabb> = house
-        .objects
-        .ids()
-        .map(|id| world_box(house.data(), id))
-        .collect();
-    let loose = |id: &ObjectId| house.objects[*id].mobility == dwell_scene::Mobility::Movable;
-    let rests = |thing: ObjectId, carrier: ObjectId| {
-        let (own, below) = (&boxes[thing.index()], &boxes[carrier.index()]);
-        if own.is_empty() || below.is_empty() {
-            return false;
-        }
-        let foot = own.center();
-        let over = (below.min.x..=below.max.x).contains(&foot.x)
-            && (below.min.z..=below.max.z).contains(&foot.z);
-        let touches =
-            over && own.min.y > below.min.y + 0.01 && own.min.y < below.max.y + GAP_M && {
-                let mut down = [0.0_f32, 0.25, -0.25]
-                    .into_iter()
-                    .flat_map(|x| [0.0_f32, 0.25, -0.25].map(|z| (x, z)));
-                down.any(|(x, z)| {
-                    let size = own.size();
-                    let at = Vec2::new(foot.x + x * size.x, foot.z + z * size.z);
-                    surface_near(house.data(), carrier, at, own.min.y)
-                })
-            };
-        touches || house.encloses(&state, carrier, below, own)
-    };
+/// An object and what stands on it or lies in it, directly or on one another. `boxes`: those around all objects, m.
+///
+/// # Errors
+/// [`HousesError::Spec`] where more than 10,000 pairs of things lie in each other's boxes.
+pub(super) fn with_things(
+    data: &HouseData,
+    boxes: &[Aabb],
+    object: ObjectId,
+) -> Result<BTreeSet<ObjectId>, HousesError> {
+    let loose = |id: ObjectId| data.objects[id].mobility == dwell_scene::Mobility::Movable;
     let mut all = BTreeSet::from([object]);
     let mut open = vec![object];
+    let mut pairs = 0;
     while let Some(carrier) = open.pop() {
-        for thing in house.objects.ids().filter(loose) {
-            if !all.contains(&thing) && rests(thing, carrier) {
+        interrupt::check();
+        let below = &boxes[carrier.index()];
+        let reach = below.grown(2.0 * GAP_M);
+        for (thing, own) in data.objects.ids().zip(boxes) {
+            if !own.intersects(&reach) || !loose(thing) || all.contains(&thing) {
+                continue;
+            }
+            let (over, fits) = (is_over(own, below), House::fits_in(below, own));
+            if pairs == MOST_PAIRS || !(over || fits) {
+                continue;
+            }
+            interrupt::check();
+            pairs += 1;
+            let rests = (over && touches(data, carrier, own))
+                || (fits && data.encloses_at_start(carrier, below, own));
+            if rests {
                 all.insert(thing);
                 open.push(thing);
             }
         }
     }
-    all
+    if pairs < MOST_PAIRS {
+        return Ok(all);
+    }
+    let found = format!("true, where more than {MOST_PAIRS} pairs of things lie in each other");
+    let possible = "false, or fewer things in one place";
+    Err(fault("with_things", found, possible))
+}
+
+/// Whether the foot of a box is above the foot of another, and no higher than its top.
+fn is_over(own: &Aabb, below: &Aabb) -> bool {
+    let foot = own.center();
+    !below.is_empty()
+        && (below.min.x..=below.max.x).contains(&foot.x)
+        && (below.min.z..=below.max.z).contains(&foot.z)
+        && own.min.y > below.min.y + 0.01
+        && own.min.y < below.max.y + GAP_M
+}
+
+/// Whether a carrier has a surface under some of what stands in a box over it.
+fn touches(data: &HouseData, carrier: ObjectId, own: &Aabb) -> bool {
+    let (foot, size) = (own.center(), own.size());
+    let mut down = [0.0_f32, 0.25, -0.25]
+        .into_iter()
+        .flat_map(|x| [0.0_f32, 0.25, -0.25].map(|z| (x, z)));
+    down.any(|(x, z)| {
+        let at = Vec2::new(foot.x + x * size.x, foot.z + z * size.z);
+        surface_near(data, carrier, at, own.min.y)
+    })
 }
 
 /// Whether an object has a surface at about this height on an upright line.

@@ -9,6 +9,7 @@ use dwell_scene::{
 };
 use glam::{Vec2, Vec3};
 
+use super::apply::Desk;
 use super::edits::{Look, ReMaterial, Side, Surfaces};
 use super::faults::{fault, inside, substance, unknown, within};
 use super::graft::material_of;
@@ -37,10 +38,11 @@ pub(super) fn room(data: &HouseData, field: &str, name: &str) -> Result<RoomId, 
 ///
 /// # Errors
 /// [`HousesError::Spec`] for surfaces, substances or numbers that are not there.
-pub(super) fn re_material(data: &mut HouseData, change: &ReMaterial) -> Result<(), HousesError> {
+pub(super) fn re_material(desk: &mut Desk<'_>, change: &ReMaterial) -> Result<(), HousesError> {
     let look = &change.look;
     match &change.of {
         Surfaces::Material(name) => {
+            let data = &mut desk.data;
             let found = data
                 .materials
                 .iter()
@@ -52,6 +54,7 @@ pub(super) fn re_material(data: &mut HouseData, change: &ReMaterial) -> Result<(
             change_in_place(data, id, look).map_err(inside("look"))
         }
         Surfaces::Structure(name) => {
+            let data = &mut desk.data;
             let found = data.structure.iter().position(|piece| piece.name == *name);
             let id = found.map(StructureId::from_index).ok_or_else(|| {
                 let names = data.structure.iter().map(|piece| piece.name.as_str());
@@ -64,10 +67,11 @@ pub(super) fn re_material(data: &mut HouseData, change: &ReMaterial) -> Result<(
             Ok(())
         }
         Surfaces::Object { name, part } => {
-            let id = super::apply::object(data, "of.object.name", name)?;
-            paint_object(data, id, part.as_deref(), look)
+            let id = desk.object("of.object.name", name)?;
+            paint_object(&mut desk.data, id, part.as_deref(), look)
         }
         Surfaces::Room { name, side } => {
+            let data = &mut desk.data;
             let id = room(data, "of.room.name", name)?;
             paint_room(data, id, *side, look)
         }

@@ -10,6 +10,7 @@ mod buildings;
 mod edits;
 mod files;
 mod free_places;
+mod heaps;
 mod maps;
 mod sounds;
 mod starts;
