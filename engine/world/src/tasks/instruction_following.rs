@@ -3,6 +3,7 @@
 //! Reward: by how much the geodesic distance to the goal fell (m), minus 0.01 a step, plus 2.5 for stopping where the
 //! instruction is fulfilled. The episode ends with `stop`.
 
+use super::goal_ground::GoalGround;
 use super::leaves::Leaves;
 use super::{Task, TaskKind};
 use crate::action::{DiscreteAction, Stride};
@@ -12,7 +13,7 @@ use crate::expert::{Guide, face};
 use crate::metrics::Progress;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::interrupt::Pace;
+use dwell_scene::interrupt::{self, Pace};
 use dwell_scene::navigation::{Cell, NavGrid};
 use dwell_scene::random::Key;
 use dwell_scene::{AgentId, Pose, State};
@@ -140,12 +141,13 @@ impl InstructionFollowing {
     /// All at once: who is stopped on the way has found nothing.
     fn find_offers(&self, world: &World, grid: &NavGrid) -> Vec<Offer> {
         let mut offers = Vec::new();
+        let ground = GoalGround::of(grid);
         let engines = world.engines().clone();
         let state: &State = world.state();
         let scene = engines.semantics().scene(state);
         for kind in &self.settings.kinds {
             for instruction in instruct::candidates(&scene, *kind) {
-                let goals = goal_cells(world, grid, &instruction);
+                let goals = goal_cells(world, &ground, &instruction);
                 if !goals.is_empty() {
                     offers.push(Offer { instruction, goals });
                 }
@@ -156,53 +158,44 @@ impl InstructionFollowing {
 }
 
 /// The walkable cells of the largest island in which an instruction is fulfilled by someone who looks the right way.
-fn goal_cells(world: &World, grid: &NavGrid, instruction: &Instruction) -> Vec<Cell> {
-    let (house, state) = (world.house(), world.state());
+fn goal_cells(world: &World, ground: &GoalGround<'_>, instruction: &Instruction) -> Vec<Cell> {
+    if !instruction.goal.rooms.is_empty() {
+        return ground.within(world.house(), &instruction.goal.rooms);
+    }
+    let (house, state, grid) = (world.house(), world.state(), ground.grid);
     let scene = world.engines().semantics().scene(state);
     let eye_m = state
         .agents
         .get(AgentId(0))
         .map_or(1.25, |agent| agent.body.eye_height_m);
-    let on_island = grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
+    // A little nearer than asked, so that an agent that stops on the cell's border still counts.
+    let radius_m = instruction.goal.radius_m * 0.8;
     let mut pace = Pace::new(CELLS_PER_CHECK);
-    on_island
-        .filter(|cell| {
+    let mut goals = Vec::new();
+    for object in &instruction.goal.objects {
+        let extent = scene.extent(*object);
+        let entity = house.entity_of_object(*object);
+        let found = ground.around(&extent.bounds.grown(radius_m + 0.01));
+        goals.extend(found.into_iter().filter(|cell| {
             pace.turn();
             let at = grid.position(*cell);
-            let in_room = |dx: f32, dz: f32| {
-                let room = house.room_at(at + Vec3::new(dx, 0.1, dz));
-                room.is_some_and(|room| instruction.goal.rooms.contains(&room))
-            };
-            // All around a cell, so that an agent that stops anywhere on it counts.
-            let edge = grid.config().cell_m;
-            if in_room(-edge, 0.0)
-                && in_room(edge, 0.0)
-                && in_room(0.0, -edge)
-                && in_room(0.0, edge)
-            {
-                return true;
+            if extent.footprint.distance_to(Vec2::new(at.x, at.z)) > radius_m {
+                return false;
             }
-            instruction.goal.objects.iter().any(|object| {
-                let extent = scene.extent(*object);
-                // A little nearer than asked, so that an agent that stops on the cell's border still counts.
-                if extent.footprint.distance_to(Vec2::new(at.x, at.z))
-                    > instruction.goal.radius_m * 0.8
-                {
-                    return false;
-                }
-                let sides = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
-                sides.iter().all(|(dx, dz)| {
-                    let beside = Vec3::new(*dx, 0.0, *dz) * (0.5 * edge);
-                    let eye = at + beside + Vec3::Y * eye_m;
-                    let ray = Ray::new(eye, extent.bounds.center() - eye);
-                    let hit = world.rays().closest(&ray, RayMask::EYE);
-                    hit.is_some_and(|hit| {
-                        world.rays().surface(&hit).entity == house.entity_of_object(*object)
-                    })
-                })
+            let edge = grid.config().cell_m;
+            let sides = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
+            sides.iter().all(|(dx, dz)| {
+                let beside = Vec3::new(*dx, 0.0, *dz) * (0.5 * edge);
+                let eye = at + beside + Vec3::Y * eye_m;
+                let ray = Ray::new(eye, extent.bounds.center() - eye);
+                let hit = world.rays().closest(&ray, RayMask::EYE);
+                hit.is_some_and(|hit| world.rays().surface(&hit).entity == entity)
             })
-        })
-        .collect()
+        }));
+    }
+    goals.sort_unstable();
+    goals.dedup();
+    goals
 }
 
 impl Task for InstructionFollowing {
@@ -226,6 +219,7 @@ impl Task for InstructionFollowing {
         let mut order: Vec<usize> = (0..self.offers.len()).collect();
         key.child("order").stream().shuffle(&mut order);
         let found = order.into_iter().find_map(|k| {
+            interrupt::check();
             let offer = &self.offers[k];
             let guide = Guide::new(agent, grid.clone(), &offer.goals, self.stride);
             let range = self.settings.min_distance_m..=self.settings.max_distance_m;

@@ -1,6 +1,7 @@
 //! Tasks: what an episode asks for and how it is judged. One file each, and one line in [`all`].
 
 mod free;
+mod goal_ground;
 mod instruction_following;
 mod leaves;
 

@@ -1,0 +1,120 @@
+//! Where on a grid goals are looked for: the cells of its largest island, by place and by room.
+
+use dwell_scene::interrupt::Pace;
+use dwell_scene::navigation::{Cell, NavGrid};
+use dwell_scene::{Aabb, House, RoomId};
+use glam::Vec3;
+use std::cell::OnceCell;
+use std::collections::BTreeMap;
+
+/// Edge of the squares by which cells are found, m.
+const SQUARE_M: f32 = 1.0;
+/// Cells between looks at whether they are still wanted.
+const CELLS_PER_CHECK: usize = 256;
+
+/// The cells of the largest island, gathered once for all goals.
+pub(super) struct GoalGround<'a> {
+    pub(super) grid: &'a NavGrid,
+    /// Rising.
+    cells: Vec<Cell>,
+    /// By squares along x and z.
+    squares: BTreeMap<[i32; 2], Vec<Cell>>,
+    /// The rooms on the four sides of each cell, as soon as a room is a goal. Shape (cell,).
+    sides: OnceCell<Vec<[Option<RoomId>; 4]>>,
+}
+
+fn square_of(value: f32) -> i32 {
+    (value / SQUARE_M).floor() as i32
+}
+
+impl<'a> GoalGround<'a> {
+    pub(super) fn of(grid: &'a NavGrid) -> Self {
+        let on_island = |cell: &Cell| grid.island(*cell) == Some(0);
+        let cells: Vec<Cell> = grid.walkable().filter(on_island).collect();
+        let mut squares: BTreeMap<[i32; 2], Vec<Cell>> = BTreeMap::new();
+        for cell in &cells {
+            let at = grid.position(*cell);
+            let square = squares.entry([square_of(at.x), square_of(at.z)]);
+            square.or_default().push(*cell);
+        }
+        Self {
+            grid,
+            cells,
+            squares,
+            sides: OnceCell::new(),
+        }
+    }
+
+    /// The cells over or under a box, and some around it.
+    pub(super) fn around(&self, bounds: &Aabb) -> Vec<Cell> {
+        let (low, high) = (bounds.min, bounds.max);
+        let rows = square_of(low.x)..=square_of(high.x);
+        let mut found = Vec::new();
+        for x in rows {
+            let row = [x, square_of(low.z)]..=[x, square_of(high.z)];
+            found.extend(self.squares.range(row).flat_map(|(_, cells)| cells));
+        }
+        found
+    }
+
+    /// The cells that have one of some rooms all around, so that an agent that stops anywhere on them counts; rising.
+    pub(super) fn within(&self, house: &House, rooms: &[RoomId]) -> Vec<Cell> {
+        let mut pace = Pace::new(CELLS_PER_CHECK);
+        let sides = self.sides.get_or_init(|| {
+            let edge = self.grid.config().cell_m;
+            let sides = [(-edge, 0.0), (edge, 0.0), (0.0, -edge), (0.0, edge)];
+            let of = |cell: &Cell| {
+                pace.turn();
+                let at = self.grid.position(*cell);
+                sides.map(|(dx, dz)| house.room_at(at + Vec3::new(dx, 0.1, dz)))
+            };
+            self.cells.iter().map(of).collect()
+        });
+        let inside = |room: &Option<RoomId>| room.is_some_and(|room| rooms.contains(&room));
+        let cells = self.cells.iter().zip(sides);
+        let found = cells.filter(|(_, sides)| sides.iter().all(inside));
+        found.map(|(cell, _)| *cell).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::State;
+    use dwell_scene::navigation::NavConfig;
+
+    /// What squares and sides give is what looking at all cells gives.
+    #[test]
+    fn goals_are_found_without_looking_at_all_cells() {
+        let house = dwell_houses::builtin::build("studio").unwrap();
+        let state = State::new(&house);
+        let grid = NavGrid::build(&house, &state, &NavConfig::default()).unwrap();
+        let ground = GoalGround::of(&grid);
+        let all = || grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
+        let mut asked = 0;
+        for object in house.objects.ids() {
+            let bounds = house.object_bounds(&state, object).grown(1.2);
+            let over = |cell: &Cell| bounds.contains(grid.position(*cell).with_y(bounds.min.y));
+            let found = ground.around(&bounds);
+            asked += found.len();
+            let mut over_it: Vec<Cell> = found.into_iter().filter(over).collect();
+            over_it.sort_unstable();
+            assert_eq!(over_it, all().filter(over).collect::<Vec<Cell>>());
+        }
+        assert!(asked > 0 && asked < house.objects.len() * all().count() / 2);
+        let edge = grid.config().cell_m;
+        for room in house.rooms.ids() {
+            let within = |cell: &Cell| {
+                let sides = [(-edge, 0.0), (edge, 0.0), (0.0, -edge), (0.0, edge)];
+                sides.into_iter().all(|(dx, dz)| {
+                    let at = grid.position(*cell) + Vec3::new(dx, 0.1, dz);
+                    house.room_at(at) == Some(room)
+                })
+            };
+            let expected: Vec<Cell> = all().filter(within).collect();
+            assert_eq!(ground.within(&house, &[room]), expected);
+        }
+        assert!(ground.within(&house, &[]).is_empty());
+        assert!(ground.around(&Aabb::EMPTY).is_empty());
+    }
+}
