@@ -4,50 +4,117 @@ from __future__ import annotations
 
 import json
 import os
-import wave
+import struct
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
-from dwell.files import open_file
+from dwell.files import read
 
-#: A sound file has at most so many bytes.
-_MOST_BYTES = 512 * 2**20
+#: A sound file that is read has at most so many bytes.
+_MOST_READ_BYTES = 512 * 2**20
+
+#: Formats of samples in a WAV file: whole numbers, and numbers of IEEE 754.
+_PCM, _FLOAT = 1, 3
+#: Chunks have lengths of 32 bits.
+_MOST_BYTES = 2**32 - 256
 
 
 def write_wav(
-    path: str | os.PathLike[str], sound: NDArray[Any], rate_hz: int, *, full_scale_pa: float
+    path: str | os.PathLike[str],
+    sound: NDArray[Any],
+    rate_hz: int,
+    *,
+    full_scale_pa: float | None = None,
 ) -> None:
-    """Writes pressure as 16-bit WAV.
+    """Writes pressure as WAV: samples of 32-bit float in Pa, or of 16 bits.
 
     Args:
         path: The file.
         sound: Shape (channel, sample), Pa.
         rate_hz: Samples a second.
-        full_scale_pa: The pressure that becomes full scale, Pa; louder samples are clipped.
-    """
-    scaled = np.clip(sound / full_scale_pa, -1.0, 1.0) * 32767.0
-    with wave.open(os.fspath(path), "wb") as file:
-        file.setnchannels(max(sound.shape[0], 1))
-        file.setsampwidth(2)
-        file.setframerate(rate_hz)
-        file.writeframes(np.rint(scaled.T).astype("<i2").tobytes())
-
-
-def read_wav(path: str | os.PathLike[str]) -> tuple[NDArray[np.float32], int]:
-    """Reads 16-bit WAV: shape (channel, sample) in [-1, 1], and the samples a second.
+        full_scale_pa: None: 32-bit float, where 1.0 is 1 Pa. Else 16 bits, for programs that read
+            no float, and the pressure that becomes full scale, Pa, above 0; louder samples are
+            clipped.
 
     Raises:
-        ValueError: It has more than 512 MiB.
+        ValueError: `sound` is no table of at least one channel, is too long for a WAV file
+            (4 GiB), or `full_scale_pa` is no number above 0.
+    """
+    sound = np.asarray(sound)
+    if sound.ndim != 2 or not sound.shape[0]:
+        raise ValueError(f"sound: expected the shape (channel, sample), found {sound.shape}")
+    if full_scale_pa is None:
+        form, samples = _FLOAT, sound.T.astype("<f4")
+    elif full_scale_pa > 0.0 and np.isfinite(full_scale_pa):
+        scaled = np.clip(sound.T / full_scale_pa, -1.0, 1.0) * 32767.0
+        form, samples = _PCM, np.rint(scaled).astype("<i2")
+    else:
+        raise ValueError(f"full_scale_pa is {full_scale_pa}; allowed are numbers above 0")
+    if samples.nbytes > _MOST_BYTES:
+        raise ValueError(f"sound: {samples.nbytes} bytes; a WAV file holds {_MOST_BYTES}")
+    channels, width = sound.shape[0], samples.itemsize
+    rates = (rate_hz, rate_hz * channels * width, channels * width, 8 * width)
+    chunks = [(b"fmt ", struct.pack("<HHIIHH", form, channels, *rates))]
+    if form == _FLOAT:
+        # Formats other than PCM tell the size of an extension, and how many samples there are.
+        chunks[0] = (b"fmt ", chunks[0][1] + struct.pack("<H", 0))
+        chunks.append((b"fact", struct.pack("<I", sound.shape[1])))
+    chunks.append((b"data", samples.tobytes()))
+    body = b"WAVE" + b"".join(
+        name + struct.pack("<I", len(content)) + content for name, content in chunks
+    )
+    Path(path).write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
+
+
+def read_wav(
+    path: str | os.PathLike[str], *, full_scale_pa: float = 1.0
+) -> tuple[NDArray[np.float32], int]:
+    """Reads WAV of 32-bit float or 16 bits, as :func:`write_wav` writes it.
+
+    Args:
+        path: The file.
+        full_scale_pa: Of 16 bits, the pressure at full scale, Pa; 1: fractions of it.
+
+    Returns:
+        The sound, shape (channel, sample), Pa, and the samples a second.
+
+    Raises:
+        ValueError: The file is no WAV, holds samples of another form, or has more than 512 MiB.
         OSError: The system refuses, or it is no regular file.
     """
-    with open_file(path, _MOST_BYTES) as opened, wave.open(opened) as file:
-        frames = np.frombuffer(file.readframes(file.getnframes()), "<i2")
-        channels = file.getnchannels()
-        rate_hz = file.getframerate()
-    return (frames.reshape(-1, channels).T / 32767.0).astype(np.float32), rate_hz
+    chunks = _chunks(os.fspath(path), read(path, _MOST_READ_BYTES))
+    layout, data = chunks.get(b"fmt ", b""), chunks.get(b"data")
+    if len(layout) < 16 or data is None:
+        raise ValueError(f"{path}: a WAV file has the chunks fmt and data")
+    form, channels, rate_hz, _, _, bits = struct.unpack_from("<HHIIHH", layout)
+    kinds = {(_FLOAT, 32): ("<f4", 1.0), (_PCM, 16): ("<i2", full_scale_pa / 32767.0)}
+    if (form, bits) not in kinds or not channels:
+        raise ValueError(
+            f"{path}: {channels} channels of format {form} with {bits} bits; "
+            "expected format 3 (float) with 32 bits or 1 (PCM) with 16"
+        )
+    kind, scale = kinds[form, bits]
+    frame = channels * bits // 8
+    frames = np.frombuffer(data[: len(data) // frame * frame], kind).reshape(-1, channels)
+    return (frames.T * np.float64(scale)).astype(np.float32), rate_hz
+
+
+def _chunks(name: str, file: bytes) -> dict[bytes, bytes]:
+    """The first chunk of each name."""
+    if file[:4] != b"RIFF" or file[8:12] != b"WAVE":
+        raise ValueError(f"{name}: no WAV file: it does not begin with RIFF and WAVE")
+    chunks: dict[bytes, bytes] = {}
+    at = 12
+    while at + 8 <= len(file):
+        length = int.from_bytes(file[at + 4 : at + 8], "little")
+        chunks.setdefault(file[at : at + 4], file[at + 8 : at + 8 + length])
+        # Chunks begin at even places.
+        at += 8 + length + length % 2
+    return chunks
 
 
 def signals() -> list[dict[str, Any]]:

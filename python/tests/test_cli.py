@@ -9,10 +9,12 @@ import sys
 import wave
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from dwell import cli
 from dwell.cli import info
+from dwell.sounds import read_wav
 
 HOUSE = "builtin:apartment"
 
@@ -88,12 +90,25 @@ def test_describe_writes_lines_and_reports_bad_houses(tmp_path: Path) -> None:
 def test_ir_writes_a_sound_and_its_measures(tmp_path: Path, two_points: tuple[str, str]) -> None:
     out = tmp_path / "ir.wav"
     points = ("--source", two_points[0], "--mic", two_points[1])
-    facts = one_object(dwell("ir", HOUSE, *points, "--rays", "500", "--out", out, "--json"))
-    assert facts["peak_pa"]
+    asked = ("ir", HOUSE, *points, "--rays", "500", "--out", out, "--json")
+    facts = one_object(dwell(*asked))
+    assert (facts["bits"], facts["full_scale_pa"]) == (32, 1.0)
+    sound, rate_hz = read_wav(out)
+    assert (rate_hz, sound.shape) == (facts["rate_hz"], (1, facts["samples"]))
+    assert float(np.abs(sound).max()) == facts["peak_pa"]
+    # Levels stay: four times as far from the source it is fainter.
+    source = [float(x) for x in two_points[0].split(",")]
+    near = ",".join(str(x) for x in (source[0] + 0.3, source[1], source[2]))
+    loud = one_object(dwell("ir", HOUSE, "--source", two_points[0], "--mic", near, "--json"))
+    assert float(str(loud["peak_pa"])) > 2.0
+    facts = one_object(dwell(*asked, "--bits", "16"))
+    assert (facts["bits"], facts["full_scale_pa"]) == (16, facts["peak_pa"])
     with wave.open(str(out)) as file:
-        assert file.getframerate() == facts["rate_hz"]
-        assert file.getnframes() == facts["samples"]
+        assert (file.getsampwidth(), file.getframerate()) == (2, facts["rate_hz"])
+    again, _ = read_wav(out, full_scale_pa=float(str(facts["full_scale_pa"])))
+    assert float(np.abs(again - sound).max()) < 2e-5 * float(str(facts["peak_pa"]))
     assert dwell("ir", HOUSE).returncode == 1
+    assert dwell(*asked, "--bits", "24").returncode == 2
 
 
 @pytest.mark.parametrize("stage", ["load", "render", "physics"])
@@ -153,6 +168,7 @@ def test_demo_writes_a_page_that_needs_no_network(tmp_path: Path) -> None:
     with wave.open(str(out / "errand.wav")) as sound:
         frames = sound.readframes(sound.getnframes())
     assert any(frames)
+    assert float(str(summary["errand_full_scale_pa"])) > 0.0
     assert dwell("demo", HOUSE, "--out", tmp_path).returncode == 1, "a folder that no demo wrote"
 
 

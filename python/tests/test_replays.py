@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import wave
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ import pytest
 import dwell
 from dwell import cli
 from dwell.envs import DwellEnv, ReplayRecorder
+from dwell.sounds import read_wav
 
 ACTIONS = ["move_forward", "turn_left", "move_forward", "open", "look_down", "move_forward"]
 
@@ -79,9 +79,11 @@ def test_it_is_seen_and_heard_again(file: Path, tmp_path: Path) -> None:
         ["audio.wav", *(f"{name}.png" for name in images), *(f"depth_{k}.npy" for k in steps)]
     )
     assert np.load(out / "depth_00003.npy").shape == (24, 32, 1)
-    with wave.open(str(out / "audio.wav")) as sound:
-        assert (sound.getnchannels(), sound.getframerate()) == (2, 16_000)
-        assert sound.getnframes() == 800 * len(ACTIONS)
+    sound, rate_hz = read_wav(out / "audio.wav")
+    assert (rate_hz, sound.shape) == (16_000, (2, 800 * len(ACTIONS)))
+    replay = dwell.Replay.read(file)
+    heard = [moment.world.listen(moment.world.samples_a_step) for moment in replay.play()]
+    assert np.array_equal(sound, np.concatenate(heard[1:], axis=1))
 
 
 def test_files_are_numbered_and_endings_write(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from dwell.cli import ir_grid, ir_picture, measured_room
 from dwell.cli.common import count, number, point, print_json
-from dwell.files import atomic
+from dwell.cli.saving import add_bits, save_sound
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -48,9 +48,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--out",
         type=Path,
         metavar="FILE",
-        help="FILE.wav: 16 bit, peak at full scale; of a measured room FILE.npz: ir, fs; "
-        "of pictures FILE.png or .jpg; of a grid a folder",
+        help="FILE.wav: the pressure in pascals for an impulse of 1 Pa at 1 m; of a measured room "
+        "FILE.npz: ir, fs; of pictures FILE.png or .jpg; of a grid a folder",
     )
+    add_bits(parser)
     ir_picture.configure(parser)
     ir_grid.configure(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
@@ -60,7 +61,6 @@ def run(args: argparse.Namespace) -> int:
     """Computes the response, writes it, and prints its measures."""
     from dwell.acoustics import AcousticScene
     from dwell.heads import Head
-    from dwell.sounds import write_wav
 
     if args.head is not None:
         if args.map or args.plot or measured_room.is_measured_room(args.house):
@@ -93,9 +93,7 @@ def run(args: argparse.Namespace) -> int:
     )
     metrics = scene.metrics(args.source, args.mic, seed=args.seed)
     peak = float(np.abs(response).max()) if response.size else 0.0
-    if args.out:
-        with atomic(args.out) as path:
-            write_wav(path, response, scene.rate_hz, full_scale_pa=peak or 1.0)
+    saved = save_sound(args.out, response, scene.rate_hz, args.bits) if args.out else {}
     if args.json:
         print_json(
             {
@@ -105,6 +103,7 @@ def run(args: argparse.Namespace) -> int:
                 "peak_pa": peak,
                 "metrics": metrics,
                 "out": str(args.out) if args.out else None,
+                **saved,
             }
         )
         return 0

@@ -9,15 +9,13 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from dwell.camera import PRESETS, Camera, Channel
 from dwell.cli.common import Bar, add_back_end, back_end, count, number, print_json
-from dwell.files import atomic
+from dwell.cli.saving import add_bits, save_sound, write_image
 
 if TYPE_CHECKING:
     from dwell.replays import Moment, Replay
 
 #: Beside the pictures, what ``--sensors`` takes.
 _AUDIO = "audio"
-#: Full scale of the written sound, Pa: 94 dB above 20 micropascal.
-_FULL_SCALE_PA = 1.0
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -38,6 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fov-deg", type=number, default=90.0, help="horizontal field of view")
     parser.add_argument("--preset", choices=PRESETS, default="lit")
     add_back_end(parser)
+    add_bits(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="where --sensors go")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
@@ -63,6 +62,7 @@ def run(args: argparse.Namespace) -> int:
     if taker is not None:
         _take(replay, args, taker)
         told["files"] = taker.files
+        told |= taker.sound
     different = told.get("differences", [])
     if args.json:
         print_json(told)
@@ -99,12 +99,13 @@ class _Taker:
         self._every: int = args.every
         self._heard: list[Any] = []
         self._rate_hz = self._samples = 0
+        self._bits: int = args.bits
         self.files: list[str] = []
+        #: How samples of the written sound stand for pressure.
+        self.sound: dict[str, Any] = {}
 
     def take(self, moment: Moment) -> None:
         """Looks and listens at one step."""
-        from dwell.cli.saving import write_image
-
         if self._channels and moment.step % self._every == 0:
             images = moment.world.render(agent=0, camera=self._camera, channels=self._channels)
             for channel, image in images.items():
@@ -122,11 +123,8 @@ class _Taker:
         """Writes what was heard."""
         import numpy as np
 
-        from dwell.sounds import write_wav
-
         if self._heard:
             path = self._out / "audio.wav"
-            with atomic(path) as draft:
-                sound = np.concatenate(self._heard, axis=1)
-                write_wav(draft, sound, self._rate_hz, full_scale_pa=_FULL_SCALE_PA)
+            sound = np.concatenate(self._heard, axis=1)
+            self.sound = save_sound(path, sound, self._rate_hz, self._bits)
             self.files.append(str(path))

@@ -240,6 +240,7 @@ def walk(house: House, folder: Path, progress: Callable[[float], None]) -> dict[
     )
     sound = np.concatenate(walker.sound or [np.zeros((2, _SAMPLES), np.float32)], axis=1)
     peak = max(float(np.abs(sound).max()), 1e-6)
+    # 16 bits: browsers play them all, and as loud as they can.
     write_wav(folder / "errand.wav", sound, _RATE_HZ, full_scale_pa=peak)
     save_spectrogram(sound, _RATE_HZ, folder / "spectrogram.png")
     return {
@@ -250,6 +251,7 @@ def walk(house: House, folder: Path, progress: Callable[[float], None]) -> dict[
         "steps": len(walker.way),
         "film": "errand.gif",
         "wav": "errand.wav",
+        "full_scale_pa": peak,
         "spectrogram": "spectrogram.png",
         "level_db": _level_db(sound),
         "actions": actions(),

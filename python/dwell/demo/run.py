@@ -80,6 +80,7 @@ def _fill(name: str, folder: Path, progress: Progress) -> dict[str, Any]:
         "instruction": story["instruction"].get("text"),
         "fulfilled": story["instruction"].get("success", False),
         "errand": [line["sentence"] for line in story["errand"]["log"]],
+        "errand_full_scale_pa": story["errand"]["full_scale_pa"],
         "verdict": story["calibration"]["sentence"],
         "figures": story["figures"],
     }

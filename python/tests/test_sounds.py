@@ -1,0 +1,77 @@
+"""Sound files: pressure that comes back as it was, and what is refused."""
+
+from __future__ import annotations
+
+import wave
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import dwell
+from dwell.sounds import read_wav, write_wav
+
+SOUND = np.random.default_rng(0).normal(0.0, 3.0, (3, 401)).astype(np.float32)
+
+
+def test_pressure_comes_back_to_the_bit(tmp_path: Path) -> None:
+    path = tmp_path / "a.wav"
+    write_wav(path, SOUND, 48_000)
+    found, rate_hz = read_wav(path)
+    assert rate_hz == 48_000
+    assert found.dtype == np.float32
+    assert np.array_equal(found, SOUND)
+    write_wav(path, SOUND[:, :0], 16_000)
+    assert read_wav(path)[0].shape == (3, 0)
+
+
+def test_files_are_those_of_the_format(tmp_path: Path) -> None:
+    """IEEE float has an extension of the format and counts its samples in a chunk of its own."""
+    path = tmp_path / "a.wav"
+    write_wav(path, SOUND, 48_000)
+    file = path.read_bytes()
+    assert file[:4] == b"RIFF"
+    assert int.from_bytes(file[4:8], "little") == len(file) - 8
+    assert file[8:16] == b"WAVEfmt "
+    numbers = np.frombuffer(file[16:38], "<u2")
+    assert list(numbers[2:4]) == [3, 3], "float, three channels"
+    assert list(numbers[8:11]) == [12, 32, 0]
+    assert file[38:50] == b"fact" + (4).to_bytes(4, "little") + (401).to_bytes(4, "little")
+    # The engine reads it, too.
+    world = dwell.World("builtin:studio", sound_root=tmp_path)
+    world.play("a.wav", at=(1.0, 1.0, 1.0), level_db=60.0)
+    world.step()
+
+
+def test_sixteen_bits_have_the_scale_that_was_asked_for(tmp_path: Path) -> None:
+    path = tmp_path / "a.wav"
+    write_wav(path, SOUND, 16_000, full_scale_pa=20.0)
+    with wave.open(str(path)) as file:
+        assert (file.getnchannels(), file.getsampwidth(), file.getnframes()) == (3, 2, 401)
+    found, _ = read_wav(path, full_scale_pa=20.0)
+    assert float(np.abs(found - SOUND).max()) <= 0.5 * 20.0 / 32767.0 + 1e-6
+    write_wav(path, SOUND, 16_000, full_scale_pa=1.0)
+    assert float(np.abs(read_wav(path)[0]).max()) == 1.0, "louder samples are clipped"
+
+
+def test_what_is_no_sound_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.wav"
+    for full_scale_pa in (0.0, -1.0, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="full_scale_pa"):
+            write_wav(path, SOUND, 16_000, full_scale_pa=full_scale_pa)
+    with pytest.raises(ValueError, match="shape"):
+        write_wav(path, SOUND[0], 16_000)
+    assert not path.exists()
+    path.write_bytes(b"RIFF")
+    with pytest.raises(ValueError, match=r"a\.wav: no WAV file"):
+        read_wav(path)
+    path.write_bytes(b"RIFF\4\0\0\0WAVE")
+    with pytest.raises(ValueError, match="fmt and data"):
+        read_wav(path)
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(3)
+        file.setframerate(8000)
+        file.writeframes(b"abcabc")
+    with pytest.raises(ValueError, match="24 bits"):
+        read_wav(path)
