@@ -13,7 +13,7 @@ use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
 use crate::stream::Memory;
 use crate::surface::Surface;
-use crate::synthesis::{KnownLevels, Synthesizer, Wavelet};
+use crate::synthesis::{Hearing, KnownLevels, Synthesizer, UpperAir, Wavelet};
 use crate::{images, tail};
 use dwell_scene::bvh::Hit;
 use dwell_scene::parallel::Threads;
@@ -47,6 +47,8 @@ pub struct AcousticScene {
     table: Arc<PlaneTable>,
     synthesizer: Arc<Synthesizer>,
     heads: Arc<Heads>,
+    /// What air takes above the highest band, where that can be heard.
+    upper_air: Option<Arc<UpperAir>>,
     /// Where all planes are now.
     planes: Vec<Plane>,
     /// Where the edges of moving parts are now.
@@ -67,6 +69,7 @@ impl AcousticScene {
         config.check()?;
         let table = Arc::new(PlaneTable::new(&house));
         tracing::debug!(planes = table.len(), "acoustic planes built");
+        let synthesizer = Synthesizer::shared(&config);
         Ok(Self {
             planes: table.at_start.clone(),
             moving_edges: table.edges().at_start(&house),
@@ -76,7 +79,8 @@ impl AcousticScene {
                 .ids()
                 .map(|id| Surface::new(&house, None, id, &config))
                 .collect(),
-            synthesizer: Synthesizer::shared(&config),
+            upper_air: synthesizer.upper_air(&config, 1.0).map(Arc::new),
+            synthesizer,
             heads: Arc::new(Heads::new(&config)),
             overrides: BTreeMap::new(),
             stated: config,
@@ -107,12 +111,19 @@ impl AcousticScene {
     }
 
     fn obey(&mut self, effects: Effects) {
-        let before = self.config.air;
+        let (air, absorption) = (self.config.air, self.effects.air_absorption());
         self.config = effects.config(&self.stated);
         self.effects = effects;
-        if self.config.air != before {
+        if self.config.air != air {
             // Ears are as far apart as sound is slow.
             self.heads = Arc::new(self.heads.in_air(&self.config));
+        }
+        let share = self.effects.air_absorption();
+        if self.config.air != air || share != absorption {
+            self.upper_air = self
+                .synthesizer
+                .upper_air(&self.config, share)
+                .map(Arc::new);
         }
     }
 
@@ -516,8 +527,16 @@ impl AcousticScene {
         paths: &[Path],
         receiver: &Receiver,
     ) -> Vec<Vec<Wavelet>> {
-        let heads = &self.heads;
-        self.synthesizer.wavelets(speed_m_s, paths, receiver, heads)
+        let hearing = self.hearing(receiver);
+        self.synthesizer.wavelets(speed_m_s, paths, &hearing)
+    }
+
+    fn hearing<'a>(&'a self, receiver: &'a Receiver) -> Hearing<'a> {
+        Hearing {
+            receiver,
+            heads: &self.heads,
+            air: self.upper_air.as_deref(),
+        }
     }
 
     /// A response without some of its echogram's `paths`, as they are followed. Shape (channel, sample), flat.
@@ -564,8 +583,9 @@ impl AcousticScene {
         early: Option<&[Vec<Path>]>,
         key: Key,
     ) -> ImpulseResponse {
-        let (synthesizer, heads, key) = (&self.synthesizer, &self.heads, key.child("noise"));
-        let samples = synthesizer.render(&echogram, receiver, heads, early, &mut levels, key);
+        let (hearing, key) = (self.hearing(receiver), key.child("noise"));
+        let synthesizer = &self.synthesizer;
+        let samples = synthesizer.render(&echogram, &hearing, early, &mut levels, key);
         ImpulseResponse {
             channels: receiver.channels(),
             rate_hz: self.config.rate_hz,

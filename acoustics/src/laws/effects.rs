@@ -73,6 +73,11 @@ impl Effects {
         whole.map(|m| self.air_absorption * m)
     }
 
+    /// The share of the air's absorption that there is, 0 to 1.
+    pub(crate) fn air_absorption(&self) -> f64 {
+        self.air_absorption
+    }
+
     /// Where a source's axis points, unit length, and its gains around that, in air with `speed_m_s`.
     pub(crate) fn radiation(&self, source: &Source, speed_m_s: f64) -> (Vec3, Pattern) {
         let pattern = source.directivity.pattern(speed_m_s);

@@ -33,7 +33,7 @@ pub(super) const LAW: Law = Law {
 fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
     let filters = PathFilters::spanning(rate_hz, SPAN_S);
     let energy = values.bands().map(|db| libm::powf(10.0, db / 10.0));
-    let (mut spectrum, amplitude) = filters.spectrum(&energy);
+    let (mut spectrum, amplitude) = filters.spectrum(&energy, None);
     let taps = filters.impulse_response(&mut filters.fft(), &mut spectrum);
     let taps = taps.into_iter().map(|x| amplitude * x).collect();
     Box::new(Fir::new(0, taps))

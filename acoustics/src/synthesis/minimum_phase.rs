@@ -24,6 +24,7 @@ fn transform_length(rate_hz: f64, span_s: f64) -> usize {
 #[derive(Debug)]
 pub(crate) struct PathFilters {
     fft: RealFft,
+    rate_hz: f64,
     /// Logarithmic spectrum of a band whose gain is e, others 1. Shape (band, bin).
     basis: Vec<Vec<Complex<f32>>>,
     /// What makes a response [`lead`] samples late. Shape (bin,).
@@ -49,24 +50,8 @@ impl PathFilters {
         let (length, bins) = (fft.len(), fft.bins());
         let basis = (0..BAND_COUNT)
             .map(|band| {
-                let mut gain: Vec<Complex<f32>> = (0..bins)
-                    .map(|bin| {
-                        let frequency_hz = bin as f64 * rate_hz / length as f64;
-                        let share = bands::power_shares(frequency_hz, 1.0)[band];
-                        Complex::new(share as f32, 0.0)
-                    })
-                    .collect();
-                // The causal half of the cepstrum, doubled, is that of the minimum-phase spectrum
-                // (Oppenheim, Schafer, Discrete-Time Signal Processing, section 13.5).
-                let mut cepstrum = fft.inverse(&mut gain);
-                for (k, value) in cepstrum.iter_mut().enumerate() {
-                    *value *= match (k, k.cmp(&(length / 2))) {
-                        (0, _) | (_, std::cmp::Ordering::Equal) => 1.0,
-                        (_, std::cmp::Ordering::Less) => 2.0,
-                        (_, std::cmp::Ordering::Greater) => 0.0,
-                    };
-                }
-                fft.forward(&cepstrum)
+                let share = |frequency_hz| bands::power_shares(frequency_hz, 1.0)[band];
+                logarithmic(&mut fft, rate_hz, share)
             })
             .collect();
         let lead = lead(rate_hz);
@@ -77,6 +62,7 @@ impl PathFilters {
         Self {
             late: late.collect(),
             fade: fade(length / 8),
+            rate_hz,
             fft,
             basis,
         }
@@ -87,8 +73,18 @@ impl PathFilters {
         self.fft.bins()
     }
 
-    /// The spectrum for `energy`, and the amplitude that it still has to be multiplied by.
-    pub(crate) fn spectrum(&self, energy: &Banded) -> (Vec<Complex<f32>>, f32) {
+    /// The logarithmic spectrum of minimum phase whose gain has, at a frequency in Hz, the natural logarithm `gain`.
+    pub(crate) fn logarithmic(&self, gain: impl Fn(f64) -> f64) -> Vec<Complex<f32>> {
+        logarithmic(&mut self.fft(), self.rate_hz, gain)
+    }
+
+    /// The spectrum for `energy`, and the amplitude that it still has to be multiplied by. `more`: a logarithmic spectrum, and how many
+    /// times it is added.
+    pub(crate) fn spectrum(
+        &self,
+        energy: &Banded,
+        more: Option<(&[Complex<f32>], f32)>,
+    ) -> (Vec<Complex<f32>>, f32) {
         let strongest = energy.iter().copied().fold(0.0, f32::max);
         let mut sum = vec![Complex::new(0.0_f32, 0.0); self.bins()];
         if strongest <= 0.0 {
@@ -100,6 +96,11 @@ impl PathFilters {
                 for (total, value) in sum.iter_mut().zip(row) {
                     *total += value * half_log;
                 }
+            }
+        }
+        if let Some((more, times)) = more {
+            for (total, value) in sum.iter_mut().zip(more) {
+                *total += value * times;
             }
         }
         for value in &mut sum {
@@ -135,6 +136,23 @@ impl PathFilters {
     }
 }
 
+/// The causal half of the cepstrum, doubled, is that of the minimum-phase spectrum (Oppenheim, Schafer, Discrete-Time Signal
+/// Processing, section 13.5).
+fn logarithmic(fft: &mut RealFft, rate_hz: f64, gain: impl Fn(f64) -> f64) -> Vec<Complex<f32>> {
+    let length = fft.len();
+    let at = |bin: usize| gain(bin as f64 * rate_hz / length as f64) as f32;
+    let gains = (0..fft.bins()).map(|bin| Complex::new(at(bin), 0.0));
+    let mut cepstrum = fft.inverse(&mut gains.collect::<Vec<_>>());
+    for (k, value) in cepstrum.iter_mut().enumerate() {
+        *value *= match (k, k.cmp(&(length / 2))) {
+            (0, _) | (_, std::cmp::Ordering::Equal) => 1.0,
+            (_, std::cmp::Ordering::Less) => 2.0,
+            (_, std::cmp::Ordering::Greater) => 0.0,
+        };
+    }
+    fft.forward(&cepstrum)
+}
+
 /// Samples by which the filters of ears begin before the delay.
 pub(crate) fn lead(rate_hz: f64) -> usize {
     (EAR_LEAD_S * rate_hz) as usize
@@ -164,7 +182,7 @@ mod tests {
     #[test]
     fn equal_energies_are_one_sample() {
         let filters = PathFilters::new(16_000.0);
-        let (mut spectrum, amplitude) = filters.spectrum(&[0.25; 8]);
+        let (mut spectrum, amplitude) = filters.spectrum(&[0.25; 8], None);
         let response = filters.impulse_response(&mut filters.fft(), &mut spectrum);
         assert!((amplitude - 0.5).abs() < 1e-7);
         assert!((response[0] - 1.0).abs() < 1e-6);
@@ -176,7 +194,7 @@ mod tests {
         let rate_hz = 16_000.0;
         let filters = PathFilters::new(rate_hz);
         let energy = [1.0, 0.9, 0.8, 0.7, 0.5, 0.3, 0.1, 0.03];
-        let (mut spectrum, amplitude) = filters.spectrum(&energy);
+        let (mut spectrum, amplitude) = filters.spectrum(&energy, None);
         let response = filters.impulse_response(&mut filters.fft(), &mut spectrum);
         for (band, wanted) in energy.iter().enumerate().skip(2).take(5) {
             let omega = std::f64::consts::TAU * bands::exact_centre_hz(band) / rate_hz;

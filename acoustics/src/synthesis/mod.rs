@@ -5,6 +5,7 @@ mod level;
 pub(crate) mod minimum_phase;
 mod noise;
 mod smooth;
+mod upper_air;
 
 use crate::bands::{BAND_COUNT, Banded, FilterBank};
 use crate::channel::Channel;
@@ -19,6 +20,8 @@ pub(crate) use level::KnownLevels;
 use minimum_phase::{EAR_LEAD_S, PathFilters};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+pub(crate) use upper_air::UpperAir;
+use upper_air::UpperParts;
 
 /// Paths whose filters are computed, the strongest first; fainter ones beyond these are left out.
 const MOST_PATHS: usize = 200;
@@ -49,7 +52,22 @@ pub(crate) struct Synthesizer {
     fade: Vec<f32>,
     longest: usize,
     /// Filter banks for a quarter, half and all of the longest response, made when first needed.
-    banks: [OnceLock<FilterBank>; 3],
+    banks: [OnceLock<Bank>; 3],
+}
+
+/// Filters for one length of responses.
+#[derive(Debug)]
+struct Bank {
+    bands: FilterBank,
+    upper: UpperParts,
+}
+
+/// Who listens, in which air.
+pub(crate) struct Hearing<'a> {
+    pub(crate) receiver: &'a Receiver,
+    pub(crate) heads: &'a Heads,
+    /// What it takes above the highest band, where that can be heard.
+    pub(crate) air: Option<&'a UpperAir>,
 }
 
 /// Those in use: every house that sounds at one rate has the same.
@@ -99,14 +117,22 @@ impl Synthesizer {
         }
     }
 
-    fn bank(&self, length: usize) -> &FilterBank {
+    /// What `config`'s air, of whose absorption there is `share`, takes above the highest band.
+    pub(crate) fn upper_air(&self, config: &AcousticConfig, share: f64) -> Option<UpperAir> {
+        UpperAir::new(config, share, &self.filters)
+    }
+
+    fn bank(&self, length: usize) -> &Bank {
         let quarters = (4 * length).div_ceil(self.longest.max(1));
         let (place, span) = match quarters {
             0 | 1 => (0, self.longest.div_ceil(4)),
             2 => (1, self.longest.div_ceil(2)),
             _ => (2, self.longest),
         };
-        self.banks[place].get_or_init(|| FilterBank::new(self.rate_hz, span, OVERLAP))
+        self.banks[place].get_or_init(|| Bank {
+            bands: FilterBank::new(self.rate_hz, span, OVERLAP),
+            upper: UpperParts::new(self.rate_hz, span),
+        })
     }
 
     /// Samples that an echogram fills: until 1e-7 of its energy is left, at most the configured duration.
@@ -144,12 +170,16 @@ impl Synthesizer {
     pub(crate) fn render(
         &self,
         echogram: &Echogram,
-        receiver: &Receiver,
-        heads: &Heads,
+        hearing: &Hearing<'_>,
         early: Option<&[Vec<Path>]>,
         levels: &mut KnownLevels,
         key: Key,
     ) -> Vec<f32> {
+        let Hearing {
+            receiver,
+            heads,
+            air,
+        } = *hearing;
         let length = self.length(echogram);
         let mut out = vec![0.0; receiver.channels() * length];
         if out.is_empty() {
@@ -160,6 +190,7 @@ impl Synthesizer {
         let radius_m = receiver.radius_m().max(EAR_LEAD_S * echogram.speed_m_s);
         let quiet_s = (echogram.direct_length_m - radius_m) / echogram.speed_m_s;
         let quiet = ((quiet_s * self.rate_hz).max(0.0) as usize).min(length);
+        let bank = self.bank(length);
         let noise = noise::Noise {
             echogram,
             energy: smooth::smooth(&echogram.tail),
@@ -167,48 +198,57 @@ impl Synthesizer {
             arrivals_per_s: self.arrivals_per_s,
             length,
             quiet,
-            bank: self.bank(length),
+            bank: &bank.bands,
+            upper: air.map(|air| (&bank.upper, air)),
         };
         let arrivals = noise.arrivals(key);
         if !arrivals.is_empty() {
             let levels = levels.or_find(|| {
                 let mut paths = vec![0.0; length];
-                self.add_paths(
-                    echogram,
-                    &echogram.paths,
-                    &[Channel::Omni],
-                    true,
-                    &mut paths,
-                );
+                // Bands are known at their centres: levels are those before air takes more of what lies above.
+                let omni = Listening {
+                    channels: &[Channel::Omni],
+                    there: true,
+                    air: None,
+                };
+                self.add_paths(echogram, &echogram.paths, &omni, &mut paths);
                 noise.levels(&arrivals, &paths, channels.len())
             });
             noise.add(&arrivals, levels, &channels, &mut out);
         }
+        let listening = |channels, there| Listening {
+            channels,
+            there,
+            air,
+        };
         let Some(early) = early else {
-            self.add_paths(echogram, &echogram.paths, &channels, false, &mut out);
+            self.add_paths(
+                echogram,
+                &echogram.paths,
+                &listening(&channels, false),
+                &mut out,
+            );
             return out;
         };
         let all = channels.chunks(1).zip(out.chunks_exact_mut(length));
         for ((channel, out), paths) in all.zip(early) {
-            self.add_paths(echogram, paths, channel, true, out);
+            self.add_paths(echogram, paths, &listening(channel, true), out);
         }
         out
     }
 
-    /// Adds early paths as channels hear them to `out`, shape (channel, sample); `there`: whether they end at the channel itself rather
-    /// than at the centre.
+    /// Adds early paths as channels hear them to `out`, shape (channel, sample).
     fn add_paths(
         &self,
         echogram: &Echogram,
         paths: &[Path],
-        channels: &[Channel],
-        there: bool,
+        listening: &Listening<'_>,
         out: &mut [f32],
     ) {
-        let length = out.len() / channels.len();
+        let length = out.len() / listening.channels.len();
         let mut fft = self.filters.fft();
         for path in strongest(paths) {
-            let wavelets = self.heard(&mut fft, echogram.speed_m_s, path, channels, there);
+            let wavelets = self.heard(&mut fft, echogram.speed_m_s, path, listening);
             for (wavelet, out) in wavelets.zip(out.chunks_exact_mut(length)) {
                 let taps = Taps::new(wavelet.delay_s * self.rate_hz);
                 taps.add(out, &wavelet.response, wavelet.lead, wavelet.amplitude);
@@ -216,22 +256,27 @@ impl Synthesizer {
         }
     }
 
-    /// A path as channels hear it; `there`: whether it ends at the channel itself rather than at the centre. Shape (channel,).
+    /// A path as channels hear it. Shape (channel,).
     fn heard<'a>(
         &'a self,
         fft: &'a mut RealFft,
         speed_m_s: f64,
         path: &'a Path,
-        channels: &'a [Channel],
-        there: bool,
+        listening: &Listening<'a>,
     ) -> impl Iterator<Item = Wavelet> + 'a {
+        let Listening {
+            channels,
+            there,
+            air,
+        } = *listening;
+        let air = air.map(|air| air.along(path.length_m));
         // Most channels hear the same energies.
         let (mut last, mut found) = ([f32::NAN; BAND_COUNT], (Vec::new(), 0.0));
         channels.iter().map(move |channel| {
             let gain = channel.path_gain(path.arrival);
             let energy: Banded = std::array::from_fn(|b| path.energy[b] * gain[b] * gain[b]);
             if energy != last {
-                (last, found) = (energy, self.filters.spectrum(&energy));
+                (last, found) = (energy, self.filters.spectrum(&energy, air));
             }
             let (mut spectrum, mut amplitude) = found.clone();
             if path.inverted != (gain.iter().sum::<f32>() < 0.0) {
@@ -263,13 +308,17 @@ impl Synthesizer {
         &self,
         speed_m_s: f64,
         paths: &[Path],
-        receiver: &Receiver,
-        heads: &Heads,
+        hearing: &Hearing<'_>,
     ) -> Vec<Vec<Wavelet>> {
-        let channels = Channel::of(receiver, heads, speed_m_s);
+        let channels = Channel::of(hearing.receiver, hearing.heads, speed_m_s);
+        let listening = Listening {
+            channels: &channels,
+            there: false,
+            air: hearing.air,
+        };
         let mut fft = self.filters.fft();
         let mut hear = |path: &Path| -> Vec<Wavelet> {
-            let wavelets = self.heard(&mut fft, speed_m_s, path, &channels, false);
+            let wavelets = self.heard(&mut fft, speed_m_s, path, &listening);
             wavelets.map(|wavelet| self.shorten(wavelet)).collect()
         };
         paths.iter().map(&mut hear).collect()
@@ -298,6 +347,14 @@ impl Synthesizer {
             }
         }
     }
+}
+
+/// The channels that hear paths, in which air.
+struct Listening<'a> {
+    channels: &'a [Channel],
+    /// Whether paths end at the channel itself rather than at the centre.
+    there: bool,
+    air: Option<&'a UpperAir>,
 }
 
 /// The paths that are heard one by one, the strongest first where there are too many.

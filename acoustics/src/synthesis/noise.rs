@@ -1,6 +1,7 @@
 //! The tail as pressure: random arrivals whose energies are the histogram's.
 
 use super::level::{Energy, Gains, Levels};
+use super::upper_air::{UpperAir, UpperParts};
 use crate::bands::{BAND_COUNT, Banded, FilterBank};
 use crate::channel::{Channel, Delay};
 use crate::directions::Directions;
@@ -32,6 +33,8 @@ pub(super) struct Noise<'a> {
     /// Samples at the start in which nothing may be heard.
     pub(super) quiet: usize,
     pub(super) bank: &'a FilterBank,
+    /// What air takes above the highest band, if anything.
+    pub(super) upper: Option<(&'a UpperParts, &'a UpperAir)>,
 }
 
 /// One wave of the tail.
@@ -74,12 +77,28 @@ impl Noise<'_> {
                 let pulse = std::array::from_fn(|band| pulse[band] * heard.gain[band]);
                 self.strike(&mut bus, arrival.time_s, &pulse, &heard.delay);
             }
-            let heard = self.bank.blend(&bus, self.length);
+            let heard = self.blend(&mut bus);
             // Zero-phase bands ring before their pulses.
             for (y, x) in out.iter_mut().zip(heard).skip(self.quiet) {
                 *y += x;
             }
         }
+    }
+
+    /// The bands together, with what air takes above the highest of them.
+    fn blend(&self, bus: &mut Bus) -> Vec<f32> {
+        let Some((parts, air)) = self.upper else {
+            return self.bank.blend(bus, self.length);
+        };
+        let mut alone = vec![Vec::new(); BAND_COUNT];
+        alone[BAND_COUNT - 1] = std::mem::take(&mut bus[BAND_COUNT - 1]);
+        let mut highest = self.bank.blend(&alone, self.length);
+        parts.fade(&mut highest, air, self.echogram.speed_m_s / self.rate_hz);
+        let mut heard = self.bank.blend(bus, self.length);
+        for (y, x) in heard.iter_mut().zip(highest) {
+            *y += x;
+        }
+        heard
     }
 
     /// All waves of the tail, by bins: they come at random (Poisson), each with a sign and a direction drawn from those of its bin.
