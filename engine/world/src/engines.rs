@@ -2,6 +2,7 @@
 
 use crate::config::WorldConfig;
 use crate::error::WorldError;
+use crate::heap::GivesBack;
 use crate::recordings::Recordings;
 use crate::sound::emitter_places;
 use crate::start::Start;
@@ -38,6 +39,8 @@ pub struct Engines {
     grids: Mutex<Vec<Arc<NavGrid>>>,
     /// Of the latest config, as long as a world of it is left.
     start: Mutex<Option<(WorldConfig, Weak<Start>)>>,
+    /// The last field: it is dropped after all others.
+    _heap: GivesBack,
 }
 
 impl Engines {
@@ -55,6 +58,7 @@ impl Engines {
             emitter_places: OnceLock::new(),
             grids: Mutex::default(),
             start: Mutex::default(),
+            _heap: GivesBack,
         })
     }
 

@@ -16,6 +16,7 @@ mod expert;
 mod exposure;
 mod fixtures;
 mod floor_plan;
+mod heap;
 mod info;
 pub mod laws;
 pub mod metrics;
