@@ -11,9 +11,9 @@ use crate::microphones::Microphones;
 use crate::planes::{Edge, Plane, PlaneTable, WALL_M2};
 use crate::receiver::{Receiver, Source};
 use crate::response::ImpulseResponse;
-use crate::stream::Memory;
 use crate::surface::Surface;
 use crate::synthesis::{Hearing, KnownLevels, Synthesizer, UpperAir, Wavelet};
+use crate::tail::Late;
 use crate::{images, tail};
 use dwell_scene::bvh::Hit;
 use dwell_scene::parallel::Threads;
@@ -304,7 +304,7 @@ impl AcousticScene {
     }
 
     /// As [`Self::echograms`] with so many rays.
-    fn echograms_of(
+    pub(crate) fn echograms_of(
         &self,
         rays: &RayScene,
         source: &Source,
@@ -327,19 +327,28 @@ impl AcousticScene {
             threads,
         );
         let both = early.into_iter().zip(late).zip(receivers);
-        both.map(|((paths, late), receiver)| {
-            let mut echogram = Echogram {
-                paths,
-                tail: late.histogram,
-                trace: late.statistics,
-                source: position,
-                direct_length_m: position.as_dvec3().distance(receiver.as_dvec3()),
-                speed_m_s: self.config.air.speed_of_sound_m_s(),
-            };
-            self.effects.at_source(&mut echogram);
-            echogram
-        })
-        .collect()
+        both.map(|((paths, late), receiver)| self.joined(paths, late, position, *receiver))
+            .collect()
+    }
+
+    /// The echogram of early paths and a tail.
+    pub(crate) fn joined(
+        &self,
+        paths: Vec<Path>,
+        late: Late,
+        source: Vec3,
+        receiver: Vec3,
+    ) -> Echogram {
+        let mut echogram = Echogram {
+            paths,
+            tail: late.histogram,
+            trace: late.statistics,
+            source,
+            direct_length_m: source.as_dvec3().distance(receiver.as_dvec3()),
+            speed_m_s: self.config.air.speed_of_sound_m_s(),
+        };
+        self.effects.at_source(&mut echogram);
+        echogram
     }
 
     /// What `receiver` hears when `source` makes an impulse, as the laws of the state that was last given to [`Self::update`]
@@ -459,39 +468,8 @@ impl AcousticScene {
         }))
     }
 
-    /// A new response for a listener who heard `before` not far from here: fewer rays, and the rest of the tail from memory; all
-    /// rays where these show that it is another one.
-    ///
-    /// # Errors
-    /// As [`Self::arrivals`].
-    pub(crate) fn arrive_again(
-        &self,
-        rays: &RayScene,
-        source: &Source,
-        receiver: &Receiver,
-        memory: &Memory<'_>,
-        key: Key,
-        threads: Threads,
-    ) -> Result<ImpulseResponse, AcousticsError> {
-        let centre = [receiver.position()];
-        self.check(rays, source, &centre)?;
-        self.check_receiver(receiver)?;
-        let count = (self.config.rays as f64 * memory.share).ceil() as usize;
-        let again = key.child("again").child(memory.update);
-        let trace = |count, key| {
-            let echograms = self.echograms_of(rays, source, &centre, count, key, threads);
-            echograms.into_iter().next().unwrap_or_default()
-        };
-        let mut echogram = trace(count, again);
-        if !memory.recall(&mut echogram) {
-            echogram = trace(self.config.rays, again.child("all"));
-        }
-        let early = self.early_of_microphones(rays, source, receiver);
-        Ok(self.arrive(echogram, receiver, early.as_deref(), memory.noise))
-    }
-
     /// The early paths of each microphone of an array; `None` where the centre's serve.
-    fn early_of_microphones(
+    pub(crate) fn early_of_microphones(
         &self,
         rays: &RayScene,
         source: &Source,

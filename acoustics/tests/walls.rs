@@ -219,6 +219,93 @@ fn a_door_that_swings_is_heard_on_its_way_and_exactly_where_it_rests() {
     assert!((10..40).contains(&traced), "{traced}");
 }
 
+/// Settings that take little.
+fn few(rays: usize) -> AcousticConfig {
+    AcousticConfig {
+        max_duration_s: 0.5,
+        image_order: 2,
+        image_planes: 12,
+        discovery_rays: 200,
+        ..dry(rays)
+    }
+}
+
+/// A door opens while many things sound: no block traces more rays than it may, whoever waits has a turn, and when all have had theirs,
+/// what is heard is what a stream that begins then hears, to the bit. Snapshots hold what was traced of a response so far.
+#[test]
+fn a_door_with_many_sounds_takes_little_in_each_block() {
+    let wall = material(0.1, 0.3);
+    let mut hall = Hall::new(two_rooms(&wall, &wall), few(640));
+    let mut state = State::new(&hall.house);
+    let config = StreamConfig {
+        update_rays: 300,
+        ..StreamConfig::full()
+    };
+    let new = |hall: &Hall, threads: usize| {
+        let threads = Threads::exactly(threads);
+        Stream::new(hall.scene.clone(), config, Key::root(8), threads).unwrap()
+    };
+    let receiver = Receiver::binaural(Pose::from_position(EAR));
+    let signal = vec![0.1; 800];
+    let sources: Vec<ActiveSource<'_>> = (0..6)
+        .map(|k| ActiveSource {
+            id: k,
+            position: SOURCE + Vec3::new(0.4 * k as f32, 0.0, 0.0),
+            signal: &signal,
+        })
+        .collect();
+    let hear = |stream: &mut Stream, hall: &Hall, state: &State| {
+        let mut out = vec![0.0; 1600];
+        let report = stream.block(&hall.rays, state, &sources, &receiver, &mut out);
+        (report.unwrap(), out)
+    };
+    let (mut stream, mut other) = (new(&hall, 1), new(&hall, 2));
+    assert!(hear(&mut stream, &hall, &state).0.rays >= 6 * 640);
+    hear(&mut other, &hall, &state);
+    let (mut longest_wait, mut rests) = (0, 0);
+    for k in 0..200 {
+        let angle = -1.5 * (k as f32 / 22.0).min(1.0);
+        let hinge = Vec3::new(4.0, 0.0, 1.5);
+        state.part_pose[PartId(0)] = Pose::from_position_yaw(hinge, angle);
+        hall.rays.update(&state);
+        hall.scene.update(&state);
+        let (report, heard) = hear(&mut stream, &hall, &state);
+        assert!(report.rays <= 300, "{k}: {report:?}");
+        assert_eq!((report, heard), hear(&mut other, &hall, &state), "{k}");
+        if k % 17 == 3 {
+            let bytes = stream.snapshot();
+            stream = new(&hall, 1);
+            stream.restore(&bytes).unwrap();
+        }
+        assert_eq!(stream.hash(), other.hash(), "{k}");
+        if report.waiting > 0 {
+            longest_wait = k;
+            rests = 0;
+        } else {
+            rests += 1;
+        }
+        if k > 22 && rests > 1 {
+            break;
+        }
+    }
+    assert!((24..100).contains(&longest_wait), "{longest_wait}");
+    let mut fresh = new(&hall, 1);
+    hear(&mut fresh, &hall, &state);
+    let energies = |of: &Stream| -> Vec<_> {
+        let all = of.echograms();
+        all.map(|(id, echogram)| (id, echogram.tail, echogram.trace))
+            .collect()
+    };
+    let (found, wanted) = (energies(&stream), energies(&fresh));
+    assert_eq!(found.len(), 6);
+    assert!(
+        found == wanted,
+        "other tails than those of a stream that begins"
+    );
+    // The door lets through what was silent before.
+    assert!(found.iter().all(|(_, tail, _)| tail.total()[4] > 0.0));
+}
+
 /// Mirrors move with the parts that carry them.
 #[test]
 fn a_moved_plate_mirrors_from_its_new_place() {

@@ -22,6 +22,9 @@ pub struct StreamConfig {
     /// unless these rays tell of another tail: then all are traced.
     /// 0.001 to 1.
     pub update_share: f64,
+    /// Rays that new impulse responses may take in one block, 0 to 10,000,000; what does not fit has its turn in later blocks, and is
+    /// heard as before until then. Looking for a response's early paths and making it count as rays, too. 0: as many as they need.
+    pub update_rays: usize,
     /// Sources that are followed at once; the first in the list win. 1 to 1,000.
     pub max_sources: usize,
 }
@@ -43,6 +46,7 @@ impl StreamConfig {
             update_part_m: 0.03,
             moving_paths: 12,
             update_share: 0.1,
+            update_rays: 600,
             max_sources: 64,
         }
     }
@@ -55,6 +59,7 @@ impl StreamConfig {
             update_part_m: 0.15,
             moving_paths: 6,
             update_share: 0.15,
+            update_rays: 0,
             max_sources: 4,
             ..Self::full()
         }
@@ -66,6 +71,7 @@ impl StreamConfig {
             update_distance_m: 0.05,
             moving_paths: 64,
             update_share: 1.0,
+            update_rays: 0,
             ..Self::full()
         }
     }
@@ -112,6 +118,13 @@ impl StreamConfig {
             self.update_share,
             (1e-3, 1.0),
             "0.001 to 1",
+        )?;
+        range(
+            AT,
+            "update_rays",
+            self.update_rays as f64,
+            (0.0, 1e7),
+            "0 to 10000000",
         )?;
         range(
             AT,

@@ -1,8 +1,8 @@
 //! What a listener who moves on still knows of the tail.
 
+use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, SPAN_COUNT};
 use crate::tail::spans;
-use dwell_scene::random::Key;
 
 /// How far early sound stays alike, m.
 const NEAR_M: f64 = 0.3;
@@ -24,19 +24,27 @@ const DOUBT: f64 = 3.0;
 const FEW: f64 = 0.5;
 
 /// The tail that was heard before, and what has changed since.
-pub(crate) struct Memory<'a> {
-    pub(crate) before: &'a Echogram,
+pub(super) struct Memory<'a> {
+    pub(super) before: &'a Echogram,
     /// How far source and receiver have moved since, m.
-    pub(crate) moved_m: f64,
+    pub(super) moved_m: f64,
     /// The share of all rays that is traced anew.
-    pub(crate) share: f64,
+    pub(super) share: f64,
     /// Tells updates apart.
-    pub(crate) update: u64,
-    /// The tail's random arrivals: as before, so that it does not boil.
-    pub(crate) noise: Key,
+    pub(super) update: u64,
+}
+
+/// How many rays an update traces that remembers the rest.
+pub(super) fn rays_of(config: &AcousticConfig, share: f64) -> usize {
+    (config.rays as f64 * share).ceil() as usize
 }
 
 impl Memory<'_> {
+    /// How many rays are traced anew.
+    pub(super) fn rays(&self, config: &AcousticConfig) -> usize {
+        rays_of(config, self.share)
+    }
+
     /// How unlike `now` is to what was heard before, where it has mixed, as a deviate of a normal distribution: who walks through a
     /// door hears another tail, however short the way.
     ///
@@ -74,7 +82,7 @@ impl Memory<'_> {
     /// The idea is that of temporal coherence in C. Schissler, D. Manocha, ACM TOG 36(2), 16 (2017), section 4.
     ///
     /// `false`: this is another tail, of which only all rays tell enough.
-    pub(crate) fn recall(&self, now: &mut Echogram) -> bool {
+    pub(super) fn recall(&self, now: &mut Echogram) -> bool {
         let before = &self.before.tail;
         if before.bin_s != now.tail.bin_s
             || before.bins.len() != now.tail.bins.len()

@@ -7,10 +7,11 @@ mod memory;
 mod passage;
 mod plan;
 mod remembered;
+mod turns;
 mod voice;
+mod way;
 
 pub use config::StreamConfig;
-pub(crate) use memory::Memory;
 
 use crate::echogram::Echogram;
 use crate::error::{AcousticsError, finite};
@@ -27,12 +28,13 @@ use early::{Followed, Glide};
 use glam::Vec3;
 use plan::Planned;
 use serde::{Deserialize, Serialize};
+use turns::Pieces;
 use voice::{Situation, Voice};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Parts whose box is smaller than this from corner to corner do not change what is heard, m.
 const LARGE_PART_M: f32 = 0.7;
-const VERSION: u32 = 8;
+const VERSION: u32 = 9;
 
 /// A source that sounds during a block.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +52,10 @@ pub struct ActiveSource<'a> {
 pub struct BlockReport {
     /// Impulse responses for which rays were traced.
     pub traced: usize,
+    /// These rays.
+    pub rays: usize,
+    /// Sources whose new impulse responses wait for their turn ([`StreamConfig::update_rays`]).
+    pub waiting: usize,
     /// Impulse responses that were only turned.
     pub turned: usize,
     /// Early paths that were followed.
@@ -217,6 +223,8 @@ impl Stream {
             place,
             news,
             followed,
+            since,
+            job,
         } in planned
         {
             let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
@@ -294,6 +302,12 @@ impl Stream {
                 glide(&self.scene, &self.fade, voice).add(&before, &[], out);
             }
             voice.moved.last = Some(place);
+            voice.waiting.since = since;
+            match job {
+                Pieces::AsBefore => {}
+                Pieces::None => voice.waiting.job = None,
+                Pieces::Now(job) => voice.waiting.job = Some(job),
+            }
         }
         self.voices.retain(|voice| {
             !voice.input.is_silent() || sources.iter().any(|source| source.id == voice.id)

@@ -1,10 +1,11 @@
 //! What is heard in a block: which sources, and which of them need new impulse responses.
 
+use super::turns::{Pieces, Want};
 use super::voice::{self, Change, Situation, Threshold};
-use super::{ActiveSource, BlockReport, Memory, Stream, early};
+use super::{ActiveSource, BlockReport, Stream, early};
 use crate::echogram::Path;
 use crate::error::AcousticsError;
-use crate::receiver::{Receiver, Source};
+use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
 use crate::scene::between;
 use dwell_scene::bvh::{Ray, RayMask};
@@ -30,10 +31,32 @@ pub(super) struct Planned {
     pub(super) news: Option<(Situation, ImpulseResponse)>,
     /// Early paths that are heard apart from the impulse response, where they are now; `None`: none are.
     pub(super) followed: Option<Vec<Path>>,
+    /// Since which block a new response waits for its turn.
+    pub(super) since: Option<u64>,
+    /// What was traced of it so far.
+    pub(super) job: Pieces,
+}
+
+/// A source that sounds or rings.
+struct Sounding {
+    id: u64,
+    /// `None` for what is no longer named.
+    position: Option<Vec3>,
+    /// Its place among the sources, of which the loudest come first.
+    rank: usize,
+}
+
+/// What all sources of a block have in common.
+pub(super) struct Surroundings<'a> {
+    pub(super) rays: &'a RayScene,
+    pub(super) receiver: &'a Receiver,
+    pub(super) threshold: Threshold,
+    /// Whether a large part is on its way.
+    pub(super) passing: bool,
 }
 
 impl Stream {
-    /// The sources that are heard in this block, by id, with new impulse responses where they need them.
+    /// The sources that are heard in this block, by id, with new impulse responses where they need them and it is their turn.
     pub(super) fn plan(
         &self,
         rays: &RayScene,
@@ -42,144 +65,123 @@ impl Stream {
         receiver: &Receiver,
         report: &mut BlockReport,
     ) -> Result<Vec<Planned>, AcousticsError> {
-        let ids = self.sounding(sources, report);
+        let all = self.sounding(sources, report);
         // The microphones of an array hear early paths of their own.
         let glides = self.config.moving_paths > 0 && receiver.microphone_positions().is_none();
         let distance_m = self.config.update_distance_m;
-        let threshold = Threshold {
-            distance_m: if glides {
-                distance_m
-            } else {
-                distance_m / STIFF
-            },
-            angle_rad: self.config.update_angle_rad,
-            part_m: self.config.update_part_m,
-        };
         let parts = self.poses(state);
         // Nothing is remembered where all rays are traced anyway.
         let remembers = self.config.update_share < 1.0;
-        let passing = remembers && voice::furthest(&self.parts, &parts) > STILL_M;
-        let mut settled = false;
-        let mut planned = Vec::with_capacity(ids.len());
-        for (id, position) in ids {
-            let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
-            let at = at.ok().map(|at| &self.voices[at]);
-            let heard = at.and_then(|voice| voice.heard.as_ref());
-            let named = position.is_some();
-            // What is no longer named rings out where it was last.
-            let last = at.and_then(|voice| voice.moved.last);
-            let Some(position) = position.or(last.map(|(source, _)| source)) else {
-                continue;
-            };
-            let key = self.key_of(id);
-            let mut now = Situation {
-                source: position,
-                receiver: receiver.clone(),
-                parts: parts.clone(),
-                overrides: state.overrides.clone(),
-                effects: *self.scene.effects(),
-                passing: false,
-                noise: heard.map_or_else(
-                    || between(key, position, receiver.position()),
-                    |(then, _)| then.noise,
-                ),
-            };
-            let changed = |then: &Situation| then.change(&now, &threshold);
-            let change = heard.map_or(Change::Moved, |(then, _)| {
-                if named {
-                    changed(then)
+        let around = Surroundings {
+            rays,
+            receiver,
+            threshold: Threshold {
+                distance_m: if glides {
+                    distance_m
                 } else {
-                    then.change_while_ringing(&now, &threshold)
-                }
-            });
-            // A blow on the table is heard as the one before it was: other sources' impulse responses serve as well.
-            let known = || {
-                let others = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
-                let usable = |then: &Situation| passing || !then.passing;
-                let mut close =
-                    others.filter(|(then, _)| usable(then) && changed(then) == Change::None);
-                close.next().cloned()
-            };
-            let (scene, threads) = (&self.scene, self.threads);
-            // When a door has come to rest, all rays tell what is heard now: one source in a block.
-            let stale = heard.is_some_and(|(then, _)| then.passing && named && !passing);
-            let settles = stale && !settled;
-            settled |= settles;
-            let news = match (change, heard) {
-                (Change::None, _) if !settles => None,
-                (Change::Turned, Some((then, response))) => {
-                    report.turned += 1;
-                    // The echogram stays that of the place where it was traced.
-                    let mut turned = then.clone();
-                    turned.receiver.pose.rotation = receiver.pose.rotation;
-                    let response = scene.turn(response, &turned.receiver, turned.noise);
-                    Some((turned, response))
-                }
-                _ => Some(if let Some(known) = known() {
-                    known
-                } else {
-                    report.traced += 1;
-                    let source = Source::at(position);
-                    let alike = |then: &Situation| {
-                        !settles && then.differs_by_places_only(&now, &threshold, passing)
-                    };
-                    let again = heard
-                        .filter(|(then, _)| alike(then))
-                        .or_else(|| self.heard_near(rays, &now, alike));
-                    let response = if let Some((then, response)) = again {
-                        now.passing = passing || then.passing;
-                        let memory = Memory {
-                            before: &response.echogram,
-                            moved_m: then.moved_m(&now),
-                            share: self.config.update_share,
-                            update: self.block,
-                            noise: now.noise,
-                        };
-                        scene.arrive_again(rays, &source, receiver, &memory, key, threads)?
-                    } else {
-                        let receivers = std::slice::from_ref(receiver);
-                        let noise = |_: &Receiver| now.noise;
-                        let arrived =
-                            scene.arrivals(rays, &source, receivers, key, noise, threads)?;
-                        arrived.into_iter().next().unwrap_or_default()
-                    };
-                    (now.clone(), response)
-                }),
-            };
-            let place = (position, receiver.pose);
-            let moved = at.is_some_and(|voice| {
-                voice.moved.followed.is_some() || voice.moved.last.is_some_and(|last| last != place)
-            });
-            let known = news.as_ref().or(heard);
+                    distance_m / STIFF
+                },
+                angle_rad: self.config.update_angle_rad,
+                part_m: self.config.update_part_m,
+            },
+            passing: remembers && voice::furthest(&self.parts, &parts) > STILL_M,
+        };
+        let wants = all
+            .into_iter()
+            .filter_map(|one| self.want(&around, one, state, &parts));
+        let mut wants: Vec<Want<'_>> = wants.collect();
+        self.serve(&around, &mut wants, report)?;
+        let planned = wants.into_iter().map(|want| {
+            let heard = want.heard();
+            let last = want.voice.and_then(|voice| voice.moved.last);
+            let follows = want
+                .voice
+                .is_some_and(|voice| voice.moved.followed.is_some());
+            let moved = follows || last.is_some_and(|last| last != want.place);
+            let known = want.news.as_ref().or(heard);
             let elsewhere =
-                known.is_some_and(|(then, _)| (then.source, then.receiver.pose) != place);
-            let followed = known
-                .filter(|_| glides && (moved || elsewhere))
-                .map(|(_, response)| {
-                    let chosen = early::choose(&response.echogram.paths, self.config.moving_paths);
-                    scene.follow(rays, position, receiver.position(), &chosen)
-                });
-            planned.push(Planned {
-                id,
-                named,
-                place,
-                news,
-                followed,
+                known.is_some_and(|(then, _)| (then.source, then.receiver.pose) != want.place);
+            // What has to wait is heard on its straight ways and known reflections as they are now.
+            let moved = moved || elsewhere || (want.waits && want.change == Change::Moved);
+            let followed = known.filter(|_| glides && moved).map(|(_, response)| {
+                let chosen = early::choose(&response.echogram.paths, self.config.moving_paths);
+                let (source, receiver) = (want.place.0, receiver.position());
+                self.scene.follow(rays, source, receiver, &chosen)
             });
-        }
-        Ok(planned)
+            Planned {
+                id: want.id,
+                named: want.named,
+                place: want.place,
+                followed,
+                since: want.waits.then_some(want.since),
+                job: want.job,
+                news: want.news,
+            }
+        });
+        Ok(planned.collect())
     }
 
-    /// The sources that sound or ring, by id, and where they are; `None` for what is no longer named.
-    fn sounding(
+    /// What has changed for a source; `None` for what was never heard.
+    fn want(
         &self,
-        sources: &[ActiveSource<'_>],
-        report: &mut BlockReport,
-    ) -> Vec<(u64, Option<Vec3>)> {
-        let mut ids: Vec<(u64, Option<Vec3>)> = Vec::new();
+        around: &Surroundings<'_>,
+        one: Sounding,
+        state: &State,
+        parts: &[Pose],
+    ) -> Option<Want<'_>> {
+        let id = one.id;
+        let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
+        let voice = at.ok().map(|at| &self.voices[at]);
+        let heard = voice.and_then(|voice| voice.heard.as_ref());
+        let named = one.position.is_some();
+        // What is no longer named rings out where it was last.
+        let last = voice.and_then(|voice| voice.moved.last);
+        let position = one.position.or(last.map(|(source, _)| source))?;
+        let receiver = around.receiver;
+        let now = Situation {
+            source: position,
+            receiver: receiver.clone(),
+            parts: parts.to_vec(),
+            overrides: state.overrides.clone(),
+            effects: *self.scene.effects(),
+            rough: false,
+            noise: heard.map_or_else(
+                || between(self.key_of(id), position, receiver.position()),
+                |(then, _)| then.noise,
+            ),
+        };
+        let change = heard.map_or(Change::Moved, |(then, _)| {
+            if named {
+                then.change(&now, &around.threshold)
+            } else {
+                then.change_while_ringing(&now, &around.threshold)
+            }
+        });
+        Some(Want {
+            id,
+            named,
+            rank: one.rank,
+            place: (position, receiver.pose),
+            voice,
+            change,
+            // When a door has come to rest, all rays tell what is heard now.
+            stale: heard.is_some_and(|(then, _)| then.rough && named && !around.passing),
+            since: voice
+                .and_then(|voice| voice.waiting.since)
+                .unwrap_or(self.block),
+            now,
+            news: None,
+            job: Pieces::AsBefore,
+            waits: false,
+        })
+    }
+
+    /// The sources that sound or ring, by id.
+    fn sounding(&self, sources: &[ActiveSource<'_>], report: &mut BlockReport) -> Vec<Sounding> {
+        let mut all: Vec<Sounding> = Vec::new();
         let mut seen = 0;
         for source in sources {
-            if ids.iter().any(|(id, _)| *id == source.id) {
+            if all.iter().any(|one| one.id == source.id) {
                 continue;
             }
             let sounds = sources
@@ -193,24 +195,32 @@ impl Stream {
             if sounds || rings {
                 seen += 1;
                 if seen <= self.config.max_sources {
-                    ids.push((source.id, Some(source.position)));
+                    all.push(Sounding {
+                        id: source.id,
+                        position: Some(source.position),
+                        rank: all.len(),
+                    });
                 } else {
                     report.left_out += 1;
                 }
             }
         }
         for voice in &self.voices {
-            if !voice.input.is_silent() && !ids.iter().any(|(id, _)| *id == voice.id) {
-                ids.push((voice.id, None));
+            if !voice.input.is_silent() && !all.iter().any(|one| one.id == voice.id) {
+                all.push(Sounding {
+                    id: voice.id,
+                    position: None,
+                    rank: all.len(),
+                });
             }
         }
-        ids.sort_by_key(|(id, _)| *id);
-        report.heard = ids.len();
-        ids
+        all.sort_by_key(|one| one.id);
+        report.heard = all.len();
+        all
     }
 
     /// What another source is heard as, close to where one begins and with nothing in between: a step sounds much like the last one.
-    fn heard_near(
+    pub(super) fn heard_near(
         &self,
         rays: &RayScene,
         now: &Situation,

@@ -30,6 +30,13 @@ fn check_voice(scene: &AcousticScene, voice: &Memory) -> Result<(), String> {
     if let Some((situation, response)) = &voice.heard {
         check_response(scene, situation, response)?;
     }
+    if let Some(job) = &voice.waiting.job {
+        let checked = scene.check_receiver(&job.situation.receiver);
+        checked.map_err(|error| error.to_string())?;
+        require(job.situation.source.is_finite(), "its place is none")?;
+        let sound = job.progress.is_sound(scene.config());
+        require(sound, "the rays that were traced so far are none")?;
+    }
     for Followed { path, wavelets } in voice.moved.followed.iter().flatten() {
         check_path(path)?;
         for wavelet in wavelets {
@@ -114,10 +121,12 @@ fn require(so: bool, what: &str) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::voice::Job;
     use super::super::{ActiveSource, Snapshot, Stream, StreamConfig};
     use super::*;
     use crate::config::AcousticConfig;
     use crate::receiver::Receiver;
+    use crate::tail::Progress;
     use dwell_scene::parallel::Threads;
     use dwell_scene::random::Key;
     use dwell_scene::rays::RayScene;
@@ -181,7 +190,7 @@ mod tests {
     #[test]
     fn what_was_made_up_is_refused_and_changes_nothing() {
         type Forgery = (&'static str, fn(&mut Vec<Memory>));
-        let forgeries: [Forgery; 14] = [
+        let forgeries: [Forgery; 16] = [
             ("in the order", |voices| voices.reverse()),
             ("source 4: what it played", |voices| {
                 voices[0].history[5] = f32::NAN;
@@ -223,6 +232,12 @@ mod tests {
             ("an early path", |voices| {
                 followed(voices).path.length_m = -1.0;
             }),
+            ("the rays that were traced so far", |voices| {
+                job(voices).progress = Progress::new(&AcousticConfig::rl(), 2);
+            }),
+            ("the rays that were traced so far", |voices| {
+                job(voices).progress = Progress::new(&AcousticConfig::full(), 1);
+            }),
             ("the filter of an early path", |voices| {
                 followed(voices).wavelets[0].lead = usize::MAX;
             }),
@@ -254,6 +269,16 @@ mod tests {
 
     fn situation(voices: &mut [Memory]) -> &mut Situation {
         &mut voices[0].heard.as_mut().unwrap().0
+    }
+
+    fn job(voices: &mut [Memory]) -> &mut Job {
+        let (situation, _) = voices[0].heard.clone().unwrap();
+        let progress = Progress::new(&AcousticConfig::rl(), 1);
+        let job = Job {
+            situation,
+            progress,
+        };
+        voices[0].waiting.job.insert(Box::new(job))
     }
 
     fn response(voices: &mut [Memory]) -> &mut ImpulseResponse {

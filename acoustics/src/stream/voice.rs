@@ -7,6 +7,7 @@ use crate::laws::Effects;
 use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
 use crate::synthesis::KnownLevels;
+use crate::tail::Progress;
 use dwell_scene::random::Key;
 use dwell_scene::{Address, Pose};
 use glam::Vec3;
@@ -22,8 +23,9 @@ pub(super) struct Situation {
     pub(super) parts: Vec<Pose>,
     pub(super) overrides: BTreeMap<Address, f64>,
     pub(super) effects: Effects,
-    /// Whether large parts were on their way, so that the tail is partly remembered from where they were before.
-    pub(super) passing: bool,
+    /// Whether not all rays have told of the tail: large parts were on their way, so that it is partly remembered from where they were
+    /// before, or only a few rays were traced yet.
+    pub(super) rough: bool,
     /// The tail's random arrivals: those between the places where it was first heard.
     pub(super) noise: Key,
 }
@@ -92,6 +94,14 @@ impl Situation {
         self.receiver.kind == now.receiver.kind && there.change(now, threshold) == Change::None
     }
 
+    /// Whether more has changed than where things are, so that nothing else may be heard any more.
+    pub(super) fn is_of_another_kind(&self, now: &Self) -> bool {
+        self.receiver.kind != now.receiver.kind
+            || self.overrides != now.overrides
+            || self.effects != now.effects
+            || self.parts.len() != now.parts.len()
+    }
+
     /// As [`Self::change`], for a source that is over: what still rings is heard from where it was heard last.
     pub(super) fn change_while_ringing(&self, now: &Self, threshold: &Threshold) -> Change {
         let mut there = now.clone();
@@ -112,10 +122,7 @@ impl Situation {
             far(a.position, b.position, threshold.part_m)
                 || (a.rotation != b.rotation && angle(a.rotation, b.rotation) >= threshold.part_m)
         });
-        if here.kind != there.kind
-            || self.overrides != now.overrides
-            || self.effects != now.effects
-            || self.parts.len() != now.parts.len()
+        if self.is_of_another_kind(now)
             || far(self.source, now.source, threshold.distance_m)
             || far(here.position(), there.position(), threshold.distance_m)
             || parts.any(|moved| moved)
@@ -141,6 +148,34 @@ pub(super) struct Memory {
     pub(super) heard: Option<(Situation, ImpulseResponse)>,
     pub(super) history: Vec<f32>,
     pub(super) moved: Moved,
+    pub(super) waiting: Waiting,
+}
+
+/// A response that must be computed anew and has not had its turn, or not all of it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Waiting {
+    /// The block in which it became due.
+    pub(super) since: Option<u64>,
+    pub(super) job: Option<Box<Job>>,
+}
+
+/// The rays of a response that are traced piece by piece.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Job {
+    pub(super) situation: Situation,
+    pub(super) progress: Progress,
+}
+
+impl Job {
+    /// Whether what it traces is still worth hearing. Parts that creep on meanwhile are heard by the rays that come later, and in its
+    /// next turn.
+    pub(super) fn serves(&self, now: &Situation, threshold: &Threshold) -> bool {
+        let mut there = now.clone();
+        if there.parts.len() == self.situation.parts.len() {
+            there.parts.clone_from(&self.situation.parts);
+        }
+        self.situation.change(&there, threshold) != Change::Moved
+    }
 }
 
 /// How the early paths of a source are heard while something moves.
@@ -160,6 +195,7 @@ pub(super) struct Voice {
     pub(super) input: Input,
     pub(super) filter: Filter,
     pub(super) moved: Moved,
+    pub(super) waiting: Waiting,
 }
 
 impl Voice {
@@ -170,6 +206,7 @@ impl Voice {
             input: Input::new(block, partitions),
             filter: Filter::default(),
             moved: Moved::default(),
+            waiting: Waiting::default(),
         }
     }
 
@@ -193,6 +230,7 @@ impl Voice {
             heard,
             history: self.input.history().to_vec(),
             moved: self.moved.clone(),
+            waiting: self.waiting.clone(),
         }
     }
 
@@ -203,6 +241,7 @@ impl Voice {
             input: Input::restore(fft, &memory.history, partitions),
             filter: Filter::default(),
             moved: memory.moved,
+            waiting: memory.waiting,
         }
     }
 

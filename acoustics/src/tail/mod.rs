@@ -10,6 +10,7 @@ pub(crate) mod spans;
 mod walk;
 
 use crate::bands::{BAND_COUNT, Banded};
+use crate::config::AcousticConfig;
 use crate::directions::{CELL_COUNT, Directions};
 use crate::echogram::{Histogram, SPAN_COUNT, TraceStatistics};
 use crate::receiver::Source;
@@ -20,6 +21,7 @@ use dwell_scene::random::{Key, Stream};
 use dwell_scene::rays::RayScene;
 use glam::{Quat, Vec3};
 use listener::Listener;
+use serde::{Deserialize, Serialize};
 use spans::Scatter;
 use walk::Walk;
 
@@ -110,7 +112,7 @@ struct Chunk {
 }
 
 /// Sums over chunks at one receiver.
-#[derive(Clone)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Sums {
     energy: Vec<[f64; BAND_COUNT]>,
     directions: Vec<Banded>,
@@ -133,11 +135,89 @@ impl Sums {
     }
 }
 
+/// What the rays of a [`Trace`] have brought so far.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Progress {
+    /// Those that are done.
+    chunks: usize,
+    /// Whether the error is small enough already.
+    enough: bool,
+    segments: u64,
+    escaped: u64,
+    length_m: f64,
+    /// Shape (receiver,).
+    sums: Vec<Sums>,
+}
+
+impl Progress {
+    /// No ray yet.
+    pub(crate) fn new(config: &AcousticConfig, receivers: usize) -> Self {
+        let sums = Sums {
+            energy: vec![[0.0; BAND_COUNT]; config.bin_count()],
+            directions: vec![[0.0; BAND_COUNT]; times(config) * CELL_COUNT],
+            moments: [[0.0; BAND_COUNT]; 2],
+            scatter: Scatter::default(),
+        };
+        Self {
+            chunks: 0,
+            enough: false,
+            segments: 0,
+            escaped: 0,
+            length_m: 0.0,
+            sums: vec![sums; receivers],
+        }
+    }
+
+    /// How many rays are done, in whole chunks.
+    pub(crate) fn rays(&self) -> usize {
+        self.chunks.saturating_mul(RAYS_PER_CHUNK)
+    }
+
+    /// Whether it can be that of one receiver: whatever a snapshot says, going on with it must not panic.
+    pub(crate) fn is_sound(&self, config: &AcousticConfig) -> bool {
+        let energy = |e: &f64| e.is_finite() && *e >= 0.0;
+        let sums = |sums: &Sums| {
+            let directions = sums.directions.iter().flatten();
+            sums.energy.len() == config.bin_count()
+                && sums.directions.len() == times(config) * CELL_COUNT
+                && sums.energy.iter().flatten().all(energy)
+                && directions.map(|e| f64::from(*e)).all(|e| energy(&e))
+                && sums.moments.iter().flatten().all(energy)
+                && sums.scatter.is_sound()
+        };
+        let all = u64::try_from(self.chunks).unwrap_or(u64::MAX) <= 1 << 40;
+        self.sums.len() == 1
+            && all
+            && self.segments <= 1 << 60
+            && self.escaped <= 1 << 60
+            && energy(&self.length_m)
+            && self.sums.iter().all(sums)
+    }
+}
+
+/// Bins that share one entry of directions.
+fn bins_per_direction(config: &AcousticConfig) -> usize {
+    ((DIRECTION_S / config.bin_s).round() as usize).max(1)
+}
+
+/// Entries of directions over time.
+fn times(config: &AcousticConfig) -> usize {
+    config.bin_count().div_ceil(bins_per_direction(config))
+}
+
+/// The tails from one source to some receivers, all by the same rays.
+pub(crate) struct Trace<'a> {
+    scene: &'a AcousticScene,
+    rays: &'a RayScene,
+    source: &'a Source,
+    listeners: Vec<Listener>,
+    /// Rays.
+    count: usize,
+    key: Key,
+    threads: Threads,
+}
+
 /// Traces the tails from `source` to `receivers`, all by the same `count` rays.
-///
-/// # Source
-/// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
-/// chapter 5 (diffuse rain), here in the limit of a small receiver.
 pub(crate) fn trace(
     scene: &AcousticScene,
     rays: &RayScene,
@@ -147,125 +227,157 @@ pub(crate) fn trace(
     key: Key,
     threads: Threads,
 ) -> Vec<Late> {
-    let config = scene.config();
-    let speed = config.air.speed_of_sound_m_s();
-    let bin_count = config.bin_count();
-    let bins_per_direction = ((DIRECTION_S / config.bin_s).round() as usize).max(1);
-    let times = bin_count.div_ceil(bins_per_direction);
-    let probes = config.discovery_rays.clamp(PROBES.0, PROBES.1);
-    let listeners = threads.map(receivers.len(), |k| {
-        let (radius_m, source) = (config.receiver_radius_m, source.position());
-        Listener::new(rays, source, receivers[k], radius_m, probes)
-    });
-    let hidden = listeners.iter().any(|listener| listener.hidden);
-    let mut start = key.child("turn").stream();
-    let (axis, pattern) = scene.effects().radiation(source, speed);
-    let walk = Walk {
-        scene,
-        rays,
-        source: source.position(),
-        axis,
-        pattern,
-        listeners: &listeners,
-        turn: random_rotation(&mut start),
-        place: (start.uniform(), start.uniform()),
-        bins_per_m: (1.0 / (speed * config.bin_s)) as f32,
-        furthest_m: (speed * config.max_duration_s) as f32,
-        bin_count,
-        span_of_bin: spans::of_bins(bin_count, config.bin_s),
-        bins_per_direction,
-        times,
-        roulette: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
-        through: if config.transmission && hidden {
-            THROUGH
-        } else {
-            0.0
-        },
-    };
-    let mut sums = vec![
-        Sums {
-            energy: vec![[0.0; BAND_COUNT]; bin_count],
-            directions: vec![[0.0; BAND_COUNT]; times * CELL_COUNT],
-            moments: [[0.0; BAND_COUNT]; 2],
-            scatter: Scatter::default(),
-        };
-        receivers.len()
-    ];
-    let chunks = count.div_ceil(RAYS_PER_CHUNK);
-    let bytes = receivers.len() * (bin_count + times * CELL_COUNT) * size_of::<Banded>();
-    let at_once = (MOST_BYTES / bytes.max(1)).clamp(1, CHUNKS_PER_WAVE);
-    let (mut segments, mut escaped, mut length_m) = (0, 0, 0.0);
-    let mut first = 0;
-    while first < chunks {
-        // Pieces of a wave differ with memory, what is done with them does not.
-        let wave_end = (first / CHUNKS_PER_WAVE + 1) * CHUNKS_PER_WAVE;
-        let pieces = at_once.min(chunks.min(wave_end) - first);
-        let done = threads.map(pieces, |k| {
-            let start = (first + k) * RAYS_PER_CHUNK;
-            let end = (start + RAYS_PER_CHUNK).min(count);
-            walk.chunk(start..end, key.child("chunk").child((first + k) as u64))
+    let trace = Trace::new(scene, rays, source, receivers, count, key, threads);
+    let mut progress = Progress::new(scene.config(), receivers.len());
+    trace.go_on(&mut progress, usize::MAX);
+    trace.end(progress)
+}
+
+impl<'a> Trace<'a> {
+    /// Looks around from the receivers.
+    pub(crate) fn new(
+        scene: &'a AcousticScene,
+        rays: &'a RayScene,
+        source: &'a Source,
+        receivers: &[Vec3],
+        count: usize,
+        key: Key,
+        threads: Threads,
+    ) -> Self {
+        let config = scene.config();
+        let probes = config.discovery_rays.clamp(PROBES.0, PROBES.1);
+        let listeners = threads.map(receivers.len(), |k| {
+            let (radius_m, source) = (config.receiver_radius_m, source.position());
+            Listener::new(rays, source, receivers[k], radius_m, probes)
         });
-        for chunk in &done {
-            segments += chunk.segments;
-            escaped += chunk.escaped;
-            length_m += chunk.length_m;
-            for (receiver, sums) in sums.iter_mut().enumerate() {
-                sums.add(chunk, receiver, bin_count, times);
-            }
-        }
-        first += pieces;
-        if config.max_error > 0.0 && first == wave_end {
-            let worst = sums
-                .iter()
-                .flat_map(|sums| sums.relative_error(first))
-                .fold(0.0, f64::max);
-            if worst <= config.max_error {
-                break;
-            }
+        Self {
+            scene,
+            rays,
+            source,
+            listeners,
+            count,
+            key,
+            threads,
         }
     }
-    let traced = (first * RAYS_PER_CHUNK).min(count);
-    let statistics = TraceStatistics {
-        rays: traced as u64,
-        segments,
-        escaped,
-        mean_free_path_m: length_m / (segments.max(1)) as f64,
-        ..TraceStatistics::default()
-    };
-    let decay = scene.air_decay_per_m();
-    let late = sums.into_iter().zip(&listeners).map(|(sums, listener)| {
-        let relative_error = sums.relative_error(first).map(|e| e as f32);
-        let error_over_time = sums.scatter.relative_error(traced);
-        let mut bins = sums.energy;
-        for (k, bin) in bins.iter_mut().enumerate() {
-            // All that arrives in a bin has come about equally far, so that air can be applied at the end.
-            let way_m = (k as f64 + 0.5) * config.bin_s * speed;
-            for (e, m) in bin.iter_mut().zip(decay) {
-                *e *= libm::exp(-m * way_m) / traced.max(1) as f64;
+
+    /// Traces up to `most` rays more, whole chunks of them and at least one: `true` when there are no more to trace. In whatever pieces
+    /// they are traced, they bring the same to the bit.
+    ///
+    /// # Source
+    /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
+    /// chapter 5 (diffuse rain), here in the limit of a small receiver.
+    pub(crate) fn go_on(&self, progress: &mut Progress, most: usize) -> bool {
+        let (config, key) = (self.scene.config(), self.key);
+        let speed = config.air.speed_of_sound_m_s();
+        let (bin_count, times) = (config.bin_count(), times(config));
+        let hidden = self.listeners.iter().any(|listener| listener.hidden);
+        let mut start = key.child("turn").stream();
+        let (axis, pattern) = self.scene.effects().radiation(self.source, speed);
+        let walk = Walk {
+            scene: self.scene,
+            rays: self.rays,
+            source: self.source.position(),
+            axis,
+            pattern,
+            listeners: &self.listeners,
+            turn: random_rotation(&mut start),
+            place: (start.uniform(), start.uniform()),
+            bins_per_m: (1.0 / (speed * config.bin_s)) as f32,
+            furthest_m: (speed * config.max_duration_s) as f32,
+            bin_count,
+            span_of_bin: spans::of_bins(bin_count, config.bin_s),
+            bins_per_direction: bins_per_direction(config),
+            times,
+            roulette: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
+            through: if config.transmission && hidden {
+                THROUGH
+            } else {
+                0.0
+            },
+        };
+        let chunks = self.count.div_ceil(RAYS_PER_CHUNK);
+        let more = (most / RAYS_PER_CHUNK).max(1);
+        let end = chunks.min(progress.chunks.saturating_add(more));
+        let bytes = self.listeners.len() * (bin_count + times * CELL_COUNT) * size_of::<Banded>();
+        let at_once = (MOST_BYTES / bytes.max(1)).clamp(1, CHUNKS_PER_WAVE);
+        while progress.chunks < end && !progress.enough {
+            let first = progress.chunks;
+            // Pieces of a wave differ with memory, what is done with them does not.
+            let wave_end = (first / CHUNKS_PER_WAVE + 1) * CHUNKS_PER_WAVE;
+            let pieces = at_once.min(end.min(wave_end) - first);
+            let done = self.threads.map(pieces, |k| {
+                let start = (first + k) * RAYS_PER_CHUNK;
+                let end = (start + RAYS_PER_CHUNK).min(self.count);
+                walk.chunk(start..end, key.child("chunk").child((first + k) as u64))
+            });
+            for chunk in &done {
+                progress.segments += chunk.segments;
+                progress.escaped += chunk.escaped;
+                progress.length_m += chunk.length_m;
+                for (receiver, sums) in progress.sums.iter_mut().enumerate() {
+                    sums.add(chunk, receiver, bin_count, times);
+                }
+            }
+            progress.chunks += pieces;
+            if config.max_error > 0.0 && progress.chunks == wave_end {
+                let errors = progress.sums.iter();
+                let errors = errors.flat_map(|sums| sums.relative_error(wave_end));
+                progress.enough = errors.fold(0.0, f64::max) <= config.max_error;
             }
         }
-        let cells = sums.directions.chunks_exact(CELL_COUNT);
-        Late {
-            histogram: Histogram {
-                bin_s: config.bin_s,
-                bins,
-                bins_per_direction,
-                directions: cells
-                    .map(|cells| Directions {
-                        energy: cells.to_vec(),
-                    })
-                    .collect(),
-            },
-            statistics: TraceStatistics {
-                relative_error,
-                error_over_time,
-                receiver_radius_m: listener.largest_m(),
-                seen_volume_m3: listener.seen_volume_m3,
-                ..statistics
-            },
-        }
-    });
-    late.collect()
+        progress.chunks >= chunks || progress.enough
+    }
+
+    /// What all rays so far tell. Shape (receiver,).
+    pub(crate) fn end(&self, progress: Progress) -> Vec<Late> {
+        let config = self.scene.config();
+        let speed = config.air.speed_of_sound_m_s();
+        let chunks = progress.chunks;
+        let traced = chunks.saturating_mul(RAYS_PER_CHUNK).min(self.count);
+        let statistics = TraceStatistics {
+            rays: traced as u64,
+            segments: progress.segments,
+            escaped: progress.escaped,
+            mean_free_path_m: progress.length_m / (progress.segments.max(1)) as f64,
+            ..TraceStatistics::default()
+        };
+        let decay = self.scene.air_decay_per_m();
+        let both = progress.sums.into_iter().zip(&self.listeners);
+        let late = both.map(|(sums, listener)| {
+            let relative_error = sums.relative_error(chunks).map(|e| e as f32);
+            let error_over_time = sums.scatter.relative_error(traced);
+            let mut bins = sums.energy;
+            for (k, bin) in bins.iter_mut().enumerate() {
+                // All that arrives in a bin has come about equally far, so that air can be applied at the end.
+                let way_m = (k as f64 + 0.5) * config.bin_s * speed;
+                for (e, m) in bin.iter_mut().zip(decay) {
+                    *e *= libm::exp(-m * way_m) / traced.max(1) as f64;
+                }
+            }
+            let cells = sums.directions.chunks_exact(CELL_COUNT);
+            Late {
+                histogram: Histogram {
+                    bin_s: config.bin_s,
+                    bins,
+                    bins_per_direction: bins_per_direction(config),
+                    directions: cells
+                        .map(|cells| Directions {
+                            energy: cells.to_vec(),
+                        })
+                        .collect(),
+                },
+                statistics: TraceStatistics {
+                    relative_error,
+                    error_over_time,
+                    receiver_radius_m: listener.largest_m(),
+                    seen_volume_m3: listener.seen_volume_m3,
+                    ..statistics
+                },
+            }
+        });
+        late.collect()
+    }
 }
 
 impl Sums {

@@ -1,6 +1,7 @@
 //! Spans of time, each twice as long as the one before, for which the tail's error is told.
 
 use crate::echogram::{Histogram, SPAN_COUNT};
+use serde::{Deserialize, Serialize};
 
 /// Where the first span ends, s.
 const FIRST_S: f64 = 0.02;
@@ -38,13 +39,19 @@ pub(crate) fn energies(tail: &Histogram) -> [f64; SPAN_COUNT] {
 }
 
 /// Sums over rays of what each brings in each span, of which the error of their mean follows.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Scatter {
     sums: [f64; SPAN_COUNT],
     squares: [f64; SPAN_COUNT],
 }
 
 impl Scatter {
+    /// Whether these are sums of numbers from 0.
+    pub(super) fn is_sound(&self) -> bool {
+        let mut all = self.sums.iter().chain(&self.squares);
+        all.all(|sum| sum.is_finite() && *sum >= 0.0)
+    }
+
     /// Adds what rays brought, each with all that it split into. Shape (ray, span).
     pub(super) fn add(&mut self, rays: &[[f32; SPAN_COUNT]]) {
         for ray in rays {
