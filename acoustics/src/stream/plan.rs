@@ -87,7 +87,7 @@ impl Stream {
             passing: remembers && voice::furthest(&self.parts, &parts) > STILL_M,
         };
         let wants = all
-            .into_iter()
+            .iter()
             .filter_map(|one| self.want(&around, one, state, &parts));
         let mut wants: Vec<Want<'_>> = wants.collect();
         self.serve(&around, &mut wants, report)?;
@@ -125,7 +125,7 @@ impl Stream {
     fn want(
         &self,
         around: &Surroundings<'_>,
-        one: Sounding,
+        one: &Sounding,
         state: &State,
         parts: &[Pose],
     ) -> Option<Want<'_>> {
