@@ -93,7 +93,9 @@ def text(name: str, value: object) -> str:
         try:
             value.encode()
         except UnicodeEncodeError:
-            raise ConfigError(f"{name} is {shown(value)}; expected text that UTF-8 can hold") from None
+            raise ConfigError(
+                f"{name} is {shown(value)}; expected text that UTF-8 can hold"
+            ) from None
     return value
 
 
