@@ -58,7 +58,7 @@ def finite(name: str, value: object) -> float:
     """A finite number as Python's own float; ``True``, ``"1"`` and complex numbers are none."""
     try:
         # NumPy drops the imaginary part of what is complex.
-        if isinstance(value, bool | str | bytes) or np.iscomplexobj(value):
+        if isinstance(value, bool | str | bytes) or np.iscomplexobj(np.asarray(value)):
             raise TypeError
         number = float(value)  # type: ignore[arg-type] # what this finds out
     except (TypeError, ValueError, OverflowError):

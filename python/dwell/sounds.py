@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import os
 import struct
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
-from dwell.files import read
+from dwell.files import atomic, read
 
 #: A sound file that is read has at most so many bytes.
 _MOST_READ_BYTES = 512 * 2**20
@@ -30,7 +29,7 @@ def write_wav(
     *,
     full_scale_pa: float | None = None,
 ) -> None:
-    """Writes pressure as WAV: samples of 32-bit float in Pa, or of 16 bits.
+    """Writes pressure as WAV, whole or not at all: 32-bit float in Pa, or 16 bits.
 
     Args:
         path: The file.
@@ -43,6 +42,7 @@ def write_wav(
     Raises:
         ValueError: `sound` is no table of at least one channel, is too long for a WAV file
             (4 GiB), or `full_scale_pa` is no number above 0.
+        OSError: The system refuses, or something stands there that is no regular file.
     """
     sound = np.asarray(sound)
     if sound.ndim != 2 or not sound.shape[0]:
@@ -67,7 +67,8 @@ def write_wav(
     body = b"WAVE" + b"".join(
         name + struct.pack("<I", len(content)) + content for name, content in chunks
     )
-    Path(path).write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
+    with atomic(path) as draft:
+        draft.write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
 
 
 def read_wav(

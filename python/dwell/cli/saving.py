@@ -58,7 +58,5 @@ def save_sound(path: Path, sound: np.ndarray[Any, Any], rate_hz: int, bits: int)
 
     peak = float(np.abs(sound).max()) if sound.size else 0.0
     full_scale_pa = (peak or 1.0) if bits == 16 else 1.0
-    with atomic(path) as temporary:
-        scale = full_scale_pa if bits == 16 else None
-        write_wav(temporary, sound, rate_hz, full_scale_pa=scale)
+    write_wav(path, sound, rate_hz, full_scale_pa=full_scale_pa if bits == 16 else None)
     return {"bits": bits, "full_scale_pa": full_scale_pa}
