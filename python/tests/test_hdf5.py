@@ -41,8 +41,9 @@ TYPES = [">f8", "<f4", ">f4", "<i2", ">i4", "<u8", "i1"]
 
 
 def _values(kind: str, shape: tuple[int, ...]) -> NDArray[Any]:
-    random = np.random.default_rng(3)
-    return random.integers(0, 100, shape).astype(kind) - np.asarray(0, kind)
+    low = 0 if np.dtype(kind).kind == "u" else -50
+    values: NDArray[Any] = np.random.default_rng(3).integers(low, 100, shape).astype(kind)
+    return values
 
 
 def _numbers(file: Path | Hdf5, name: str) -> NDArray[np.float64]:

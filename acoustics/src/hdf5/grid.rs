@@ -79,9 +79,9 @@ impl Grid {
 
     /// The number of the chunk at these coordinates, in chunks; none outside.
     pub(super) fn number(&self, at: &[u64]) -> Option<u64> {
-        let axes = at.iter().zip(&self.counts);
-        axes.fold(Some(0), |number, (at, count)| {
-            Some(number? * count + Some(*at).filter(|at| at < count)?)
+        let mut axes = at.iter().zip(&self.counts);
+        axes.try_fold(0, |number, (at, count)| {
+            Some(number * count + Some(*at).filter(|at| at < count)?)
         })
     }
 

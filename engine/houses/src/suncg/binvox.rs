@@ -69,7 +69,7 @@ pub fn read_binvox(bytes: &[u8], file: &str) -> Result<Voxels, HousesError> {
             ("dim", &[x, y, z])
                 if line_number > 1 && [x, y, z].iter().all(|side| side.fract() == 0.0) =>
             {
-                dims = Some([x as u32, y as u32, z as u32])
+                dims = Some([x as u32, y as u32, z as u32]);
             }
             ("translate", &[x, y, z]) if line_number > 1 => translate = [x, y, z],
             ("scale", &[s]) if line_number > 1 && s > 0.0 => scale = s,

@@ -159,14 +159,13 @@ fn fields<T: DeserializeOwned + Default>(
             return true;
         };
         let message = error.to_string();
-        let (found, expected) = match message.split_once(SEPARATOR) {
-            Some((found, expected)) => (found.to_owned(), expected.to_owned()),
-            None => {
-                let told = crate::plain(message);
-                let expected = told.rsplit_once("expected ");
-                let expected = expected.map_or(told.as_str(), |(_, expected)| expected);
-                (shorten(value), expected.to_owned())
-            }
+        let (found, expected) = if let Some((found, expected)) = message.split_once(SEPARATOR) {
+            (found.to_owned(), expected.to_owned())
+        } else {
+            let told = crate::plain(message);
+            let expected = told.rsplit_once("expected ");
+            let expected = expected.map_or(told.as_str(), |(_, expected)| expected);
+            (shorten(value), expected.to_owned())
         };
         report.warn(at.field(key), Damage::BadField { found, expected });
         false

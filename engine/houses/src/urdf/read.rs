@@ -308,13 +308,11 @@ impl Reader<'_> {
     ) -> Result<Joint, HousesError> {
         let link = |tag: &'static str| {
             let name = first(node, tag).and_then(|end| end.attribute("link"));
-            match name.and_then(|name| places.get(name)) {
-                Some(place) => Ok(*place),
-                None => {
-                    let found = name.map_or_else(|| "none".to_owned(), |name| format!("{name:?}"));
-                    self.fault(node, tag, "the name of a link", found)
-                }
+            if let Some(place) = name.and_then(|name| places.get(name)) {
+                return Ok(*place);
             }
+            let found = name.map_or_else(|| "none".to_owned(), |name| format!("{name:?}"));
+            self.fault(node, tag, "the name of a link", found)
         };
         let (parent, child) = (link("parent")?, link("child")?);
         let kind = node.attribute("type").unwrap_or("");

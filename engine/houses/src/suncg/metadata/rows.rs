@@ -81,7 +81,7 @@ impl<'a> Rows<'a> {
     ) {
         let mut record = csv::StringRecord::new();
         loop {
-            if self.reader.position().line() % 4096 == 0 {
+            if self.reader.position().line().is_multiple_of(4096) {
                 dwell_scene::interrupt::check();
             }
             let result = match self.reader.read_record(&mut record) {
