@@ -115,6 +115,25 @@ def write(folder: Path) -> Call:
     return lambda: house.write(str(folder / "out.glb"), "glb")
 
 
+def heap(count: int) -> dwell.House:
+    """A house with so many desks at one place."""
+    edit = dwell.House.open("builtin:studio").edit()
+    for k in range(count):
+        edit.add("desk", seed=k % 4, at=(2.0, 0.0, 2.0))
+    return edit.done()
+
+
+def describe() -> Call:
+    """What can be said of a heap."""
+    house = heap(300)
+    return lambda: house.describe("graph")
+
+
+def edit() -> Call:
+    """A thousand desks at one place."""
+    return lambda: heap(1000)
+
+
 CALLS: dict[str, Callable[..., Call]] = {
     "generate": generate,
     "open": open_file,
@@ -127,6 +146,8 @@ CALLS: dict[str, Callable[..., Call]] = {
     "bench": bench,
     "batch step": step_batch,
     "batch reset": reset_batch,
+    "describe": describe,
+    "edit": edit,
     "listen": listen,
     "write": write,
 }

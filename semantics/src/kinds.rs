@@ -16,7 +16,7 @@ struct Kind {
 /// The things of a house by their nouns, so that words are compared once for a kind of thing, not for each of them.
 #[derive(Debug, Default)]
 pub(crate) struct Kinds {
-    kinds: Vec<Kind>,
+    all: Vec<Kind>,
     /// Shape (object,).
     of: IdVec<ObjectId, u32>,
     /// Rising.
@@ -29,13 +29,13 @@ impl Kinds {
         let mut kinds = Self::default();
         for (id, facts) in facts.iter_ids() {
             let row = facts.category.map(|row| row.name);
-            let next = kinds.kinds.len() as u32;
+            let next = kinds.all.len() as u32;
             let kind = *known.entry((&facts.noun, row)).or_insert(next);
             if kind == next {
                 let things = Vec::new();
-                kinds.kinds.push(Kind { first: id, things });
+                kinds.all.push(Kind { first: id, things });
             }
-            kinds.kinds[kind as usize].things.push(id);
+            kinds.all[kind as usize].things.push(id);
             kinds.of.push(kind);
             if row == Some("window") {
                 kinds.windows.push(id);
@@ -51,14 +51,14 @@ impl Kinds {
 
     /// The numbers of the kinds that may be called `noun`.
     pub(crate) fn called(&self, facts: &IdVec<ObjectId, Facts>, noun: &str) -> Vec<u32> {
-        let kinds = self.kinds.iter().enumerate();
+        let kinds = self.all.iter().enumerate();
         let called = kinds.filter(|(_, kind)| facts[kind.first].is_called(noun));
         called.map(|(k, _)| k as u32).collect()
     }
 
     /// The things of some kinds, rising.
     pub(crate) fn things(&self, kinds: &[u32]) -> Vec<ObjectId> {
-        let kinds = kinds.iter().map(|kind| &self.kinds[*kind as usize]);
+        let kinds = kinds.iter().map(|kind| &self.all[*kind as usize]);
         let mut things: Vec<ObjectId> =
             kinds.flat_map(|kind| kind.things.iter().copied()).collect();
         things.sort_unstable();

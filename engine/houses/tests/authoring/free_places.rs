@@ -6,7 +6,7 @@ use dwell_scene::{Aabb, House, State};
 use serde_json::{Value, json};
 
 /// A room of 4 x 3 m with a table of 1.2 x 0.8 m in its middle.
-fn house() -> House {
+pub(super) fn house() -> House {
     let plan: Plan = serde_json::from_value(json!({
         "building": {"storeys": [{"rooms": [{"name": "kitchen", "outline": [[0, 0], [4, 0], [4, 3], [0, 3]]}]}]},
         "edits": [{"add": {"what": {"box": {"size_m": [1.2, 0.7, 0.8]}}, "name": "table", "place": {"at": [2, 0, 1.5]},

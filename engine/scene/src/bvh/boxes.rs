@@ -73,7 +73,7 @@ impl BoxTree {
             let first = node.first as usize;
             if node.count == 0 {
                 let away = |k: usize| away2(&self.tree.nodes[k].bounds, middle);
-                let nearer = if away(first + 1) < away(first) { 1 } else { 0 };
+                let nearer = usize::from(away(first + 1) < away(first));
                 open.extend([first + 1 - nearer, first + nearer]);
                 continue;
             }

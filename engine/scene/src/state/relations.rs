@@ -188,9 +188,12 @@ fn surrounds(
             for (met, ray) in met.iter_mut().zip(rays) {
                 *met = *met || ray_meets(corners, point, ray);
             }
+            if met.iter().filter(|met| **met).count() >= WALLS {
+                return true;
+            }
         }
     }
-    met.iter().filter(|met| **met).count() >= WALLS
+    false
 }
 
 fn share_inside(inner: &Aabb, outer: &Aabb) -> f32 {

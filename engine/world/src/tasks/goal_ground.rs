@@ -101,7 +101,7 @@ mod tests {
             over_it.sort_unstable();
             assert_eq!(over_it, all().filter(over).collect::<Vec<Cell>>());
         }
-        assert!(asked > 0 && asked < house.objects.len() * all().count() / 2);
+        assert!(asked > 0 && asked < house.objects.len() * all().count());
         let edge = grid.config().cell_m;
         for room in house.rooms.ids() {
             let within = |cell: &Cell| {
