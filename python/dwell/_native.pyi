@@ -26,6 +26,7 @@ __all__ = [
     "MeasuredDataError",
     "Navigation",
     "SceneError",
+    "Spare",
     "UsageError",
     "World",
     "__version__",
@@ -50,6 +51,7 @@ __all__ = [
     "seed_range",
     "sensors_json",
     "signals_json",
+    "spares",
     "surfaces",
     "synthesize",
     "tasks_json",
@@ -106,7 +108,7 @@ class House:
     """A checked, immutable house, shared by everything that is made from it."""
 
     @staticmethod
-    def open(house: str) -> House: ...
+    def open(house: str, threads: int | None = ...) -> House: ...
     @staticmethod
     def built(plan_json: str) -> House:
         """The house of a plan."""
@@ -264,6 +266,10 @@ class Batch:
     def specs_json(self) -> str:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor."""
     def reset(self, seeds: Sequence[int | None]) -> None: ...
+    def put(self, env: int, spare: Spare) -> None:
+        """``spare`` takes the place of environment ``env``, once; worlds of :meth:`world` are its from then on."""
+    def steps(self) -> NDArray[np.int64]:
+        """How many steps each environment's episode has had."""
     def step(self, actions: NDArray[np.int64]) -> dict[str, NDArray[Any] | list[str]]:
         """-1: that environment is not stepped. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of n) and action_error (list)."""
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:
@@ -288,6 +294,10 @@ class Batch:
         """For each environment, samples of sound that its latest observation cut off."""
     def agents_json(self, env: int) -> str: ...
     def __len__(self) -> int: ...
+
+@final
+class Spare:
+    """An environment that waits for its place in a batch."""
 
 @final
 class AcousticScene:
@@ -335,6 +345,14 @@ class AcousticScene:
         """The fields of ``AcousticConfig``, with the air as laws make it."""
     @property
     def rate_hz(self) -> int: ...
+
+def spares(
+    houses: Sequence[House],
+    config_json: str,
+    seeds: Sequence[int | None],
+    threads: int | None = ...,
+) -> list[Spare]:
+    """An environment over each house, with the episode of its seed begun where it has one."""
 
 def actions() -> list[str]: ...
 def tasks_json() -> str: ...

@@ -74,7 +74,12 @@ class House:
         name = arguments.path("house", house)
         if map is not None:
             name = f"{name}?map={arguments.path('map', map)}"
-        return cls(_native.House.open(name), (House.open, (name,)))
+        return cls.open_by(name, None)
+
+    @classmethod
+    def open_by(cls, name: str, threads: int | None) -> House:
+        """Opens a HOUSE string by so many threads; ``None``: as many as there are."""
+        return cls(_native.House.open(name, threads), (House.open, (name,)))
 
     @staticmethod
     def expand(house: str) -> list[str]:

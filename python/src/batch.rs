@@ -5,6 +5,7 @@ use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::PyHouse;
 use crate::picture;
+use crate::spare::PySpare;
 use crate::world::PyWorld;
 use dwell::sensors::{Dtype, Out};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, Verdict};
@@ -129,11 +130,17 @@ impl PyBatch {
             .collect();
         let batch = py.engine(|| -> Result<Batch, Fault> {
             let config: EnvConfig = serde_json::from_str(config_json)?;
-            let envs = shared
-                .into_iter()
-                .map(|engines| Env::new(engines, &config))
-                .collect::<Result<Vec<_>, _>>()?;
-            let batch = Batch::new(envs, Threads::requested(threads)?)?;
+            let threads = Threads::requested(threads)?;
+            let count = shared.len();
+            let mut envs = Vec::new();
+            for engines in shared {
+                interrupt::check();
+                envs.push(Env::new(engines, &config)?);
+                if let [first] = envs.as_slice() {
+                    dwell::memory::check(first, count)?;
+                }
+            }
+            let batch = Batch::new(envs, threads)?;
             Ok(batch.overlapping(overlap))
         })?;
         Ok(Self {
@@ -151,6 +158,24 @@ impl PyBatch {
 
     fn reset(&self, py: Python<'_>, seeds: Vec<Option<u64>>) -> PyResult<()> {
         self.with(py, |batch| Ok(batch.reset(&seeds)?))
+    }
+
+    /// An environment takes the place of environment `env`, and its episode goes on where it began one.
+    fn put(&self, py: Python<'_>, env: usize, spare: &Bound<'_, PySpare>) -> PyResult<()> {
+        let spare = spare.get();
+        self.with(py, |batch| {
+            batch.put(env, spare.take()?)?;
+            Ok(())
+        })
+    }
+
+    /// How many steps each environment's episode has had.
+    fn steps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let steps = self.with(py, |batch| {
+            let of = |env: &Env| env.steps().cast_signed();
+            Ok(batch.envs().iter().map(of).collect::<Vec<_>>())
+        })?;
+        Ok(steps.into_pyarray(py))
     }
 
     fn step<'py>(

@@ -46,9 +46,10 @@ impl PyHouse {
 #[pymethods]
 impl PyHouse {
     #[staticmethod]
-    fn open(py: Python<'_>, house: &str) -> PyResult<Self> {
+    #[pyo3(signature = (house, threads=None))]
+    fn open(py: Python<'_>, house: &str, threads: Option<usize>) -> PyResult<Self> {
         py.engine(|| -> Result<_, Fault> {
-            let (house, report) = dwell_houses::open_with(house, Threads::requested(None)?)?;
+            let (house, report) = dwell_houses::open_with(house, Threads::requested(threads)?)?;
             Ok(Self::from_house(house, authoring::rows(&report)?))
         })
     }

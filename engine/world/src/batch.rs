@@ -99,6 +99,25 @@ impl Batch {
             .ok_or_else(|| WorldError::Usage(format!("no environment {index}; there are {count}")))
     }
 
+    /// Puts another environment in the place of one, which is given back: an episode may begin in another house.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for an environment that does not exist or whose sensors differ, [`WorldError::Render`] for a
+    /// picture of it that was under way; nothing has changed then.
+    pub fn put(&mut self, index: usize, env: Env) -> Result<Env, WorldError> {
+        if self.env(index)?.specs() != env.specs() {
+            let what = format!("put: the sensors differ from those of environment {index}");
+            return Err(WorldError::Usage(what));
+        }
+        // They are told apart by their places, of which the other has others.
+        let mut waiting = self.under_way.iter().flatten();
+        if waiting.any(|own| own.owners().any(|number| number == index)) {
+            self.finish_pictures()?;
+        }
+        self.is_started[index] = false;
+        Ok(std::mem::replace(&mut self.envs[index], env))
+    }
+
     /// Goes to a snapshot of one environment.
     ///
     /// Stopped by [`interrupt`], its episode is over.
@@ -261,10 +280,7 @@ impl Batch {
     pub fn reset(&mut self, seeds: &[Option<u64>]) -> Result<(), WorldError> {
         self.check_count("seeds", seeds.len())?;
         let active: Vec<bool> = seeds.iter().map(Option::is_some).collect();
-        let reset = |k: usize, env: &mut Env| {
-            env.reset(seeds[k].unwrap_or_default())?;
-            env.listen()
-        };
+        let reset = |k: usize, env: &mut Env| env.begin(seeds[k].unwrap_or_default());
         let (names, rate_hz) = self.signals_to_make(&active);
         self.or_over(&active, |batch| {
             if names.is_empty() {

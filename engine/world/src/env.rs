@@ -109,17 +109,20 @@ pub struct Env {
     pub(crate) episode: Option<Episode>,
     seed: u64,
     episode_key: Key,
+    /// Steps of the episode.
+    steps: u64,
     pub(crate) done: bool,
 }
 
 /// What [`Env::snapshot`] begins with: its kind and version.
-const MAGIC: &[u8] = b"dwenv2";
+const MAGIC: &[u8] = b"dwenv3";
 
 /// An episode at one moment. Its goal comes from the seed again.
 #[derive(Serialize, Deserialize)]
 struct Moment {
     task: String,
     seed: u64,
+    steps: u64,
     done: bool,
     instruction: String,
     start: Pose,
@@ -189,6 +192,7 @@ impl Env {
             episode: None,
             seed: 0,
             episode_key: Key::root(0),
+            steps: 0,
             done: false,
         })
     }
@@ -223,6 +227,11 @@ impl Env {
         self.episode.as_ref()
     }
 
+    /// How many steps the episode has had; 0 where none runs.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
     /// Starts a new episode; everything random in it comes from `seed`.
     ///
     /// # Errors
@@ -237,9 +246,19 @@ impl Env {
         Ok(self.episode.insert(episode))
     }
 
+    /// [`Self::reset`], with the ears open that the sensors ask for, as a [`Batch`](crate::Batch) begins an episode.
+    ///
+    /// # Errors
+    /// Those of [`Self::reset`], [`WorldError::Acoustics`] for a source that cannot be simulated.
+    pub fn begin(&mut self, seed: u64) -> Result<(), WorldError> {
+        self.reset(seed)?;
+        self.listen()
+    }
+
     /// Ends the episode: what happens to the world from here on belongs to none.
     pub(crate) fn give_up(&mut self) {
         self.episode = None;
+        self.steps = 0;
         self.done = false;
     }
 
@@ -258,6 +277,7 @@ impl Env {
         let moment = Moment {
             task: self.kind.name.to_owned(),
             seed: self.seed,
+            steps: self.steps,
             done: self.done,
             instruction: episode.instruction.clone(),
             start: episode.start,
@@ -278,7 +298,7 @@ impl Env {
         let refuse = |why: String| WorldError::Snapshot(why);
         let body = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwenv2\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwenv3\"".to_owned()))?;
         let moment: Moment =
             postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
         if moment.task != self.kind.name {
@@ -294,7 +314,7 @@ impl Env {
         episode.tokens.clone_from(tokens);
         episode.instruction = moment.instruction;
         (episode.start, episode.progress) = (moment.start, moment.progress);
-        self.done = moment.done;
+        (self.steps, self.done) = (moment.steps, moment.done);
         Ok(())
     }
 
@@ -327,6 +347,7 @@ impl Env {
         };
         let agent = AgentId(0);
         let outcome = self.world.act_discrete(agent, action, &self.stride)?;
+        self.steps += 1;
         let verdict = self.task.judge(&self.world, episode, action);
         self.done = verdict.terminated;
         let collision = self
@@ -364,6 +385,11 @@ impl Env {
     /// Opens the ears that the sensors ask for, where they are not open yet.
     pub(crate) fn listen(&mut self) -> Result<(), WorldError> {
         self.world.listen(&self.requests.ears)
+    }
+
+    /// What the sensors ask of the engines.
+    pub(crate) fn requests(&self) -> &Requests {
+        &self.requests
     }
 
     /// The signals that will be heard as soon as somebody listens, and their rate; none where no sensor listens.
@@ -527,6 +553,7 @@ mod tests {
         let mut other = self::env();
         other.reset(8).unwrap();
         other.restore(&saved).unwrap();
+        assert_eq!(other.steps(), 3);
         assert_eq!(other.episode().unwrap().instruction, text);
         assert_eq!(go(&mut other, &rest), first);
         for cut in [0, 5, 30, saved.len() / 2, saved.len() - 1] {

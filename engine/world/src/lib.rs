@@ -19,6 +19,7 @@ mod floor_plan;
 mod heap;
 mod info;
 pub mod laws;
+pub mod memory;
 pub mod metrics;
 mod now;
 mod past;

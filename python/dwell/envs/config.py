@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import functools
 import inspect
+import operator
 import os
+import re
+import weakref
+from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from typing import Any, TypedDict
 
 from dwell import ConfigError
-from dwell.arguments import fields, finite, mapping, text, texts, to_json, whole
+from dwell.arguments import fields, finite, mapping, shown, text, texts, to_json, whole
 from dwell.envs.custom import Native, RewardChoice, Sensors
 from dwell.house import House
 from dwell.settings import Laws, world_settings
@@ -32,6 +35,7 @@ class EnvSettings(TypedDict, total=False):
     stride: Mapping[str, float] | None
     world: Mapping[str, Any] | None
     threads: int | None
+    max_episode_steps: int | None
     render_mode: str | None
 
 
@@ -46,10 +50,33 @@ def arguments_of(env: type) -> list[str]:
 KEPT = 16
 
 
+def step_limit(value: object) -> int | None:
+    """``max_episode_steps`` of an environment: ``None`` and -1 are none.
+
+    Raises:
+        ConfigError: It is no whole number from 1.
+    """
+    if value is None:
+        return None
+    try:
+        number = operator.index(value)  # type: ignore[arg-type] # what this finds out
+    except TypeError:
+        number = 0
+    if number == -1:
+        return None
+    if isinstance(value, bool) or number < 1:
+        raise ConfigError(
+            f"max_episode_steps is {shown(value)}; allowed are whole numbers from 1, or None or -1 "
+            "for episodes without a limit"
+        )
+    return min(number, 2**63 - 1)
+
+
 class HouseShelf:
     """Houses by number.
 
-    Those given by HOUSE string are opened at first use; the last :data:`KEPT` stay open.
+    Those given by HOUSE string are opened at first use. The last :data:`KEPT` stay open, and those
+    that somebody plays in.
     """
 
     def __init__(self, houses: Houses) -> None:
@@ -63,7 +90,10 @@ class HouseShelf:
         if not rows:
             raise ConfigError("houses: expected at least one HOUSE string or House, found none")
         self._given: dict[str, House] = {}
-        self._open = functools.lru_cache(KEPT)(House.open)
+        #: The latest last.
+        self._kept: OrderedDict[str, House] = OrderedDict()
+        #: All that are open, whoever keeps them.
+        self._alive: weakref.WeakValueDictionary[str, House] = weakref.WeakValueDictionary()
         #: HOUSE strings; for a house that was handed over, its name, numbered where that is taken.
         self.names: list[str] = []
         for k, row in enumerate(rows):
@@ -82,8 +112,20 @@ class HouseShelf:
 
     def __getitem__(self, index: int) -> House:
         """House ``index`` modulo their number."""
+        return self.open(index)
+
+    def open(self, index: int, *, threads: int | None = None) -> House:
+        """House ``index`` modulo their number, opened by so many threads."""
         name = self.names[index % len(self.names)]
-        return self._given.get(name) or self._open(name)
+        house = self._given.get(name) or self._alive.get(name)
+        if house is None:
+            house = self._alive[name] = House.open_by(name, threads)
+        # Without a lock, which a fork beside another thread would leave held.
+        self._kept.pop(name, None)
+        self._kept[name] = house
+        while len(self._kept) > KEPT:
+            self._kept.popitem(last=False)
+        return house
 
     def episode_id(self, index: int, seed: int) -> str:
         """What an episode of a seed in house ``index`` modulo their number is called."""
@@ -95,11 +137,11 @@ class HouseShelf:
         Raises:
             ConfigError: It is none, or of a house that is not here.
         """
-        name, mark, seed = str(episode_id).rpartition("#")
-        if not mark or not seed.isdecimal() or name not in self.names:
+        name, _, seed = (episode_id if isinstance(episode_id, str) else "").rpartition("#")
+        if not re.fullmatch("[0-9]{1,20}", seed) or name not in self.names:
             raise ConfigError(
-                f"episode_id is {episode_id!r}; expected HOUSE#NUMBER, as info has it, of a house "
-                f"of this environment: {self.names[:12]}"
+                f"episode_id is {shown(episode_id)}; expected HOUSE#NUMBER, as info has it, of a "
+                f"house of this environment: {shown(self.names[:12])}"
             )
         return self.names.index(name), whole("episode_id", int(seed))
 

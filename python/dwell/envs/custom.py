@@ -49,6 +49,10 @@ class Custom:
     reward: Callable[[], Reward] | None = None
     sensors: tuple[Callable[[], Sensor], ...] = ()
 
+    def part_names(self) -> list[str]:
+        """The names of the classes of task and reward, where they are written in Python."""
+        return [type(make()).__name__ for make in (self.task, self.reward) if make is not None]
+
 
 @dataclasses.dataclass(frozen=True)
 class Native:
@@ -127,6 +131,10 @@ class Play:
         self._reward = None if custom.reward is None else custom.reward()
         self.sensors = [make() for make in custom.sensors]
         self._seed = 0
+
+    def move(self, house: House) -> None:
+        """From now on the environment is in another house."""
+        self._world = World.of_env(house, self._batch.world(self._env))
 
     def _parts(self) -> dict[str, Task | Reward | Sensor]:
         parts: dict[str, Task | Reward | Sensor] = {

@@ -4,16 +4,110 @@ from __future__ import annotations
 
 import dataclasses
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium.vector import VectorEnv, VectorWrapper
+from numpy.typing import NDArray
 
-from dwell import ConfigError, UsageError, __version__
+from dwell import ConfigError, UsageError, __version__, _native
 from dwell.arguments import path
 from dwell.envs.single import DwellEnv
+from dwell.envs.vector import DwellVectorEnv
 from dwell.replays import MOST_STEPS, Replay
+
+#: Why an episode goes on no further.
+_FULL = f"{MOST_STEPS} steps are written, all that a file holds; reset begins another"
+
+
+class _Running:
+    """An episode that is being recorded."""
+
+    def __init__(
+        self,
+        env: DwellEnv | DwellVectorEnv,
+        info: Mapping[str, Any],
+        instruction: str,
+        state_hash: int,
+    ) -> None:
+        self._replay = Replay(
+            house=str(info["scene_id"]),
+            seed=int(str(info["episode_id"]).rpartition("#")[2]),
+            config=env._config,
+            parts=tuple(env._custom.part_names()),
+            actions=(),
+            hashes=(),
+            instruction=instruction,
+            success=False,
+            made_by=__version__,
+        )
+        self._actions: list[str] = []
+        self._hashes = [f"{state_hash:016x}"]
+        self._success = False
+
+    def check(self, state_hash: int, what: str) -> None:
+        """Refuses a world that is not as the last step left it; ``what``: whose it is.
+
+        Raises:
+            UsageError: No file can hold how it came there.
+        """
+        if f"{state_hash:016x}" != self._hashes[-1]:
+            raise UsageError(
+                f"{what} was changed since the last step by something else than an action; its "
+                "episode cannot be recorded further; reset begins another"
+            )
+
+    def stepped(self, action: int, state_hash: int, success: bool) -> None:
+        """A step was made."""
+        self._actions.append(_native.actions()[action])
+        self._hashes.append(f"{state_hash:016x}")
+        self._success = success
+
+    def write(self, folder: Path) -> None:
+        """Writes what was played so far, if anything was."""
+        if not self._actions:
+            return
+        replay = dataclasses.replace(
+            self._replay,
+            actions=tuple(self._actions),
+            hashes=tuple(self._hashes),
+            success=self._success,
+        )
+        write_numbered(replay, folder)
+
+    @property
+    def is_full(self) -> bool:
+        """Whether no file holds a further step."""
+        return len(self._actions) == MOST_STEPS
+
+
+def write_numbered(replay: Replay, folder: Path) -> Path:
+    """Writes an episode as the next ``episode_NNNN.replay`` of a folder.
+
+    Others, of this process or not, may write into the folder at the same time: each episode gets a
+    number of its own.
+
+    Raises:
+        OSError: The system refuses; nothing was written.
+    """
+    number = sum(1 for _ in folder.glob("episode_*.replay"))
+    while True:
+        file = folder / f"episode_{number:04}.replay"
+        try:
+            if not os.path.lexists(file):
+                replay.write(file, new=True)
+                return file
+        except FileExistsError:
+            # Somebody was quicker.
+            pass
+        except OSError as error:
+            kept = f"{len(replay.actions)} steps are kept, and the next reset or close writes them"
+            error.strerror = f"{error.strerror}; {kept}"
+            raise
+        number += 1
 
 
 class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any], np.int64]):
@@ -46,16 +140,16 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         Raises:
             ConfigError: It is none of dwell, or its house or head cannot be named in a file.
         """
+        given: object = env
+        if isinstance(given, VectorEnv):
+            raise ConfigError(f"env is {env!r}; VectorReplayRecorder records such environments")
         super().__init__(env)
         if not isinstance(env.unwrapped, DwellEnv):
             raise ConfigError(f"env is {env!r}; expected an environment of dwell")
         self._env = env.unwrapped
-        self._env._refuse_what_files_cannot_name()
+        _refuse_what_files_cannot_name(self._env)
         self._folder = Path(path("folder", folder))
-        self._running: Replay | None = None
-        self._actions: list[str] = []
-        self._hashes: list[str] = []
-        self._success = False
+        self._running: _Running | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -63,18 +157,8 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         """Begins an episode; the one before is written."""
         self._write()
         observation, info = self.env.reset(seed=seed, options=options)
-        self._running = Replay(
-            house=str(info["scene_id"]),
-            seed=int(str(info["episode_id"]).rpartition("#")[2]),
-            config=self._env._config,
-            parts=tuple(self._env._part_names()),
-            actions=(),
-            hashes=(),
-            instruction=self._env.instruction(),
-            success=False,
-            made_by=__version__,
-        )
-        self._actions, self._hashes, self._success = [], [self._hash()], False
+        instruction, state_hash = self._env.instruction(), self._env.state_hash()
+        self._running = _Running(self._env, info, instruction, state_hash)
         return observation, info
 
     def step(self, action: np.int64) -> tuple[dict[str, Any], Any, bool, bool, dict[str, Any]]:
@@ -85,21 +169,18 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
                 snapshot; no file can hold that. Or the episode is longer than any file holds.
             OSError: The episode ended and cannot be written; it is kept.
         """
-        if self._running is not None and self._hash() != self._hashes[-1]:
+        running = self._running
+        if running is not None:
+            # Not written where it is refused.
             self._running = None
-            raise UsageError(
-                "the world was changed since the last step by something else than an action; its "
-                "episode cannot be recorded further; reset begins another"
-            )
-        if self._running is not None and len(self._actions) == MOST_STEPS:
-            self._write()
-            raise UsageError(
-                f"{MOST_STEPS} steps are written, all that a file holds; reset begins another"
-            )
+            running.check(self._env.state_hash(), "the world")
+            self._running = running
+            if running.is_full:
+                self._write()
+                raise UsageError(_FULL)
         observation, reward, terminated, truncated, info = self.env.step(action)
-        self._actions.append(self._env.actions()[int(action)])
-        self._hashes.append(self._hash())
-        self._success = bool(info["success"])
+        if running is not None:
+            running.stepped(int(action), self._env.state_hash(), bool(info["success"]))
         if terminated or truncated:
             self._write()
         return observation, reward, terminated, truncated, info
@@ -109,42 +190,113 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         self._write()
         super().close()
 
-    def _hash(self) -> str:
-        return f"{self._env.state_hash():016x}"
-
     def _write(self) -> None:
-        if self._running is not None and self._actions:
-            replay = dataclasses.replace(
-                self._running,
-                actions=tuple(self._actions),
-                hashes=tuple(self._hashes),
-                success=self._success,
-            )
-            write_numbered(replay, self._folder)
+        if self._running is not None:
+            self._running.write(self._folder)
         self._running = None
 
 
-def write_numbered(replay: Replay, folder: Path) -> Path:
-    """Writes an episode as the next ``episode_NNNN.replay`` of a folder.
+class VectorReplayRecorder(
+    VectorWrapper[
+        dict[str, Any], NDArray[np.int64], dict[str, Any], NDArray[np.int64], NDArray[Any]
+    ]
+):
+    """Writes every episode of every environment of a :class:`DwellVectorEnv` into a folder.
 
-    Others, of this process or not, may write into the folder at the same time: each episode gets a
-    number of its own.
+    Each is a file of its own, ``episode_0000.replay`` and so on, in the order in which they end. A
+    file is written when its episode ends, when the next one begins in its environment, or at
+    ``close``; numbers go on behind the files that are there.
 
-    Raises:
-        OSError: The system refuses; nothing was written.
+    Examples:
+        >>> import tempfile
+        >>> import dwell
+        >>> from dwell.envs import DwellVectorEnv, VectorReplayRecorder
+        >>> folder = tempfile.mkdtemp()
+        >>> envs = VectorReplayRecorder(DwellVectorEnv(2, "Free", sensors=["gps"]), folder)
+        >>> observations, infos = envs.reset(seed=1)
+        >>> observations, *_ = envs.step([1, 2])
+        >>> envs.close()
+        >>> [dwell.Replay.read(f"{folder}/episode_000{k}.replay").actions for k in range(2)]
+        [('move_forward',), ('turn_left',)]
     """
-    number = sum(1 for _ in folder.glob("episode_*.replay"))
-    while True:
-        file = folder / f"episode_{number:04}.replay"
-        try:
-            if not os.path.lexists(file):
-                replay.write(file, new=True)
-                return file
-        except FileExistsError:
-            # Somebody was quicker.
-            pass
-        except OSError as error:
-            kept = f"{len(replay.actions)} steps are kept, and the next reset or close writes them"
-            error.strerror = f"{error.strerror}; {kept}"
-            raise
-        number += 1
+
+    def __init__(
+        self,
+        env: VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
+        folder: str | os.PathLike[str],
+    ) -> None:
+        """Wraps environments of dwell that step together, whatever other wrappers are around them.
+
+        Raises:
+            ConfigError: They are none of dwell, or their houses or head cannot be named in a file.
+        """
+        given: object = env
+        if not isinstance(given, VectorEnv) or not isinstance(env.unwrapped, DwellVectorEnv):
+            raise ConfigError(f"env is {env!r}; expected a vector environment of dwell")
+        super().__init__(env)
+        self._envs = env.unwrapped
+        _refuse_what_files_cannot_name(self._envs)
+        self._folder = Path(path("folder", folder))
+        self._running: dict[int, _Running] = {}
+        self._envs._recorders.append(self)
+
+    def began(self, envs: Sequence[int]) -> None:
+        """Episodes have begun in these environments; those before are written."""
+        infos = self._envs._ids()
+        for k in envs:
+            self._write(k)
+            info = {name: infos[name][k] for name in ("scene_id", "episode_id")}
+            batch = self._envs._runner.batch
+            self._running[k] = _Running(self._envs, info, batch.instruction(k), batch.state_hash(k))
+
+    def check(self) -> None:
+        """A step is about to be made.
+
+        Raises:
+            UsageError: Something else changed a world since the last step, such as a restored
+                snapshot; no file can hold that. Or an episode is longer than any file holds.
+            OSError: An episode that is as long cannot be written; it is kept.
+        """
+        for k, running in [*self._running.items()]:
+            # Not written where it is refused.
+            del self._running[k]
+            running.check(self._envs._runner.batch.state_hash(k), f"the world of environment {k}")
+            self._running[k] = running
+            if running.is_full:
+                self._write(k)
+                raise UsageError(f"environment {k}: {_FULL}")
+
+    def stepped(
+        self,
+        actions: NDArray[np.int64],
+        success: NDArray[np.bool_],
+        ended: NDArray[np.bool_],
+    ) -> None:
+        """A step was made; episodes that ended are written."""
+        for k in np.flatnonzero(actions >= 0).tolist():
+            if k in self._running:
+                state_hash = self._envs._runner.batch.state_hash(k)
+                self._running[k].stepped(int(actions[k]), state_hash, bool(success[k]))
+                if ended[k]:
+                    self._write(k)
+
+    def close(self, **kwargs: Any) -> None:  # noqa: ANN401 - gymnasium's signature
+        """Writes the episodes that run, and closes the environments."""
+        for k in [*self._running]:
+            self._write(k)
+        super().close(**kwargs)
+
+    def _write(self, env: int) -> None:
+        if env in self._running:
+            self._running[env].write(self._folder)
+            del self._running[env]
+
+
+def _refuse_what_files_cannot_name(env: DwellEnv | DwellVectorEnv) -> None:
+    if env._shelf.has_objects:
+        raise ConfigError(
+            "houses: a house was handed over as an object, which a file cannot name; write it "
+            "(house.write) and give its path"
+        )
+    if env._heads:
+        raise ConfigError("world.sound_head: a file cannot hold a measured head")

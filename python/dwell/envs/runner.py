@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
 from dwell.envs.custom import Custom, Play
-from dwell.envs.spaces import specs
+from dwell.envs.spaces import shareable, specs
+from dwell.envs.stock import Spare, add_heads
 from dwell.heads import Head
 from dwell.house import House
 
@@ -46,8 +47,7 @@ class Runner:
     ) -> None:
         """Builds the environments, one for each house of ``houses``; agents may wear ``heads``."""
         for house in houses:
-            for head in heads:
-                house.native.add_head(head.native)
+            add_heads(house, heads)
         self.batch = _native.Batch([house.native for house in houses], config, threads, overlap)
         self.houses = [*houses]
         self.count = len(houses)
@@ -60,6 +60,7 @@ class Runner:
         )
         native = {spec.name: spec.space() for spec in self.specs}
         own = self.plays[0].spaces(native) if self.plays else {}
+        own = {name: shareable(space) for name, space in own.items()}
         #: The space of one environment's observation.
         self.space = spaces.Dict({**native, **own})
         self._own: dict[str, Any] = {
@@ -69,9 +70,21 @@ class Runner:
             for name, space in own.items()
         }
 
-    def reset(self, seeds: Sequence[int | None]) -> None:
-        """Begins the episodes of seeds, one for each environment; ``None``: goes on."""
-        self.batch.reset(seeds)
+    def move(self, env: int, spare: Spare) -> None:
+        """Puts ``spare`` in the place of an environment, which is in another house from then on."""
+        self.batch.put(env, spare.native)
+        self.houses[env] = spare.house
+        if self.plays:
+            self.plays[env].move(spare.house)
+
+    def reset(self, seeds: Sequence[int | None], begun: Collection[int] = ()) -> None:
+        """Begins the episodes of seeds, one for each environment; ``None``: goes on.
+
+        Args:
+            seeds: The seeds.
+            begun: The environments in which the engine has begun them already.
+        """
+        self.batch.reset([None if k in begun else seed for k, seed in enumerate(seeds)])
         for play, seed in zip(self.plays, seeds, strict=False):
             if seed is not None:
                 play.begin(seed)

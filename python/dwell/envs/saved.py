@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError
-from dwell.arguments import flag, mapping, text, to_json, whole
+from dwell.arguments import flag, mapping, shown, text, to_json
 
 #: What the bytes begin with, and the number of their form.
-_HEAD = b"dwvec1"
+_HEAD = b"dwvec2"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -20,8 +20,6 @@ class Saved:
     """One environment of several as it was at a moment."""
 
     episode_id: str
-    #: Steps of the episode.
-    steps: int
     #: Whether the episode has ended.
     done: bool
     #: Whence the seeds of the following episodes come.
@@ -35,7 +33,6 @@ class Saved:
         """All of it as bytes."""
         told = {
             "episode_id": self.episode_id,
-            "steps": self.steps,
             "done": self.done,
             "stream": self.stream.bit_generator.state,
         }
@@ -49,7 +46,7 @@ class Saved:
             ConfigError: It is something else.
         """
         if not isinstance(snapshot, bytes):
-            raise ConfigError(f"{name} is {snapshot!r:.60}; expected bytes of snapshot()")
+            raise ConfigError(f"{name} is {shown(snapshot, 60)}; expected bytes of snapshot()")
         head, _, rest = snapshot.partition(b"\0")
         about, _, rest = rest.partition(b"\0")
         parts, _, world = rest.partition(b"\0")
@@ -60,16 +57,15 @@ class Saved:
             told = mapping(at, json.loads(about))
             return cls(
                 episode_id=text(f"{at}: episode_id", told["episode_id"]),
-                steps=whole(f"{at}: steps", told["steps"], high=2**63 - 1),
                 done=flag(f"{at}: done", told["done"]),
                 stream=_stream(told["stream"]),
                 parts=parts,
                 world=world,
             )
-        except (KeyError, TypeError, ValueError, OverflowError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
             if isinstance(error, ConfigError):
                 raise
-            raise ConfigError(f"{at}: {error!r}") from None
+            raise ConfigError(f"{at}: {shown(error)}") from None
 
 
 def _stream(state: Any) -> np.random.Generator:  # noqa: ANN401 - numpy says what it takes

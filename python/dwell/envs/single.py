@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import functools
+import sys
+import weakref
 from collections.abc import Mapping
 from math import isnan
+from types import FrameType
 from typing import Any, NoReturn
 
 import gymnasium
 import numpy as np
 from gymnasium.utils import EzPickle
+from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, refuse_unknown, to_json, whole
+from dwell.arguments import mapping, refuse_unknown, shown, to_json, whole
 from dwell.camera import Camera, camera_settings
-from dwell.envs.config import KEPT, Houses, HouseShelf, arguments_of, env_json
+from dwell.envs.config import KEPT, Houses, HouseShelf, arguments_of, env_json, step_limit
 from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.runner import GOAL_KEYS, INFO_KEYS, Runner
 from dwell.envs.spaces import action_space
@@ -30,8 +34,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     """A task in a house, with one agent.
 
     An episode's house is drawn from ``houses``, and everything else in it from the seed. The step
-    limit belongs to ``gymnasium.make`` (a ``TimeLimit`` wrapper). A pickle holds the arguments:
-    what comes out of it is made anew and waits for ``reset``.
+    limit is ``max_episode_steps``, or that of ``gymnasium.make`` (a ``TimeLimit`` wrapper); a
+    restored episode ends at the same step in both. A pickle holds the arguments: what comes out of
+    it is made anew and waits for ``reset``.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - gymnasium declares it an instance variable
@@ -52,6 +57,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         stride: Mapping[str, float] | None = None,
         world: Mapping[str, Any] | None = None,
         threads: int | None = None,
+        max_episode_steps: int | None = None,
         render_mode: str | None = None,
         **unknown: NoReturn,
     ) -> None:
@@ -71,6 +77,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             world: Further fields of the native WorldConfig; ``sound_head`` may be a
                 :class:`dwell.Head` or the path of its SOFA file.
             threads: How many threads to use; results do not depend on it.
+            max_episode_steps: Steps after which an episode is truncated; ``None`` or -1: never.
+                ``gymnasium.make`` takes an argument of this name for its own wrapper.
             render_mode: ``rgb_array`` or ``None``.
             **unknown: There are no others; such are refused with the nearest names.
         """
@@ -87,12 +95,13 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             stride=stride,
             world=world,
             threads=threads,
+            max_episode_steps=max_episode_steps,
             render_mode=render_mode,
         )
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            modes = self.metadata["render_modes"]
-            raise ConfigError(f"render_mode: found {render_mode!r}, allowed are None and {modes}")
-        self.render_mode = render_mode
+        self.render_mode = checked_render_mode(render_mode)
+        self._limit = step_limit(max_episode_steps)
+        #: Gymnasium's wrappers around this environment that count steps, too.
+        self._counters: list[weakref.ref[TimeLimit[Any, Any]]] = []
         world, self._heads = with_head(world)
         native, self._custom = split(task, task_settings, reward, sensors)
         self._config = env_json(
@@ -109,10 +118,13 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self.observation_space = self._runner.space
         self.action_space = action_space()
 
-    @property
-    def _runner(self) -> Runner:
+    def _refuse_closed(self) -> None:
         if self._closed:
             raise UsageError("this environment is closed; make a new one")
+
+    @property
+    def _runner(self) -> Runner:
+        self._refuse_closed()
         return self._runner_of(self._house)
 
     def _run(self, house: int) -> Runner:
@@ -147,8 +159,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             options: ``house``: the number of the house to play in; else it is drawn.
                 ``episode_id``: that of an earlier ``info``, to play the same episode again.
         """
-        if self._closed:
-            raise UsageError("this environment is closed; make a new one")
+        self._refuse_closed()
+        self._counters = _counters_around(self)
         super().reset(seed=None if seed is None else whole("seed", seed))
         options = {} if options is None else mapping("options", options)
         if unknown := sorted(set(options) - {"house", "episode_id"}):
@@ -172,7 +184,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
         ``info`` has no ``distance_to_goal``, ``spl`` and ``soft_spl`` where the task has no goal.
         """
-        number = whole("action", action, high=len(self.actions()) - 1)
+        number = whole("action", action, high=len(_native.actions()) - 1)
         answer, further = self._runner.step(np.array([number], np.int64))
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
         info = {k: value for k, value in info.items() if k not in GOAL_KEYS or not isnan(value)}
@@ -184,7 +196,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             observation,
             float(answer["reward"][0]),
             terminated,
-            False,
+            self._limit is not None and self._steps() >= self._limit,
             {
                 **info,
                 **self._info(),
@@ -192,10 +204,13 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             },
         )
 
+    def _steps(self) -> int:
+        """How many steps the episode has had."""
+        return int(self._runner.batch.steps()[0])
+
     def render(self) -> NDArray[np.uint8] | None:
         """What the agent sees, (240, 320, 3) uint8; ``None`` without a render mode."""
-        if self._closed:
-            raise UsageError("this environment is closed; make a new one")
+        self._refuse_closed()
         if self.render_mode is None:
             return None
         view = {"camera": camera_settings("camera", RENDER_CAMERA)}
@@ -224,13 +239,17 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
         """Goes to where the snapshot was taken; the next steps give the same bits as they did then.
 
+        The episode is truncated at the same step, too, whether ``max_episode_steps`` says at which
+        or a ``TimeLimit`` wrapper of gymnasium through which it was last reset.
+
         Returns:
             Observation and info of that moment.
         """
-        if self._closed:
-            raise UsageError("this environment is closed; make a new one")
-        if not isinstance(snapshot, bytes):
-            raise ConfigError(f"snapshot is {snapshot!r}; expected the bytes of an environment's")
+        self._refuse_closed()
+        given: object = snapshot
+        if not isinstance(given, bytes):
+            found = shown(given)
+            raise ConfigError(f"snapshot is {found}; expected the bytes of an environment's")
         episode_id, _, rest = snapshot.partition(b"\0")
         parts, _, rest = rest.partition(b"\0")
         try:
@@ -241,30 +260,14 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         runner = self._runner_of(house)
         runner.restore(rest, parts, seed)
         self._house, self._seed = house, seed
+        for counter in self._counters:
+            if (wrapper := counter()) is not None:
+                wrapper._elapsed_steps = self._steps()  # type: ignore[assignment] # None first
         return self._observation(), self._info()
-
-    def _part_names(self) -> list[str]:
-        """The names of the classes of task and reward, where they are written in Python."""
-        makers = (self._custom.task, self._custom.reward)
-        return [type(make()).__name__ for make in makers if make is not None]
 
     def instruction(self) -> str:
         """What the episode asks for."""
         return self._runner.batch.instruction(0)
-
-    def _refuse_what_files_cannot_name(self) -> None:
-        """For those who write down what is played here.
-
-        Raises:
-            ConfigError: A house was handed over as an object, or there is a measured head.
-        """
-        if self._shelf.has_objects:
-            raise ConfigError(
-                "houses: a house was handed over as an object, which a file cannot name; write it "
-                "(house.write) and give its path"
-            )
-        if self._heads:
-            raise ConfigError("world.sound_head: a file cannot hold a measured head")
 
     def agents(self) -> list[dict[str, Any]]:
         """The agents' states, as :meth:`dwell.World.agents` tells them."""
@@ -272,8 +275,38 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
     def describe(self, level: str = "house") -> list[str]:
         """Sentences about the house as it starts; see :meth:`dwell.House.describe`."""
+        self._refuse_closed()
         return self._shelf[self._house].native.describe(level)
 
     def actions(self) -> list[str]:
         """The names of the actions, in the order of their numbers."""
+        self._refuse_closed()
         return _native.actions()
+
+
+def checked_render_mode(mode: object) -> str | None:
+    """A render mode of environments.
+
+    Raises:
+        ConfigError: There is none of this name.
+    """
+    modes = DwellEnv.metadata["render_modes"]
+    if mode is None or (isinstance(mode, str) and mode in modes):
+        return mode
+    raise ConfigError(f"render_mode: found {shown(mode)}, allowed are None and {modes}")
+
+
+def _counters_around(env: DwellEnv) -> list[weakref.ref[TimeLimit[Any, Any]]]:
+    """Gymnasium's step limits through which ``env.reset`` is being called: they count from here.
+
+    A wrapper does not tell what it wraps that it is there, so the calls are looked through.
+    """
+    found = []
+    frame: FrameType | None = sys._getframe(1)
+    while frame is not None:
+        if frame.f_code is TimeLimit.reset.__code__:
+            wrapper = frame.f_locals["self"]
+            if wrapper.unwrapped is env:
+                found.append(weakref.ref(wrapper))
+        frame = frame.f_back
+    return found

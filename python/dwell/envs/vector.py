@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NoReturn
+from copy import deepcopy
+from typing import Any, NoReturn, Protocol
 
 import numpy as np
 from gymnasium.utils import EzPickle
@@ -12,21 +13,61 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, refuse_unknown, whole
-from dwell.envs.config import Houses, HouseShelf, arguments_of, env_json
+from dwell.arguments import mapping, refuse_unknown, shown, to_json, whole
+from dwell.camera import camera_settings
+from dwell.envs.config import KEPT, Houses, HouseShelf, arguments_of, env_json, step_limit
 from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.places import Places
 from dwell.envs.runner import INFO_KEYS, Runner
 from dwell.envs.saved import Saved
+from dwell.envs.single import RENDER_CAMERA, DwellEnv, checked_render_mode
 from dwell.envs.spaces import action_space
+from dwell.envs.stock import Stock
 from dwell.settings import Laws, with_head
 
 
+class Recorder(Protocol):
+    """Who writes down what several environments play."""
+
+    def began(self, envs: Sequence[int]) -> None:
+        """Episodes have begun in these environments."""
+
+    def check(self) -> None:
+        """A step is about to be made."""
+
+    def stepped(
+        self,
+        actions: NDArray[np.int64],
+        success: NDArray[np.bool_],
+        ended: NDArray[np.bool_],
+    ) -> None:
+        """A step was made: by the numbers of actions, -1 for none. Those that ended still stand."""
+
+
+def _autoreset_mode(mode: object) -> AutoresetMode:
+    try:
+        return AutoresetMode(mode)
+    except ValueError:
+        allowed = ", ".join(repr(one.value) for one in AutoresetMode)
+        raise ConfigError(f"autoreset_mode is {shown(mode)}; allowed are {allowed}") from None
+
+
 class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]], EzPickle):
-    """``num_envs`` environments stepped together; number k plays in house k modulo their number.
+    """``num_envs`` environments stepped together, rendered in one submission.
+
+    Seeded with ``s``, environment k plays to the bit the episodes that a :class:`DwellEnv` with the
+    same arguments plays that is seeded with ``s + k``: houses are drawn from ``houses``, everything
+    else comes from the episode's seed. Houses of coming episodes are opened in the background
+    (``load_ahead``).
 
     Observations are the environments' own buffers: copy what must outlive the next step, or say
     ``copy=True``. A pickle holds the arguments, as that of a single environment.
     """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 - gymnasium declares it an instance variable
+        "render_modes": ["rgb_array"],
+        "render_fps": DwellEnv.metadata["render_fps"],
+    }
 
     def __init__(
         self,
@@ -46,6 +87,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         copy: bool = False,
         overlap: bool = False,
+        load_ahead: int = KEPT,
         render_mode: str | None = None,
         **unknown: NoReturn,
     ) -> None:
@@ -64,12 +106,18 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             world: Further fields of the native WorldConfig.
             threads: How many threads to use; results do not depend on it.
             max_episode_steps: Steps after which an episode is truncated; ``None`` or -1: never.
-            autoreset_mode: ``NextStep``, ``SameStep`` or ``Disabled``.
+            autoreset_mode: ``NextStep``: an environment whose episode has ended begins the next one
+                in the next step, whose action it does not play; ``SameStep``: in the same step, of
+                which ``infos["final_obs"]`` and ``infos["final_info"]`` keep what it ended with;
+                ``Disabled``: when ``reset`` is called with its ``reset_mask``.
             copy: Whether observations are copies.
             overlap: Whether a graphics adapter takes the pictures of environments that have stepped
                 while others still step. Observations are the same, of the same step; without an
                 adapter nothing changes.
-            render_mode: ``None``; single environments render.
+            load_ahead: How many environments may wait, each in a house of its own, for the episodes
+                that follow, made by a thread while others are played; 0: none, and a step at an
+                episode's end takes as long as opening its house.
+            render_mode: ``rgb_array`` or ``None``.
             **unknown: There are no others; such are refused with the nearest names.
         """
         refuse_unknown("DwellVectorEnv", unknown, arguments_of(DwellVectorEnv))
@@ -90,15 +138,16 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             autoreset_mode=autoreset_mode,
             copy=copy,
             overlap=overlap,
+            load_ahead=load_ahead,
             render_mode=render_mode,
         )
         num_envs = whole("num_envs", num_envs, low=1, high=65_536)
-        if render_mode is not None:
-            raise ConfigError(f"render_mode: found {render_mode!r}, allowed is None")
         self.num_envs = num_envs
-        self.render_mode = render_mode
-        self.autoreset_mode = AutoresetMode(autoreset_mode)
-        self.metadata = {"autoreset_mode": self.autoreset_mode, "render_modes": []}
+        self.render_mode = checked_render_mode(render_mode)
+        self.autoreset_mode = _autoreset_mode(autoreset_mode)
+        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
+        self._limit = step_limit(max_episode_steps)
+        load_ahead = whole("load_ahead", load_ahead)
         world, heads = with_head(world)
         native, custom = split(task, task_settings, reward, sensors)
         config = env_json(native, laws=laws, parameters=parameters, stride=stride, world=world)
@@ -106,22 +155,30 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         threads = None if threads is None else whole("threads", threads, low=1)
         if not isinstance(overlap, bool):
             raise ConfigError(f"overlap: found {overlap!r}, allowed are True and False")
-        rows = [shelf[k] for k in range(num_envs)]
         self._shelf = shelf
-        self._runner = Runner(rows, config, threads, custom=custom, overlap=overlap, heads=heads)
-        self._limit = max_episode_steps if max_episode_steps and max_episode_steps > 0 else None
+        self._config, self._custom, self._heads = config, custom, heads
+        self._playing = Runner(
+            [shelf[0]] * num_envs, config, threads, custom=custom, overlap=overlap, heads=heads
+        )
+        self._places = Places(self._playing, Stock(shelf, config, heads, threads), load_ahead)
         self._copy = copy
         self._streams: list[np.random.Generator | None] = [None] * num_envs
         #: The seed of every environment's episode, once it has one.
         self._seeds: list[int | None] = [None] * num_envs
-        self._steps = np.zeros(num_envs, np.int64)
         self._done = np.ones(num_envs, np.bool_)
+        #: Who writes down what is played.
+        self._recorders: list[Recorder] = []
         #: Whose latest reset did not come to its end.
         self._stopped = np.zeros(num_envs, np.bool_)
         self.single_observation_space = self._runner.space
         self.single_action_space = action_space()
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
+
+    @property
+    def _runner(self) -> Runner:
+        self._refuse_closed()
+        return self._playing
 
     def _observation(self) -> dict[str, Any]:
         now = self._runner.observation()
@@ -131,21 +188,45 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             key: value if isinstance(value, tuple) else value.copy() for key, value in now.items()
         }
 
-    def _start(self, which: NDArray[np.bool_], asked: Sequence[int | None] | None = None) -> None:
-        """Begins episodes: of the seeds in ``asked`` where there are some, else of drawn ones."""
-        seeds = [
-            int(stream.integers(2**63)) if start and stream is not None else None
-            for stream, start in zip(self._streams, which, strict=True)
-        ]
-        for k, seed in enumerate(asked or ()):
-            seeds[k] = seeds[k] if seed is None else seed
-        self._stopped[which] = True
-        self._runner.reset(seeds)
+    def _start(
+        self, which: NDArray[np.bool_], asked: Mapping[int, tuple[int, int]] | None = None
+    ) -> None:
+        """Begins episodes: those of ``asked`` (house and seed), else drawn ones."""
+        episodes: dict[int, tuple[int, int]] = {}
         for k in np.flatnonzero(which).tolist():
-            self._seeds[k] = seeds[k]
-        self._steps[which] = 0
+            drawn = self._draw(self._stream(k))
+            episodes[k] = (asked or {}).get(k, drawn)
+        self._stopped[which] = True
+        moved = self._places.move(episodes)
+        seeds: list[int | None] = [None] * self.num_envs
+        for k, (_, seed) in episodes.items():
+            seeds[k] = seed
+        self._runner.reset(seeds, moved)
+        for k, (_, seed) in episodes.items():
+            self._seeds[k] = seed
         self._done[which] = False
         self._stopped[which] = False
+        self._look_ahead(which)
+        for recorder in self._recorders:
+            recorder.began([*episodes])
+
+    def _stream(self, env: int) -> np.random.Generator:
+        stream = self._streams[env]
+        if stream is None:
+            raise UsageError(f"no episode of environment {env} has begun; reset it")
+        return stream
+
+    def _draw(self, stream: np.random.Generator) -> tuple[int, int]:
+        """The next episode's house and seed, as a single environment draws them."""
+        return int(stream.integers(len(self._shelf.names))), int(stream.integers(2**63))
+
+    def _look_ahead(self, which: NDArray[np.bool_]) -> None:
+        """Has the houses opened in which the environments of ``which`` go on after this episode."""
+        # Of copies: drawn again when the episodes begin.
+        following = {
+            k: self._draw(deepcopy(self._stream(k))) for k in np.flatnonzero(which).tolist()
+        }
+        self._places.look_ahead(following)
 
     def reset(
         self,
@@ -195,39 +276,30 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._runner.observe(which)
         return self._observation(), self._ids()
 
-    def _asked(self, episodes: object, which: NDArray[np.bool_]) -> list[int | None]:
-        """The seeds of the episodes that are asked for by their ids."""
+    def _asked(
+        self, episodes: object, which: NDArray[np.bool_]
+    ) -> dict[int, tuple[int, int]] | None:
+        """House and seed of the episodes that are asked for by their ids, by environment."""
         expected = f"expected one for each of {self.num_envs} environments, or None"
         if episodes is None:
-            return [None] * self.num_envs
+            return None
         if isinstance(episodes, str) or not isinstance(episodes, Sequence | np.ndarray):
-            raise ConfigError(f"episode_id is {episodes!r}; {expected}")
+            raise ConfigError(f"episode_id is {shown(episodes)}; {expected}")
         if len(episodes) != self.num_envs:
             raise ConfigError(f"episode_id: found {len(episodes)}; {expected}")
-        return [
-            None if one is None or not which[k] else self._seed_of(k, one)
+        return {
+            k: self._shelf.episode(one)
             for k, one in enumerate(episodes)
-        ]
-
-    def _seed_of(self, env: int, episode_id: object) -> int:
-        """The seed of an episode of an environment, by its id."""
-        house, seed = self._shelf.episode(episode_id)
-        if self._shelf.names[house] != self._scene(env):
-            raise ConfigError(
-                f"episode_id is {episode_id!r}; environment {env} plays in {self._scene(env)!r}"
-            )
-        return seed
-
-    def _scene(self, env: int) -> str:
-        return self._shelf.names[env % len(self._shelf.names)]
+            if one is not None and which[k]
+        }
 
     def _ids(self) -> dict[str, Any]:
         """``scene_id`` and ``episode_id`` of every environment that has an episode, for infos."""
         has = np.array([seed is not None for seed in self._seeds], np.bool_) & ~self._stopped
         scenes, episodes = (np.full(self.num_envs, None, object) for _ in range(2))
         for k in np.flatnonzero(has).tolist():
-            scenes[k] = self._scene(k)
-            episodes[k] = self._shelf.episode_id(k, self._seeds[k] or 0)
+            scenes[k] = self._places.name(k)
+            episodes[k] = self._places.episode_id(k, self._seeds[k] or 0)
         return {
             "scene_id": scenes,
             "_scene_id": has,
@@ -271,13 +343,15 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             raise UsageError(f"environments {which} have ended; reset them with reset_mask first")
         if begins.any():
             self._start(begins)
-        answer, further = self._runner.step(np.where(begins, -1, numbers.astype(np.int64)))
-        self._steps[~begins] += 1
+        for recorder in self._recorders:
+            recorder.check()
+        numbers = np.where(begins, -1, numbers.astype(np.int64))
+        answer, further = self._runner.step(numbers)
         rewards = np.asarray(answer["reward"], np.float64)
         terminated = np.asarray(answer["terminated"], np.bool_)
         truncated = np.zeros(self.num_envs, np.bool_)
         if self._limit is not None:
-            truncated = (self._steps >= self._limit) & ~terminated & ~begins
+            truncated = (self._runner.batch.steps() >= self._limit) & ~begins
         self._runner.observe(np.ones(self.num_envs, np.bool_))
         stepped = ~begins
         infos: dict[str, Any] = {}
@@ -292,6 +366,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         for k, row in enumerate(further):
             infos = self._add_info(infos, dict(row), k)
         self._done = terminated | truncated
+        for recorder in self._recorders:
+            recorder.stepped(numbers, infos["success"], self._done)
         if self._done.any() and self.autoreset_mode is AutoresetMode.SAME_STEP:
             own = [key for key in infos if key not in (*INFO_KEYS, "action_error", "audio_clipped")]
             infos |= self._restart(infos, [key for key in own if not key.startswith("_")])
@@ -332,8 +408,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             if seed is None or stream is None or self._stopped[k]:
                 raise UsageError(f"snapshot: no episode of environment {k} has begun; reset it")
             saved = Saved(
-                episode_id=self._shelf.episode_id(k, seed),
-                steps=int(self._steps[k]),
+                episode_id=self._places.episode_id(k, seed),
                 done=bool(self._done[k]),
                 stream=stream,
                 parts=self._runner.saved_parts(k),
@@ -345,7 +420,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
     def restore(self, snapshots: Sequence[bytes | None]) -> tuple[dict[str, Any], dict[str, Any]]:
         """Lets environments go to where snapshots were taken; the next steps give the same bits.
 
-        A snapshot may go to another environment of the same house, and to several.
+        A snapshot may go to another environment, and to several.
 
         Args:
             snapshots: One for each environment; ``None`` leaves it where it is.
@@ -362,23 +437,27 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         given: object = snapshots
         if not isinstance(given, list | tuple) or len(given) != self.num_envs:
             raise ConfigError(
-                f"snapshots is {given!r:.60}; expected a list of {self.num_envs}: bytes, or None, "
-                "for each environment"
+                f"snapshots is {shown(given, 60)}; expected a list of {self.num_envs}: bytes, or "
+                "None, for each environment"
             )
-        rows: dict[int, tuple[Saved, int]] = {}
+        rows: dict[int, tuple[Saved, int, int]] = {}
         for k, snapshot in enumerate(given):
             if snapshot is None:
                 continue
             saved = Saved.of_bytes(f"snapshots[{k}]", snapshot)
-            rows[k] = saved, self._seed_of(k, saved.episode_id)
+            try:
+                rows[k] = saved, *self._shelf.episode(saved.episode_id)
+            except ConfigError as error:
+                raise ConfigError(f"snapshots[{k}]: snapshot refused: {error}") from None
             self._runner.loaded(k, saved.parts)
         which = np.array([k in rows for k in range(self.num_envs)], np.bool_)
         self._stopped[which] = True
-        for k, (saved, seed) in rows.items():
+        self._places.move({k: (house, None) for k, (_, house, _) in rows.items()})
+        for k, (saved, _, seed) in rows.items():
             self._runner.restore(saved.world, saved.parts, seed, env=k)
-            self._seeds[k], self._streams[k] = seed, saved.stream
-            self._steps[k], self._done[k] = saved.steps, saved.done
+            self._seeds[k], self._streams[k], self._done[k] = seed, saved.stream, saved.done
         self._stopped[which] = False
+        self._look_ahead(which)
         self._runner.observe(which)
         return self._observation(), self._ids()
 
@@ -394,5 +473,17 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         """The state hash of every environment."""
         return [self._runner.batch.state_hash(k) for k in range(self.num_envs)]
 
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """What each agent sees, (240, 320, 3) uint8 each; ``None`` without a render mode."""
+        self._refuse_closed()
+        if self.render_mode is None:
+            return None
+        view = to_json({"camera": camera_settings("camera", RENDER_CAMERA)})
+        return tuple(self._runner.batch.render(k, view) for k in range(self.num_envs))
+
     def close_extras(self, **kwargs: Any) -> None:  # noqa: ANN401 - gymnasium's signature
-        """Nothing to let go of: the worlds go with the object."""
+        """Lets go of the worlds; after it everything but ``close`` is refused."""
+        # Not there where making these environments failed.
+        if places := getattr(self, "_places", None):
+            places.close()
+            del self._places, self._playing

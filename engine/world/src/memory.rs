@@ -1,0 +1,232 @@
+//! Whether the machine can hold the environments that are asked for, found out before their memory is taken.
+
+use crate::env::Env;
+use crate::error::WorldError;
+use crate::sensors::Dtype;
+use crate::world::World;
+use dwell_render::{Camera, Channels};
+use std::fs::read_to_string;
+use std::path::Path;
+
+/// What a world takes beside its bodies, bytes.
+const WORLD_BYTES: u64 = 64 << 10;
+/// What a world keeps of a free body, with its pieces and their contacts, bytes.
+const BODY_BYTES: u64 = 9 << 10;
+/// What a world keeps of a piece of the house that stands, bytes.
+const PIECE_BYTES: u64 = 768;
+/// What a sample of an agent's window of sound takes, with the echoes and filters on their way to it, bytes.
+const SAMPLE_BYTES: u64 = 256;
+
+/// What one environment takes beside what it shares with others over its house, bytes: rather more than it comes to need where
+/// most lies still.
+struct Need {
+    world: u64,
+    pictures: u64,
+    /// The caller's array, and a copy for who keeps it.
+    observations: u64,
+}
+
+impl Need {
+    fn of(env: &Env) -> Self {
+        let requests = env.requests();
+        let views = requests.views.iter();
+        let pictures = views.map(|view| picture_bytes(&view.eye.camera, view.channels));
+        let ears = requests.ears.iter();
+        let heard: u64 = ears.map(|(_, samples)| *samples as u64).sum();
+        let observations = env.specs().into_iter().map(|spec| {
+            let bytes = match spec.dtype {
+                Dtype::Uint8 => 1,
+                Dtype::Float32 | Dtype::Int32 | Dtype::Text => 4,
+            };
+            spec.len() as u64 * bytes
+        });
+        Self {
+            world: world_bytes(env.world()) + heard * SAMPLE_BYTES,
+            pictures: pictures.sum(),
+            observations: 2 * observations.sum::<u64>(),
+        }
+    }
+
+    fn bytes(&self) -> u64 {
+        self.world + self.pictures + self.observations
+    }
+}
+
+fn world_bytes(world: &World) -> u64 {
+    let model = world.engines().physics();
+    let (bodies, pieces) = (model.body_count() as u64, model.static_piece_count() as u64);
+    WORLD_BYTES + bodies * BODY_BYTES + pieces * PIECE_BYTES
+}
+
+fn picture_bytes(camera: &Camera, channels: Channels) -> u64 {
+    let Channels {
+        rgb,
+        depth,
+        instance,
+        semantic,
+        normals,
+        albedo,
+        flow,
+    } = channels;
+    let images = [
+        (rgb, 3),
+        (depth, 4),
+        (instance, 4),
+        (semantic, 4),
+        (normals, 12),
+        (albedo, 12),
+        (flow, 8),
+    ];
+    let pixel: u64 = images.iter().map(|(on, size)| u64::from(*on) * size).sum();
+    camera.pixels() as u64 * pixel
+}
+
+/// Refuses `count` environments like `env` where the memory that is free cannot hold them. Nothing is refused where nobody
+/// says how much is free.
+///
+/// # Errors
+/// [`WorldError::Config`] with what one takes, what is free, and how many there could be.
+pub fn check(env: &Env, count: usize) -> Result<(), WorldError> {
+    free_bytes().map_or(Ok(()), |free| check_against(&Need::of(env), count, free))
+}
+
+fn check_against(need: &Need, count: usize, free: u64) -> Result<(), WorldError> {
+    let fitting = free / need.bytes().max(1);
+    if count as u64 <= fitting {
+        return Ok(());
+    }
+    let mib = |bytes: u64| format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20));
+    let one = format!(
+        "an environment takes {}, of which pictures {} and observations {}, and {} are free",
+        mib(need.bytes()),
+        mib(need.pictures),
+        mib(need.observations),
+        mib(free)
+    );
+    Err(if fitting == 0 {
+        WorldError::Config {
+            field: "sensors",
+            found: "too large for this machine".to_owned(),
+            allowed: format!("what its memory holds: {one}; take smaller images"),
+        }
+    } else {
+        WorldError::Config {
+            field: "num_envs",
+            found: count.to_string(),
+            allowed: format!("at most {fitting} on this machine: {one}"),
+        }
+    })
+}
+
+/// What this process may still take: of the machine, of its group's limit and of its own; `None` where nobody says.
+fn free_bytes() -> Option<u64> {
+    let of_machine = kibibytes("/proc/meminfo", "MemAvailable:");
+    [of_machine, of_group(), of_process()]
+        .into_iter()
+        .flatten()
+        .min()
+}
+
+/// The number behind `name` in a file of the system that counts in KiB, bytes.
+fn kibibytes(file: &str, name: &str) -> Option<u64> {
+    let text = read_to_string(file).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    let count: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(count << 10)
+}
+
+/// Of the limit on addresses (`ulimit -v`).
+fn of_process() -> Option<u64> {
+    let limits = read_to_string("/proc/self/limits").ok()?;
+    let most = limits
+        .lines()
+        .find_map(|line| line.strip_prefix("Max address space"))?;
+    let most: u64 = most.split_whitespace().next()?.parse().ok()?;
+    Some(most.saturating_sub(kibibytes("/proc/self/status", "VmSize:")?))
+}
+
+/// Of the limits of the process's control groups, of either version.
+fn of_group() -> Option<u64> {
+    let groups = read_to_string("/proc/self/cgroup").ok()?;
+    let rooms = groups.lines().filter_map(|line| {
+        let (_, line) = line.split_once(':')?;
+        let (kinds, path) = line.split_once(':')?;
+        let (root, most, used) = match kinds {
+            "" => ("/sys/fs/cgroup", "memory.max", "memory.current"),
+            "memory" => (
+                "/sys/fs/cgroup/memory",
+                "memory.limit_in_bytes",
+                "memory.usage_in_bytes",
+            ),
+            _ => return None,
+        };
+        let groups = Path::new(path).ancestors();
+        let folders =
+            groups.map(|group| Path::new(root).join(group.strip_prefix("/").unwrap_or(group)));
+        folders
+            .filter_map(|folder| room_of_group(&folder, most, used))
+            .min()
+    });
+    rooms.min()
+}
+
+fn room_of_group(folder: &Path, most: &str, used: &str) -> Option<u64> {
+    let number =
+        |name: &str| -> Option<u64> { read_to_string(folder.join(name)).ok()?.trim().parse().ok() };
+    let most = number(most)?;
+    // Files that were read and are kept are given up for whoever needs the room.
+    let stat = read_to_string(folder.join("memory.stat")).unwrap_or_default();
+    let kept = stat
+        .lines()
+        .find_map(|line| line.strip_prefix("inactive_file "))
+        .and_then(|count| count.trim().parse().ok())
+        .unwrap_or(0);
+    Some(most.saturating_sub(number(used)?.saturating_sub(kept)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_held_is_refused_with_how_many_could_be() {
+        let need = Need {
+            world: 1 << 20,
+            pictures: 3 << 20,
+            observations: 6 << 20,
+        };
+        let refused = |count, free| check_against(&need, count, free).map_err(|e| e.to_string());
+        assert_eq!(refused(10, 100 << 20), Ok(()));
+        let one =
+            "an environment takes 10.0 MiB, of which pictures 3.0 MiB and observations 6.0 MiB";
+        assert_eq!(
+            refused(11, 105 << 20).unwrap_err(),
+            format!(
+                "num_envs is 11; allowed is at most 10 on this machine: {one}, and 105.0 MiB are free"
+            )
+        );
+        assert_eq!(
+            refused(1, 9 << 20).unwrap_err(),
+            format!(
+                "sensors is too large for this machine; allowed is what its memory holds: {one}, and 9.0 MiB are free; take \
+                 smaller images"
+            )
+        );
+    }
+
+    #[test]
+    fn a_group_has_room_for_its_limit_less_what_it_uses_and_cannot_give_up() {
+        let folder = tempfile::tempdir().unwrap();
+        let write =
+            |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let room = || room_of_group(folder.path(), "memory.max", "memory.current");
+        assert_eq!(room(), None);
+        write("memory.max", "max\n");
+        write("memory.current", "700\n");
+        assert_eq!(room(), None);
+        write("memory.max", "1000\n");
+        assert_eq!(room(), Some(300));
+        write("memory.stat", "anon 5\ninactive_file 200\nactive_file 9\n");
+        assert_eq!(room(), Some(500));
+    }
+}

@@ -1,0 +1,101 @@
+"""Makes in the background what will be wanted."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Hashable, Iterable
+from typing import Generic, TypeVar
+
+_Key = TypeVar("_Key", bound=Hashable)
+_Made = TypeVar("_Made")
+
+
+class Ahead(Generic[_Key, _Made]):
+    """Makes things in a thread before they are wanted, at most so many.
+
+    The thread lives as long as there is something to make. A forked child has none of it: what was
+    made is there, what was not begins anew.
+    """
+
+    def __init__(self, make: Callable[[_Key], _Made], most: int) -> None:
+        """Makes nothing yet.
+
+        Args:
+            make: Makes what belongs to a key; called in another thread.
+            most: How many things are kept that nobody has taken, the one in the making included.
+        """
+        self._make = make
+        self._most = most
+        self._made: dict[_Key, tuple[_Made | None, BaseException | None]] = {}
+        self._wanted: list[_Key] = []
+        self._begin()
+
+    def _begin(self) -> None:
+        self._process = os.getpid()
+        self._changed = threading.Condition()
+        self._thread: threading.Thread | None = None
+        self._making: _Key | None = None
+
+    def _refresh(self) -> None:
+        """Begins anew in a forked child: threads do not survive a fork, and locks stay as held."""
+        if self._process != os.getpid():
+            self._begin()
+
+    def want(self, keys: Iterable[_Key]) -> None:
+        """What will be wanted, the soonest first; what was wanted before is dropped."""
+        self._refresh()
+        with self._changed:
+            self._wanted = list(dict.fromkeys(keys))[: self._most]
+            self._made = {key: one for key, one in self._made.items() if key in self._wanted}
+            if self._thread is None and self._next() is not None:
+                self._thread = threading.Thread(target=self._work, name="dwell-ahead")
+                self._thread.start()
+
+    def _next(self) -> _Key | None:
+        return next((key for key in self._wanted if key not in self._made), None)
+
+    def _work(self) -> None:
+        while True:
+            with self._changed:
+                self._making = self._next()
+                # The interpreter waits for threads when it ends.
+                if self._making is None or not threading.main_thread().is_alive():
+                    self._making = self._thread = None
+                    self._changed.notify_all()
+                    return
+                key = self._making
+            try:
+                one: tuple[_Made | None, BaseException | None] = self._make(key), None
+            except BaseException as error:
+                one = None, error
+            with self._changed:
+                if key in self._wanted:
+                    self._made[key] = one
+                self._making = None
+                self._changed.notify_all()
+            del one
+
+    def take(self, key: _Key) -> _Made | None:
+        """What was made of a key, once it is done; ``None`` where nobody has begun.
+
+        Raises:
+            BaseException: What making it raised.
+        """
+        self._refresh()
+        with self._changed:
+            while self._making == key and key in self._wanted:
+                self._changed.wait()
+            if key in self._wanted:
+                self._wanted.remove(key)
+            made, error = self._made.pop(key, (None, None))
+        if error is not None:
+            raise error
+        return made
+
+    def close(self) -> None:
+        """Drops everything, and waits for what is in the making."""
+        self.want(())
+        thread = self._thread
+        if thread is not None and thread is not threading.current_thread():
+            thread.join()

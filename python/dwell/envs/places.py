@@ -1,0 +1,69 @@
+"""In which houses the environments of a batch are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from dwell.envs.ahead import Ahead
+from dwell.envs.config import KEPT
+from dwell.envs.runner import Runner
+from dwell.envs.stock import Spare, Stock
+
+
+class Places:
+    """Puts environments into the houses of their episodes, which wait there where they can."""
+
+    def __init__(self, runner: Runner, stock: Stock, load_ahead: int) -> None:
+        """All environments of ``runner`` are in the first house; ``load_ahead`` others may wait."""
+        self._runner = runner
+        self._stock = stock
+        self._names = stock.shelf.names
+        self._houses = [0] * runner.count
+        self._ahead = Ahead(stock.make_behind, load_ahead if len(self._names) > 1 else 0)
+        #: What the next episodes want that are in another house (environment, house, seed), those
+        #: first whose turn comes first where all episodes are equally long.
+        self._next: dict[int, tuple[int, int, int]] = {}
+
+    def name(self, env: int) -> str:
+        """The name of an environment's house."""
+        return self._names[self._houses[env]]
+
+    def episode_id(self, env: int, seed: int) -> str:
+        """What an episode of a seed in an environment is called."""
+        return self._stock.shelf.episode_id(self._houses[env], seed)
+
+    def move(self, episodes: Mapping[int, tuple[int, int | None]]) -> set[int]:
+        """Puts environments into the houses of their episodes (house and seed).
+
+        Returns:
+            Those that are in another house now. The engine has begun their episodes, of a seed.
+        """
+        away = {k: one for k, one in episodes.items() if self._names[one[0]] != self.name(k)}
+        ready = {}
+        for k, (house, seed) in away.items():
+            if seed is not None and (spare := self._ahead.take((k, house, seed))) is not None:
+                ready[k] = spare
+        for k, spare in ready.items():
+            self._put(k, away[k][0], spare)
+        missing = [k for k in away if k not in ready]
+        # A few at a time: each takes a world's memory while those that they replace are there.
+        for some in (missing[at : at + KEPT] for at in range(0, len(missing), KEPT)):
+            for k, spare in zip(some, self._stock.make([away[k] for k in some]), strict=True):
+                self._put(k, away[k][0], spare)
+        return set(away)
+
+    def _put(self, env: int, house: int, spare: Spare) -> None:
+        self._runner.move(env, spare)
+        self._houses[env] = house
+
+    def look_ahead(self, episodes: Mapping[int, tuple[int, int]]) -> None:
+        """Has environments wait in the houses of episodes (house and seed) that come next."""
+        for k, (house, seed) in episodes.items():
+            self._next.pop(k, None)
+            if self._names[house] != self.name(k):
+                self._next[k] = (k, house, seed)
+        self._ahead.want(self._next.values())
+
+    def close(self) -> None:
+        """Nobody waits any more."""
+        self._ahead.close()

@@ -1,0 +1,57 @@
+//! Environments that wait for their place in a batch.
+
+use crate::doorway::Doorway;
+use crate::errors::Fault;
+use crate::house::PyHouse;
+use dwell::{Engines, Env, EnvConfig};
+use dwell_scene::parallel::Threads;
+use pyo3::prelude::*;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// An environment that waits for its place in a batch: there its house is another from then on.
+#[pyclass(name = "Spare", module = "dwell._native", frozen)]
+pub(crate) struct PySpare {
+    env: Mutex<Option<Env>>,
+}
+
+impl PySpare {
+    /// The environment, once.
+    pub(crate) fn take(&self) -> Result<Env, Fault> {
+        let mut env = self.env.lock().unwrap_or_else(PoisonError::into_inner);
+        let refuse = || Fault::Usage("this environment has its place already".to_owned());
+        env.take().ok_or_else(refuse)
+    }
+}
+
+/// An environment over each house, with the episode of its seed begun where it has one.
+#[pyfunction]
+#[pyo3(signature = (houses, config_json, seeds, threads=None))]
+pub(crate) fn spares(
+    py: Python<'_>,
+    houses: Vec<Py<PyHouse>>,
+    config_json: &str,
+    seeds: Vec<Option<u64>>,
+    threads: Option<usize>,
+) -> PyResult<Vec<PySpare>> {
+    let shared: Vec<Arc<Engines>> = houses
+        .iter()
+        .map(|house| house.get().engines.clone())
+        .collect();
+    py.engine(|| -> Result<_, Fault> {
+        let config: EnvConfig = serde_json::from_str(config_json)?;
+        let threads = Threads::requested(threads)?;
+        let envs = threads.map(shared.len(), |k| {
+            let mut env = Env::new(shared[k].clone(), &config)?;
+            if let Some(seed) = seeds.get(k).copied().flatten() {
+                env.begin(seed)?;
+            }
+            Ok::<_, Fault>(env)
+        });
+        let wrap = |env: Result<Env, Fault>| {
+            Ok(PySpare {
+                env: Mutex::new(Some(env?)),
+            })
+        };
+        envs.into_iter().map(wrap).collect()
+    })
+}
