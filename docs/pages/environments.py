@@ -54,7 +54,8 @@ def page() -> str:
     return f"""# Environments
 
 `gymnasium.make(ID, houses=..., sensors=..., ...)` makes one, `gymnasium.make_vec` many that step
-together; [`DwellEnv`](api/envs.md) lists the arguments.
+together; [`DwellEnv`](api/envs.md) lists the arguments, and
+[Configure an environment](configuring-environments.md) shows them.
 
 Every step's `info` holds {info}, `scene_id` and `episode_id`. Where a task has no goal there are no
 {goal}; in vector environments they are NaN.
