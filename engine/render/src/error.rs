@@ -119,14 +119,15 @@ pub enum RenderError {
         /// The position in the list of jobs.
         view: usize,
     },
-    /// An adapter that another process opened.
+    /// An adapter, or an interface, that another process opened.
     #[error(
-        "{adapter} was opened before this process was forked, and drivers do not survive that; make houses and worlds that \
-         use it in the forked process, or start workers with \"spawn\""
+        "{what} was opened before this process was forked, and drivers do not survive that; {instead}"
     )]
     Forked {
-        /// The adapter.
-        adapter: String,
+        /// The adapter or the interface.
+        what: String,
+        /// What to do.
+        instead: &'static str,
     },
     /// A graphics driver that failed.
     #[error("{adapter} failed {doing}: {message}")]

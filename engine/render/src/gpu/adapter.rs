@@ -2,6 +2,7 @@
 
 use crate::error::RenderError;
 use std::pin::pin;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::task::{Context, Poll, Waker};
 
 /// What an adapter is made of.
@@ -181,39 +182,87 @@ fn gather<T>(mut ask: impl FnMut(wgpu::Backends) -> Vec<(Adapter, T)>) -> Vec<(A
     all
 }
 
-fn list() -> Vec<(Adapter, wgpu::Adapter)> {
-    gather(|backends| {
+/// The process that found adapters behind GL first; 0 as long as none has. Forked ones inherit it.
+static GL_USED_BY: AtomicU32 = AtomicU32::new(0);
+
+/// Whether a process may ask GL. Its drivers keep one display for a whole process, whose threads are not there in a forked one:
+/// whoever draws there waits for them for ever.
+fn may_ask_gl(used_by: &AtomicU32, process: u32) -> bool {
+    [0, process].contains(&used_by.load(Ordering::Relaxed))
+}
+
+/// All adapters, and whether GL was left out because a process that this one was forked from has used it.
+fn list() -> (Vec<(Adapter, wgpu::Adapter)>, bool) {
+    let process = std::process::id();
+    let mut is_gl_lost = false;
+    let all = gather(|backends| {
+        let is_gl = backends == wgpu::Backends::GL;
+        if is_gl && !may_ask_gl(&GL_USED_BY, process) {
+            is_gl_lost = true;
+            return Vec::new();
+        }
         let mut description = wgpu::InstanceDescriptor::new_without_display_handle();
         description.backends = backends;
         description.flags = wgpu::InstanceFlags::empty();
         let instance = wgpu::Instance::new(description);
-        let found = ready(instance.enumerate_adapters(backends)).into_iter();
+        let found = ready(instance.enumerate_adapters(backends));
+        if is_gl && !found.is_empty() {
+            GL_USED_BY.store(process, Ordering::Relaxed);
+        }
+        let found = found.into_iter();
         found
             .map(|adapter| (Adapter::of(&adapter), adapter))
             .collect()
-    })
+    });
+    (all, is_gl_lost)
 }
 
-/// The adapters of this machine, the likely quickest first and software last; none where there is no driver.
+/// The adapters of this machine, the likely quickest first and software last; none where there is no driver. Those behind GL are left
+/// out in a process that was forked from one that has found them.
 pub fn adapters() -> Vec<Adapter> {
-    list().into_iter().map(|(adapter, _)| adapter).collect()
+    let (all, _) = list();
+    all.into_iter().map(|(adapter, _)| adapter).collect()
+}
+
+/// Where GL was used before a fork.
+const NOT_GL: &str = "it cannot be opened again here: start workers with \"spawn\", or use `cpu`";
+
+/// What a process is told that was forked from one that has opened an adapter.
+pub(super) fn forked(adapter: &Adapter) -> RenderError {
+    let instead = if adapter.interface == "gl" {
+        NOT_GL
+    } else {
+        "make houses and worlds that use it in the forked process, or start workers with \"spawn\""
+    };
+    RenderError::Forked {
+        what: adapter.to_string(),
+        instead,
+    }
 }
 
 /// The first adapter that is meant.
 ///
 /// # Errors
-/// [`RenderError::NoAdapter`].
+/// [`RenderError::NoAdapter`]; [`RenderError::Forked`] where it may be behind GL, which cannot be asked here.
 pub(super) fn find(wanted: Wanted<'_>) -> Result<(Adapter, wgpu::Adapter), RenderError> {
-    let all = list();
+    let (all, is_gl_lost) = list();
     let names: Vec<String> = all.iter().map(|(adapter, _)| adapter.to_string()).collect();
     let found = all.into_iter().find(|(adapter, _)| wanted.is(adapter));
-    found.ok_or_else(|| RenderError::NoAdapter {
-        wanted: wanted.to_string(),
-        found: if names.is_empty() {
+    found.ok_or_else(|| {
+        let wanted = wanted.to_string();
+        if is_gl_lost {
+            let what = format!("GL, which may have an adapter {wanted},");
+            return RenderError::Forked {
+                what,
+                instead: NOT_GL,
+            };
+        }
+        let found = if names.is_empty() {
             "none (no Vulkan, Metal, DX12 or GL driver)".to_owned()
         } else {
             names.join(", ")
-        },
+        };
+        RenderError::NoAdapter { wanted, found }
     })
 }
 
@@ -277,6 +326,26 @@ mod tests {
             assert_eq!(chosen(&all, Wanted::Named(name)), Some(0));
         }
         assert_eq!(chosen(&all, Wanted::Named("gl/llvm")), None);
+    }
+
+    #[test]
+    fn gl_is_for_the_process_that_used_it_first() {
+        let used_by = AtomicU32::new(0);
+        assert!(may_ask_gl(&used_by, 70) && may_ask_gl(&used_by, 71));
+        used_by.store(70, Ordering::Relaxed);
+        assert!(may_ask_gl(&used_by, 70));
+        assert!(!may_ask_gl(&used_by, 71), "a forked process");
+    }
+
+    #[test]
+    fn what_was_forked_is_told_what_to_do_instead() {
+        let lost = |interface: &str| {
+            let adapter = adapter(AdapterKind::Software, interface, "llvmpipe", "");
+            forked(&adapter).to_string()
+        };
+        assert!(lost("vulkan").contains("in the forked process"));
+        assert!(!lost("gl").contains("in the forked process"));
+        assert!(lost("gl").contains("\"spawn\", or use `cpu`"));
     }
 
     #[test]

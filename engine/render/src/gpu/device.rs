@@ -1,6 +1,6 @@
 //! An adapter in use.
 
-use super::adapter::{Adapter, Wanted, find, ready};
+use super::adapter::{Adapter, Wanted, find, forked, ready};
 use super::kernels::{Kernels, Layouts};
 use super::path::PathSpeeds;
 use super::raster;
@@ -216,9 +216,7 @@ impl Gpu {
         if self.process == std::process::id() {
             return Ok(());
         }
-        Err(RenderError::Forked {
-            adapter: self.adapter.to_string(),
-        })
+        Err(forked(&self.adapter))
     }
 
     /// The adapter.
