@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import csv
 import io
+import itertools
 import json
 import math
 import os
@@ -14,6 +15,8 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from dwell import cells
+from dwell.arguments import finite
 from dwell.files import open_file, read_json
 
 Row = dict[str, Any]
@@ -21,7 +24,9 @@ Row = dict[str, Any]
 #: A table has at most so many bytes, as for the reader of bundles.
 _MOST_BYTES = 256 * 2**20
 
-#: What ``--init`` prints. Keys that do not apply are left out; ``null`` is "not known".
+#: What ``--init`` prints. Keys that do not apply are left out; ``null`` is "not known". Times in
+#: milliseconds have ``seconds_per_unit`` 0.001, lengths in millimetres ``metres_per_unit`` 0.001,
+#: angles in degrees ``radians_per_unit`` 0.017453292519943295.
 TEMPLATE: Row = {
     "kind": "pose_trajectory",
     "title": "what was measured, in a line",
@@ -42,7 +47,9 @@ TEMPLATE: Row = {
         "episode": "toss",
         "split_group": None,
         "t_s": "t_s",
+        "seconds_per_unit": 1.0,
         "metres_per_unit": 1.0,
+        "radians_per_unit": 1.0,
         "position": ["px", "py", "pz"],
         "quaternion_xyzw": ["qx", "qy", "qz", "qw"],
         "velocity": ["vx", "vy", "vz"],
@@ -75,6 +82,7 @@ FLIGHT: Row = {
         "episode": "episode",
         "split_group": None,
         "t_s": "t_s",
+        "seconds_per_unit": 1.0,
         "metres_per_unit": 1.0,
         "channels": {"y": "height_m"},
     },
@@ -102,7 +110,9 @@ DRIVE: Row = {
         "file": "data.parquet",
         "episode": "episode",
         "t_s": "t_s",
+        "seconds_per_unit": 1.0,
         "metres_per_unit": 1.0,
+        "radians_per_unit": 1.0,
         "position": ["x", "y"],
         "heading_rad": "theta",
         "ticks_left": "ticks_left",
@@ -185,12 +195,6 @@ def need(mapping: Mapping[str, Any], key: str, at: str) -> Any:  # noqa: ANN401 
     return mapping[key]
 
 
-def metres_per_unit(part: Mapping[str, Any]) -> float:
-    """How long the unit of a table's places is, m; not said is 1."""
-    said = part.get("metres_per_unit")
-    return 1.0 if said is None else float(said)
-
-
 class Table:
     """A table's rows, with their places."""
 
@@ -200,7 +204,10 @@ class Table:
         if name not in tables:
             raise ValueError(f"{at}: file {name!r} was not given; given are {sorted(tables)}")
         self.path = tables[name]
-        self.columns, self._rows = open_table(self.path)
+        self.delimiter = ","
+        if self.path.suffix == ".csv":
+            self.delimiter = cells.delimiter_of(head_of(self.path))
+        self.columns, self._rows = open_table(self.path, self.delimiter)
 
     def __iter__(self) -> Iterator[tuple[str, Row]]:
         """Places and rows."""
@@ -209,12 +216,18 @@ class Table:
 
     def has(self, names: list[str]) -> None:
         """Refuses columns that are not there."""
-        for name in names:
-            if name not in self.columns:
-                raise ValueError(f"{self.path}: no column {name!r}; it has {self.columns}")
+        cells.has(self.path, self.columns, names)
+
+    def number(self, at: str, row: Row, column: str) -> float:
+        """A finite number in a column."""
+        return cells.number(at, row, column, self.delimiter)
+
+    def numbers(self, at: str, row: Row, columns: list[str]) -> list[float]:
+        """Several columns."""
+        return [self.number(at, row, column) for column in columns]
 
 
-def open_table(path: Path) -> tuple[list[str], Iterator[tuple[int, Row]]]:
+def open_table(path: Path, delimiter: str) -> tuple[list[str], Iterator[tuple[int, Row]]]:
     """Columns and rows, counted from 1, of a CSV or Parquet file."""
     if path.suffix == ".parquet":
         try:
@@ -228,39 +241,55 @@ def open_table(path: Path) -> tuple[list[str], Iterator[tuple[int, Row]]]:
         return list(file.schema_arrow.names), enumerate(batches, start=1)
     if path.suffix != ".csv":
         raise ValueError(f"{path}: {path.suffix or 'no suffix'}; .csv and .parquet are read")
-    rows = csv_rows(path)
-    return list(next(rows, {})), enumerate(rows, start=1)
-
-
-def csv_rows(path: Path) -> Iterator[Row]:
-    """The names of the columns as they are, and the rows of a CSV file."""
-    opened = open_file(path, _MOST_BYTES)
-    with io.TextIOWrapper(opened, encoding="utf-8-sig", newline="") as file:
-        reader = csv.DictReader(file)
-        try:
-            yield {name: name for name in reader.fieldnames or []}
-            yield from reader
-        except csv.Error as error:
-            raise ValueError(f"{path} line {reader.line_num}: {error}") from None
-        except UnicodeDecodeError:
-            raise ValueError(f"{path} line {reader.line_num + 1}: no text in UTF-8") from None
-
-
-def number(at: str, row: Row, column: str) -> float:
-    """A finite number in a column."""
-    value = row.get(column)
     try:
-        found = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        found = math.nan
-    if not math.isfinite(found):
-        raise ValueError(f"{at}: column {column!r} is {value!r}; a finite number is needed")
+        head = next(csv.reader([head_of(path)], delimiter=delimiter), [])
+    except csv.Error as error:
+        raise ValueError(f"{path} line 1: {error}") from None
+    columns = [name.strip() for name in head]
+    return columns, csv_rows(path, columns, delimiter)
+
+
+def opened(path: Path) -> io.TextIOWrapper:
+    """A CSV file, to be read as text."""
+    return io.TextIOWrapper(open_file(path, _MOST_BYTES), encoding="utf-8-sig", newline="")
+
+
+def head_of(path: Path) -> str:
+    """The first line of a CSV file."""
+    try:
+        with opened(path) as file:
+            return file.readline()
+    except UnicodeDecodeError as error:
+        raise cells.not_text(path, error) from None
+
+
+def csv_rows(path: Path, columns: list[str], delimiter: str) -> Iterator[tuple[int, Row]]:
+    """The rows of a CSV file below its head, counted from 1."""
+    try:
+        with opened(path) as file:
+            reader = csv.reader(file, delimiter=delimiter)
+            rows = (row for row in reader if row)
+            for number, row in enumerate(itertools.islice(rows, 1, None), start=1):
+                if len(row) != len(columns):
+                    raise ValueError(
+                        f"{path} row {number}: {len(row)} cells, and the head has {len(columns)}: "
+                        f"a cell {'is missing' if len(row) < len(columns) else 'too many'} "
+                        f"({delimiter.join(row)[:80]!r})"
+                    )
+                yield number, dict(zip(columns, row, strict=True))
+    except csv.Error as error:
+        raise ValueError(f"{path} line {reader.line_num}: {error}") from None
+    except UnicodeDecodeError as error:
+        raise cells.not_text(path, error) from None
+
+
+def scale(part: Row, key: str, at: str) -> float:
+    """How many SI units one unit of a column has; 1 where the map does not say."""
+    value = part.get(key)
+    found = 1.0 if value is None else finite(f"{at}: {key}", value)
+    if found == 0:
+        raise ValueError(f"{at}: {key} is {value!r}; a finite number other than 0 is needed")
     return found
-
-
-def numbers(at: str, row: Row, columns: list[str]) -> list[float]:
-    """Several columns."""
-    return [number(at, row, column) for column in columns]
 
 
 def turned(vector: list[float], up: str) -> list[float]:
@@ -352,7 +381,9 @@ def pose_bundle(
     episode, clock = need(part, "episode", here), need(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *place, *quaternion, *rates[0], *rates[1]])
-    metres = metres_per_unit(part)
+    times = cells.Clock(clock, scale(part, "seconds_per_unit", here))
+    metres = scale(part, "metres_per_unit", here)
+    radians = scale(part, "radians_per_unit", here)
     in_body = form.get("angular_velocity") == "body"
     groups: dict[str, str] = {}
     head = "episode,t_s,entity,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz"
@@ -361,21 +392,24 @@ def pose_bundle(
         for where, row in table:
             name = text(row[episode])
             groups.setdefault(name, text(row[group]))
-            position = [metres * value for value in numbers(where, row, place)]
-            values = [*turned(position, up), *turned_rotation(numbers(where, row, quaternion), up)]
+            position = [metres * value for value in table.numbers(where, row, place)]
+            rotation = table.numbers(where, row, quaternion)
+            values = [*turned(position, up), *turned_rotation(rotation, up)]
             if rates[0] and rates[1]:
-                speed = [metres * value for value in numbers(where, row, rates[0])]
-                spin = numbers(where, row, rates[1])
+                speed = [metres * value for value in table.numbers(where, row, rates[0])]
+                spin = [radians * value for value in table.numbers(where, row, rates[1])]
                 values += [*turned(speed, up), *(spin if in_body else turned(spin, up))]
             told = [short(value) for value in values]
             told += [""] * (13 - len(told))
-            write([name, f"{number(where, row, clock):.9f}", str(body.get("name")), *told])
+            stamp = times.stamp(where, name, table.number(where, row, clock))
+            write([name, stamp, str(body.get("name")), *told])
             rows += 1
             if rows % 4096 == 0:
                 progress(0.1, f"{rows} rows of {table.path.name}")
     if mapping.get("starts"):
         progress(0.7, "starts")
-        write_starts(mapping["starts"], f"{at}: starts", tables, folder, (up, in_body), metres)
+        units = (metres, radians)
+        write_starts(mapping["starts"], f"{at}: starts", tables, folder, (up, in_body), units)
     scene = {"bodies": [body], "board": need(mapping, "board", at)}
     write_common(mapping, folder, scene, {"poses": form}, groups)
     return {"rows": rows, "episodes": len(groups), "left_out": 0}
@@ -387,10 +421,10 @@ def write_starts(
     tables: Mapping[str, Path],
     folder: Path,
     frames: tuple[str, bool],
-    metres: float,
+    units: tuple[float, float],
 ) -> None:
-    """Where episodes are rolled out from."""
-    up, in_body = frames
+    """Where episodes are rolled out from; units are those of the table."""
+    (up, in_body), (metres, radians) = frames, units
     table = Table(part, tables, at)
     linear = columns_of(part, "velocity", 3, at)
     angular = columns_of(part, "angular_velocity", 3, at)
@@ -398,10 +432,10 @@ def write_starts(
     table.has([episode, sample, *linear, *angular])
     with table_file(folder, "starts.csv", "episode,sample,vx,vy,vz,wx,wy,wz") as write:
         for where, row in table:
-            speed = [metres * value for value in numbers(where, row, linear)]
-            spin = numbers(where, row, angular)
+            speed = [metres * value for value in table.numbers(where, row, linear)]
+            spin = [radians * value for value in table.numbers(where, row, angular)]
             values = [*turned(speed, up), *(spin if in_body else turned(spin, up))]
-            count = str(int(number(where, row, sample)))
+            count = str(int(table.number(where, row, sample)))
             write([text(row[episode]), count, *(short(value) for value in values)])
 
 
@@ -424,15 +458,21 @@ def flight_bundle(
         if not row[names[2]] or not row[names[3]] or row[names[2]] in ("nan", "NaN"):
             continue
         body = text(row[names[1]])
-        mass, diameter = number(where, row, names[2]), number(where, row, names[3])
+        mass, diameter = (listed.number(where, row, name) for name in names[2:])
         bodies[body] = {"name": body, "mass_kg": mass, "radius_m": 0.5 * diameter}
         body_of[text(row[names[0]])] = body
+    if not bodies:
+        raise ValueError(
+            f"{listed.path}: no row has both {names[2]!r} (kg) and {names[3]!r} (m); flights of "
+            "bodies without them are left out: fill them in"
+        )
     table = Table(part, tables, here)
     channels = need(part, "channels", here)
     episode, clock = need(part, "episode", here), need(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *channels.values()])
-    metres = metres_per_unit(part)
+    times = cells.Clock(clock, scale(part, "seconds_per_unit", here))
+    metres = scale(part, "metres_per_unit", here)
     groups: dict[str, str] = {}
     left_out: set[str] = set()
     rows = 0
@@ -443,11 +483,16 @@ def flight_bundle(
                 left_out.add(name)
                 continue
             groups.setdefault(name, text(row[group]))
-            stamp = f"{number(where, row, clock):.9f}"
+            stamp = times.stamp(where, name, table.number(where, row, clock))
             for channel, column in channels.items():
-                value = metres * number(where, row, column)
+                value = metres * table.number(where, row, column)
                 write([name, stamp, body_of[name], channel, short(value)])
             rows += 1
+    if left_out and not rows:
+        raise ValueError(
+            f"{table.path}: episodes are called {sorted(left_out)[:3]} in column {episode!r}, and "
+            f"{sorted(body_of)[:3]} in column {names[0]!r} of {listed.path}; write the same names"
+        )
     progress(0.7, f"{rows} rows of {table.path.name}")
     told = [
         {"name": channel, "unit": "m", "clock": "tracker", "noise_sd": None} for channel in channels
@@ -483,7 +528,9 @@ def drive_bundle(
     wheels = [need(part, key, here) for key in ("ticks_left", "ticks_right")]
     episode = need(part, "episode", here)
     table.has([episode, clock, *place, heading, *wheels])
-    metres = metres_per_unit(part)
+    times = cells.Clock(clock, scale(part, "seconds_per_unit", here))
+    metres = scale(part, "metres_per_unit", here)
+    radians = scale(part, "radians_per_unit", here)
     groups: dict[str, str] = {}
     rows = 0
     head = "episode,t_s,x,y,heading,left_rad,right_rad"
@@ -491,12 +538,15 @@ def drive_bundle(
         for where, row in table:
             name = text(row[episode])
             if name not in rows_of:
-                raise ValueError(f"{where}: episode {name!r} is not in {listed.path}")
+                raise ValueError(
+                    f"{where}: episode {name!r} is not in {listed.path}, whose column {names[0]!r} "
+                    f"has {sorted(rows_of)[:3]}"
+                )
             groups.setdefault(name, text(rows_of[name][names[1]]))
-            seen = [metres * value for value in numbers(where, row, place)]
-            seen.append(number(where, row, heading))
-            turned = [rad_per_tick * value for value in numbers(where, row, wheels)]
-            stamp = f"{number(where, row, clock):.9f}"
+            seen = [metres * value for value in table.numbers(where, row, place)]
+            seen.append(radians * table.number(where, row, heading))
+            turned = [rad_per_tick * value for value in table.numbers(where, row, wheels)]
+            stamp = times.stamp(where, name, table.number(where, row, clock))
             write([name, stamp, *(short(value) for value in [*seen, *turned])])
             rows += 1
             if rows % 4096 == 0:

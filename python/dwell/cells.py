@@ -1,0 +1,114 @@
+"""Cells of tables of measurements, and what to change where they hold something else."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+#: What parts the cells of a row, by the head of the table.
+DELIMITERS = (",", ";", "\t")
+
+
+def delimiter_of(head: str) -> str:
+    """What parts the cells: commas, or semicolons or tabs where the head has no comma."""
+    return next((mark for mark in DELIMITERS if mark in head), ",")
+
+
+def not_text(path: Path, error: UnicodeDecodeError) -> ValueError:
+    """The fault of a file that is no UTF-8."""
+    byte = error.object[error.start]
+    return ValueError(
+        f"{path}: byte {byte:#04x} at {error.start} is no UTF-8; save the file as UTF-8 "
+        "(spreadsheets call it CSV UTF-8)"
+    )
+
+
+def has(path: Path, columns: Sequence[str], names: Sequence[str]) -> None:
+    """Refuses a head that lacks columns, or has one of them twice."""
+    for name in names:
+        if columns.count(name) > 1:
+            raise ValueError(f"{path}: column {name!r} stands {columns.count(name)} times; once")
+        if name not in columns:
+            near = likely(name, columns)
+            meant = f"; write {near!r} in the map if that is meant" if near else ""
+            raise ValueError(f"{path}: no column {name!r}; it has {list(columns)}{meant}")
+
+
+def likely(name: str, columns: Sequence[str]) -> str | None:
+    """The column that may be meant: of that name but for unit and case, or of a similar one."""
+
+    def bare(text: str) -> str:
+        text = re.sub(r"[\[(].*", "", text).strip().lower()
+        return re.sub(r"_(s|ms|us|ns|m|mm|cm|rad|deg|kg|g)$", "", text)
+
+    same = [column for column in columns if bare(column) == bare(name)]
+    return next(iter(same or difflib.get_close_matches(name, columns, 1)), None)
+
+
+def number(at: str, row: Mapping[str, object], column: str, delimiter: str) -> float:
+    """A finite number in a column; it may have a decimal comma where commas part no cells."""
+    value = row.get(column)
+    told = value.strip() if isinstance(value, str) else value
+    if isinstance(told, str) and delimiter != "," and told.count(",") == 1 and "." not in told:
+        told = told.replace(",", ".")
+    try:
+        found = float(told)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        found = math.nan
+    if math.isfinite(found):
+        return found
+    raise ValueError(
+        f"{at}: column {column!r} {'is empty' if told in (None, '') else f'is {value!r}'}; "
+        f"a finite number is needed{way_out(told)}"
+    )
+
+
+def way_out(told: object) -> str:
+    """What to change about a cell that is no finite number."""
+    if told in (None, "") or (isinstance(told, float) and math.isnan(told)):
+        return MISSING
+    text = str(told)
+    if text.lower() in ("nan", "na", "n/a", "null", "none", "-", "inf", "-inf"):
+        return MISSING
+    if re.fullmatch(r"[-+]?[\d.]*,\d+", text):
+        return (
+            f": a decimal comma? Write {text.replace('.', '').replace(',', '.')}, "
+            "or part the cells by semicolons"
+        )
+    if re.fullmatch(r"[-+]?[\d.]+(e[-+]?\d+)?\s*[^\d\s]+", text, re.IGNORECASE):
+        return ": the number alone, without its unit"
+    return ""
+
+
+#: What to do about a number that is not there.
+MISSING = (
+    ": fill it in, or leave the row out; where times must be even, end the episode before it and "
+    "give the rows after it another episode's name"
+)
+
+
+class Clock:
+    """Times of samples, s: they rise from row to row of an episode."""
+
+    def __init__(self, column: str, seconds_per_unit: float) -> None:
+        """A column, and the seconds in a unit of its numbers."""
+        self.column = column
+        self.seconds_per_unit = seconds_per_unit
+        self._last: dict[str, tuple[float, str]] = {}
+
+    def stamp(self, at: str, episode: str, told: float) -> str:
+        """The time of a row, as bundles write it."""
+        before, there = self._last.get(episode, (-math.inf, ""))
+        if told <= before:
+            again = "again" if told == before else f"after {before:g}"
+            row = there.rpartition(" ")[2]
+            raise ValueError(
+                f"{at}: column {self.column!r} is {told:g} {again} (row {row}) in episode "
+                f"{episode!r}; times rise within an episode: sort its rows by time, leave out what "
+                "stands twice, and give every recording an episode's name of its own"
+            )
+        self._last[episode] = (told, at)
+        return f"{told * self.seconds_per_unit:.9f}"
