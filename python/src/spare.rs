@@ -44,6 +44,7 @@ pub(crate) fn spares(
             let mut env = Env::new(shared[k].clone(), &config)?;
             if let Some(seed) = seeds.get(k).copied().flatten() {
                 env.begin(seed)?;
+                env.warm_up(Threads::ONE)?;
             }
             Ok::<_, Fault>(env)
         });

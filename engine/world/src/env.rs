@@ -5,10 +5,13 @@ use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::metrics::Progress;
+use crate::pictures::PictureRequest;
 use crate::requests::{Requests, Results};
 use crate::sensors::{self, Out, Seen, Sensor, SensorSpec, Site};
 use crate::tasks::{self, Task, TaskKind};
 use crate::world::World;
+use dwell_render::{Camera, Preset};
+use dwell_scene::parallel::Threads;
 use dwell_scene::random::Key;
 use dwell_scene::{AgentId, Id, Pose};
 use serde::{Deserialize, Serialize};
@@ -101,33 +104,19 @@ pub struct StepInfo {
 pub struct Env {
     pub(crate) world: World,
     task: Box<dyn Task>,
-    kind: &'static TaskKind,
+    pub(crate) kind: &'static TaskKind,
     stride: Stride,
     pub(crate) sensors: Vec<Box<dyn Sensor>>,
     requests: Requests,
     pub(crate) results: Results,
     pub(crate) episode: Option<Episode>,
-    seed: u64,
+    pub(crate) seed: u64,
     episode_key: Key,
+    /// Whether the world is as it was made.
+    is_new: bool,
     /// Steps of the episode.
-    steps: u64,
+    pub(crate) steps: u64,
     pub(crate) done: bool,
-}
-
-/// What [`Env::snapshot`] begins with: its kind and version.
-const MAGIC: &[u8] = b"dwenv3";
-
-/// An episode at one moment. Its goal comes from the seed again.
-#[derive(Serialize, Deserialize)]
-struct Moment {
-    task: String,
-    seed: u64,
-    steps: u64,
-    done: bool,
-    instruction: String,
-    start: Pose,
-    progress: Progress,
-    world: Vec<u8>,
 }
 
 impl Env {
@@ -192,6 +181,7 @@ impl Env {
             episode: None,
             seed: 0,
             episode_key: Key::root(0),
+            is_new: true,
             steps: 0,
             done: false,
         })
@@ -219,6 +209,7 @@ impl Env {
 
     /// The world, to look at closely or to change between episodes.
     pub fn world_mut(&mut self) -> &mut World {
+        self.is_new = false;
         &mut self.world
     }
 
@@ -240,7 +231,12 @@ impl Env {
         let key = Key::root(seed).child("episode");
         // What fails from here on leaves no episode behind that could go on.
         self.give_up();
-        self.world.reset(key)?;
+        // A copy of the start beside the first one would only take its time and memory.
+        if std::mem::take(&mut self.is_new) {
+            self.world.begin(key);
+        } else {
+            self.world.reset(key)?;
+        }
         let episode = self.task.reset(&mut self.world, key.child("task"))?;
         (self.seed, self.episode_key) = (seed, key);
         Ok(self.episode.insert(episode))
@@ -255,67 +251,32 @@ impl Env {
         self.listen()
     }
 
+    /// Makes what the first pictures in a house wait for, such as textures and the light of the house, by small pictures of
+    /// all views.
+    ///
+    /// # Errors
+    /// [`WorldError::Render`] for a graphics adapter that fails.
+    pub fn warm_up(&self, threads: Threads) -> Result<(), WorldError> {
+        for view in &self.requests.views {
+            let own = view.eye.request(self.world.state());
+            let small = PictureRequest {
+                camera: Camera::from_fov(8, 8, 90.0)?,
+                preset: match own.preset {
+                    Preset::Flat => Preset::Flat,
+                    Preset::Lit | Preset::Full => Preset::Lit,
+                },
+                ..own
+            };
+            self.world.picture(&small, view.channels, threads)?;
+        }
+        Ok(())
+    }
+
     /// Ends the episode: what happens to the world from here on belongs to none.
     pub(crate) fn give_up(&mut self) {
         self.episode = None;
         self.steps = 0;
         self.done = false;
-    }
-
-    /// World and episode as bytes.
-    ///
-    /// # Errors
-    /// [`WorldError::Usage`] before the first reset.
-    ///
-    /// # Panics
-    /// Never: plain data can always be written to memory.
-    pub fn snapshot(&self) -> Result<Vec<u8>, WorldError> {
-        let Some(episode) = &self.episode else {
-            let message = "snapshot: no episode has begun; call reset first";
-            return Err(WorldError::Usage(message.to_owned()));
-        };
-        let moment = Moment {
-            task: self.kind.name.to_owned(),
-            seed: self.seed,
-            steps: self.steps,
-            done: self.done,
-            instruction: episode.instruction.clone(),
-            start: episode.start,
-            progress: episode.progress,
-            world: self.world.snapshot(),
-        };
-        let body =
-            postcard::to_stdvec(&moment).expect("plain data can always be written to memory");
-        Ok([MAGIC, &body].concat())
-    }
-
-    /// Goes to where [`Self::snapshot`] was taken in an environment of the same make; the next steps give the same bits as
-    /// they did then. Only the scripted expert forgets a manoeuvre that it was about.
-    ///
-    /// # Errors
-    /// [`WorldError::Snapshot`] with the reason; no episode runs then.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
-        let refuse = |why: String| WorldError::Snapshot(why);
-        let body = bytes
-            .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwenv3\"".to_owned()))?;
-        let moment: Moment =
-            postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
-        if moment.task != self.kind.name {
-            return Err(refuse(format!("it is of the task {}", moment.task)));
-        }
-        self.reset(moment.seed)?;
-        let tokens = self.tokens_of(&moment.instruction);
-        let restored = self.world.restore(&moment.world).and(tokens);
-        let (Some(episode), Ok(tokens)) = (self.episode.as_mut(), &restored) else {
-            self.episode = None;
-            return restored.map(drop);
-        };
-        episode.tokens.clone_from(tokens);
-        episode.instruction = moment.instruction;
-        (episode.start, episode.progress) = (moment.start, moment.progress);
-        (self.steps, self.done) = (moment.steps, moment.done);
-        Ok(())
     }
 
     /// Whether a step can be made.
@@ -453,7 +414,6 @@ impl Env {
 mod tests {
     use super::*;
     use crate::Batch;
-    use dwell_scene::parallel::Threads;
 
     fn env() -> Env {
         let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
@@ -494,6 +454,29 @@ mod tests {
         assert!(falling.world.physics.awake_count() > 100);
     }
 
+    /// The first episode of a world has not gone through a reset of what had happened in it.
+    #[test]
+    fn the_first_episode_is_that_of_any_later_reset() {
+        let play = |env: &mut Env| {
+            env.begin(5).unwrap();
+            let walk = [DiscreteAction::MoveForward, DiscreteAction::TurnLeft];
+            walk.map(|action| {
+                env.step(action).unwrap();
+                env.world.hash()
+            })
+        };
+        let mut env = env();
+        let first = play(&mut env);
+        assert_eq!(env.steps(), 2);
+        assert_eq!(play(&mut env), first);
+        let mut changed = self::env();
+        changed
+            .world_mut()
+            .place_agent(AgentId(0), glam::Vec3::ONE, 1.0)
+            .unwrap();
+        assert_eq!(play(&mut changed), first);
+    }
+
     /// A task that starts nothing.
     #[derive(Debug)]
     struct Refusing;
@@ -528,37 +511,24 @@ mod tests {
     }
 
     #[test]
-    fn a_restored_episode_goes_on_and_is_judged_as_before() {
-        use DiscreteAction::{MoveForward, Stop, TurnLeft};
-
-        let mut env = env();
-        assert!(matches!(env.snapshot(), Err(WorldError::Usage(_))));
-        env.reset(3).unwrap();
-        let go = |env: &mut Env, actions: &[DiscreteAction]| -> Vec<(u64, StepInfo)> {
-            let step = |action: &DiscreteAction| {
-                let info = env.step(*action).unwrap();
-                env.listen().unwrap();
-                (env.world().hash(), info)
-            };
-            actions.iter().map(step).collect()
+    fn an_environment_of_a_batch_is_replaced_with_its_episode() {
+        let mut batch = Batch::new(vec![env(), env()], Threads::ONE).unwrap();
+        batch.reset(&[Some(1), Some(2)]).unwrap();
+        let mut other = env();
+        other.begin(7).unwrap();
+        let hash = other.world.hash();
+        let before = batch.put(1, other).unwrap();
+        assert_eq!(before.seed, 2);
+        assert_eq!(batch.envs()[1].world.hash(), hash);
+        let forward = Some(DiscreteAction::MoveForward);
+        batch.step(&[forward, forward]).unwrap();
+        let blind = EnvConfig {
+            sensors: Some(Vec::new()),
+            ..EnvConfig::default()
         };
-        go(&mut env, &[MoveForward, TurnLeft, MoveForward]);
-        let text = env.episode().unwrap().instruction.clone();
-        let saved = env.snapshot().unwrap();
-        let rest = [MoveForward, MoveForward, TurnLeft, Stop];
-        let first = go(&mut env, &rest);
-        assert!(env.ready().is_err());
-        env.restore(&saved).unwrap();
-        assert_eq!(go(&mut env, &rest), first);
-        let mut other = self::env();
-        other.reset(8).unwrap();
-        other.restore(&saved).unwrap();
-        assert_eq!(other.steps(), 3);
-        assert_eq!(other.episode().unwrap().instruction, text);
-        assert_eq!(go(&mut other, &rest), first);
-        for cut in [0, 5, 30, saved.len() / 2, saved.len() - 1] {
-            assert!(other.restore(&saved[..cut]).is_err(), "{cut}");
-        }
+        let blind = Env::new(batch.envs()[0].world.engines().clone(), &blind).unwrap();
+        assert!(matches!(batch.put(0, blind), Err(WorldError::Usage(_))));
+        assert!(matches!(batch.put(2, before), Err(WorldError::Usage(_))));
     }
 
     #[test]

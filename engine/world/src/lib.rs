@@ -21,6 +21,7 @@ mod info;
 pub mod laws;
 pub mod memory;
 pub mod metrics;
+mod moment;
 mod now;
 mod past;
 mod pictures;

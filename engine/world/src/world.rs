@@ -88,6 +88,11 @@ impl World {
         Ok(())
     }
 
+    /// As [`Self::reset`], in a world in which nothing has happened since it was made.
+    pub(crate) fn begin(&mut self, key: Key) {
+        self.key = key;
+    }
+
     /// Makes one control step. `controls`: one for each agent; agents without one stand still.
     ///
     /// # Errors
