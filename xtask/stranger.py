@@ -66,6 +66,8 @@ except dwell.UsageError:
 else:
     raise SystemExit("a world that a bug stopped goes on")
 world = dwell.World("builtin:studio")
+# Ignored where this was started in the background of a script.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 threading.Thread(target=lambda: (time.sleep(0.2), os.kill(os.getpid(), signal.SIGINT))).start()
 try:
     while True:

@@ -45,29 +45,34 @@ impl Doorway for Python<'_> {
         let outcome = self.detach(|| {
             // What a panic leaves half done is never looked at again: the object that raised is poisoned by its mutex.
             let outcome = catch_unwind(AssertUnwindSafe(|| {
-                if hears_signals {
+                let outcome = if hears_signals {
                     interrupt::stoppable(ask, work)
                 } else {
                     Ok(work())
+                };
+                match outcome {
+                    Ok(done) => done.map_err(E::into),
+                    Err(_) => Err(Fault::Interrupted),
                 }
             }));
+            if matches!(outcome, Ok(Err(Fault::Interrupted))) {
+                tracing::debug!("a call was stopped before its work was done");
+            }
             // Before the GIL is asked for: who forks holds it, and waits for calls to end.
             drop(call);
             outcome
         });
-        logs::deliver(self);
+        // Before logs are delivered: code of Python runs there, a handler of signals too, and what that calls must not find it.
         let raised = RAISED.take();
+        let raised = raised.or(logs::deliver(self));
         match (raised, outcome) {
             // A panic goes first: the object is lost.
             (_, Err(panic)) => Err(bugs::exception(self, panic.as_ref())),
             // What was done is lost, too, as with any call that a signal ends.
             (Some(raised), _) => Err(raised),
-            (None, Ok(Ok(Ok(value)))) => Ok(value),
-            (None, Ok(Ok(Err(error)))) => match error.into() {
-                Fault::Interrupted => Err(PyKeyboardInterrupt::new_err(())),
-                fault => Err(to_python(fault)),
-            },
-            (None, Ok(Err(_))) => Err(PyKeyboardInterrupt::new_err(())),
+            (None, Ok(Ok(value))) => Ok(value),
+            (None, Ok(Err(Fault::Interrupted))) => Err(PyKeyboardInterrupt::new_err(())),
+            (None, Ok(Err(fault))) => Err(to_python(fault)),
         }
     }
 }
@@ -77,8 +82,8 @@ impl Doorway for Python<'_> {
 fn ask() -> bool {
     IS_ASKING.set(true);
     let stop = Python::attach(|py| {
-        logs::deliver(py);
-        let raised = py.check_signals().err();
+        let raised = logs::deliver(py);
+        let raised = py.check_signals().err().or(raised);
         let stop = raised.is_some();
         RAISED.with_borrow_mut(|slot| *slot = raised.or_else(|| slot.take()));
         stop

@@ -82,7 +82,9 @@ fn wait(py: Python<'_>) {
                 calls,
                 "fork while engines work in other threads: the child may find their locks held"
             );
-            crate::logs::deliver(py);
+            if let Some(raised) = crate::logs::deliver(py) {
+                raised.write_unraisable(py, None);
+            }
             return;
         }
         py.detach(|| std::thread::sleep(PAUSE));

@@ -6,6 +6,7 @@
 //! what is recorded at all; it is looked at when a call begins. Loggers below can only say less.
 
 use crate::errors::printable;
+use pyo3::exceptions::PyException;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -187,10 +188,11 @@ pub(crate) fn heed(py: Python<'_>) {
     }
 }
 
-/// Gives what waits to Python.
-pub(crate) fn deliver(py: Python<'_>) {
+/// Gives what waits to Python. Returns what is no fault of a handler of logs but ends the program: Ctrl-C, which comes while
+/// Python code runs, and so while that of `logging` does.
+pub(crate) fn deliver(py: Python<'_>) -> Option<PyErr> {
     if !IS_WAITING.swap(false, Ordering::Acquire) {
-        return;
+        return None;
     }
     let (records, lost) = {
         let mut queue = QUEUE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -213,8 +215,11 @@ pub(crate) fn deliver(py: Python<'_>) {
         }
         Ok(())
     })();
-    if let Err(error) = told {
-        // A handler of the user raised; a call of the engines must not fail for it.
-        error.write_unraisable(py, None);
+    let error = told.err()?;
+    if !error.is_instance_of::<PyException>(py) {
+        return Some(error);
     }
+    // A handler of the user raised; a call of the engines must not fail for it.
+    error.write_unraisable(py, None);
+    None
 }

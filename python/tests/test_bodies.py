@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import threading
-import time
 from typing import Any
 
 import pytest
@@ -137,8 +136,7 @@ def test_a_restore_in_the_middle_of_a_step_is_refused(apartment: dwell.House) ->
             world.step([{"forward_m_s": 1.0}])
 
     def restore_until_refused() -> None:
-        deadline = time.monotonic() + 60.0
-        while time.monotonic() < deadline:
+        for _ in range(1_000_000):
             world.restore(saved)
 
     walker = threading.Thread(target=walk)

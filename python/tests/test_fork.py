@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import os
-import signal
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
 import gymnasium
+import interrupted
 import numpy as np
 import pytest
 
@@ -36,13 +36,13 @@ def senses(world: dwell.World) -> list[Any]:
 
 
 def in_child(work: Callable[[], Any]) -> Any:  # noqa: ANN401 - whatever the work gives
-    """What ``work`` gives in a forked child, in a minute at most."""
+    """What ``work`` gives in a forked child; EOFError, should it end without giving anything."""
     fork = multiprocessing.get_context("fork")
     ours, theirs = fork.Pipe()
     process = fork.Process(target=lambda: theirs.send(work()))
     process.start()
+    theirs.close()
     try:
-        assert ours.poll(60), "the child hangs"
         return ours.recv()
     finally:
         process.kill()
@@ -72,7 +72,7 @@ def test_environments_in_forked_workers_play_what_one_here_plays() -> None:
         there = [envs.reset(seed=[4, 4, 5])[0]]
         there += [envs.step(np.full(3, action))[0] for action in WALK]
     finally:
-        envs.close(timeout=30)
+        envs.close()
     for one, many in zip(played, there, strict=True):
         for name, value in one.items():
             assert (many[name][0] == value).all(), name
@@ -80,89 +80,67 @@ def test_environments_in_forked_workers_play_what_one_here_plays() -> None:
 
 
 @warned
-def test_a_fork_beside_a_busy_thread_waits_for_its_call() -> None:
+def test_a_fork_beside_a_busy_thread_waits_for_its_call(caplog: pytest.LogCaptureFixture) -> None:
     """Locks that another thread holds at the fork would stay locked in the child for ever."""
     world, done = dwell.World("builtin:studio"), threading.Event()
 
     def work() -> None:
         own = dwell.World("builtin:studio")
         while not done.is_set():
-            own.render(agent=0, camera=dwell.Camera(512, 512))
-            own.listen(800)
+            own.render(agent=0, camera=dwell.Camera(128, 128))
+            own.listen(80)
 
     expected = dwell.World("builtin:studio").render(agent=0)["rgb"].sum()
     threads = [threading.Thread(target=work) for _ in range(2)]
     for thread in threads:
         thread.start()
-    start = time.monotonic()
     try:
         for _ in range(5):
             found = in_child(lambda: dwell.World("builtin:studio").render(agent=0)["rgb"].sum())
             assert found == expected
             assert in_child(lambda: world.render(agent=0)["rgb"].sum()) == expected
-        assert time.monotonic() - start < 30.0, (
-            "calls that follow each other closely kept it waiting"
-        )
     finally:
         done.set()
         for thread in threads:
             thread.join()
+    # Where calls that follow each other closely keep a fork waiting, it says so.
+    assert not [record for record in caplog.records if record.levelno >= logging.WARNING]
 
 
 def test_a_fork_waits_for_a_while_and_no_longer() -> None:
+    # The thread's call never ends; forks before it has begun do not wait.
     program = """
-import logging, os, threading, time
+import json, logging, os, threading
 import dwell
-logging.basicConfig(format="%(name)s %(message)s")
-world = dwell.World("builtin:studio")
-camera = dwell.Camera(8192, 8192)
-thread = threading.Thread(target=lambda: [world.render(agent=0, camera=camera) for _ in range(3)])
-thread.daemon = True
+from dwell import _native
+warned = []
+handler = logging.Handler()
+handler.emit = lambda record: warned.append(record.getMessage())
+logging.getLogger("dwell").addHandler(handler)
+endless = json.dumps({"worlds": 1, "repeats": 1, "steps": 10**12})
+work = lambda: _native.bench_json("physics", "builtin:studio", endless)
+thread = threading.Thread(target=work, daemon=True)
 thread.start()
-time.sleep(0.2)
-start = time.monotonic()
-child = os.fork()
-if child == 0:
-    os._exit(0)
-waited = time.monotonic() - start
-os.waitpid(child, 0)
-print(thread.is_alive(), waited)
+while not warned:
+    child = os.fork()
+    if child == 0:
+        os._exit(0)
+    os.waitpid(child, 0)
+print(thread.is_alive(), *warned, flush=True)
 os._exit(0)
 """
     ran = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", program],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
+        [sys.executable, "-W", "ignore", "-c", program], capture_output=True, text=True, check=False
     )
     assert ran.returncode == 0, ran.stderr
-    alive, waited = ran.stdout.split()
-    # Between two pictures, or after its patience; a warning comes with the latter.
-    assert float(waited) < 15.0
-    assert ("fork while engines work" in ran.stderr) == (float(waited) > 5.0)
-    assert alive == "True"
+    assert ran.stdout.startswith("True fork while engines work in other threads")
 
 
 @warned
 def test_a_forked_child_hears_ctrl_c() -> None:
     world = dwell.World("builtin:studio")
     world.render(agent=0)
-
-    def interrupted() -> float:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        sent: list[float] = []
-
-        def send() -> None:
-            time.sleep(0.1)
-            sent.append(time.monotonic())
-            os.kill(os.getpid(), signal.SIGINT)
-
-        threading.Thread(target=send).start()
-        try:
-            world.render(agent=0, camera=dwell.Camera(8192, 8192))
-        except KeyboardInterrupt:
-            return time.monotonic() - sent[0]
-        return 1e9
-
-    assert in_child(interrupted) < 1.5
+    large = dwell.Camera(8192, 8192)
+    assert in_child(lambda: interrupted.cut_off(lambda: world.render(agent=0, camera=large))) == (
+        "stopped"
+    )

@@ -214,8 +214,7 @@ def from_many_threads(calls: list[Callable[[], Any]]) -> list[BaseException]:
     for worker in workers:
         worker.start()
     for worker in workers:
-        worker.join(timeout=60.0)
-        assert not worker.is_alive(), "a call hangs"
+        worker.join()
     return raised
 
 
