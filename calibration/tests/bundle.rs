@@ -85,7 +85,51 @@ fn faults_are_named_with_file_line_and_field() {
             "trajectory.csv",
             "12.50000",
             "soon",
-            &["trajectory.csv line 2"],
+            &[
+                "trajectory.csv line 2",
+                "column \"t_s\" is \"soon\"",
+                "a number",
+            ],
+        ),
+        (
+            "trajectory.csv",
+            "12.50000",
+            "",
+            &[
+                "trajectory.csv line 2",
+                "column \"t_s\" is missing",
+                "fill it in",
+            ],
+        ),
+        (
+            "trajectory.csv",
+            "12.50000",
+            "12,50000",
+            &[
+                "trajectory.csv line 2: 6 cells, and the head has 5",
+                "write points",
+            ],
+        ),
+        (
+            "trajectory.csv",
+            "episode,t_s",
+            "episode,t",
+            &["line 2", "missing field `t_s`", "the head has"],
+        ),
+        (
+            "trajectory.csv",
+            "throw_00,12.51000,ball,y",
+            "throw_00,12.50000,ball,y",
+            &[
+                "episode throw_00: t_s is 12.5 twice",
+                "leave one of the two rows out",
+            ],
+        ),
+        (
+            "manifest.json",
+            "\"g_m_s2\": null",
+            "\"g_m_s2\": -9.81",
+            &["g_m_s2 is -9.81", "how strong it is, which is 9.81"],
         ),
         (
             "episodes.csv",
@@ -110,6 +154,11 @@ fn faults_are_named_with_file_line_and_field() {
         .unwrap();
     });
     assert!(message.contains("episodes.csv"), "{message}");
+    let message = after(|folder| fs::remove_file(folder.join("manifest.json")).unwrap());
+    assert!(
+        message.contains("`dwell measure import` makes"),
+        "{message}"
+    );
     let missing = calibrate(
         Path::new("no such folder"),
         &Options::default(),
@@ -230,7 +279,7 @@ fn faults_of_drives_are_named() {
     let told = drive(|k, row| row[0] += if k == 7 { 0.03 } else { 0.0 }).unwrap_err();
     assert!(told.contains("t_s") && told.contains("sample 7"), "{told}");
     let told = drive(|_, row| (row[4], row[5]) = (-row[4], -row[5])).unwrap_err();
-    assert!(told.contains("units, signs"), "{told}");
+    assert!(told.contains("count backwards"), "{told}");
     let told = drive(|k, row| row[3] = if k == 3 { f64::NAN } else { 0.0 }).unwrap_err();
     assert!(
         told.contains("heading") && told.contains("line 5"),

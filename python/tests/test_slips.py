@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from collections.abc import Callable
@@ -117,6 +118,17 @@ def drives() -> Rows:
     return rows
 
 
+def scaled(rows: Rows, factor: float, *columns: int) -> None:
+    for row in rows:
+        for k in columns:
+            row[k] *= factor
+
+
+def exchanged(rows: Rows, a: int, b: int) -> None:
+    for row in rows:
+        row[a], row[b] = row[b], row[a]
+
+
 def brought(
     folder: Path,
     mapping: dict[str, Any],
@@ -157,8 +169,67 @@ def test_what_is_right_is_imported(tmp_path: Path, mapping: dict[str, Any]) -> N
     assert brought(tmp_path, mapping)["episodes"] == 4
 
 
+UNITS: list[tuple[dict[str, Any], Callable[[Rows], object], str, float]] = [
+    (FLIGHT, lambda rows: scaled(rows, 1e3, 1), "seconds_per_unit", 0.001),
+    (FLIGHT, lambda rows: scaled(rows, 1e3, 2, 3, 4), "metres_per_unit", 0.001),
+    (FLIGHT, lambda rows: scaled(rows, 1e2, 2, 3, 4), "metres_per_unit", 0.01),
+    (FLIGHT, lambda rows: scaled(rows, -1.0, 3), "metres_per_unit", -1),
+    (POSES, lambda rows: scaled(rows, 1e3, 1), "seconds_per_unit", 0.001),
+    (POSES, lambda rows: scaled(rows, 1e2, 1), "seconds_per_unit", 0.01),
+    (POSES, lambda rows: scaled(rows, 1e2, 2, 3, 4, 9, 10, 11), "metres_per_unit", 0.01),
+    (POSES, lambda rows: scaled(rows, 1e3, 2, 3, 4, 9, 10, 11), "metres_per_unit", 0.001),
+    (POSES, lambda rows: scaled(rows, 180 / math.pi, 12), "radians_per_unit", math.pi / 180),
+    (DRIVE, lambda rows: scaled(rows, 1e3, 1), "seconds_per_unit", 0.001),
+    (DRIVE, lambda rows: scaled(rows, 1e2, 2, 3), "metres_per_unit", 0.01),
+    (DRIVE, lambda rows: scaled(rows, 180 / math.pi, 4), "radians_per_unit", math.pi / 180),
+]
+
+
+@pytest.mark.parametrize(("mapping", "change", "key", "value"), UNITS)
+def test_another_unit_is_named_with_the_key_of_the_map_that_mends_it(
+    tmp_path: Path,
+    mapping: dict[str, Any],
+    change: Callable[[Rows], object],
+    key: str,
+    value: float,
+) -> None:
+    told = refused(tmp_path, mapping, change)
+    assert f'"{key}": {str(value)[:6]}' in told, told
+    assert brought(tmp_path, with_table(mapping, **{key: value}), change)["episodes"] == 4
+
+
+def bounced(rows: Rows) -> None:
+    """The third throw meets the floor and rises again."""
+    for row in rows:
+        t = row[1] - 5.2
+        if row[0] == "e2" and t > 0.0:
+            row[3] = 0.02 + 3.0 * t - 4.905 * t * t
+        elif row[0] == "e2":
+            row[3] = 0.02 - 3.0 * t - 4.905 * t * t
+
+
+def test_a_bounce_is_told_with_where_to_cut(tmp_path: Path) -> None:
+    told = refused(tmp_path, FLIGHT, bounced)
+    assert "trajectory.csv, episode e2: y is falling until t_s 5.19" in told
+    assert "rising by 0.3" in told
+    assert "Leave out the rows from there on" in told
+    assert brought(tmp_path, FLIGHT, cut)["episodes"] == 4
+
+
+def cut(rows: Rows) -> None:
+    bounced(rows)
+    rows[:] = [row for row in rows if row[0] != "e2" or row[1] <= 5.2]
+
+
 def put(row: int, column: int, value: object) -> Callable[[Rows], object]:
     return lambda rows: rows[row - 1].__setitem__(column, value)
+
+
+def counted_on(rows: Rows) -> None:
+    for before, row in itertools.pairwise(rows):
+        if row[0] == before[0]:
+            row[5] += before[5]
+            row[6] += before[6]
 
 
 SAYS: list[tuple[dict[str, Any], Callable[[Rows], object], str]] = [
@@ -171,6 +242,14 @@ SAYS: list[tuple[dict[str, Any], Callable[[Rows], object], str]] = [
     (FLIGHT, put(11, 1, 5.09), r"row 11: column 't_s' is 5.09 again \(row 10\).*stands twice"),
     (FLIGHT, put(11, 1, 5.01), r"row 11: column 't_s' is 5.01 after 5.09 .*sort its rows by time"),
     (FLIGHT, put(1, 0, "e1"), "'t_s' is 5 after 5 |'t_s' is 5 again .*name of its own"),
+    (FLIGHT, lambda rows: exchanged(rows, 3, 4), 'is another axis up.*"y".*"channels"'),
+    (POSES, lambda rows: exchanged(rows, 3, 4), "is another axis up|against differences"),
+    (POSES, lambda rows: rows.pop(20), "1 missing before it: fill them in, or end"),
+    (POSES, put(5, 8, 5.0), "the length of qx, qy, qz, qw is .* are they the quaternion"),
+    (DRIVE, lambda rows: exchanged(rows, 5, 6), "left and right exchanged"),
+    (DRIVE, lambda rows: scaled(rows, -1.0, 4), "headings grow clockwise"),
+    (DRIVE, lambda rows: scaled(rows, -1.0, 5, 6), "count backwards"),
+    (DRIVE, counted_on, "counted since the start"),
 ]
 
 
@@ -186,12 +265,23 @@ def test_a_slip_is_told_with_what_to_change(
 
 
 def test_maps_and_lists_of_bodies_are_told_with_what_to_change(tmp_path: Path) -> None:
+    assert "how strong it is, which is 9.81" in refused(tmp_path, {**FLIGHT, "g_m_s2": -9.81})
+    body = {**POSES["body"], "half_extents_m": [50, 50, 50]}
+    assert "in millimetres? Divide it by 1000" in refused(tmp_path, {**POSES, "body": body})
+    told = refused(tmp_path, FLIGHT, index=("0.0027", "2.7"))
+    assert "is the mass in grams" in told
+    told = refused(tmp_path, FLIGHT, index=("0.04", "4"))
+    assert "are lengths in millimetres or centimetres" in told
     assert "no row has both 'mass_kg' (kg)" in refused(tmp_path, FLIGHT, index=("0.0027", ""))
     told = refused(tmp_path, FLIGHT, index=("\ne", "\nE"))
     assert "episodes are called ['e0', 'e1', 'e2']" in told
     assert "write the same names" in told
+    up = {**POSES, "up": "y"}
+    assert '"up": "z" in the map' in refused(tmp_path, up)
     told = refused(tmp_path, with_table(FLIGHT, seconds_per_unit=0))
     assert "table: seconds_per_unit is 0; a finite number other than 0" in told
+    half = {**POSES, "poses": {**POSES["poses"], "rate_hz": 50.0}}
+    assert "write 100.000000 for rate_hz" in refused(tmp_path, half)
 
 
 def test_columns_that_are_called_otherwise_are_offered(tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
 //! Whether a bundle says what it must, in ranges that make sense.
 
 use super::file::{Body, Kind, Manifest, Surface, VERSION};
-use super::{Bundle, drive, limits, poses};
+use super::{Bundle, drive, limits, poses, slips};
 use crate::error::CalibrationError;
 use dwell_scene::material::library;
 use std::collections::BTreeMap;
@@ -12,6 +12,8 @@ type Checked = Result<(), CalibrationError>;
 pub(crate) const SIDES: [&str; 6] = ["floor", "ceiling", "west", "east", "north", "south"];
 /// Episodes below which nothing can be held out.
 const FEWEST_EPISODES: usize = 4;
+/// Of bodies, kg/m3: from a balloon, which is mostly what it floats in, to beyond osmium.
+const DENSITIES_KG_M3: [f64; 2] = [0.05, 25_000.0];
 /// Poses of an episode below which nothing can be predicted from them.
 const FEWEST_POSES: usize = 6;
 
@@ -89,6 +91,13 @@ pub(super) fn finite(at: &str, field: &str, value: f64, limit: f64) -> Checked {
     range(at, field, value, -limit, limit)
 }
 
+/// A position along an axis, m.
+pub(super) fn position(at: &str, field: &str, value: f64) -> Checked {
+    let allowed = "-1000 to 1000 m; are lengths in millimetres? Divide them by 1000, or import with \"metres_per_unit\": \
+                   0.001 in the map's table";
+    finite(at, field, value, 1e3).map_err(|_| CalibrationError::field(at, field, value, allowed))
+}
+
 /// A time on a clock, s.
 pub(super) fn time(at: &str, t_s: f64) -> Checked {
     range(at, "t_s", t_s, -1e6, 1e6)
@@ -152,8 +161,14 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
         ("pressure_pa", air.pressure_pa, 3e4, 2e5),
         ("g_m_s2", air.g_m_s2, 0.0, 100.0),
     ] {
-        if let Some(value) = value {
-            range(at, &format!("scene.environment.{field}"), value, low, high)?;
+        let of = format!("scene.environment.{field}");
+        match value {
+            Some(value) if field == "g_m_s2" && value < 0.0 => {
+                let allowed = format!("{low} to {high}: how strong it is, which is {}", -value);
+                return Err(CalibrationError::field(at, of, value, allowed));
+            }
+            Some(value) => range(at, &of, value, low, high)?,
+            None => {}
         }
     }
     for (k, body) in scene.bodies.iter().enumerate() {
@@ -231,14 +246,43 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
     channels(at, manifest)
 }
 
+/// A length of a body, m: 1 mm to 10 m.
+fn length(at: &str, field: &str, value: f64) -> Checked {
+    let allowed = "0.001 to 10 m; is it in millimetres? Divide it by 1000";
+    range(at, field, value, 1e-3, 10.0)
+        .map_err(|_| CalibrationError::field(at, field, value, allowed))
+}
+
+/// A mass that something of this volume can have.
+fn density(at: &str, field: &str, mass_kg: f64, volume_m3: f64) -> Checked {
+    let found = mass_kg / volume_m3;
+    let hint = if found > DENSITIES_KG_M3[1] {
+        "is the mass in grams, or are lengths too small?"
+    } else if found < DENSITIES_KG_M3[0] {
+        "are lengths in millimetres or centimetres, or is the mass too small?"
+    } else {
+        return Ok(());
+    };
+    let [low, high] = DENSITIES_KG_M3;
+    let found = format!("{mass_kg} in {volume_m3:.3e} m3, which is {found:.3e} kg/m3");
+    let allowed = format!("{low} to {high} kg/m3; {hint}");
+    Err(CalibrationError::field(at, field, found, allowed))
+}
+
 /// A sphere or a box, and an inertia that such a body can have.
 fn shape(at: &str, of: &dyn Fn(&str) -> String, body: &Body) -> Checked {
     match (body.radius_m, body.half_extents_m) {
-        (Some(radius), None) => range(at, &of("radius_m"), radius, 1e-3, 10.0)?,
+        (Some(radius), None) => {
+            length(at, &of("radius_m"), radius)?;
+            let volume_m3 = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+            density(at, &of("mass_kg"), body.mass_kg, volume_m3)?;
+        }
         (None, Some(half)) => {
             for half in half {
-                range(at, &of("half_extents_m"), half, 1e-3, 10.0)?;
+                length(at, &of("half_extents_m"), half)?;
             }
+            let volume_m3 = 8.0 * half.iter().product::<f64>();
+            density(at, &of("mass_kg"), body.mass_kg, volume_m3)?;
         }
         (found, _) => {
             let found = if found.is_some() { "both" } else { "neither" };
@@ -501,6 +545,26 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
             }
             _ => {}
         }
+        let mut channels = episode.samples.chunk_by(|a, b| a.channel == b.channel);
+        channels.try_for_each(|samples| {
+            let times: Vec<f64> = samples.iter().map(|s| s.t_s).collect();
+            slips::clock(&at, &times)
+        })?;
+    }
+    match bundle.kind() {
+        Kind::PoseTrajectory => {
+            poses::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?;
+        }
+        Kind::Drive => drive::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?,
+        Kind::Trajectory | Kind::Servo | Kind::ImpulseResponse => {}
+    }
+    durations(bundle)?;
+    slips::motion(&bundle.name, &bundle.manifest, &bundle.episodes)
+}
+
+/// Whether no episode is longer than can be computed.
+fn durations(bundle: &Bundle) -> Checked {
+    for episode in &bundle.episodes {
         let samples = episode.samples.iter().map(|s| s.t_s);
         let poses = episode.poses.iter().map(|p| p.t_s);
         let drive = episode.drive.iter().map(|row| row.t_s);
@@ -509,18 +573,12 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
         let duration = span(f64::max, f64::NEG_INFINITY) - span(f64::min, f64::INFINITY);
         if duration > 600.0 {
             return Err(CalibrationError::field(
-                at,
+                format!("{}, episode {}", bundle.name, episode.name),
                 "the time from first to last sample",
                 duration,
                 "at most 600 s",
             ));
         }
-    }
-    if bundle.kind() == Kind::PoseTrajectory {
-        poses::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?;
-    }
-    if bundle.kind() == Kind::Drive {
-        drive::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?;
     }
     Ok(())
 }

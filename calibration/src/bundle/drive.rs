@@ -1,21 +1,22 @@
 //! Drives of a robot: what stands in `drive.csv`, and whether it can be what it says.
 
-use super::Episode;
 use super::check;
-use super::file::{DriveRow, Manifest};
+use super::file::{Base, DriveRow, Manifest};
 use super::read::{episode, table};
+use super::{Episode, slips};
 use crate::error::CalibrationError;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// How far a sample's time may be from its place in an even row, as a share of the spacing.
-const SPACING_TOLERANCE: f64 = 0.05;
 /// Samples below which nothing can be predicted.
 const FEWEST_SAMPLES: usize = 42;
 /// Way by the wheels above which it is compared with the tracker's, m.
 const TELLING_WAY_M: f64 = 1.0;
 /// Way by the wheels over that by the tracker beyond which something is wrong with units or signs.
 const WAYS: [f64; 2] = [0.5, 2.0];
+
+/// Squares of turns in a sample by the wheels, added up, above which their sense is compared with the tracker's, rad2.
+const TELLING_TURN_RAD2: f64 = 0.01;
 
 type Checked = Result<(), CalibrationError>;
 
@@ -27,9 +28,10 @@ pub(super) fn read(
 ) -> Checked {
     table(folder, "drive.csv", |row: DriveRow, at| {
         check::time(at, row.t_s)?;
+        for (field, value) in [("x", row.x), ("y", row.y)] {
+            check::position(at, field, value)?;
+        }
         for (field, value, most) in [
-            ("x", row.x, 1e3),
-            ("y", row.y, 1e3),
             ("heading", row.heading, 1e4),
             ("left_rad", row.left_rad, 1e3),
             ("right_rad", row.right_rad, 1e3),
@@ -55,7 +57,7 @@ pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) ->
             needed: "wheel_radius_m, wheel_base_m and rate_hz must be said".to_owned(),
         });
     };
-    let (mut wheels_m, mut tracker_m) = (0.0, 0.0);
+    let mut ways = Ways::default();
     for episode in episodes {
         let at = format!("{name}, episode {}", episode.name);
         let rows = &episode.drive;
@@ -67,35 +69,96 @@ pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) ->
                 needed: FEWEST_SAMPLES,
             });
         }
-        for (k, row) in rows.iter().enumerate() {
-            let place = rows[0].t_s + k as f64 / base.rate_hz;
-            if (row.t_s - place).abs() * base.rate_hz > SPACING_TOLERANCE {
-                let allowed = format!(
-                    "{place:.6}, sample {k} of an even row at {} Hz",
-                    base.rate_hz
-                );
-                return Err(CalibrationError::field(at, "t_s", row.t_s, allowed));
-            }
-        }
-        for pair in rows.windows(2) {
-            let (dx, dy) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
-            let heading = pair[1].heading;
-            // Along the heading, so that a tracker's noise does not add up.
-            tracker_m += dx * libm::cos(heading) + dy * libm::sin(heading);
-            wheels_m += 0.5 * base.wheel_radius_m * (pair[1].left_rad + pair[1].right_rad);
-        }
+        let times: Vec<f64> = rows.iter().map(|row| row.t_s).collect();
+        slips::even(&at, &times, base.rate_hz)?;
+        rows.windows(2).for_each(|pair| ways.add(pair, base));
+        ways.end(rows, base);
     }
-    let ratio = wheels_m / tracker_m;
-    if wheels_m.abs() > TELLING_WAY_M && !(WAYS[0]..=WAYS[1]).contains(&ratio) {
-        return Err(CalibrationError::field(
-            format!("{name}/drive.csv"),
-            "the way by the wheels over the tracker's",
-            format!("{ratio:.2}"),
-            format!(
-                "{} to {}; check units, signs and wheel_radius_m",
-                WAYS[0], WAYS[1]
-            ),
-        ));
+    ways.judge(&format!("{name}/drive.csv"))
+}
+
+/// How far robots went and turned, by the wheels and as the tracker saw it, m and rad.
+#[derive(Default)]
+struct Ways {
+    wheels_m: f64,
+    /// Along the heading, so that a tracker's noise does not add up.
+    tracker_m: f64,
+    /// The same, were headings degrees.
+    by_degrees_m: f64,
+    /// By the wheels, were the turns counted since the start.
+    since_start_m: f64,
+    /// By the wheels in a sample, squared, and times what the tracker saw.
+    turned: f64,
+    turned_both: f64,
+}
+
+impl Ways {
+    fn add(&mut self, pair: &[DriveRow], base: &Base) {
+        let (before, now) = (&pair[0], &pair[1]);
+        let along = |heading: f64| {
+            (now.x - before.x) * libm::cos(heading) + (now.y - before.y) * libm::sin(heading)
+        };
+        self.tracker_m += along(now.heading);
+        self.by_degrees_m += along(now.heading / slips::DEGREES);
+        self.wheels_m += 0.5 * base.wheel_radius_m * (now.left_rad + now.right_rad);
+        let by_wheels = base.wheel_radius_m * (now.right_rad - now.left_rad) / base.wheel_base_m;
+        self.turned += by_wheels * by_wheels;
+        // A heading may begin again after a turn.
+        let turn = now.heading - before.heading;
+        self.turned_both += by_wheels * libm::atan2(libm::sin(turn), libm::cos(turn));
     }
-    Ok(())
+
+    fn end(&mut self, rows: &[DriveRow], base: &Base) {
+        let ends =
+            [rows.first(), rows.last()].map(|row| row.map_or(0.0, |r| r.left_rad + r.right_rad));
+        self.since_start_m += 0.5 * base.wheel_radius_m * (ends[1] - ends[0]);
+    }
+
+    fn judge(&self, at: &str) -> Checked {
+        let is_right = |ratio: f64| (WAYS[0]..=WAYS[1]).contains(&ratio);
+        let ratio = self.wheels_m / self.tracker_m;
+        if self.wheels_m.abs() > TELLING_WAY_M && !is_right(ratio) {
+            let hint = if is_right(self.wheels_m / self.by_degrees_m) {
+                slips::degrees("headings", slips::DEGREES)
+            } else if is_right(self.since_start_m / self.tracker_m) {
+                Some("are turns of the wheels counted since the start? They are meant since the sample before".into())
+            } else if is_right(-ratio) {
+                Some(
+                    "do wheels count backwards, or do headings point to the back? Turn the sign"
+                        .into(),
+                )
+            } else {
+                slips::lengths("positions", 1.0 / ratio.abs())
+            };
+            let hint = hint.unwrap_or_else(|| "check units, signs and wheel_radius_m".into());
+            return Err(CalibrationError::field(
+                at,
+                "the way by the wheels over the tracker's",
+                format!("{ratio:.3}"),
+                format!("{} to {}; {hint}", WAYS[0], WAYS[1]),
+            ));
+        }
+        let turns = self.turned_both / self.turned;
+        if self.turned < TELLING_TURN_RAD2 {
+            return Ok(());
+        }
+        if let Some(hint) = slips::degrees("headings", turns) {
+            let field = "the turns of the heading over those by the wheels";
+            return Err(CalibrationError::field(
+                at,
+                field,
+                format!("{turns:.1}"),
+                format!("about 1; {hint}"),
+            ));
+        }
+        if turns < -WAYS[0] {
+            return Err(CalibrationError::field(
+                at,
+                "the turns of the heading over those by the wheels",
+                format!("{turns:.2}"),
+                "about 1; are left and right exchanged, or do headings grow clockwise (of a compass pi/2 - heading is meant)?",
+            ));
+        }
+        Ok(())
+    }
 }

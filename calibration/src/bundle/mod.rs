@@ -21,6 +21,8 @@ mod drive;
 mod limits;
 mod poses;
 mod read;
+mod row;
+mod slips;
 mod wav;
 
 use file::{CommandRow, DriveRow, Kind, Manifest};

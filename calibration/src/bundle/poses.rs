@@ -3,7 +3,7 @@
 use super::check::{self, Names};
 use super::file::{AngularFrame, Manifest, PoseRow, StartRow};
 use super::read::{episode, table};
-use super::{Episode, PoseSample, Rates};
+use super::{Episode, PoseSample, Rates, slips};
 use crate::error::CalibrationError;
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
@@ -11,8 +11,6 @@ use std::path::Path;
 
 /// How far a quaternion's length may be from one.
 const UNIT_TOLERANCE: f64 = 1e-3;
-/// How far a sample's time may be from its place in an even row, as a share of the spacing.
-const SPACING_TOLERANCE: f64 = 0.05;
 /// Share of the turning speed, or of the speed, that a test of the velocities must leave unexplained before it speaks.
 const WRONG_SHARE: f64 = 0.5;
 /// Below this speed, m/s or rad/s, a sample says nothing about frames or units.
@@ -45,7 +43,7 @@ pub(super) fn read(
         };
         check::time(at, row.t_s)?;
         for (field, value) in [("x", row.x), ("y", row.y), ("z", row.z)] {
-            check::finite(at, field, value, 1e3)?;
+            check::position(at, field, value)?;
         }
         let rates = rates(at, &row, sample.rotation, frame)?;
         episodes[episode(at, by_name, &row.episode)?]
@@ -104,7 +102,12 @@ fn unit(at: &str, rotation: DQuat) -> Result<DQuat, CalibrationError> {
     if (length - 1.0).abs() <= UNIT_TOLERANCE {
         return Ok(rotation.normalize());
     }
-    let allowed = format!("1 within {UNIT_TOLERANCE}: x, y, z and w of a unit quaternion");
+    let hint = if length == 0.0 {
+        "; the tracker lost the body? Leave the row out, or end the episode before it"
+    } else {
+        "; are they the quaternion's columns?"
+    };
+    let allowed = format!("1 within {UNIT_TOLERANCE}: x, y, z and w of a unit quaternion{hint}");
     Err(CalibrationError::field(
         at,
         "the length of qx, qy, qz, qw",
@@ -158,17 +161,9 @@ pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) ->
     let step_s = 1.0 / form.rate_hz;
     for episode in episodes {
         let at = format!("{name}, episode {}", episode.name);
-        let first = episode.poses.first().map_or(0.0, |sample| sample.t_s);
-        for (k, sample) in episode.poses.iter().enumerate() {
-            let off = (sample.t_s - first - k as f64 * step_s) / step_s;
-            if off.abs() > SPACING_TOLERANCE {
-                let allowed = format!(
-                    "{:.6}, sample {k} of an even row at {} Hz",
-                    first + k as f64 * step_s,
-                    form.rate_hz
-                );
-                return Err(CalibrationError::field(at, "t_s", sample.t_s, allowed));
-            }
+        let times: Vec<f64> = episode.poses.iter().map(|sample| sample.t_s).collect();
+        slips::even(&at, &times, form.rate_hz)?;
+        for sample in &episode.poses {
             if sample.entity != episode.poses[0].entity {
                 return Err(CalibrationError::field(
                     at,
@@ -188,6 +183,9 @@ struct Mismatch {
     told: f64,
     left: f64,
     other_left: f64,
+    /// Told along what the poses show, and the latter alone.
+    along: f64,
+    shown: f64,
     count: usize,
 }
 
@@ -199,7 +197,14 @@ impl Mismatch {
         self.count += 1;
         self.told += from_poses.length_squared();
         self.left += (told - from_poses).length_squared();
+        self.along += told.dot(from_poses);
+        self.shown += from_poses.length_squared();
         self.other_left += (other - from_poses).length_squared();
+    }
+
+    /// How many times as large as the poses show the told velocities are.
+    fn factor(&self) -> f64 {
+        self.along / self.shown
     }
 
     /// The share of the motion that the told velocities miss; `None` where too little moves.
@@ -230,14 +235,20 @@ fn velocities(name: &str, frame: AngularFrame, step_s: f64, episodes: &[Episode]
             format!("{name}/poses.csv"),
             "vx, vy, vz against differences of x, y, z: the share that disagrees",
             format!("{share:.2}"),
-            format!("at most {WRONG_SHARE}; check units, axes and rate_hz"),
+            format!(
+                "at most {WRONG_SHARE}; they are {:.4} times what the positions show: bring both to one unit, and check axes and \
+                 rate_hz",
+                linear.factor()
+            ),
         ));
     }
     if let Some(share) = angular.share().filter(|share| *share > WRONG_SHARE) {
         let hint = if angular.other_left < 0.25 * angular.left {
-            "; they agree in the other frame: angular_velocity is wrong"
+            "; they agree in the other frame: angular_velocity is wrong".to_owned()
+        } else if let Some(hint) = slips::degrees("angular velocities", angular.factor()) {
+            format!("; {hint}")
         } else {
-            "; check units, the quaternion's order (x, y, z, w) and rate_hz"
+            "; check units, the quaternion's order (x, y, z, w) and rate_hz".to_owned()
         };
         return Err(CalibrationError::field(
             format!("{name}/poses.csv"),
@@ -333,7 +344,7 @@ mod tests {
         assert!(told.contains("angular_velocity is wrong"), "{told}");
         let told = judged(AngularFrame::World, |s| rates(s).angular *= 57.3).unwrap_err();
         assert!(
-            told.contains("wx, wy, wz") && told.contains("units"),
+            told.contains("wx, wy, wz") && told.contains("in degrees?"),
             "{told}"
         );
         let told = judged(AngularFrame::World, |s| rates(s).linear *= -1.0).unwrap_err();

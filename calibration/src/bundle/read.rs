@@ -3,7 +3,7 @@
 use super::check::{self, Names};
 use super::file::{CommandRow, EpisodeRow, Kind, Manifest, ResponseRow, TrajectoryRow};
 use super::limits;
-use super::{Bundle, Episode, Response, Sample, drive, poses, wav};
+use super::{Bundle, Episode, Response, Sample, drive, poses, row, wav};
 use crate::error::CalibrationError;
 use dwell_scene::file::{self, ReadError};
 use serde::de::DeserializeOwned;
@@ -15,6 +15,15 @@ use std::path::{Component, Path, PathBuf};
 /// Reads and checks a bundle.
 pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
     let name = folder.display().to_string();
+    if folder.exists() && !folder.join("manifest.json").exists() {
+        return Err(CalibrationError::Missing {
+            at: name,
+            what: "manifest.json".to_owned(),
+            needed:
+                "a bundle is a folder NAME.measured, which `dwell measure import` makes of tables"
+                    .to_owned(),
+        });
+    }
     let manifest = manifest(folder)?;
     check::manifest(&format!("{name}/manifest.json"), &manifest)?;
     let mut bundle = Bundle {
@@ -110,7 +119,9 @@ fn manifest(folder: &Path) -> Result<Manifest, CalibrationError> {
             path: folder.join("manifest.json"),
             source,
         })?;
-    serde_json::from_str(&text).map_err(|error| CalibrationError::Syntax {
+    // Some editors begin with a byte order mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    serde_json::from_str(text).map_err(|error| CalibrationError::Syntax {
         at: format!("{at} line {}", error.line()),
         what: error.to_string(),
     })
@@ -120,14 +131,19 @@ fn manifest(folder: &Path) -> Result<Manifest, CalibrationError> {
 pub(super) fn table<T: DeserializeOwned>(
     folder: &Path,
     name: &str,
-    mut row: impl FnMut(T, &str) -> Result<(), CalibrationError>,
+    mut each: impl FnMut(T, &str) -> Result<(), CalibrationError>,
 ) -> Result<(), CalibrationError> {
     let (file, at) = open(folder, name, limits::TABLE_BYTES)?;
     let limited = BufReader::new(file).take(limits::TABLE_BYTES);
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(limited);
-    for (count, record) in reader.deserialize().enumerate() {
+    let head = reader.headers().cloned();
+    let head = head.map_err(|error| {
+        let none = csv::StringRecord::new();
+        row::fault(&format!("{at} line 1"), &error, &none, &none)
+    })?;
+    for (count, record) in reader.records().enumerate() {
         // Line 1 is the head.
         let here = format!("{at} line {}", count + 2);
         if count as u64 >= limits::TABLE_ROWS {
@@ -139,11 +155,11 @@ pub(super) fn table<T: DeserializeOwned>(
                 limit,
             });
         }
-        let record = record.map_err(|error| CalibrationError::Syntax {
-            at: here.clone(),
-            what: error.to_string(),
-        })?;
-        row(record, &here)?;
+        let none = csv::StringRecord::new();
+        let cells = record.map_err(|error| row::fault(&here, &error, &head, &none))?;
+        let record = cells.deserialize(Some(&head));
+        let record = record.map_err(|error| row::fault(&here, &error, &head, &cells))?;
+        each(record, &here)?;
     }
     Ok(())
 }

@@ -1,0 +1,324 @@
+//! What people get wrong most often about measured data, found by what cannot be otherwise, and told with what to change.
+
+use super::Episode;
+use super::file::{Kind, Manifest};
+use crate::error::CalibrationError;
+use std::collections::BTreeMap;
+
+type Checked = Result<(), CalibrationError>;
+
+/// How far a sample's time may be from its place in an even row, as a share of the spacing.
+const SPACING_TOLERANCE: f64 = 0.05;
+/// How far a factor may be off the one that explains it.
+const FACTOR_TOLERANCE: f64 = 0.3;
+/// Samples further apart than this show no motion, s.
+const LONGEST_STEP_S: f64 = 0.5;
+/// Share of a motion that must fall as things fall for nothing to be said.
+const FALLING_SHARE: f64 = 0.1;
+/// Share that must fall in another unit or along another axis for that to be said.
+const TELLING_SHARE: f64 = 0.25;
+/// Below this a rise after a fall is no bounce, m; nor below so many standard deviations of the noise.
+const LEAST_RISE_M: f64 = 0.02;
+const RISE_SD: f64 = 12.0;
+
+/// A unit that is taken for the SI one: what it is called, how many of it are one of SI.
+type Unit = (&'static str, f64);
+
+const LENGTHS: [Unit; 4] = [
+    ("millimetres", 1e3),
+    ("centimetres", 1e2),
+    ("inches", 1.0 / 0.0254),
+    ("feet", 1.0 / 0.3048),
+];
+const TIMES: [Unit; 3] = [
+    ("milliseconds", 1e3),
+    ("microseconds", 1e6),
+    ("nanoseconds", 1e9),
+];
+/// Degrees in a radian.
+pub(super) const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+fn is_about(found: f64, wanted: f64, tolerance: f64) -> bool {
+    (found / wanted - 1.0).abs() <= tolerance
+}
+
+/// What to do about numbers in another unit. `key`: of the map of `dwell measure import`.
+fn convert(what: &str, unit: Unit, key: &str) -> String {
+    let (name, factor) = unit;
+    let digits = if factor.fract() == 0.0 { 0 } else { 4 };
+    format!(
+        "{what} in {name}? Divide by {factor:.digits$}, or import with \"{key}\": {} in the map's table",
+        1.0 / factor
+    )
+}
+
+/// What to do about angles that are larger by `factor` than radians; empty where degrees do not explain it.
+pub(super) fn degrees(what: &str, factor: f64) -> Option<String> {
+    is_about(factor, DEGREES, FACTOR_TOLERANCE)
+        .then(|| convert(what, ("degrees", DEGREES), "radians_per_unit"))
+}
+
+/// What to do about lengths that are larger by `factor` than metres; empty where no unit explains it.
+pub(super) fn lengths(what: &str, factor: f64) -> Option<String> {
+    let unit = LENGTHS
+        .iter()
+        .find(|unit| is_about(factor, unit.1, FACTOR_TOLERANCE))?;
+    Some(convert(what, *unit, "metres_per_unit"))
+}
+
+fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// Refuses times that stand twice, or that do not rise evenly at a rate. `times`: rising.
+pub(super) fn even(at: &str, times: &[f64], rate_hz: f64) -> Checked {
+    let Some(first) = times.first() else {
+        return Ok(());
+    };
+    let place = |k: usize| first + k as f64 / rate_hz;
+    let is_off = |k: &usize| (times[*k] - place(*k)).abs() * rate_hz > SPACING_TOLERANCE;
+    let Some(k) = (0..times.len()).find(is_off) else {
+        return Ok(());
+    };
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let last = steps[k - 1];
+    let usual = median(&mut steps).unwrap_or(0.0);
+    let unit = TIMES
+        .iter()
+        .find(|unit| is_about(usual * rate_hz, unit.1, SPACING_TOLERANCE));
+    let missing = (last * rate_hz).round() - 1.0;
+    let told = if last == 0.0 {
+        "; it stands twice: leave one of the two rows out".to_owned()
+    } else if let Some(unit) = unit {
+        format!("; times {}", convert("are", *unit, "seconds_per_unit"))
+    } else if is_about(usual, 1.0, 1e-6) && rate_hz > 1.0 {
+        let (unit, key) = (("frames", rate_hz), "seconds_per_unit");
+        format!("; times {}", convert("are counted", unit, key))
+    } else if !is_about(usual * rate_hz, 1.0, SPACING_TOLERANCE) {
+        let found = 1.0 / usual;
+        format!(
+            "; times rise by {usual:.6} s as a rule: write {found:.6} for rate_hz if that is meant"
+        )
+    } else if missing >= 1.0 && is_about(last * rate_hz, missing + 1.0, SPACING_TOLERANCE) {
+        format!(
+            "; {missing} missing before it: fill them in, or end the episode there and give the rows after it \
+             another episode's name"
+        )
+    } else {
+        "; bring the samples to even times".to_owned()
+    };
+    let allowed = format!(
+        "{:.6}, sample {k} of an even row at {rate_hz} Hz{told}",
+        place(k)
+    );
+    Err(CalibrationError::field(at, "t_s", times[k], allowed))
+}
+
+/// One number of a body over time.
+struct Track {
+    t_s: Vec<f64>,
+    m: Vec<f64>,
+}
+
+impl Track {
+    /// Accelerations, m/s2: of each sample with those so many before and after it.
+    fn accelerations(&self, reach: usize) -> impl Iterator<Item = f64> {
+        let (t, y) = (&self.t_s, &self.m);
+        (reach..t.len().saturating_sub(reach)).map(move |k| {
+            let (a, b) = (k - reach, k + reach);
+            let speed = |from: usize, to: usize| (y[to] - y[from]) / (t[to] - t[from]);
+            2.0 * (speed(k, b) - speed(a, k)) / (t[b] - t[a])
+        })
+    }
+
+    /// Standard deviation of the noise, m: third differences hold little of a motion.
+    fn noise_m(&self) -> f64 {
+        let third = |w: &[f64]| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs();
+        let mut sizes: Vec<f64> = self.m.windows(4).map(third).collect();
+        median(&mut sizes).unwrap_or(0.0) / (0.674_5 * 20.0_f64.sqrt())
+    }
+
+    /// Where the body turns from falling to rising, which no flight does, and by how much it rises: (s, m).
+    fn bounce(&self) -> Option<(f64, f64)> {
+        let least = LEAST_RISE_M.max(RISE_SD * self.noise_m());
+        // Without what one sample alone shows.
+        let calm: Vec<f64> = self
+            .m
+            .windows(3)
+            .map(|w| w[0].max(w[1]).min(w[0].min(w[1]).max(w[2])))
+            .collect();
+        let (mut top, mut low, mut at) = (f64::NEG_INFINITY, f64::INFINITY, 0);
+        for (k, y) in calm.iter().enumerate() {
+            top = top.max(*y);
+            if *y < low {
+                (low, at) = (*y, k);
+            }
+            if top - low < least {
+                // Still rising, or only just falling.
+                (low, at) = (*y, k);
+            } else if *y > low + least {
+                let peak = calm[k..].iter().copied().fold(*y, f64::max);
+                return Some((self.t_s[at + 1], peak - low));
+            }
+        }
+        None
+    }
+}
+
+/// The tracks of an episode along x, y and z; empty where there is none.
+fn tracks(manifest: &Manifest, episode: &Episode) -> [Track; 3] {
+    ["x", "y", "z"].map(|axis| {
+        let samples = episode.samples.iter();
+        let of_axis = samples.filter(|s| manifest.channels[s.channel].name == axis);
+        let flown = of_axis.map(|s| (s.t_s, s.value));
+        let posed = episode.poses.iter().map(|pose| {
+            let [x, y, z] = pose.position.to_array();
+            (
+                pose.t_s,
+                if axis == "x" {
+                    x
+                } else if axis == "y" {
+                    y
+                } else {
+                    z
+                },
+            )
+        });
+        let (t_s, m) = flown.chain(posed).unzip();
+        Track { t_s, m }
+    })
+}
+
+/// Whether bodies fall along y by what the manifest says, in metres and seconds, and whether flights are flights alone.
+pub(super) fn motion(name: &str, manifest: &Manifest, episodes: &[Episode]) -> Checked {
+    let file = match manifest.kind {
+        Kind::Trajectory => "trajectory.csv",
+        Kind::PoseTrajectory => "poses.csv",
+        Kind::Servo | Kind::ImpulseResponse | Kind::Drive => return Ok(()),
+    };
+    let at = format!("{name}/{file}");
+    let all: Vec<[Track; 3]> = episodes.iter().map(|e| tracks(manifest, e)).collect();
+    falls(&at, manifest, &all)?;
+    if manifest.kind != Kind::Trajectory {
+        return Ok(());
+    }
+    for (episode, [_, height, _]) in episodes.iter().zip(&all) {
+        if let Some((t_s, rise_m)) = height.bounce() {
+            return Err(CalibrationError::field(
+                format!("{at}, episode {}", episode.name),
+                "y",
+                format!("falling until t_s {t_s:.4} and rising by {rise_m:.3} m after it"),
+                "free flight, which never rises again: a bounce, or a hand? Leave out the rows from there on, or give them \
+                 another episode's name",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// What may be wrong with axes: along which one falls, whether upwards, and in what unit.
+type Guess = (usize, f64, Option<Unit>);
+
+/// Refuses motions of which hardly any falls along y, while most fall along another axis or in another unit.
+fn falls(at: &str, manifest: &Manifest, all: &[[Track; 3]]) -> Checked {
+    let g = manifest.scene.environment.g_m_s2.unwrap_or(9.806_65);
+    // By how many samples an acceleration reaches: near ones catch short flights, far ones see through noise.
+    let shares = [4, 8, 16].map(|part| {
+        let mut found: BTreeMap<(usize, i8, usize), usize> = BTreeMap::new();
+        let mut counts = [0_usize; 3];
+        for (axis, track) in all.iter().flat_map(|tracks| tracks.iter().enumerate()) {
+            let reach = (track.m.len() / part).max(1);
+            for a in track.accelerations(reach).filter(|a| a.is_finite()) {
+                counts[axis] += 1;
+                for (k, factor) in factors().enumerate() {
+                    if is_about(a.abs(), g * factor, FACTOR_TOLERANCE) {
+                        let sign = if a < 0.0 { -1 } else { 1 };
+                        *found.entry((axis, sign, k)).or_default() += 1;
+                    }
+                }
+            }
+        }
+        move |(axis, sign, k): (usize, i8, usize)| {
+            let times = found.get(&(axis, sign, k)).copied().unwrap_or(0);
+            times as f64 / counts[axis].max(1) as f64
+        }
+    });
+    let share = |key| shares.iter().map(|of| of(key)).fold(0.0, f64::max);
+    if g == 0.0 || share((1, -1, 0)) >= FALLING_SHARE {
+        return Ok(());
+    }
+    let keys = (0..3).flat_map(|axis| [-1, 1].map(|sign| (axis, sign)));
+    let keys = keys.flat_map(|(axis, sign)| (0..=LENGTHS.len()).map(move |k| (axis, sign, k)));
+    let best = keys.max_by(|a, b| share(*a).total_cmp(&share(*b)));
+    let Some((axis, sign, k)) = best.filter(|key| share(*key) >= TELLING_SHARE) else {
+        return Ok(());
+    };
+    let unit = k.checked_sub(1).map(|k| LENGTHS[k]);
+    let letter = ["x", "y", "z"][axis];
+    let found = f64::from(sign) * g * unit.map_or(1.0, |unit| unit.1);
+    Err(CalibrationError::field(
+        at,
+        "the acceleration in free flight",
+        format!("about {found:.4} m/s2 along {letter}"),
+        format!(
+            "{:.4} along y, which points up{}",
+            -g,
+            mend((axis, f64::from(sign), unit), manifest.kind)
+        ),
+    ))
+}
+
+/// Factors of lengths: metres first.
+fn factors() -> impl Iterator<Item = f64> {
+    std::iter::once(1.0).chain(LENGTHS.iter().map(|unit| unit.1))
+}
+
+/// What to change where a guess holds.
+fn mend((axis, sign, unit): Guess, kind: Kind) -> String {
+    let mut told = String::new();
+    if axis != 1 {
+        told.push_str(if kind == Kind::PoseTrajectory {
+            "; is another axis up? Turn positions and rotations, or import with \"up\": \"z\" in the map"
+        } else {
+            "; is another axis up? Make the column of heights \"y\" (in the map: \"channels\")"
+        });
+    }
+    if sign > 0.0 {
+        told.push_str(
+            "; do heights grow downwards? Turn their sign (for a flight, \"metres_per_unit\": -1 in the map's table does)",
+        );
+    }
+    if let Some(unit) = unit {
+        told.push_str("; ");
+        told.push_str(&convert("lengths", unit, "metres_per_unit"));
+    }
+    told
+}
+
+/// Refuses samples of an episode at one time, and those too far apart to show a motion. `times`: of one channel, rising.
+pub(super) fn clock(at: &str, times: &[f64]) -> Checked {
+    if let Some(pair) = times.windows(2).find(|pair| pair[0] == pair[1]) {
+        let allowed = "each time once for a channel: leave one of the two rows out, or give recordings that were put together \
+                       episodes' names of their own";
+        let found = format!("{} twice", pair[0]);
+        return Err(CalibrationError::field(at, "t_s", found, allowed));
+    }
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let Some(step) = median(&mut steps).filter(|step| *step >= LONGEST_STEP_S) else {
+        return Ok(());
+    };
+    let unit = if steps.iter().all(|step| *step == 1.0) {
+        "; are frames counted? Divide by the frames a second, or import with \"seconds_per_unit\" in the map's table (1/60 is \
+         0.0166667)"
+            .to_owned()
+    } else {
+        format!("; {}", convert("times", TIMES[0], "seconds_per_unit"))
+    };
+    Err(CalibrationError::field(
+        at,
+        "t_s",
+        format!("rising by {step} from sample to sample"),
+        format!("seconds, less than {LONGEST_STEP_S} from sample to sample{unit}"),
+    ))
+}
