@@ -200,10 +200,10 @@ def write(folder: Path) -> Call:
 
 def heap(count: int) -> dwell.House:
     """A house with so many desks at one place."""
-    edit = dwell.House.open("builtin:studio").edit()
+    edits = dwell.House.open("builtin:studio").edit()
     for k in range(count):
-        edit.add("desk", seed=k % 4, at=(2.0, 0.0, 2.0))
-    return edit.done()
+        edits.add("desk", seed=k % 4, at=(2.0, 0.0, 2.0))
+    return edits.done()
 
 
 def describe() -> Call:
