@@ -111,13 +111,7 @@ pub(crate) fn insert_body(
             .density(density)
             .active_events(ActiveEvents::CONTACT_FORCE_EVENTS)
             .contact_force_event_threshold(place.event_force_n);
-        // Leaves ask which pairs meet; free bodies do so only against agents, who ask themselves.
-        let builder = dress(
-            builder,
-            values.rule(&entry),
-            plan.joint.is_some(),
-            entries.len(),
-        );
+        let builder = dress(builder, values.rule(&entry), place.asks, entries.len());
         engine
             .colliders
             .insert_with_parent(builder, handle, &mut engine.bodies);
@@ -138,6 +132,9 @@ pub(crate) struct BodyPlace<'a> {
     pub(crate) inertia: Option<Inertia>,
     pub(crate) sleeping_allowed: bool,
     pub(crate) event_force_n: f32,
+    /// Whether rapier asks which of its pairs meet: leaves do; free bodies only against agents, who ask themselves, and where there
+    /// are so many pairs that the call may have to stop between them.
+    pub(crate) asks: bool,
 }
 
 /// The density of a collider, kg/m3: none where the body's mass and inertia are given as a whole.

@@ -9,6 +9,7 @@ use crate::joints::{self, Stand};
 use crate::world::{PhysicsWorld, said};
 use dwell_scene::{AgentId, AgentState, Id, JointId, State, Velocity};
 use glam::Vec3;
+use std::collections::BTreeSet;
 
 impl PhysicsWorld {
     /// Adds an agent to the state and the world. It may be placed inside things; it then works its way out.
@@ -93,7 +94,7 @@ impl PhysicsWorld {
                 });
             }
         }
-        let (mut disturbed_roots, mut set) = (Vec::new(), Vec::new());
+        let (mut disturbed_roots, mut set) = (BTreeSet::new(), Vec::new());
         // What is not moved by a joint comes first: joints hang on it.
         for (index, plan) in model.bodies.iter().enumerate() {
             if plan.joint.is_some() {
@@ -136,7 +137,7 @@ impl PhysicsWorld {
                 disturbed = true;
             }
             if disturbed {
-                disturbed_roots.push(self.bodies[index].handle);
+                disturbed_roots.insert(index as u32);
                 set.push((plan.root(), velocity));
             }
         }
@@ -173,7 +174,10 @@ impl PhysicsWorld {
             stands.push(stand);
         }
         for tree in &self.trees {
-            if disturbed_roots.contains(&tree.root()) {
+            if tree
+                .root_body()
+                .is_some_and(|root| disturbed_roots.contains(&root))
+            {
                 for joint in &tree.joints {
                     stands[*joint].anew = true;
                 }
@@ -215,7 +219,8 @@ impl PhysicsWorld {
     /// rounding of their places and velocities, which are f32 in the world (some 5e-7 m at 5 m from the origin, 2e-6 m/s at 20 m/s,
     /// a few times over), and from what bodies say where they do not.
     pub fn measure_joint(&self, state: &State, joint: JointId) -> Option<(f32, f32)> {
-        let found = self.joints.iter().find(|other| other.id == joint)?;
+        let place = self.joints.binary_search_by_key(&joint, |other| other.id);
+        let found = &self.joints[place.ok()?];
         let now = joints::stands(&self.engine, found, said(state, joint));
         Some((now.position as f32, now.velocity as f32))
     }

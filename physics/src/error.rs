@@ -64,6 +64,18 @@ pub enum PhysicsError {
         /// Why it cannot be.
         why: String,
     },
+    /// More than a physics world can hold.
+    #[error("{what}: {found}; physics holds at most {most}. {change}")]
+    TooMany {
+        /// Where it is, and what was counted.
+        what: String,
+        /// How many there are, as far as they were counted.
+        found: String,
+        /// How many are allowed.
+        most: usize,
+        /// What to change.
+        change: &'static str,
+    },
     /// Bytes that are no snapshot of this world.
     #[error("physics snapshot refused: {0}")]
     Snapshot(String),

@@ -22,6 +22,7 @@ use rapier3d::parry::bounding_volume::BoundingVolume;
 use rapier3d::parry::query;
 use rapier3d::pipeline::QueryFilter;
 use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How near to each other things count as touching, m: more than contacts leave between things at rest.
 const TOUCH_M: f32 = 2e-3;
@@ -69,15 +70,33 @@ impl Laid {
         }
     }
 
-    /// Returns whether it was there.
+    /// Returns whether it was there. What it touches is still kept.
     fn remove(&mut self, body: RigidBodyHandle) -> bool {
         let Ok(place) = self.place(body) else {
             return false;
         };
         self.bodies.remove(place);
-        self.contacts.retain(|kept| !kept.bodies.contains(&body));
         true
     }
+
+    /// Forgets what bodies touch that are no longer laid aside.
+    fn forget_contacts(&mut self, of: &Bodies) {
+        if !of.is_empty() {
+            let has = |body: &RigidBodyHandle| of.contains(&body.into_raw_parts());
+            self.contacts.retain(|kept| !kept.bodies.iter().any(has));
+        }
+    }
+}
+
+/// Bodies, as rapier numbers them.
+type Bodies = BTreeSet<(u32, u32)>;
+
+/// What is left to do for a body that wakes.
+enum Waking {
+    /// If it is laid aside, it is no longer, nor is what hangs on it.
+    Free(RigidBodyHandle),
+    /// rapier wakes it.
+    Rouse(RigidBodyHandle),
 }
 
 impl Engine {
@@ -89,24 +108,51 @@ impl Engine {
 
     /// Wakes a body, and what joints hold to it.
     pub(crate) fn wake(&mut self, body: RigidBodyHandle) {
-        if self.laid.remove(body) {
-            if let Some(rigid) = self.bodies.get_mut(body) {
+        self.wake_each([body]);
+    }
+
+    fn wake_each(&mut self, bodies: impl IntoIterator<Item = RigidBodyHandle>) {
+        let mut woken = Bodies::new();
+        for body in bodies {
+            self.free_and_rouse(body, &mut woken);
+        }
+        self.laid.forget_contacts(&woken);
+    }
+
+    /// Wakes a body, and what joints hold to it; notes those that were laid aside, whose contacts are to be forgotten.
+    fn free_and_rouse(&mut self, body: RigidBodyHandle, woken: &mut Bodies) {
+        let mut left = vec![Waking::Rouse(body), Waking::Free(body)];
+        while let Some(next) = left.pop() {
+            let now = match next {
+                Waking::Rouse(now) => {
+                    self.islands.wake_up(&mut self.bodies, now, true);
+                    continue;
+                }
+                Waking::Free(now) => now,
+            };
+            if !self.laid.remove(now) {
+                continue;
+            }
+            woken.insert(now.into_raw_parts());
+            if let Some(rigid) = self.bodies.get_mut(now) {
                 rigid.set_body_type(RigidBodyType::Dynamic, false);
             }
-            for other in self.attached(body) {
-                if self.laid.has(other) {
-                    self.wake(other);
-                }
+            // It is roused after all that hangs on it.
+            if now != body {
+                left.push(Waking::Rouse(now));
             }
+            let attached = self.attached(now).into_iter().rev();
+            left.extend(attached.map(Waking::Free));
         }
-        self.islands.wake_up(&mut self.bodies, body, true);
     }
 
     /// Wakes all that is laid aside.
     pub(crate) fn wake_laid(&mut self) {
+        let mut woken = Bodies::new();
         while let Some(body) = self.laid.bodies.last() {
-            self.wake(*body);
+            self.free_and_rouse(*body, &mut woken);
         }
+        self.laid.forget_contacts(&woken);
     }
 
     /// The bodies that joints hold to a body.
@@ -120,9 +166,7 @@ impl Engine {
     /// Wakes a body that is about to be put somewhere else, and what is laid aside around it.
     pub(crate) fn disturb(&mut self, body: RigidBodyHandle) {
         self.wake(body);
-        for near in self.laid_within(body, TOUCH_M) {
-            self.wake(near);
-        }
+        self.wake_each(self.laid_within(body, TOUCH_M));
     }
 
     /// Wakes what lies within reach of anything that moves in the next step, and what touches that, and so on. `led`: agents,
@@ -134,15 +178,17 @@ impl Engine {
         let awake = self.islands.active_bodies();
         let mut movers: Vec<RigidBodyHandle> = awake.filter(|body| !self.laid.has(*body)).collect();
         movers.extend(led);
+        let mut woken = Bodies::new();
         while let Some(mover) = movers.pop() {
             let Some(reach_m) = self.reach_m(mover) else {
                 continue;
             };
             for near in self.laid_within(mover, reach_m) {
-                self.wake(near);
+                self.free_and_rouse(near, &mut woken);
                 movers.push(near);
             }
         }
+        self.laid.forget_contacts(&woken);
     }
 
     /// How far from where a body is something must be so that it does not meet it in the next step; `None` for what stands.
@@ -184,13 +230,13 @@ impl Engine {
         else {
             return Vec::new();
         };
-        let mut near: Vec<RigidBodyHandle> = Vec::new();
+        let mut near: BTreeMap<(u32, u32), RigidBodyHandle> = BTreeMap::new();
         let queries = self.queries(QueryFilter::default());
         for (_, other) in queries.intersect_aabb_conservative(around) {
             let Some(parent) = other.parent().filter(|parent| self.laid.has(*parent)) else {
                 continue;
             };
-            if near.contains(&parent) || parent == body {
+            if near.contains_key(&parent.into_raw_parts()) || parent == body {
                 continue;
             }
             let there = other.compute_aabb();
@@ -205,40 +251,55 @@ impl Engine {
                     .is_ok_and(|gap| gap.distance <= reach_m)
             });
             if meets {
-                near.push(parent);
+                near.insert(parent.into_raw_parts(), parent);
             }
         }
-        near.sort_unstable_by_key(|body| body.into_raw_parts());
-        near
+        near.into_values().collect()
     }
 
-    /// Takes out those that touch a free body that stays one, or hang on one: rapier wakes it when what it touches changes.
+    /// Takes out those that touch a free body that stays one, or hang on one: rapier wakes it when what it touches changes. Those
+    /// then stay free themselves.
     fn leave_what_touches_others(&self, asleep: &mut Vec<RigidBodyHandle>) {
-        loop {
-            let stays = |body: RigidBodyHandle| {
-                let rigid = self.bodies.get(body);
-                rigid.is_some_and(RigidBody::is_dynamic) && !asleep.contains(&body)
-            };
-            let touches_none = |body: &RigidBodyHandle| {
-                let Some(rigid) = self.bodies.get(*body) else {
-                    return false;
-                };
-                let hangs = self.attached(*body).into_iter().any(stays);
-                !hangs
-                    && self.pairs_of(rigid).all(|pair| {
-                        let parents = [pair.collider1, pair.collider2].map(|collider| {
-                            self.colliders.get(collider).and_then(Collider::parent)
-                        });
-                        let free = parents.into_iter().flatten().any(stays);
-                        !free || !pair.has_any_active_contact()
-                    })
-            };
-            let kept: Vec<RigidBodyHandle> = asleep.iter().copied().filter(touches_none).collect();
-            if kept.len() == asleep.len() {
-                return;
-            }
-            *asleep = kept;
+        let mut laid: Bodies = asleep.iter().map(|body| body.into_raw_parts()).collect();
+        let stays = |laid: &Bodies, body: &RigidBodyHandle| {
+            let rigid = self.bodies.get(*body);
+            rigid.is_some_and(RigidBody::is_dynamic) && !laid.contains(&body.into_raw_parts())
+        };
+        let touches_one = |body: &&RigidBodyHandle| {
+            let mut others = self.touching_or_attached(**body).into_iter();
+            others.any(|other| stays(&laid, &other))
+        };
+        let mut left: Vec<RigidBodyHandle> = asleep.iter().filter(touches_one).copied().collect();
+        for body in &left {
+            laid.remove(&body.into_raw_parts());
         }
+        while let Some(body) = left.pop() {
+            for other in self.touching_or_attached(body) {
+                if laid.remove(&other.into_raw_parts()) {
+                    left.push(other);
+                }
+            }
+        }
+        asleep.retain(|body| laid.contains(&body.into_raw_parts()));
+    }
+
+    /// The bodies that one touches, and those that joints hold to it.
+    fn touching_or_attached(&self, body: RigidBodyHandle) -> Vec<RigidBodyHandle> {
+        let mut others = self.attached(body);
+        let Some(rigid) = self.bodies.get(body) else {
+            return others;
+        };
+        let parent = |collider| self.colliders.get(collider).and_then(Collider::parent);
+        for pair in self.pairs_of(rigid) {
+            if pair.has_any_active_contact() {
+                others.extend(
+                    [pair.collider1, pair.collider2]
+                        .into_iter()
+                        .filter_map(parent),
+                );
+            }
+        }
+        others
     }
 
     /// Gives back the room of pairs that are gone, which rapier keeps for the next ones.
@@ -309,7 +370,11 @@ impl PhysicsWorld {
         }
         asleep.sort_unstable_by_key(|body| body.into_raw_parts());
         let kept = self.touching_now().into_iter();
-        let kept = kept.filter(|(bodies, _)| bodies.iter().any(|body| asleep.contains(body)));
+        let sleeps = |body: &RigidBodyHandle| {
+            let key = |body: &RigidBodyHandle| body.into_raw_parts();
+            asleep.binary_search_by_key(&key(body), key).is_ok()
+        };
+        let kept = kept.filter(|(bodies, _)| bodies.iter().any(sleeps));
         let kept = kept.map(|(bodies, contact)| KeptContact { bodies, contact });
         self.engine.laid.contacts.extend(kept);
         self.engine.set_aside(&asleep);

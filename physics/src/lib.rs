@@ -35,6 +35,7 @@ mod inertia;
 mod joints;
 mod laid;
 pub mod laws;
+mod limits;
 mod lost;
 mod model;
 mod motors;

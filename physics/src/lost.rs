@@ -50,11 +50,10 @@ impl PhysicsWorld {
         let model = self.model.clone();
         for handle in lost {
             self.engine.put_back(handle);
-            let mut plans = model.bodies.iter().zip(&self.bodies);
-            let Some((plan, _)) = plans.find(|(_, body)| body.handle == handle) else {
+            let Some(index) = self.body_of(handle) else {
                 continue;
             };
-            let object = model.house.parts[plan.root()].object;
+            let object = model.bodies[index].object;
             let name = self.call(object);
             tracing::warn!(object = %model.house.objects[object].name, "the solver lost a body");
             self.notices.push(Notice {

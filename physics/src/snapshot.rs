@@ -16,6 +16,7 @@ use crate::error::PhysicsError;
 use crate::joints::{self, Drives, Pull};
 use crate::laid::Laid;
 use crate::laws::{self, Installed};
+use crate::limits::Crowding;
 use crate::world::{Assembly, PhysicsWorld, Weights, assemble, pose_of};
 use dwell_scene::columns;
 use dwell_scene::packing::{pack_within, unpack};
@@ -228,7 +229,7 @@ impl PhysicsWorld {
             (place, Hold::Frozen)
         };
         let gravity = state.gravity_m_s2();
-        let sizes = (gravity, state.agents.len());
+        let sizes = (gravity, state.agents.len(), Crowding::Few);
         let mut built = assemble(&model, &self.settings, values, sizes, place, &weights);
         let mut agents = Vec::with_capacity(state.agents.len());
         for (id, agent) in state.agents.iter_ids() {

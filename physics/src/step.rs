@@ -10,7 +10,7 @@ use crate::joints::{self, Drive, Drivers, Outlook, Progress};
 use crate::laws::{Acts, JointLoad, LinkStep, Push, Resistance, Stage};
 use crate::motors;
 use crate::world::{PhysicsWorld, said};
-use dwell_scene::{Aabb, AgentState, JointCommand, JointId, State};
+use dwell_scene::{Aabb, AgentState, JointCommand, JointId, State, interrupt};
 use glam::Vec3;
 
 impl PhysicsWorld {
@@ -52,6 +52,7 @@ impl PhysicsWorld {
         let mut ways = Way::all(state);
         let mut placed = false;
         for substep in 0..self.settings.steps_per_control {
+            interrupt::check();
             self.move_agents(state, controls, &mut ways, substep == 0);
             self.carry_held(state);
             self.shove_on(state);

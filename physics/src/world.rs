@@ -13,6 +13,7 @@ use crate::error::PhysicsError;
 use crate::inertia::{self, Inertia};
 use crate::joints::{self, Coordinate, Drives, Joint, Pull, Tree};
 use crate::laws::{self, Installed};
+use crate::limits::{self, Crowding};
 use crate::model::PhysicsModel;
 use crate::report::StartReport;
 use crate::start::Start;
@@ -99,12 +100,13 @@ pub(crate) struct Assembly {
 /// The bodies that never move: the house, and what joints hang on.
 const STANDING: usize = 2;
 
-/// Inserts the pieces of a house: statics, then bodies in order, at the given places.
+/// Inserts the pieces of a house: statics, then bodies in order, at the given places. `sizes`: gravity, m/s², how many agents will
+/// come, and how many pairs the pieces make.
 pub(crate) fn assemble(
     model: &PhysicsModel,
     settings: &Settings,
     values: Dress<'_>,
-    (gravity_m_s2, agents): (f32, usize),
+    (gravity_m_s2, agents, crowding): (f32, usize, Crowding),
     places: impl Fn(usize) -> (RapierPose, Hold),
     weights: &Weights,
 ) -> Assembly {
@@ -128,6 +130,7 @@ pub(crate) fn assemble(
             mass_factors: &weights.factors[index],
             inertia: weights.altered[index],
             sleeping_allowed: settings.config.sleeping,
+            asks: plan.joint.is_some() || crowding == Crowding::Many,
             event_force_n: settings.event_force_n(),
         };
         bodies.push(body::insert_body(
@@ -153,7 +156,7 @@ impl PhysicsWorld {
     ///
     /// # Errors
     /// [`PhysicsError::Range`] for a setting out of range and for an agent's body that has room nowhere in the house, [`PhysicsError::ForeignState`] for another house's state,
-    /// [`PhysicsError::LawTarget`] for a law without its target.
+    /// [`PhysicsError::LawTarget`] for a law without its target, [`PhysicsError::TooMany`] for more bodies, joints or pairs than a world holds.
     #[expect(
         clippy::needless_pass_by_value,
         reason = "the shape of every engine's entry point"
@@ -181,6 +184,7 @@ impl PhysicsWorld {
         let laws = laws::install(&model, state, &[])?;
         let weights = Weights::new(&model, state, &laws);
         align_joints(&model, state);
+        let crowding = limits::check(&model, state)?;
         let places = |index: usize| {
             let root = model.bodies[index].root();
             (to_rapier(&state.part_pose[root]), Hold::Free)
@@ -191,7 +195,7 @@ impl PhysicsWorld {
             table: &table,
             laws: &laws,
         };
-        let sizes = (gravity, state.agents.len());
+        let sizes = (gravity, state.agents.len(), crowding);
         let assembly = assemble(&model, &settings, values, sizes, places, &weights);
         let mut world = Self {
             holds: vec![Hold::Free; model.bodies.len()],
@@ -221,7 +225,7 @@ impl PhysicsWorld {
             notices: Vec::new(),
             motion: Vec::new(),
         };
-        let mut report = world.begin(state, assembly.anchor);
+        let mut report = world.begin(state, assembly.anchor)?;
         let agents: Vec<AgentState> = state.agents.iter().copied().collect();
         for agent in agents {
             agent.body.check()?;
@@ -238,7 +242,11 @@ impl PhysicsWorld {
     }
 
     /// Resolves overlaps, hangs joints and shuts doors.
-    fn begin(&mut self, state: &mut State, anchor: RigidBodyHandle) -> StartReport {
+    fn begin(
+        &mut self,
+        state: &mut State,
+        anchor: RigidBodyHandle,
+    ) -> Result<StartReport, PhysicsError> {
         let mut report = StartReport {
             bodies: self.bodies.len(),
             static_pieces: self.model.statics.len(),
@@ -249,6 +257,7 @@ impl PhysicsWorld {
         let model = self.model.clone();
         self.joints = joints::insert(&mut self.engine, &model, &self.bodies, anchor, state);
         self.trees = joints::trees(&self.joints, &model, anchor);
+        limits::check_trees(&model.house, &self.joints, &self.trees)?;
         self.pulls = vec![None; self.joints.len()];
         self.flush();
         let start = Start {
@@ -258,7 +267,7 @@ impl PhysicsWorld {
             bodies: &self.bodies,
             settings: &self.settings,
         };
-        let excluded = start.passing(&mut report);
+        let excluded = start.passing(&mut report)?;
         let resolved = start.resolve(&mut report);
         self.excluded = excluded;
         for (index, resolved) in resolved.iter().enumerate() {
@@ -283,7 +292,7 @@ impl PhysicsWorld {
             }
         }
         self.forget_pairs_of_what_stands();
-        report
+        Ok(report)
     }
 
     /// Brings what hangs on joints along where what it hangs on was moved.
@@ -296,12 +305,10 @@ impl PhysicsWorld {
         });
         let stands: Vec<joints::Stand> = stands.collect();
         for tree in &self.trees {
-            let root = tree.root();
-            let moved = (0..self.bodies.len()).any(|index| {
-                let start = to_rapier(&state.part_pose[self.model.bodies[index].root()]);
-                self.bodies[index].handle == root
-                    && pose_of(&self.engine, &self.bodies[index])
-                        != Some(crate::convert::from_rapier(&start))
+            let moved = tree.root_body().is_some_and(|body| {
+                let body = body as usize;
+                let start = to_rapier(&state.part_pose[self.model.bodies[body].root()]);
+                pose_of(&self.engine, &self.bodies[body]) != Some(from_rapier(&start))
             });
             if moved {
                 joints::place(&mut self.engine, &self.joints, tree, &stands);
@@ -353,6 +360,16 @@ impl PhysicsWorld {
             rigid.is_some_and(|rigid| rigid.is_dynamic() && !rigid.is_sleeping())
         };
         self.bodies.iter().filter(awake).count()
+    }
+
+    /// The number of the body that rapier knows by a handle.
+    pub(crate) fn body_of(&self, handle: RigidBodyHandle) -> Option<usize> {
+        // They were inserted in order.
+        let key = |body: &Body| body.handle.into_raw_parts();
+        let place = self
+            .bodies
+            .binary_search_by_key(&handle.into_raw_parts(), key);
+        place.ok()
     }
 
     pub(crate) fn check_state(&self, state: &State) -> Result<(), PhysicsError> {

@@ -5,6 +5,7 @@ use super::friction::Kept;
 use super::rolling;
 use super::substances::ContactTable;
 use crate::laws::{self, ContactValues, Installed, Side, Touch};
+use dwell_scene::interrupt;
 use dwell_scene::material::PairContact;
 use dwell_scene::{AgentId, House};
 use glam::{Quat, Vec3};
@@ -92,6 +93,7 @@ pub(crate) struct Hooks<'a> {
 
 impl PhysicsHooks for Hooks<'_> {
     fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
+        interrupt::check();
         let a = entry_index(&context.colliders[context.collider1]);
         let b = entry_index(&context.colliders[context.collider2]);
         self.excluded

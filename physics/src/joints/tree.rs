@@ -3,7 +3,9 @@
 use super::Joint;
 use crate::engine::Engine;
 use crate::model::PhysicsModel;
+use dwell_scene::JointId;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
+use std::collections::BTreeMap;
 
 /// Joints whose efforts are found together.
 #[derive(Clone, Debug)]
@@ -26,6 +28,11 @@ impl Tree {
         self.root
     }
 
+    /// The number of that body's plan in the model; `None`: it never moves.
+    pub(crate) fn root_body(&self) -> Option<u32> {
+        self.root_body
+    }
+
     /// The number in the model of a root that is free to answer what its joints do; they push back on it.
     pub(crate) fn answering_root(&self, engine: &Engine, joints: &[Joint]) -> Option<u32> {
         let dynamic = |handle| engine.bodies.get(handle).is_some_and(RigidBody::is_dynamic);
@@ -39,65 +46,86 @@ impl Tree {
 /// body that may move, and where one follows the other.
 pub(crate) fn trees(joints: &[Joint], model: &PhysicsModel, anchor: RigidBodyHandle) -> Vec<Tree> {
     let house = &model.house;
-    let mut group: Vec<usize> = (0..joints.len()).collect();
-    let merge = |group: &mut Vec<usize>, a: usize, b: usize| {
-        let (from, to) = (group[a].max(group[b]), group[a].min(group[b]));
-        for g in group.iter_mut().filter(|g| **g == from) {
-            *g = to;
-        }
+    let key = |handle: RigidBodyHandle| handle.into_raw_parts();
+    let numbered = || joints.iter().enumerate();
+    let by_child: BTreeMap<_, usize> = numbered()
+        .map(|(k, joint)| (key(joint.child_handle), k))
+        .collect();
+    let by_id: BTreeMap<JointId, usize> = numbered().map(|(k, joint)| (joint.id, k)).collect();
+    let above = |joint: &Joint| by_child.get(&key(joint.parent_handle)).copied();
+    let leader = |joint: &Joint| {
+        let mimic = house.joints[joint.id].mimic?;
+        by_id.get(&mimic.leader).copied()
     };
-    for (a, joint) in joints.iter().enumerate() {
-        let leader = house.joints[joint.id].mimic.map(|mimic| mimic.leader);
-        for (b, other) in joints.iter().enumerate() {
-            let hangs = joint.parent_handle == other.child_handle;
-            let shares =
-                joint.parent_handle != anchor && joint.parent_handle == other.parent_handle;
-            if hangs || shares || leader == Some(other.id) {
-                merge(&mut group, a, b);
-            }
+    let mut groups = Groups::new(joints.len());
+    let mut first_on: BTreeMap<_, usize> = BTreeMap::new();
+    for (k, joint) in numbered() {
+        let sharing = (joint.parent_handle != anchor)
+            .then(|| *first_on.entry(key(joint.parent_handle)).or_insert(k));
+        for other in [above(joint), leader(joint), sharing].into_iter().flatten() {
+            groups.join(k, other);
         }
     }
-    let mut trees = Vec::new();
-    for first in 0..joints.len() {
-        if group[first] != first {
-            continue;
+    // How many joints stand between each and the root; a part stands after the one that it hangs on.
+    let mut depths = vec![0_usize; joints.len()];
+    let mut by_part: Vec<usize> = (0..joints.len()).collect();
+    by_part.sort_by_key(|k| house.joints[joints[*k].id].child);
+    for k in by_part {
+        depths[k] = above(&joints[k]).map_or(0, |above| depths[above] + 1);
+    }
+    let mut orders: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for k in 0..joints.len() {
+        orders.entry(groups.first(k)).or_default().push(k);
+    }
+    let mut places = vec![0_usize; joints.len()];
+    let tree = |mut order: Vec<usize>| {
+        // Those of a depth as the house has them.
+        order.sort_by_key(|k| depths[*k]);
+        for (place, k) in order.iter().enumerate() {
+            places[*k] = place;
         }
-        let mut left: Vec<usize> = (0..joints.len()).filter(|k| group[*k] == first).collect();
-        let mut order: Vec<usize> = Vec::with_capacity(left.len());
-        while !left.is_empty() {
-            // Parents stand before children in the house, so every round finds at least one.
-            let moved: Vec<RigidBodyHandle> =
-                left.iter().map(|k| joints[*k].child_handle).collect();
-            let ready = |k: &usize| !moved.contains(&joints[*k].parent_handle);
-            let next: Vec<usize> = left.iter().copied().filter(ready).collect();
-            if next.is_empty() {
-                break;
-            }
-            left.retain(|k| !next.contains(k));
-            order.extend(next);
-        }
-        let place =
-            |wanted: &dyn Fn(&Joint) -> bool| order.iter().position(|k| wanted(&joints[*k]));
-        let parents = order
-            .iter()
-            .map(|k| place(&|other| other.child_handle == joints[*k].parent_handle))
-            .collect();
-        let follows = order
-            .iter()
-            .map(|k| {
-                let mimic = house.joints[joints[*k].id].mimic?;
-                place(&|other| other.id == mimic.leader)
-            })
-            .collect();
+        let place_of = |other: Option<usize>| other.map(|other| places[other]);
         let first = &joints[order[0]];
         let root_part = house.joints[first.id].parent;
-        trees.push(Tree {
+        Tree {
             root: first.parent_handle,
             root_body: root_part.and_then(|part| model.body_of_part[part]),
+            parents: order.iter().map(|k| place_of(above(&joints[*k]))).collect(),
+            follows: order
+                .iter()
+                .map(|k| place_of(leader(&joints[*k])))
+                .collect(),
             joints: order,
-            parents,
-            follows,
-        });
+        }
+    };
+    orders.into_values().map(tree).collect()
+}
+
+/// Numbers in groups; each group is known by its first one.
+struct Groups {
+    /// Of each, one of its group that is not behind it.
+    before: Vec<usize>,
+}
+
+impl Groups {
+    /// Each by itself.
+    fn new(count: usize) -> Self {
+        Self {
+            before: (0..count).collect(),
+        }
     }
-    trees
+
+    fn first(&mut self, mut k: usize) -> usize {
+        while self.before[k] != k {
+            // Ways get shorter with each use.
+            self.before[k] = self.before[self.before[k]];
+            k = self.before[k];
+        }
+        k
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.first(a), self.first(b));
+        self.before[a.max(b)] = a.min(b);
+    }
 }

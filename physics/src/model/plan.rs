@@ -246,10 +246,10 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
     let mut body_of_part = IdVec::filled(None, house.parts.len());
     let mut stand_ins = Vec::new();
     for (object_id, object) in house.objects.iter_ids() {
-        interrupt::check();
         let mut root: Option<usize> = None;
         let first_body = bodies.len();
         for id in object.parts() {
+            interrupt::check();
             let part = &house.parts[id];
             let joint = joint_of_part[id];
             let stands = part.fixed || (joint.is_none() && object.mobility != Mobility::Movable);

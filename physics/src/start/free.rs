@@ -1,7 +1,8 @@
 //! Ways out of an overlap: a push, a lift, others that make way, a place near by.
 
 use super::overlap::Overlap;
-use super::{CLEARANCE_M, Placed, Resolved, Start};
+use super::placed::{Placed, Standing};
+use super::{CLEARANCE_M, Resolved, Start};
 use crate::body::Hold;
 use crate::contact::entry_index;
 use crate::convert::from_rapier;
@@ -32,7 +33,7 @@ impl Start<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &[Placed],
+        placed: &Standing,
     ) -> Option<RapierPose> {
         let lifted = || {
             let place = self.lift(plan, start, placed)?;
@@ -47,7 +48,7 @@ impl Start<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &[Placed],
+        placed: &Standing,
     ) -> Option<RapierPose> {
         if self.has_floor(plan, &start) {
             return None;
@@ -60,7 +61,7 @@ impl Start<'_> {
         (self.settings.config.max_start_shift_m, MOST_PUSHES)
     }
 
-    fn lift(&self, plan: &BodyPlan, start: RapierPose, placed: &[Placed]) -> Option<RapierPose> {
+    fn lift(&self, plan: &BodyPlan, start: RapierPose, placed: &Standing) -> Option<RapierPose> {
         let bound = self.settings.config.max_start_shift_m;
         (1..=LIFTS).find_map(|k| {
             let mut place = start;
@@ -75,7 +76,7 @@ impl Start<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &[Placed],
+        placed: &Standing,
         limits: (f32, usize),
     ) -> Option<RapierPose> {
         let push = |way| {
@@ -95,7 +96,7 @@ impl Start<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &[Placed],
+        placed: &Standing,
         (way, (bound, most)): (Vec3, (f32, usize)),
     ) -> Option<RapierPose> {
         let mut place = start;
@@ -121,7 +122,7 @@ impl Start<'_> {
         None
     }
 
-    fn is_clear(&self, plan: &BodyPlan, place: &RapierPose, placed: &[Placed]) -> bool {
+    fn is_clear(&self, plan: &BodyPlan, place: &RapierPose, placed: &Standing) -> bool {
         let overlap = self.overlap(plan, place, placed);
         overlap.is_none_or(|overlap| !self.counts(&overlap)) && from_rapier(place).is_valid()
     }
@@ -142,43 +143,67 @@ impl Start<'_> {
         &self,
         index: usize,
         resolved: &mut [Resolved],
-        placed: &[Placed],
+        placed: &mut Standing,
     ) -> Option<Vec<(usize, Overlap)>> {
         let plan = &self.model.bodies[index];
         let start = resolved[index].place;
-        let mut standing = Vec::with_capacity(placed.len());
-        let mut others: Vec<(usize, Overlap)> = Vec::new();
-        for one in placed {
+        let mut others: Vec<(Placed, Overlap)> = Vec::new();
+        for one in placed.near(&plan.bounds(&start)) {
             let other = one.body as usize;
             let movable =
                 self.model.bodies[other].joint.is_none() && resolved[other].hold == Hold::Free;
-            let found = self.overlap_of_two(plan, &start, one);
-            match found.filter(|overlap| movable && self.counts(overlap)) {
-                Some(overlap) => others.push((other, overlap)),
-                None => standing.push(*one),
-            }
+            let found = self.overlap_of_two(plan, &start, &one);
+            others.extend(
+                found
+                    .filter(|overlap| movable && self.counts(overlap))
+                    .map(|overlap| (one, overlap)),
+            );
         }
         if others.is_empty() {
             return None;
         }
-        let at = |place, hold| Resolved { place, hold };
-        let place = self.pushed(plan, start, &standing, self.limits())?;
-        standing.push(self.placed(index, &at(place, Hold::Free)));
-        let mut ways = Vec::with_capacity(others.len());
         for (other, _) in &others {
-            let plan = &self.model.bodies[*other];
-            let way = at(
-                self.pushed(plan, self.place(*other), &standing, self.limits())?,
-                Hold::Free,
-            );
-            standing.push(self.placed(*other, &way));
-            ways.push((*other, way));
+            placed.take(other.body as usize);
         }
+        let ways = self.ways(index, start, &others, placed);
+        placed.take(index);
+        for (other, _) in &others {
+            placed.put_back(*other);
+        }
+        let (place, ways) = ways?;
         resolved[index].place = place;
-        for (other, way) in ways {
-            resolved[other] = way;
+        for ((other, _), way) in others.iter().zip(ways) {
+            let other = other.body as usize;
+            resolved[other].place = way;
+            placed.put(self.model, other, way);
         }
-        Some(others)
+        let told = others.into_iter();
+        Some(
+            told.map(|(other, overlap)| (other.body as usize, overlap))
+                .collect(),
+        )
+    }
+
+    /// Where a body goes from `start`, and where the others go that it overlaps there, each out of the way of those before.
+    fn ways(
+        &self,
+        index: usize,
+        start: RapierPose,
+        others: &[(Placed, Overlap)],
+        standing: &mut Standing,
+    ) -> Option<(RapierPose, Vec<RapierPose>)> {
+        let plan = &self.model.bodies[index];
+        let place = self.pushed(plan, start, standing, self.limits())?;
+        standing.put(self.model, index, place);
+        let mut ways = Vec::with_capacity(others.len());
+        for (other, _) in others {
+            let other = other.body as usize;
+            let plan = &self.model.bodies[other];
+            let way = self.pushed(plan, self.place(other), standing, self.limits())?;
+            standing.put(self.model, other, way);
+            ways.push(way);
+        }
+        Some((place, ways))
     }
 
     /// The nearest place beside a body where it overlaps nothing; never behind a wall.
@@ -186,7 +211,7 @@ impl Start<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &[Placed],
+        placed: &Standing,
     ) -> Option<RapierPose> {
         let bound = self.settings.config.max_start_shift_m;
         (0..DISTANCES * DIRECTIONS).find_map(|k| {

@@ -3,28 +3,26 @@
 mod free;
 mod overlap;
 mod passing;
+mod placed;
 
 use crate::body::{Body, Hold};
 use crate::config::Settings;
 use crate::contact::Entry;
 use crate::engine::Engine;
-use crate::model::PhysicsModel;
+use crate::model::{BodyPlan, PhysicsModel};
 use crate::report::{FrozenObject, MovedObject, StartReport};
-use dwell_scene::{Aabb, ObjectId};
+use dwell_scene::ObjectId;
 use overlap::Overlap;
+use placed::Standing;
 use rapier3d::math::Pose as RapierPose;
 use std::collections::BTreeMap;
 
 /// Gap that a resolved overlap is left with, m.
 const CLEARANCE_M: f32 = 5e-4;
 
-/// A thing that stands where it is while others are resolved.
-#[derive(Clone, Copy)]
-struct Placed {
-    body: u32,
-    bounds: Aabb,
-    place: RapierPose,
-}
+/// Most things that one may be in so that a way out of them is looked for: none is found within some centimetres, and each
+/// try asks all of them.
+const MOST_OVERLAPPED: usize = 32;
 
 pub(crate) struct Start<'a> {
     pub(crate) engine: &'a Engine,
@@ -60,10 +58,10 @@ impl Start<'_> {
             .collect();
         let bounds = |body: usize| self.model.bodies[body].bounds(&resolved[body].place);
         let mut order: Vec<(f32, usize)> = Vec::new();
-        let mut placed = Vec::new();
+        let mut placed = Standing::default();
         for (index, plan) in self.model.bodies.iter().enumerate() {
             if plan.joint.is_some() {
-                placed.push(self.placed(index, &resolved[index]));
+                placed.put(self.model, index, resolved[index].place);
             } else {
                 order.push((bounds(index).min.y, index));
             }
@@ -84,15 +82,13 @@ impl Start<'_> {
             if let Some(overlap) = found.filter(|overlap| self.counts(overlap)) {
                 report.overlaps += 1;
                 deepest.insert(index, overlap);
-                if let Some(place) = self.free(plan, start, &placed) {
+                if self.is_crowded(plan, &start, &placed) {
+                    resolved[index].hold = Hold::Frozen;
+                } else if let Some(place) = self.free(plan, start, &placed) {
                     resolved[index].place = place;
-                } else if let Some(others) = self.make_way(index, &mut resolved, &placed) {
+                } else if let Some(others) = self.make_way(index, &mut resolved, &mut placed) {
                     for (other, overlap) in others {
                         deepest.entry(other).or_insert(overlap);
-                        let again = |one: &&mut Placed| one.body as usize == other;
-                        if let Some(one) = placed.iter_mut().find(again) {
-                            *one = self.placed(other, &resolved[other]);
-                        }
                     }
                 } else if let Some(place) = self
                     .search(plan, start, &placed)
@@ -103,18 +99,22 @@ impl Start<'_> {
                     resolved[index].hold = Hold::Frozen;
                 }
             }
-            placed.push(self.placed(index, &resolved[index]));
+            placed.put(self.model, index, resolved[index].place);
         }
         self.tell(&deepest, &resolved, report);
         resolved
     }
 
-    fn placed(&self, body: usize, at: &Resolved) -> Placed {
-        Placed {
-            body: body as u32,
-            bounds: self.model.bodies[body].bounds(&at.place),
-            place: at.place,
-        }
+    /// Whether a body is in so many others that no way out of them is looked for.
+    fn is_crowded(&self, plan: &BodyPlan, place: &RapierPose, placed: &Standing) -> bool {
+        let near = placed.near(&plan.bounds(place));
+        let found = near
+            .iter()
+            .filter_map(|other| self.overlap_of_two(plan, place, other));
+        found
+            .filter(|overlap| self.counts(overlap))
+            .nth(MOST_OVERLAPPED)
+            .is_some()
     }
 
     /// What became of the bodies that overlapped something.

@@ -1,6 +1,7 @@
 //! How deep a body is in others.
 
-use super::{Placed, Start};
+use super::Start;
+use super::placed::{Placed, Standing};
 use crate::contact::{Toucher, entry_index};
 use crate::model::{BodyPlan, Owner, Piece, shapes};
 use dwell_scene::interrupt;
@@ -24,7 +25,7 @@ impl Start<'_> {
         &self,
         plan: &BodyPlan,
         place: &RapierPose,
-        placed: &[Placed],
+        placed: &Standing,
     ) -> Option<Overlap> {
         interrupt::check();
         let mut found = Vec::new();
@@ -54,13 +55,13 @@ impl Start<'_> {
                 ));
             }
         }
-        for other in placed {
-            found.extend(self.overlap_of_two(plan, place, other));
+        for other in placed.near(&plan.bounds(place)) {
+            found.extend(self.overlap_of_two(plan, place, &other));
         }
         deepest(found.into_iter())
     }
 
-    /// The deepest overlap of a body under a pose with another one.
+    /// The deepest overlap of a body under a pose with another one whose box it meets.
     pub(super) fn overlap_of_two(
         &self,
         plan: &BodyPlan,
@@ -69,7 +70,7 @@ impl Start<'_> {
     ) -> Option<Overlap> {
         let obstacles = &self.model.bodies[other.body as usize];
         // A lid may lie on its own pot, and a robot's trunk is not moved away from its own links.
-        if obstacles.object == plan.object || !other.bounds.intersects(&plan.bounds(place)) {
+        if obstacles.object == plan.object {
             return None;
         }
         let of_piece = |piece: &Piece| {

@@ -3,13 +3,15 @@
 use super::overlap::depth;
 use super::{CLEARANCE_M, Start};
 use crate::contact::{Entry, Excluded, Toucher, entry_index};
-use crate::model::{BodyPlan, Owner, shapes};
+use crate::error::PhysicsError;
+use crate::limits;
+use crate::model::{BodyPlan, Owner, PhysicsModel, shapes};
 use crate::report::{PassingJoint, StartReport};
 use dwell_scene::interrupt;
 use dwell_scene::{Mobility, ObjectId};
 use rapier3d::parry::query;
 use rapier3d::pipeline::QueryFilter;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How near to a leaf something stands that it passes through, m.
 const LEAF_MARGIN_M: f32 = 0.01;
@@ -17,12 +19,19 @@ const LEAF_MARGIN_M: f32 = 0.01;
 impl Start<'_> {
     /// What the leaves of joints pass through: their own object, and what they overlap where they stand. A robot's links
     /// pass through fewer things: the links they are joined with, and what they are inside of at the start.
-    pub(crate) fn passing(&self, report: &mut StartReport) -> Excluded {
+    ///
+    /// # Errors
+    /// [`PhysicsError::TooMany`] where that is too much to remember.
+    pub(crate) fn passing(&self, report: &mut StartReport) -> Result<Excluded, PhysicsError> {
         let mut pairs: BTreeSet<(u32, u32)> = BTreeSet::new();
+        let house = &self.model.house;
+        let driven = house.joints.iter().filter(|joint| joint.servo.is_some());
+        let robots: BTreeSet<ObjectId> = driven.map(|joint| joint.object).collect();
+        let families = Families::new(self.model, self.entries);
         for (index, plan) in self.model.bodies.iter().enumerate() {
             let Some(joint) = plan.joint else { continue };
             interrupt::check();
-            let robot = self.is_robot(plan.object);
+            let robot = robots.contains(&plan.object);
             let mut through = BTreeSet::new();
             let place = self.place(index);
             for piece in &plan.pieces {
@@ -75,14 +84,21 @@ impl Start<'_> {
                 }
             }
             // Its own object's other parts may come near only later.
-            for (entry, other) in self.entries.iter().enumerate() {
-                if other.body != Some(index as u32)
-                    && self.same_object(other, plan)
-                    && (!robot || self.are_joined(index, other))
-                {
-                    pairs.insert((index as u32, entry as u32));
-                }
+            let number = index as u32;
+            if robot {
+                pairs.extend(
+                    families
+                        .joined(self.model, number)
+                        .map(|entry| (number, entry)),
+                );
+            } else {
+                pairs.extend(
+                    families
+                        .beside(plan.object, number)
+                        .map(|entry| (number, entry)),
+                );
             }
+            limits::check_passing(&self.model.house, plan.object, pairs.len())?;
             if !through.is_empty() {
                 report.passing.push(PassingJoint {
                     joint,
@@ -90,32 +106,15 @@ impl Start<'_> {
                 });
             }
         }
-        Excluded {
+        Ok(Excluded {
             entries: pairs.into_iter().collect(),
             carriers: Vec::new(),
-        }
-    }
-
-    /// Whether an object has motors of its own.
-    fn is_robot(&self, object: ObjectId) -> bool {
-        let mut joints = self.model.house.joints.iter();
-        joints.any(|joint| joint.object == object && joint.servo.is_some())
+        })
     }
 
     /// Whether a body's object stands on its own feet.
     fn is_free(&self, plan: &BodyPlan) -> bool {
         self.model.house.objects[plan.object].mobility == Mobility::Movable
-    }
-
-    /// Whether a joint joins a body with another one, or with what of its own object never moves.
-    fn are_joined(&self, body: usize, other: &Entry) -> bool {
-        let parent = |body: usize| {
-            let joint = self.model.bodies[body].joint?;
-            let part = self.model.house.joints[joint].parent;
-            Some(part.and_then(|part| self.model.body_of_part[part]))
-        };
-        let other_parent = other.body.and_then(|other| parent(other as usize));
-        parent(body) == Some(other.body) || other_parent == Some(Some(body as u32))
     }
 
     fn same_object(&self, entry: &Entry, plan: &BodyPlan) -> bool {
@@ -133,4 +132,62 @@ impl Start<'_> {
         };
         owner.name(&self.model.house)
     }
+}
+
+/// The pieces of objects with joints, by object and body (`None`: those that never move), and who hangs on whom.
+struct Families {
+    pieces: BTreeMap<(ObjectId, Option<u32>), Vec<u32>>,
+    children: BTreeMap<u32, Vec<u32>>,
+}
+
+impl Families {
+    fn new(model: &PhysicsModel, entries: &[Entry]) -> Self {
+        let joints = model.house.joints.iter();
+        let jointed: BTreeSet<ObjectId> = joints.map(|joint| joint.object).collect();
+        let mut pieces: BTreeMap<_, Vec<u32>> = BTreeMap::new();
+        for (number, entry) in entries.iter().enumerate() {
+            if let Some(Toucher::Part(part)) = entry.toucher {
+                let object = model.house.parts[part].object;
+                if jointed.contains(&object) {
+                    let own = pieces.entry((object, entry.body)).or_default();
+                    own.push(number as u32);
+                }
+            }
+        }
+        let mut children: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (index, plan) in model.bodies.iter().enumerate() {
+            if let Some(parent) = parent(model, plan).flatten() {
+                children.entry(parent).or_default().push(index as u32);
+            }
+        }
+        Self { pieces, children }
+    }
+
+    /// The pieces of an object but those of one of its bodies.
+    fn beside(&self, object: ObjectId, body: u32) -> impl Iterator<Item = u32> {
+        let all = self.pieces.range((object, None)..=(object, Some(u32::MAX)));
+        let others = all.filter(move |((_, owner), _)| *owner != Some(body));
+        others.flat_map(|(_, pieces)| pieces.iter().copied())
+    }
+
+    /// The pieces of an object that a joint joins with one of its bodies, or what of the object never moves.
+    fn joined(&self, model: &PhysicsModel, body: u32) -> impl Iterator<Item = u32> {
+        let plan = &model.bodies[body as usize];
+        let children = self.children.get(&body).into_iter().flatten();
+        let joined = parent(model, plan)
+            .into_iter()
+            .chain(children.map(|child| Some(*child)));
+        let pieces = joined.filter_map(|owner| self.pieces.get(&(plan.object, owner)));
+        pieces.flatten().copied()
+    }
+}
+
+/// What a body hangs on by a joint: another body, or what never moves (`None`); `None` where it hangs on nothing.
+#[expect(
+    clippy::option_option,
+    reason = "hanging on nothing is not hanging on what stands"
+)]
+fn parent(model: &PhysicsModel, plan: &BodyPlan) -> Option<Option<u32>> {
+    let part = model.house.joints[plan.joint?].parent;
+    Some(part.and_then(|part| model.body_of_part[part]))
 }

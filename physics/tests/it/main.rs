@@ -23,6 +23,7 @@ mod force;
 mod friction_told;
 mod gait;
 mod grippers;
+mod growth;
 mod havoc;
 mod houses;
 mod joints;

@@ -1,0 +1,203 @@
+//! What a world can hold. It is asked before room is taken for what would be too much; houses of people stay far below.
+
+use crate::convert::to_rapier;
+use crate::error::PhysicsError;
+use crate::joints::{Joint, Tree};
+use crate::model::{PhysicsModel, shapes};
+use dwell_scene::interrupt;
+use dwell_scene::{House, ObjectId, State};
+use rapier3d::geometry::Aabb;
+use rapier3d::parry::bounding_volume::BoundingVolume;
+use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy};
+
+/// Most rigid bodies that can move. Each takes some 15 KB in a world and the start that it shares.
+pub(crate) const MOST_BODIES: usize = 50_000;
+/// Most collision pieces of a house, those that never move included.
+pub(crate) const MOST_PIECES: usize = 500_000;
+/// Most joints that act on each other: their efforts are found together, in a time that grows with the third power.
+pub(crate) const MOST_JOINTS_TOGETHER: usize = 256;
+/// Most pairs of a piece that moves and another one near it as a world begins. Each takes some 1.5 KB, in the world and in
+/// the start that it shares.
+pub(crate) const MOST_NEAR_PAIRS: usize = 300_000;
+/// Most pairs of pieces whose boxes meet, of one body and of what never moves included. Each is looked at, and takes 8 bytes
+/// for a moment.
+pub(crate) const MOST_BOXES_THAT_MEET: usize = 10_000_000;
+/// Most pairs of a body on a joint and a piece that pass through each other: of one object, and where they overlap.
+pub(crate) const MOST_PASSING_PAIRS: usize = 300_000;
+
+/// How far boxes reach beyond their pieces for rapier, m: half of its prediction distance.
+const REACH_M: f32 = 0.01;
+/// Pairs from which on making a world is looked at for whether it is to stop between them.
+const MANY_PAIRS: usize = 10_000;
+
+/// Whether pairs of a world's pieces are so many that a flush takes long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Crowding {
+    Few,
+    Many,
+}
+
+fn refuse<T>(
+    what: String,
+    (found, most): (usize, usize),
+    change: &'static str,
+) -> Result<T, PhysicsError> {
+    Err(PhysicsError::TooMany {
+        what,
+        found: found.to_string(),
+        most,
+        change,
+    })
+}
+
+/// Whether a world can hold a house as it stands in `state`.
+pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<Crowding, PhysicsError> {
+    let house = &model.house;
+    let bodies = model.bodies.len();
+    if bodies > MOST_BODIES {
+        let what = format!("house {:?}: bodies that can move", house.name);
+        let change = "Make some of its objects fixed, or leave some out.";
+        return refuse(what, (bodies, MOST_BODIES), change);
+    }
+    let pieces = model.statics.len()
+        + model
+            .bodies
+            .iter()
+            .map(|plan| plan.pieces.len())
+            .sum::<usize>();
+    if pieces > MOST_PIECES {
+        let what = format!("house {:?}: collision pieces", house.name);
+        let change = "Give its objects fewer pieces, or leave some out.";
+        return refuse(what, (pieces, MOST_PIECES), change);
+    }
+    // Fewer pieces have no more pairs.
+    if pieces * pieces.saturating_sub(1) / 2 <= MANY_PAIRS {
+        return Ok(Crowding::Few);
+    }
+    let near = near_pairs(model, state)?;
+    Ok(if near > MANY_PAIRS {
+        Crowding::Many
+    } else {
+        Crowding::Few
+    })
+}
+
+/// Whether joints that act on each other are few enough.
+pub(crate) fn check_trees(
+    house: &House,
+    joints: &[Joint],
+    trees: &[Tree],
+) -> Result<(), PhysicsError> {
+    let Some(tree) = trees.iter().max_by_key(|tree| tree.joints.len()) else {
+        return Ok(());
+    };
+    let count = tree.joints.len();
+    if count <= MOST_JOINTS_TOGETHER {
+        return Ok(());
+    }
+    let first = &house.joints[joints[tree.joints[0]].id];
+    let what = format!(
+        "object {:?}: joints that act on each other, from {:?} on",
+        house.objects[first.object].name, first.name
+    );
+    let change = "Leave some out, or fix some of its parts to each other.";
+    refuse(what, (count, MOST_JOINTS_TOGETHER), change)
+}
+
+/// Whether what passes through each other is few enough, of an object and those before it.
+pub(crate) fn check_passing(
+    house: &House,
+    object: ObjectId,
+    pairs: usize,
+) -> Result<(), PhysicsError> {
+    if pairs <= MOST_PASSING_PAIRS {
+        return Ok(());
+    }
+    let what = format!(
+        "object {:?}: pairs of a part on a joint and a collision piece that pass through each other, with those before",
+        house.objects[object].name
+    );
+    let change = "Make several objects of it, or give it fewer joints or pieces.";
+    refuse(what, (pairs, MOST_PASSING_PAIRS), change)
+}
+
+/// How many pairs of pieces rapier will keep as a world begins.
+fn near_pairs(model: &PhysicsModel, state: &State) -> Result<usize, PhysicsError> {
+    /// What stands belongs to one body.
+    const STANDS: u32 = u32::MAX;
+    let mut boxes: Vec<Aabb> = Vec::new();
+    let mut owners: Vec<u32> = Vec::new();
+    let mut add = |owner: u32, bounds: dwell_scene::Aabb| {
+        boxes.push(Aabb::new(bounds.min, bounds.max).loosened(REACH_M));
+        owners.push(owner);
+    };
+    for piece in &model.statics {
+        add(STANDS, shapes::bounds(&piece.shape, &piece.place));
+    }
+    for (index, plan) in model.bodies.iter().enumerate() {
+        let place = to_rapier(&state.part_pose[plan.root()]);
+        for piece in &plan.pieces {
+            add(
+                index as u32,
+                shapes::bounds(&piece.shape, &(place * piece.place)),
+            );
+        }
+    }
+    let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+    let (mut met, mut near) = (0, 0);
+    for (first, bounds) in boxes.iter().enumerate() {
+        interrupt::check();
+        for second in tree.intersect_aabb(bounds) {
+            // Each pair once.
+            if second as usize <= first {
+                continue;
+            }
+            met += 1;
+            near += usize::from(owners[first] != owners[second as usize]);
+            let (what, most) = if near > MOST_NEAR_PAIRS {
+                ("pairs of collision pieces near each other", MOST_NEAR_PAIRS)
+            } else if met > MOST_BOXES_THAT_MEET {
+                (
+                    "pairs of collision pieces whose boxes meet",
+                    MOST_BOXES_THAT_MEET,
+                )
+            } else {
+                continue;
+            };
+            return Err(PhysicsError::TooMany {
+                what: format!("house {:?}: {what}", model.house.name),
+                found: format!("more than {most}"),
+                most,
+                change: "Spread its things, or let fewer of them stand in each other.",
+            });
+        }
+    }
+    Ok(near)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The page's table states every cap of this file, as it is.
+    #[test]
+    fn the_page_states_the_caps() {
+        let page = include_str!("../../docs/hostile-input.md");
+        let here = include_str!("limits.rs");
+        let caps = [
+            ("MOST_BODIES", MOST_BODIES),
+            ("MOST_PIECES", MOST_PIECES),
+            ("MOST_JOINTS_TOGETHER", MOST_JOINTS_TOGETHER),
+            ("MOST_NEAR_PAIRS", MOST_NEAR_PAIRS),
+            ("MOST_BOXES_THAT_MEET", MOST_BOXES_THAT_MEET),
+            ("MOST_PASSING_PAIRS", MOST_PASSING_PAIRS),
+        ];
+        for (name, value) in caps {
+            let row = format!("| `{name}` | {value} |");
+            assert!(page.contains(&row), "{row}");
+        }
+        // One match is this line's own.
+        let constants = here.matches("pub(crate) const MOST_").count() - 1;
+        assert_eq!(constants, caps.len(), "a cap that the page does not state");
+    }
+}
