@@ -1,16 +1,17 @@
 //! A robot as an object of a house, and a house of a robot alone.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use dwell_scene::material::library;
 use dwell_scene::{
     Aabb, Articulation, Category, House, HouseData, JointId, JointKind, Level, LevelId, Material,
     MaterialId, Mesh, Mimic, Mobility, Object, ObjectId, Part, PartId, Pose, Structure,
-    StructureKind, Texture, TextureId, units,
+    StructureKind, Texture, TextureId, interrupt, units,
 };
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 
-use super::masses::{group, weigh};
+use super::masses::{Fixed, weigh};
 use super::model::{Motion, Robot, Shape};
 use super::shape::colliders;
 use crate::build::substance_of;
@@ -48,18 +49,20 @@ pub(crate) fn add(
     let heads: Vec<usize> = std::iter::once(0)
         .chain(moving().map(|joint| joint.child))
         .collect();
-    let groups: Vec<Vec<(usize, Pose)>> = heads.iter().map(|head| group(robot, *head)).collect();
-    let home = |link: usize| {
-        groups.iter().enumerate().find_map(|(k, group)| {
-            let (_, place) = group.iter().find(|(other, _)| *other == link)?;
-            Some((k, *place))
-        })
-    };
+    let rigid = Fixed::new(robot);
+    let groups: Vec<Vec<(usize, Pose)>> = heads.iter().map(|head| rigid.group(*head)).collect();
+    let mut homes: Vec<Option<(usize, Pose)>> = vec![None; robot.links.len()];
+    for (k, group) in groups.iter().enumerate() {
+        for (link, place) in group {
+            homes[*link] = Some((k, *place));
+        }
+    }
     let mut looks = Looks::default();
     let mut world_from: Vec<Pose> = vec![world_from_root];
     let mut joints: Vec<Articulation> = Vec::new();
+    let mut by_name: BTreeMap<&str, usize> = BTreeMap::new();
     for joint in moving() {
-        let (Some((parent, place)), Some((child, _))) = (home(joint.parent), home(joint.child))
+        let (Some((parent, place)), Some((child, _))) = (homes[joint.parent], homes[joint.child])
         else {
             continue;
         };
@@ -70,7 +73,7 @@ pub(crate) fn add(
         };
         let [low, high] = joint.limits.unwrap_or([f32::MIN, f32::MAX]);
         let leader = joint.mimic.as_ref().and_then(|(name, multiplier, offset)| {
-            let leader = joints.iter().position(|other| &other.name == name)?;
+            let leader = *by_name.get(name.as_str())?;
             Some(Mimic {
                 leader: JointId((data.joints.len() + leader) as u32),
                 multiplier: *multiplier,
@@ -103,9 +106,11 @@ pub(crate) fn add(
         };
         let above = world_from[parent];
         world_from.push(articulation.world_from_child(&above, start));
+        by_name.insert(&joint.name, joints.len());
         joints.push(articulation);
     }
     for (k, group) in groups.iter().enumerate() {
+        interrupt::check();
         let fixed = k == 0 && fixed_base;
         let shapes = |of: fn(&super::Link) -> &Vec<Shape>| {
             group.iter().flat_map(move |(link, place)| {

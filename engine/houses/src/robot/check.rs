@@ -1,8 +1,11 @@
 //! Links and joints into a tree; loops, orphans and numbers no body can have are refused.
 
+use std::collections::BTreeSet;
+
 use dwell_scene::Pose;
 use glam::DMat3;
 
+use super::masses::Fixed;
 use super::model::{Joint, Link, Motion, Robot};
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
@@ -59,24 +62,29 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
         };
         return refuse(at.field("link"), "one link that no joint moves", found);
     };
+    let mut below: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for (k, joint) in robot.joints.iter().enumerate() {
+        below[joint.parent].push(k);
+    }
     let mut order = vec![root];
     let mut joints = Vec::with_capacity(robot.joints.len());
+    // Of each link; `None` for what does not hang on the root.
+    let mut places: Vec<Option<usize>> = vec![None; count];
     let mut next = 0;
     while let Some(&link) = order.get(next) {
-        for (k, joint) in robot.joints.iter().enumerate() {
-            if joint.parent == link {
-                order.push(joint.child);
-                joints.push(k);
-            }
+        places[link] = Some(next);
+        for k in &below[link] {
+            order.push(robot.joints[*k].child);
+            joints.push(*k);
         }
         next += 1;
     }
     if order.len() != count {
-        let left = (0..count).find(|k| !order.contains(k)).unwrap_or(0);
+        let left = places.iter().position(Option::is_none).unwrap_or(0);
         let at = at.field(format_args!("link[{}]", robot.links[left].name));
         return refuse(at, "links that hang on the root", "a loop of links");
     }
-    let place = |link: usize| order.iter().position(|k| *k == link).unwrap_or(0);
+    let place = |link: usize| places[link].unwrap_or(0);
     robot.joints = joints
         .into_iter()
         .map(|k| {
@@ -89,9 +97,12 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
         })
         .collect();
     robot.links = order.iter().map(|k| robot.links[*k].clone()).collect();
+    let leads = |joint: &&Joint| joint.motion != Motion::Fixed && joint.mimic.is_none();
+    let leaders = robot.joints.iter().filter(leads);
+    let leaders: BTreeSet<&str> = leaders.map(|joint| joint.name.as_str()).collect();
     for joint in &robot.joints {
         check_joint(
-            &robot,
+            &leaders,
             joint,
             &at.field(format_args!("joint[{}]", joint.name)),
         )?;
@@ -108,7 +119,7 @@ fn unique<'a>(
     what: &str,
     names: impl Iterator<Item = &'a String>,
 ) -> Result<(), HousesError> {
-    let mut seen = std::collections::BTreeSet::new();
+    let mut seen = BTreeSet::new();
     for name in names {
         let at = at.field(format_args!("{what}[{name}]")).field("name");
         if name.is_empty() || name.contains('/') {
@@ -128,7 +139,8 @@ fn check_pose(pose: &Pose, at: &At, field: &str) -> Result<(), HousesError> {
     refuse(at.field(field), "finite numbers", format!("{pose:?}"))
 }
 
-fn check_joint(robot: &Robot, joint: &Joint, at: &At) -> Result<(), HousesError> {
+/// `leaders`: the names of joints that others may follow.
+fn check_joint(leaders: &BTreeSet<&str>, joint: &Joint, at: &At) -> Result<(), HousesError> {
     check_pose(&joint.parent_from_joint, at, "origin")?;
     check_pose(&joint.child_from_joint, at, "origin")?;
     if !joint.axis.is_finite() || (joint.axis.length() - 1.0).abs() > 1e-3 {
@@ -159,12 +171,7 @@ fn check_joint(robot: &Robot, joint: &Joint, at: &At) -> Result<(), HousesError>
         return Ok(());
     };
     let at = at.field("mimic");
-    let moves = |other: &Joint| other.motion != Motion::Fixed && other.mimic.is_none();
-    if !robot
-        .joints
-        .iter()
-        .any(|other| &other.name == leader && moves(other))
-    {
+    if !leaders.contains(leader.as_str()) {
         let expected = "a joint that moves and follows none";
         return refuse(at.field("joint"), expected, format!("{leader:?}"));
     }
@@ -217,12 +224,13 @@ fn positive(m: &DMat3) -> bool {
 
 /// What moves must have a mass.
 fn massive(robot: &Robot, at: &At) -> Result<(), HousesError> {
+    let fixed = Fixed::new(robot);
     for joint in robot
         .joints
         .iter()
         .filter(|joint| joint.motion != Motion::Fixed)
     {
-        let group = super::masses::group(robot, joint.child);
+        let group = fixed.group(joint.child);
         if group
             .iter()
             .all(|(link, _)| robot.links[*link].weight.is_none())

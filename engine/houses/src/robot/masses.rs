@@ -3,23 +3,39 @@
 use dwell_scene::{Inertial, Pose};
 use glam::{DMat3, DQuat, DVec3};
 
-use super::model::{Motion, Robot, Weight};
+use super::model::{Joint, Motion, Robot, Weight};
 
-/// The link `first` and all that is fixed to it, each with its place on `first`.
-pub(super) fn group(robot: &Robot, first: usize) -> Vec<(usize, Pose)> {
-    let mut group = vec![(first, Pose::IDENTITY)];
-    let mut next = 0;
-    while let Some(&(link, first_from_link)) = group.get(next) {
+/// Who is fixed to whom in a robot.
+pub(super) struct Fixed<'a> {
+    /// The fixed joints below each link. Shape (link,).
+    below: Vec<Vec<&'a Joint>>,
+}
+
+impl<'a> Fixed<'a> {
+    pub(super) fn new(robot: &'a Robot) -> Self {
+        let mut below = vec![Vec::new(); robot.links.len()];
         for joint in &robot.joints {
-            if joint.parent == link && joint.motion == Motion::Fixed {
-                let place =
-                    first_from_link * joint.parent_from_joint * joint.child_from_joint.inverse();
-                group.push((joint.child, place));
+            if joint.motion == Motion::Fixed {
+                below[joint.parent].push(joint);
             }
         }
-        next += 1;
+        Self { below }
     }
-    group
+
+    /// The link `first` and all that is fixed to it, each with its place on `first`.
+    pub(super) fn group(&self, first: usize) -> Vec<(usize, Pose)> {
+        let mut group = vec![(first, Pose::IDENTITY)];
+        let mut next = 0;
+        while let Some(&(link, first_from_link)) = group.get(next) {
+            group.extend(self.below[link].iter().map(|joint| {
+                let place =
+                    first_from_link * joint.parent_from_joint * joint.child_from_joint.inverse();
+                (joint.child, place)
+            }));
+            next += 1;
+        }
+        group
+    }
 }
 
 /// The common mass of links, in the frame of the first; `None` when none has a mass.
