@@ -136,6 +136,21 @@ def make_world() -> Call:
     return lambda: dwell.World(next(houses)).render(agent=0)
 
 
+def make_pile(folder: Path) -> Call:
+    """A world of 4,096 things, each a little in its neighbours."""
+    places = enumerate(itertools.product(range(16), repeat=3))
+    bodies = (
+        f'<body name="thing_{k}" pos="{0.195 * x} {0.195 * y} {0.1 + 0.195 * z}"><freejoint/>'
+        '<geom type="box" size="0.1 0.1 0.1"/></body>'
+        for k, (x, y, z) in places
+    )
+    path = folder / "pile.xml"
+    ground = '<geom type="plane" size="9 9 1"/>'
+    path.write_text(f"<mujoco><worldbody>{ground}{''.join(bodies)}</worldbody></mujoco>")
+    house = dwell.House.open(str(path))
+    return lambda: dwell.World(house)
+
+
 def responses() -> Call:
     """Impulse responses at many places."""
     scene = dwell.AcousticScene("builtin:apartment", rays=200_000)
@@ -221,6 +236,7 @@ CALLS: dict[str, Callable[..., Call]] = {
     "generate": generate,
     "open": open_file,
     "world": make_world,
+    "pile": make_pile,
     "responses": responses,
     "render": render,
     "map": draw_map,

@@ -6,6 +6,7 @@ import math
 import random
 import threading
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -347,3 +348,19 @@ def test_houses_that_are_none_are_refused(houses: object, said: str) -> None:
         DwellEnv(houses=houses, sensors=SMALL).reset(seed=1)
     assert not isinstance(caught.value, dwell.EngineBug)
     assert said in str(caught.value)
+
+
+def test_a_chain_of_more_joints_than_a_world_holds_is_refused(tmp_path: Path) -> None:
+    mass = '<mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    links = (f'<link name="link_{k}"><inertial>{mass}</inertial></link>' for k in range(301))
+    joints = (
+        f'<joint name="joint_{k}" type="continuous"><origin xyz="0 0 0.5"/>'
+        f'<parent link="link_{k}"/><child link="link_{k + 1}"/></joint>'
+        for k in range(300)
+    )
+    path = tmp_path / "chain.urdf"
+    path.write_text(f'<robot name="chain">{"".join(links)}{"".join(joints)}</robot>')
+    house = dwell.House.open(str(path))
+    said = 'object "chain": joints that act on each other, from "joint_0" on: 300'
+    with pytest.raises(dwell.ConfigError, match=said):
+        dwell.World(house)
