@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import bisect
-import itertools
 import operator
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -21,25 +20,37 @@ class HouseNames(Sequence[str]):
     (1000000001, 'seed:999999999?home=studio', 8)
     """
 
-    def __init__(self, houses: Iterable[str]) -> None:
-        """Keeps what it is given; opens nothing.
+    def __init__(self, houses: Iterable[str] = ()) -> None:
+        """Keeps what it is given; opens nothing. Raises as :meth:`append`."""
+        #: One house by its name, or seeds and what follows them.
+        self._parts: list[str | tuple[range, str]] = []
+        #: How many houses there are up to the end of each part.
+        self._ends: list[int] = []
+        for house in houses:
+            self.append(house)
+
+    def append(self, house: str) -> None:
+        """Adds a house, or those of a range of seeds.
 
         Raises:
             HouseError: A range is empty or none of whole numbers.
             ConfigError: There are more than any sequence of Python holds.
         """
-        #: One house by its name, or seeds and what follows them.
-        self._parts: list[str | tuple[range, str]] = []
-        for house in houses:
-            found = _native.seed_range(house)
-            self._parts.append(house if found is None else (range(found[0], found[1]), found[2]))
-        sizes = (
-            1 if isinstance(part, str) else part[0].stop - part[0].start for part in self._parts
-        )
-        #: How many houses there are up to the end of each part.
-        self._ends = list(itertools.accumulate(sizes))
-        if self._ends and self._ends[-1] >= 2**63:
-            raise ConfigError(f"{self._ends[-1]} houses; allowed are fewer than 2**63")
+        found = _native.seed_range(house)
+        if found is None:
+            self.append_name(house)
+            return
+        seeds = range(found[0], found[1])
+        end = len(self) + seeds.stop - seeds.start
+        if end >= 2**63:
+            raise ConfigError(f"{end} houses; allowed are fewer than 2**63")
+        self._parts.append((seeds, found[2]))
+        self._ends.append(end)
+
+    def append_name(self, name: str) -> None:
+        """Adds one house by its name, whatever that is."""
+        self._parts.append(name)
+        self._ends.append(len(self) + 1)
 
     def __len__(self) -> int:
         """How many houses there are, equal ones counted each time."""

@@ -15,6 +15,7 @@ from dwell import ConfigError
 from dwell.arguments import fields, finite, mapping, shown, text, texts, to_json, whole
 from dwell.envs.custom import Native, RewardChoice, Sensors
 from dwell.house import House
+from dwell.house_names import HouseNames
 from dwell.settings import Laws, world_settings
 
 Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | House]
@@ -85,9 +86,10 @@ class HouseShelf:
         try:
             given = [houses] if alone else list(houses)  # type: ignore[arg-type] # not alone
         except TypeError:
-            raise ConfigError(f"houses is {houses!r}; expected HOUSE strings or Houses") from None
-        rows = [one for row in given for one in _expanded(row)]
-        if not rows:
+            raise ConfigError(
+                f"houses is {shown(houses)}; expected HOUSE strings or Houses"
+            ) from None
+        if not given:
             raise ConfigError("houses: expected at least one HOUSE string or House, found none")
         self._given: dict[str, House] = {}
         #: The latest last.
@@ -95,15 +97,20 @@ class HouseShelf:
         #: All that are open, whoever keeps them.
         self._alive: weakref.WeakValueDictionary[str, House] = weakref.WeakValueDictionary()
         #: HOUSE strings; for a house that was handed over, its name, numbered where that is taken.
-        self.names: list[str] = []
-        for k, row in enumerate(rows):
+        self.names = HouseNames()
+        for k, row in enumerate(given):
             if isinstance(row, House):
-                self.names.append(row.name if row.name not in self.names else f"{row.name}~{k}")
+                is_taken = row.name in self.names
+                self.names.append_name(f"{row.name}~{len(self.names)}" if is_taken else row.name)
                 self._given[self.names[-1]] = row
-            elif isinstance(row, str | os.PathLike):
-                self.names.append(os.fspath(row))
+            elif isinstance(row, str):
+                self.names.append(text(f"houses[{k}]", row))
+            elif isinstance(row, os.PathLike):
+                self.names.append_name(os.fspath(row))
             else:
-                raise ConfigError(f"houses[{k}] is {row!r}; expected a HOUSE string or a House")
+                raise ConfigError(
+                    f"houses[{k}] is {shown(row)}; expected a HOUSE string or a House"
+                )
 
     @property
     def has_objects(self) -> bool:
@@ -144,11 +151,6 @@ class HouseShelf:
                 f"house of this environment: {shown(self.names[:12])}"
             )
         return self.names.index(name), whole("episode_id", int(seed))
-
-
-def _expanded(row: object) -> list[object]:
-    """What stands for itself, or the houses of a range of seeds."""
-    return [*House.expand(row)] if isinstance(row, str) else [row]
 
 
 def env_json(
