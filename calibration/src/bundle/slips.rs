@@ -150,14 +150,13 @@ impl Track {
             .collect();
         let (mut top, mut low, mut at) = (f64::NEG_INFINITY, f64::INFINITY, 0);
         for (k, y) in calm.iter().enumerate() {
-            top = top.max(*y);
-            if *y < low {
+            if *y > top {
+                // Still rising.
+                (top, low, at) = (*y, *y, k);
+            } else if *y < low {
                 (low, at) = (*y, k);
             }
-            if top - low < least {
-                // Still rising, or only just falling.
-                (low, at) = (*y, k);
-            } else if *y > low + least {
+            if top - low >= least && *y > low + least {
                 let peak = calm[k..].iter().copied().fold(*y, f64::max);
                 return Some((self.t_s[at + 1], peak - low));
             }
