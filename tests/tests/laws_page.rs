@@ -20,7 +20,8 @@ import dwell
 kitchen = dwell.House.open(\"builtin:studio\")
 world = dwell.World(kitchen, laws=\"drag\")  # with its usual numbers
 world = dwell.World(kitchen, laws={\"drag\": {\"c_d\": 1.0}, \"wind\": {\"x_m_s\": 0.5}})
-world = dwell.World(kitchen, laws=[\"drag\", {\"id\": \"rolling_resistance\", \"target\": \"bowl_1\", \"params\": {\"c_rr\": 0.02}}])
+rolling = {\"id\": \"rolling_resistance\", \"target\": \"bowl_1\", \"params\": {\"c_rr\": 0.02}}
+world = dwell.World(kitchen, laws=[\"drag\", rolling])
 world.set_parameter(\"law/drag/c_d\", 0.8)
 print(world.parameters(\"law/drag/\"))
 ```
