@@ -42,7 +42,7 @@ STOPPED = "a call was stopped before its work was done"
 def in_the_middle() -> bool:
     """Whether a handler of signals runs in the middle of a call of the engines."""
     try:
-        _native.expand("builtin:studio")
+        _native.seed_range("builtin:studio")
     except dwell.UsageError:
         return True
     return False
