@@ -1,6 +1,5 @@
 //! HDF5 files, sound and damaged. Both samples were written by h5py: with the oldest forms of the format that hold them, and with the
 //! newest. `python/tests/test_hdf5.py` compares many more with h5py itself.
-#![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use dwell_acoustics::hdf5::Hdf5;
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};

@@ -297,10 +297,11 @@ fn mend((axis, sign, unit): Guess, kind: Kind) -> String {
 
 /// Refuses samples of an episode at one time, and those too far apart to show a motion. `times`: of one channel, rising.
 pub(super) fn clock(at: &str, times: &[f64]) -> Checked {
-    if let Some(pair) = times.windows(2).find(|pair| pair[0] == pair[1]) {
+    let mut pairs = times.iter().zip(times.iter().skip(1));
+    if let Some((twice, _)) = pairs.find(|(a, b)| a == b) {
         let allowed = "each time once for a channel: leave one of the two rows out, or give recordings that were put together \
                        episodes' names of their own";
-        let found = format!("{} twice", pair[0]);
+        let found = format!("{twice} twice");
         return Err(CalibrationError::field(at, "t_s", found, allowed));
     }
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
