@@ -211,7 +211,7 @@ def point(name: str, value: object) -> tuple[float, float, float]:
 def triple(name: str, value: Sequence[float]) -> tuple[float, float, float]:
     """Three finite numbers, from any sequence or array."""
     try:
-        parts = list(value)
+        parts = [] if isinstance(value, str | bytes | bytearray) else list(value)
     except TypeError:
         parts = []
     if len(parts) != 3:

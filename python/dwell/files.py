@@ -147,7 +147,7 @@ def atomic(path: _Name, *, new: bool = False) -> Iterator[Path]:
     """
     path = Path(path)
     place = path if new else _place(path)
-    place.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(place.parent)
     handle, name = tempfile.mkstemp(prefix=DRAFT, dir=place.parent)
     os.close(handle)
     try:
@@ -164,6 +164,18 @@ def atomic(path: _Name, *, new: bool = False) -> Iterator[Path]:
         raise
     finally:
         Path(name).unlink(missing_ok=True)
+
+
+def make_folder(folder: Path) -> None:
+    """Makes a folder and those above it, where they are not there.
+
+    Raises:
+        OSError: The system refuses, or something else stands there.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise NotADirectoryError(errno.ENOTDIR, "is no folder", os.fspath(folder)) from None
 
 
 def _place(path: Path) -> Path:

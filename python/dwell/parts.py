@@ -20,8 +20,9 @@ class Part:
 
     Attributes:
         state: What the part remembers within an episode, by name; empty at each start. It goes into
-            the environment's snapshots, so it holds what JSON holds: numbers, text, lists,
-            mappings. Arrays come back as lists.
+            the environment's snapshots, so it holds what JSON holds: numbers, text, lists, and
+            dicts with text for keys. Taking a snapshot refuses arrays and tuples, which would come
+            back as lists.
     """
 
     state: dict[str, Any]
@@ -98,5 +99,6 @@ def _imported(at: str, given: str) -> object:
     module, _, name = given.partition(":")
     try:
         return getattr(importlib.import_module(text(at, module)), name)
-    except (ImportError, AttributeError, ValueError) as error:
+    # TypeError: a relative name, of which nobody knows whose relative it is.
+    except (ImportError, AttributeError, ValueError, TypeError) as error:
         raise ConfigError(f"{at} is {given!r}; expected 'module:Name': {error}") from None

@@ -88,10 +88,11 @@ class Replay:
 
         Raises:
             MeasuredDataError: It is no replay, of another version, or its numbers do not fit.
-            OSError: The system refuses, or it is no regular file.
         """
         try:
             row = read_json(path)
+        except OSError as error:
+            raise MeasuredDataError(f"{os.fspath(path)}: {error.strerror or error}") from error
         except ValueError as error:
             raise MeasuredDataError(str(error)) from None
         if not isinstance(row, dict) or row.get("format") != _FORMAT:

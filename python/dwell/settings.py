@@ -22,6 +22,8 @@ from dwell.heads import Head, head_of
 Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] | None
 
 _FOUND = {"laws", "parameters"}
+#: More than anybody has causes for; each is looked for among those before it.
+_MOST_LAWS = 1_000
 _EXPECTED = (
     "expected a law's name, a list of names and of {id, version, target, params}, parameters by "
     "name as {'drag': {'c_d': 0.5}}, or the path of what calibration found"
@@ -85,6 +87,8 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         or not all(isinstance(law, str | Mapping) for law in laws)
     ):
         raise ConfigError(f"{at}: found {shown(laws)}; {_EXPECTED}")
+    if len(laws) > _MOST_LAWS:
+        raise ConfigError(f"{at}: found {len(laws)} laws; allowed are at most {_MOST_LAWS}")
     rows = [_row(f"{at}[{k}]", law) for k, law in enumerate(laws)]
     return rows, _values("parameters", parameters)
 

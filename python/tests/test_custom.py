@@ -17,6 +17,7 @@ from gymnasium.vector import AutoresetMode
 import dwell
 from dwell import _native
 from dwell.envs import DwellEnv, DwellVectorEnv
+from dwell.envs.saved import sealed, unsealed
 
 STEPS = 40
 
@@ -197,15 +198,15 @@ def test_snapshots_of_other_parts_are_refused(cut: str) -> None:
     env.reset(seed=1)
     env.step(1)
     hash_before = env.state_hash()
-    episode, parts, rest = env.snapshot().split(b"\0", 2)
+    episode, parts, rest = unsealed("", env.snapshot()).split(b"\0", 2)
     wrong = {"none": b"", "parts": parts[: len(parts) // 2], "other": b'{"task":{}}'}[cut]
     with pytest.raises(dwell.ConfigError, match="snapshot refused: its parts"):
-        env.restore(b"\0".join((episode, wrong, rest)))
+        env.restore(sealed(b"\0".join((episode, wrong, rest))))
     assert env.state_hash() == hash_before
     plain = DwellEnv("Free", sensors=["gps"])
     plain.reset(seed=1)
     with pytest.raises(dwell.ConfigError, match="parts in Python"):
-        plain.restore(b"\0".join((episode, parts, rest)))
+        plain.restore(sealed(b"\0".join((episode, parts, rest))))
 
 
 @pytest.mark.parametrize("mode", list(AutoresetMode))
@@ -486,9 +487,9 @@ def test_what_parts_remember_is_no_deeper_than_json_is_read() -> None:
         env.snapshot()
     plain = DwellEnv("Free", sensors=["gps", Noisy])
     plain.reset(seed=1)
-    episode, _, rest = plain.snapshot().split(b"\0", 2)
-    with pytest.raises(dwell.ConfigError, match="its parts: JSON is nested too deep"):
-        plain.restore(b"\0".join((episode, b"[" * 100_000, rest)))
+    episode, _, rest = unsealed("", plain.snapshot()).split(b"\0", 2)
+    with pytest.raises(dwell.ConfigError, match="its parts: nested 100000 deep"):
+        plain.restore(sealed(b"\0".join((episode, b"[" * 100_000, rest))))
 
 
 def play_a_step(env: DwellEnv) -> None:
@@ -550,3 +551,38 @@ def test_the_borders_of_batches_hold() -> None:
     with pytest.raises(dwell.ConfigError):
         batch.rule(0, "{}")
     assert isinstance(batch.world(0), _native.World)
+
+
+@pytest.mark.parametrize("value", [np.zeros(3), (1, 2), {3: 1.5}, "\ud800", {"a": [{"b": (1,)}]}])
+def test_what_would_come_back_as_something_else_is_refused_by_the_snapshot(value: object) -> None:
+    class Keeps(dwell.Task):
+        sensors = ("gps",)
+
+        def reset(self, world: dwell.World, rng: np.random.Generator) -> None:
+            self.state["kept"] = value
+
+    env = DwellEnv(Keeps, houses="builtin:studio")
+    env.reset(seed=1)
+    with pytest.raises(dwell.ConfigError, match=r"task.state\['kept'\]"):
+        env.snapshot()
+
+
+def test_infos_that_no_array_holds_are_refused_by_name() -> None:
+    class Tells(dwell.Task):
+        sensors = ("gps",)
+
+        def reset(self, world: dwell.World, rng: np.random.Generator) -> None: ...
+
+        def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
+            return dwell.Verdict(info={"large": 10**400})
+
+    envs = DwellVectorEnv(2, Tells, houses="builtin:studio")
+    envs.reset(seed=1)
+    with pytest.raises(dwell.ConfigError, match="info of environment 0"):
+        envs.step(np.array([1, 1]))
+
+
+@pytest.mark.parametrize("name", ["../x:Y", ".:x", "..a:b"])
+def test_relative_modules_are_refused_by_a_sentence(name: str) -> None:
+    with pytest.raises(dwell.ConfigError, match="expected 'module:Name'"):
+        DwellEnv(name, houses="builtin:studio")

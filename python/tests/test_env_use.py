@@ -170,7 +170,7 @@ def test_snapshots_of_something_else_are_refused_by_a_batch() -> None:
         (saved[:1], "expected a list of 2"),
         ([b"junk", None], r"snapshots\[0\]: snapshot refused"),
         ([None, single.snapshot()], r"snapshots\[1\]: snapshot refused"),
-        ([cut, None], "done"),
+        ([cut, None], "check sum"),
         ([7, None], r"snapshots\[0\] is 7"),
     ):
         with pytest.raises(dwell.ConfigError, match=why):
@@ -178,10 +178,9 @@ def test_snapshots_of_something_else_are_refused_by_a_batch() -> None:
         assert env.state_hashes() == after
     env.restore([saved[0], None])
     assert env.state_hashes() == [before[0], after[1]]
-    with pytest.raises(dwell.ConfigError, match="snapshot refused"):
+    with pytest.raises(dwell.ConfigError, match="snapshot refused: its check sum"):
         env.restore([None, saved[1][:-5]])
-    with pytest.raises(dwell.UsageError, match=r"environments \[1\] has begun; reset them"):
-        env.step(np.array([1, 1]))
+    assert env.state_hashes() == [before[0], after[1]]
 
 
 def test_what_an_episode_ended_with_stands_in_final_info() -> None:
@@ -221,8 +220,12 @@ def test_a_restored_environment_goes_on_as_before() -> None:
         assert go_on(again) == first
     with pytest.raises(dwell.ConfigError):
         other.restore(saved[:-9])
-    with pytest.raises(dwell.ConfigError, match="HOUSE#NUMBER"):
+    with pytest.raises(dwell.ConfigError, match="check sum"):
         other.restore(b"junk")
+    flipped = bytearray(saved)
+    flipped[63] ^= 0x40
+    with pytest.raises(dwell.ConfigError, match="check sum"):
+        other.restore(bytes(flipped))
 
 
 def test_buffers_in_use_say_so() -> None:
@@ -246,5 +249,20 @@ def test_a_range_of_seeds_of_any_length_is_a_set_of_houses() -> None:
 def test_a_house_that_is_handed_over_twice_has_two_names() -> None:
     house = dwell.House.open("builtin:studio")
     shelf = HouseShelf(["seed:3..5", house, house])
-    assert [*shelf.names] == ["seed:3", "seed:4", "builtin:studio", "builtin:studio~3"]
+    assert [*shelf.names] == ["seed:3", "seed:4", "studio", "studio~3"]
     assert shelf[3] is house
+
+
+def test_a_house_and_an_episode_of_another_contradict_each_other() -> None:
+    env = DwellEnv("Free", houses=["builtin:studio", "seed:1?home=studio"], sensors=["gps"])
+    _, info = env.reset(seed=1, options={"house": 0})
+    with pytest.raises(dwell.ConfigError, match="house and episode_id"):
+        env.reset(options={"episode_id": info["episode_id"], "house": 1})
+
+
+def test_so_many_laws_are_refused_and_bytes_are_no_numbers() -> None:
+    with pytest.raises(dwell.ConfigError, match="found 100000 laws; allowed are at most 1000"):
+        dwell.World("builtin:studio", laws=["drag"] * 100_000)
+    world = dwell.World("builtin:studio")
+    with pytest.raises(dwell.ConfigError, match="linear_m_s"):
+        world.set_body(world.objects()[0]["name"], linear_m_s=b"abc")  # type: ignore[arg-type]

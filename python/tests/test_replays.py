@@ -277,3 +277,12 @@ def test_errors_name_the_file(file: Path, tmp_path: Path) -> None:
             next(dwell.Replay.read(wrong).play())
         assert str(refused.value).startswith(f"{wrong}: ")
         assert said in str(refused.value)
+
+
+def test_a_folder_that_is_none_is_refused_when_a_recorder_is_made(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"])
+    for folder in (tmp_path / "file", tmp_path / "file" / "below"):
+        with pytest.raises(NotADirectoryError):
+            ReplayRecorder(env, folder)
+    assert (tmp_path / "file").read_text() == "mine"

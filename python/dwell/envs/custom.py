@@ -204,9 +204,10 @@ class Play:
         for key, value in ruled.items():
             if key in answer:
                 answer[key][k] = math.nan if value is None else value
-        if taken := sorted(set(verdict.info) & {*answer, "scene_id", "episode_id"}):
+        info = mapping(f"{self._name()}.judge: info", verdict.info)
+        if taken := sorted(set(info) & {*answer, "scene_id", "episode_id"}):
             raise ConfigError(f"{self._name()}.judge: info has {taken[0]!r}, which exists already")
-        return mapping("info", verdict.info)
+        return info
 
     def expert(self) -> int | None:
         """The number of the expert's action; ``None`` where the task is the engine's."""
@@ -267,8 +268,16 @@ class Play:
         return seen
 
     def save(self) -> bytes:
-        """What the parts remember."""
-        return to_json({name: part.state for name, part in self._parts().items()}).encode()
+        """What the parts remember.
+
+        Raises:
+            ConfigError: It would come back as something else.
+        """
+        states = {name: part.state for name, part in self._parts().items()}
+        saved = to_json(states).encode()
+        for name, state in states.items():
+            _refuse_what_changes(f"{name}.state", state)
+        return saved
 
     def loaded(self, saved: bytes) -> dict[str, dict[str, Any]]:
         """What :meth:`save` wrote, by part.
@@ -288,6 +297,25 @@ class Play:
         self._seed = seed
         for name, part in self._parts().items():
             part.state = states[name]
+
+
+def _refuse_what_changes(at: str, value: object) -> None:
+    """Refuses what JSON gives back as another kind."""
+    if isinstance(value, dict):
+        for key, part in value.items():
+            if not isinstance(key, str):
+                raise ConfigError(f"{at} has the key {shown(key)}; a snapshot holds keys of text")
+            _refuse_what_changes(f"{at}[{key!r:.60}]", part)
+    elif isinstance(value, list):
+        for k, part in enumerate(value):
+            _refuse_what_changes(f"{at}[{k}]", part)
+    elif isinstance(value, str):
+        text(at, value)
+    elif not (value is None or isinstance(value, int | float | np.number | np.bool_)):
+        raise ConfigError(
+            f"{at} is {shown(value)}; a snapshot holds numbers, text, lists and dicts: of "
+            "an array, keep its tolist(), of a tuple a list"
+        )
 
 
 def _checked(task: str, verdict: object) -> Verdict:

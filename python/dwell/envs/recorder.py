@@ -17,6 +17,7 @@ from dwell import ConfigError, UsageError, __version__, _native
 from dwell.arguments import path
 from dwell.envs.single import DwellEnv
 from dwell.envs.vector import DwellVectorEnv
+from dwell.files import make_folder
 from dwell.replays import MOST_STEPS, Replay
 
 #: Why an episode goes on no further.
@@ -139,6 +140,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
 
         Raises:
             ConfigError: It is none of dwell, or its house or head cannot be named in a file.
+            OSError: The folder is none, or cannot be made.
         """
         given: object = env
         if isinstance(given, VectorEnv):
@@ -149,6 +151,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         self._env = env.unwrapped
         _refuse_what_files_cannot_name(self._env)
         self._folder = Path(path("folder", folder))
+        make_folder(self._folder)
         self._running: _Running | None = None
 
     def reset(
@@ -229,6 +232,7 @@ class VectorReplayRecorder(
 
         Raises:
             ConfigError: They are none of dwell, or their houses or head cannot be named in a file.
+            OSError: The folder is none, or cannot be made.
         """
         given: object = env
         if not isinstance(given, VectorEnv) or not isinstance(env.unwrapped, DwellVectorEnv):
@@ -237,6 +241,7 @@ class VectorReplayRecorder(
         self._envs = env.unwrapped
         _refuse_what_files_cannot_name(self._envs)
         self._folder = Path(path("folder", folder))
+        make_folder(self._folder)
         self._running: dict[int, _Running] = {}
         self._envs._recorders.append(self)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
 from typing import Any
 
@@ -36,7 +37,9 @@ class Saved:
             "done": self.done,
             "stream": self.stream.bit_generator.state,
         }
-        return b"\0".join((_HEAD, to_json(told).encode(), self.parts, self.world))
+        return b"\0".join(
+            (_HEAD, sealed(b"\0".join((to_json(told).encode(), self.parts, self.world))))
+        )
 
     @classmethod
     def of_bytes(cls, name: str, snapshot: object) -> Saved:
@@ -48,11 +51,11 @@ class Saved:
         if not isinstance(snapshot, bytes):
             raise ConfigError(f"{name} is {shown(snapshot, 60)}; expected bytes of snapshot()")
         head, _, rest = snapshot.partition(b"\0")
-        about, _, rest = rest.partition(b"\0")
-        parts, _, world = rest.partition(b"\0")
         at = f"{name}: snapshot refused"
         if head != _HEAD:
             raise ConfigError(f"{at}: it is none of a vector environment of this version")
+        about, _, rest = unsealed(at, rest).partition(b"\0")
+        parts, _, world = rest.partition(b"\0")
         try:
             told = mapping(at, json.loads(about))
             return cls(
@@ -66,6 +69,29 @@ class Saved:
             if isinstance(error, ConfigError):
                 raise
             raise ConfigError(f"{at}: {shown(error)}") from None
+
+
+def sealed(content: bytes) -> bytes:
+    """Content behind its check sum, which finds what was damaged, not what was forged."""
+    return b"\0".join((_sum(content), content))
+
+
+def unsealed(at: str, sealed_content: bytes) -> bytes:
+    """The content of :func:`sealed`.
+
+    Raises:
+        ConfigError: It is something else, or was damaged.
+    """
+    found, _, content = sealed_content.partition(b"\0")
+    if found != _sum(content):
+        raise ConfigError(
+            f"{at}: its check sum does not fit: it is damaged, or none of this version"
+        )
+    return content
+
+
+def _sum(content: bytes) -> bytes:
+    return hashlib.blake2b(content, digest_size=8).hexdigest().encode()
 
 
 def _stream(state: Any) -> np.random.Generator:  # noqa: ANN401 - numpy says what it takes

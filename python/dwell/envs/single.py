@@ -22,6 +22,7 @@ from dwell.camera import Camera, camera_settings
 from dwell.envs.config import KEPT, Houses, HouseShelf, arguments_of, env_json, step_limit
 from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.runner import GOAL_KEYS, INFO_KEYS, Runner
+from dwell.envs.saved import sealed, unsealed
 from dwell.envs.spaces import action_space
 from dwell.settings import Laws, with_head
 from dwell.telling import told_agents
@@ -165,6 +166,10 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         options = {} if options is None else mapping("options", options)
         if unknown := sorted(set(options) - {"house", "episode_id"}):
             raise ConfigError(f"options: no {unknown[0]!r}; allowed are house and episode_id")
+        if len(options) == 2:
+            raise ConfigError(
+                "options: house and episode_id; an episode has its own house, give one"
+            )
         house = int(self.np_random.integers(len(self._shelf.names)))
         if "house" in options:
             house = whole(
@@ -234,7 +239,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """Episode and world as bytes."""
         episode_id = str(self._info()["episode_id"])
         parts = self._runner.saved_parts(0)
-        return b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0)))
+        return sealed(b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0))))
 
     def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
         """Goes to where the snapshot was taken; the next steps give the same bits as they did then.
@@ -250,7 +255,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         if not isinstance(given, bytes):
             found = shown(given)
             raise ConfigError(f"snapshot is {found}; expected the bytes of an environment's")
-        episode_id, _, rest = snapshot.partition(b"\0")
+        content = unsealed("snapshot refused", snapshot)
+        episode_id, _, rest = content.partition(b"\0")
         parts, _, rest = rest.partition(b"\0")
         try:
             house, seed = self._shelf.episode(episode_id.decode(errors="replace"))

@@ -364,7 +364,13 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         infos["_audio_clipped"] = np.ones(self.num_envs, np.bool_)
         infos |= self._ids()
         for k, row in enumerate(further):
-            infos = self._add_info(infos, dict(row), k)
+            try:
+                infos = self._add_info(infos, dict(row), k)
+            except (OverflowError, TypeError, ValueError) as error:
+                raise ConfigError(
+                    f"info of environment {k} is {shown(dict(row))}; expected values that one "
+                    f"array for each name holds, of one kind in all environments: {error}"
+                ) from None
         self._done = terminated | truncated
         for recorder in self._recorders:
             recorder.stepped(numbers, infos["success"], self._done)
