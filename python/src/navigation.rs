@@ -219,7 +219,7 @@ impl PyNavigation {
 
     fn doors_json(&self, py: Python<'_>) -> PyResult<String> {
         py.engine(|| {
-            let doors = self.with(|grid| grid.doors())?;
+            let doors = self.with(NavGrid::doors)?;
             let doors = doors.into_iter().map(|door| {
                 let object = self.house.joints[door.joint].object;
                 let cells = door.cells.len();

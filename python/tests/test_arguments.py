@@ -96,7 +96,7 @@ def test_what_calibration_found_reaches_worlds_and_environments(
     [
         ("{junk", "no JSON"),
         ("7", "found 7; expected a law's name"),
-        ("[" * 100_000, "nested too deep"),
+        ("[" * 100_000, "nested 100000 deep"),
         ('{"lows": []}', "lows"),
         ('{"parameters": [1]}', "by address"),
     ],

@@ -257,14 +257,16 @@ def test_an_interrupted_describe_goes_on_where_it_stopped(
     rows = [json.loads(line) for line in out.read_text("utf-8").splitlines()]
     assert [row["house"] for row in rows] == [name for name in names for _ in range(6)]
     assert not journal.exists()
-    # Another job does not take over what this one left.
+    # Another job neither takes over nor discards what this one left.
     opened.clear()
     stop_at(1)
     assert main(command) == 130
+    left = journal.read_bytes()
     opened.clear()
     stop_at(99)
-    assert main([*command, "--seed", "1"]) == 0
-    assert opened == names
+    assert main([*command, "--seed", "1"]) == 1
+    assert opened == []
+    assert journal.read_bytes() == left
 
 
 def test_what_the_demo_cannot_walk_through_is_refused(tmp_path: Path) -> None:

@@ -39,7 +39,7 @@ def test_a_range_of_seeds_is_several_houses() -> None:
     with pytest.raises(dwell.HouseError, match="A < B"):
         dwell.House.expand("seed:5..3")
     shelf = HouseShelf(["builtin:studio", "seed:0..3"])
-    assert shelf.names == ["builtin:studio", "seed:0", "seed:1", "seed:2"]
+    assert [*shelf.names] == ["builtin:studio", "seed:0", "seed:1", "seed:2"]
 
 
 def test_houses_of_thousands_of_seeds_are_not_all_kept() -> None:

@@ -329,7 +329,7 @@ def test_seeds_out_of_range_are_refused(shoebox: dwell.House, seed: object) -> N
         ("castle", "is no house this version opens"),
         ("builtin:castle", "no built-in house"),
         ("seed:9..3", "seed"),
-        ("seed:0..99999999999", "seed"),
+        ("seed:0..99999999999999999999", "seed"),
         ("seed:1?home=castle", "castle"),
         ("/nowhere/house.json", "/nowhere"),
         ("a\0b", "is no house this version opens"),

@@ -325,7 +325,8 @@ pub(crate) const MJCF_CASES: &[Case] = &[
     fails(
         "300,000 attributes",
         |d| {
-            let all: String = (0..300_000).map(|k| format!(" a{k}=\"\"")).collect();
+            let all: Vec<String> = (0..300_000).map(|k| format!("a{k}=\"\"")).collect();
+            let all = format!(" {}", all.join(" "));
             mjcf(d, "<geom", &format!("<geom{all}"))
         },
         &["m.xml:4", "count of attributes", "128"],
