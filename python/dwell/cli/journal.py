@@ -136,13 +136,13 @@ class Journal:
 
     def finish(self) -> None:
         """Writes the rows of all items into the result, and forgets the journal."""
-        self._file.flush()
-        with atomic(self._out) as path, path.open("wb") as result:
-            for line in self._rows():
-                result.write(line)
         # Locked to the end: another process of this job finds the result, or this journal.
-        os.unlink(self._path)
-        self._file.close()
+        with self._file:
+            self._file.flush()
+            with atomic(self._out) as path, path.open("wb") as result:
+                for line in self._rows():
+                    result.write(line)
+            os.unlink(self._path)
 
     def close(self) -> None:
         """Leaves the journal for the next run."""
