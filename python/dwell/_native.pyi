@@ -18,6 +18,7 @@ __all__ = [
     "ConfigError",
     "DwellError",
     "EngineBug",
+    "Hdf5",
     "Head",
     "House",
     "HouseError",
