@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import _native
-from dwell.arguments import point, to_json, whole
+from dwell import ConfigError, _native
+from dwell.arguments import point, shown, to_json, whole
 from dwell.configs import AcousticSettings, checked
 from dwell.echogram import Echogram
 from dwell.heads import Head
@@ -111,21 +111,24 @@ class AcousticScene:
     def impulse_responses(
         self,
         source: Source | Sequence[float],
-        receivers: Sequence[Receiver],
+        receivers: Sequence[Receiver | Sequence[float]],
         *,
         seed: int = 0,
         threads: int | None = None,
     ) -> list[NDArray[np.float32]]:
         """As :meth:`impulse_response` for many receivers, which share the source's rays.
 
+        A point (x, y, z), m, is one microphone that hears alike from all sides.
+
         Returns:
             One array of shape (channels, samples) for each receiver; their lengths differ.
         """
-        self._tell_outside(source, receivers)
+        given = _receivers("receivers", receivers)
+        self._tell_outside(source, given)
         return self._native.impulse_responses(
             to_json(source_of(source).to_json()),
-            to_json([receiver.to_json() for receiver in receivers]),
-            heads=[receiver.head.native for receiver in receivers if receiver.head is not None],
+            to_json([receiver.to_json() for receiver in given]),
+            heads=[receiver.head.native for receiver in given if receiver.head is not None],
             seed=whole("seed", seed),
             threads=_threads(threads),
         )
@@ -167,7 +170,7 @@ class AcousticScene:
         threads: int | None = None,
     ) -> list[list[dict[str, Any]]]:
         """As :meth:`metrics` at many places, which share the source's rays."""
-        receivers = [mic if isinstance(mic, Receiver) else Receiver.omni(mic) for mic in mics]
+        receivers = _receivers("mics", mics)
         self._tell_outside(source, receivers)
         rows = self._native.metrics_json(
             to_json(source_of(source).to_json()),
@@ -219,6 +222,13 @@ class AcousticScene:
         """What sound meets: areas, mean absorption, which materials are guesses."""
         explained: dict[str, Any] = json.loads(self._native.explain_json())
         return explained
+
+
+def _receivers(name: str, given: object) -> list[Receiver]:
+    """Receivers; points become microphones."""
+    if isinstance(given, str | bytes) or not isinstance(given, Sequence | np.ndarray):
+        raise ConfigError(f"{name} is {shown(given)}; expected a list of receivers or points")
+    return [one if isinstance(one, Receiver) else Receiver.omni(one) for one in given]
 
 
 def _threads(threads: int | None) -> int | None:

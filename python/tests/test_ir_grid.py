@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -202,3 +203,17 @@ def test_maps_and_plots_are_pictures(
         with Image.open(jpg) as picture:
             assert picture.format == "JPEG"
     assert main(["ir", HOUSE, "--map", "t30", "--out", str(tmp_path / "x.txt"), *common]) == 1
+
+
+def test_points_are_microphones_and_what_is_none_is_refused_by_name() -> None:
+    scene = dwell.AcousticScene("builtin:studio", rays=100)
+    (point,) = scene.impulse_responses((1.0, 1.0, 1.0), [(2.0, 1.0, 2.0)])
+    omni = dwell.Receiver.omni((2.0, 1.0, 2.0))
+    (receiver,) = scene.impulse_responses((1.0, 1.0, 1.0), [omni])
+    assert (point == receiver).all()
+    wrong: list[Any] = [None, 5, "abc"]
+    for given in wrong:
+        with pytest.raises(dwell.ConfigError, match="receivers is"):
+            scene.impulse_responses((1.0, 1.0, 1.0), given)
+        with pytest.raises(dwell.ConfigError, match="mics is"):
+            scene.metrics_at((1.0, 1.0, 1.0), given)
