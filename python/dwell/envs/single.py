@@ -236,7 +236,11 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return self._runner.batch.state_hash(0)
 
     def snapshot(self) -> bytes:
-        """Episode and world as bytes."""
+        """Episode and world as bytes, behind a check sum.
+
+        Raises:
+            ConfigError: A part's state holds what would come back as another kind.
+        """
         episode_id = str(self._info()["episode_id"])
         parts = self._runner.saved_parts(0)
         return sealed(b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0))))
