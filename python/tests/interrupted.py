@@ -157,6 +157,14 @@ def make_pile(folder: Path) -> Call:
     return lambda: dwell.World(house)
 
 
+def snapshot() -> Call:
+    """Packing a world of 300 desks that fall apart."""
+    world = dwell.World(heap(300))
+    for _ in range(5):
+        world.step()
+    return lambda: world.snapshot()
+
+
 def responses() -> Call:
     """Impulse responses at many places."""
     scene = dwell.AcousticScene("builtin:apartment", rays=200_000)
@@ -243,6 +251,7 @@ CALLS: dict[str, Callable[..., Call]] = {
     "open": open_file,
     "world": make_world,
     "pile": make_pile,
+    "snapshot": snapshot,
     "responses": responses,
     "render": render,
     "map": draw_map,

@@ -5,6 +5,8 @@ use super::{NO_PLANE, TRIANGLES_PER_CHECK};
 use dwell_scene::Aabb;
 use dwell_scene::interrupt::Pace;
 use glam::Vec3;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// Triangles of one plane whose boxes come this near are one panel, m.
 const GAP_M: f32 = 0.005;
@@ -38,10 +40,11 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Panels {
     });
     let mut sets = Sets::new(corners.len());
     let mut pace = Pace::new(TRIANGLES_PER_CHECK);
-    for (place, &a) in order.iter().enumerate() {
+    let apart = join_equal(&order, &boxes, of_triangle, &mut sets);
+    for (place, &a) in apart.iter().enumerate() {
         pace.turn();
         // Boxes are sorted by where they begin: those further on overlap until one begins after this one's end.
-        for &b in &order[place + 1..] {
+        for &b in &apart[place + 1..] {
             if of_triangle[b] != of_triangle[a] || boxes[b].min.x > boxes[a].max.x {
                 break;
             }
@@ -61,6 +64,27 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Panels {
         area_m2: roots.iter().map(|root| total[*root] as f32).collect(),
         of_triangle: roots,
     }
+}
+
+/// Joins triangles of one plane whose boxes are equal, and returns one of each, in the order given: what touches one of them
+/// touches all, so that things that stand at one place are not compared with each other.
+fn join_equal(order: &[usize], boxes: &[Aabb], of_triangle: &[u32], sets: &mut Sets) -> Vec<usize> {
+    let key = |k: usize| {
+        let numbers = [boxes[k].min, boxes[k].max].map(|p| p.to_array().map(f32::to_bits));
+        (of_triangle[k], numbers)
+    };
+    let mut apart = Vec::with_capacity(order.len());
+    let mut first = HashMap::with_capacity(order.len());
+    for &k in order {
+        match first.entry(key(k)) {
+            Entry::Occupied(same) => sets.join(*same.get(), k),
+            Entry::Vacant(place) => {
+                place.insert(k);
+                apart.push(k);
+            }
+        }
+    }
+    apart
 }
 
 /// The area of a triangle, m².
@@ -97,6 +121,19 @@ mod tests {
         {
             assert!((found[k] - wanted).abs() < 1e-5, "{k}: {}", found[k]);
         }
+    }
+
+    /// The same panel ten thousand times at one place is one panel of all their area, and its neighbour belongs to it.
+    #[test]
+    fn panels_at_one_place_are_one() {
+        let mut corners: Vec<[Vec3; 3]> = (0..10_000).flat_map(|_| square(0.0, 1.0)).collect();
+        corners.extend(square(1.0, 1.0));
+        corners.extend(square(2.01, 0.5));
+        let found = find(&corners, &vec![0; corners.len()]);
+        let count = corners.len();
+        assert!(found.of_triangle[..count - 2].iter().all(|root| *root == 0));
+        assert_eq!(found.of_triangle[count - 2..], [count - 2; 2]);
+        assert!((found.area_m2[0] - 10_001.0).abs() < 1e-2);
     }
 
     #[test]

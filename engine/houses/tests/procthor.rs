@@ -261,6 +261,20 @@ fn damaged_files_are_reported_or_refused_and_never_crash() {
     assert!(matches!(error(&empty), HousesError::Empty { .. }));
     let typed = json!({"walls": 7, "proceduralParameters": {}});
     assert!(matches!(error(&typed), HousesError::Syntax { .. }));
+    // Where a thing stands is asked of every room.
+    let mut many = file();
+    let mut room = many["rooms"][0].clone();
+    many["rooms"] = (0..501)
+        .map(|k| {
+            room["id"] = json!(format!("room|{k}"));
+            room.clone()
+        })
+        .collect();
+    let refused = error(&many).to_string();
+    assert!(
+        refused.contains("501") && refused.contains("500"),
+        "{refused}"
+    );
     // Every field replaced by each of some values: an answer, whatever it is.
     let whole = file();
     for pointer in [

@@ -4,9 +4,12 @@
 //! that zlib looks back.
 
 use crate::error::SceneError;
+use crate::interrupt;
 use brotli::enc::{BrotliEncoderParams, StandardAlloc};
 use brotli::{IoReaderWrapper, IoWriterWrapper};
-use std::io::Read;
+use std::io::{Cursor, Read};
+use std::sync::{Arc, Weak, mpsc};
+use std::thread;
 
 /// How hard (0 to 11). 5 is the first that looks for matches well; 9 takes twice as long for a hundredth less.
 const QUALITY: i32 = 5;
@@ -25,33 +28,57 @@ const BUFFER: usize = 1 << 16;
 /// # Panics
 /// Never: reading and writing memory cannot fail.
 pub fn pack(bytes: &[u8], base: &[u8]) -> Vec<u8> {
-    pack_with(QUALITY, bytes, base)
+    pack_with(QUALITY, bytes, bytes.len(), base).expect("reading and writing memory cannot fail")
 }
 
 /// As [`pack`], but harder where that alone would give more than `most` bytes; it may still be more. Two megabytes take seconds then,
-/// instead of a tenth of one.
+/// instead of a tenth of one, in a thread of their own, so that the caller can be stopped.
 ///
 /// # Panics
-/// Never, as [`pack`].
+/// Where the system has no room for one more thread.
 pub fn pack_within(bytes: &[u8], base: &[u8], most: usize) -> Vec<u8> {
     let packed = pack(bytes, base);
     if packed.len() <= most {
         return packed;
     }
-    pack_with(BEST_QUALITY, bytes, base)
+    // Dropped when the caller stops waiting, which ends the thread at the next block of input.
+    let wanted = Arc::new(());
+    let source = WhileWanted {
+        bytes: Cursor::new(bytes.to_vec()),
+        wanted: Arc::downgrade(&wanted),
+    };
+    let (length, base) = (bytes.len(), base.to_vec());
+    let (sender, receiver) = mpsc::channel();
+    thread::spawn(move || {
+        // Sending fails where nobody waits any more.
+        let _ = sender.send(pack_with(BEST_QUALITY, source, length, &base));
+    });
+    loop {
+        interrupt::check();
+        match receiver.recv_timeout(interrupt::INTERVAL) {
+            Ok(harder) => return harder.unwrap_or(packed),
+            Err(mpsc::RecvTimeoutError::Timeout) => {}
+            Err(mpsc::RecvTimeoutError::Disconnected) => return packed,
+        }
+    }
 }
 
-fn pack_with(quality: i32, bytes: &[u8], base: &[u8]) -> Vec<u8> {
+fn pack_with(
+    quality: i32,
+    mut bytes: impl Read,
+    length: usize,
+    base: &[u8],
+) -> std::io::Result<Vec<u8>> {
     let parameters = BrotliEncoderParams {
         quality,
         lgwin: WINDOW,
-        size_hint: bytes.len(),
+        size_hint: length,
         ..Default::default()
     };
-    let mut packed = Vec::with_capacity(bytes.len() / 2);
+    let mut packed = Vec::with_capacity(length / 2);
     let (mut from, mut to) = (vec![0; BUFFER], vec![0; BUFFER]);
     brotli::BrotliCompressCustomIoCustomDict(
-        &mut IoReaderWrapper(&mut &bytes[..]),
+        &mut IoReaderWrapper(&mut bytes),
         &mut IoWriterWrapper(&mut packed),
         &mut from,
         &mut to,
@@ -60,9 +87,23 @@ fn pack_with(quality: i32, bytes: &[u8], base: &[u8]) -> Vec<u8> {
         &mut |_, _, _, _| (),
         base,
         std::io::ErrorKind::UnexpectedEof.into(),
-    )
-    .expect("reading and writing memory cannot fail");
-    packed
+    )?;
+    Ok(packed)
+}
+
+/// Bytes that end in an error as soon as nobody wants them any more.
+struct WhileWanted {
+    bytes: Cursor<Vec<u8>>,
+    wanted: Weak<()>,
+}
+
+impl Read for WhileWanted {
+    fn read(&mut self, to: &mut [u8]) -> std::io::Result<usize> {
+        if self.wanted.strong_count() == 0 {
+            return Err(std::io::ErrorKind::ConnectionAborted.into());
+        }
+        self.bytes.read(to)
+    }
 }
 
 /// What [`pack`] packed with the same `base`.

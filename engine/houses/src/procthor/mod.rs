@@ -10,7 +10,7 @@ mod sizes;
 
 use std::path::Path;
 
-use dwell_scene::{Aabb, House, RoomId};
+use dwell_scene::{Aabb, House, Room, RoomId};
 use glam::{DVec2, Quat, Vec2, Vec3};
 
 use crate::building::assembly::Assembly;
@@ -65,6 +65,14 @@ fn convert(
             what: "count of rooms, walls, openings, objects and lamps",
             found: count as u64,
             allowed: MAX_NODES as u64,
+        });
+    }
+    if file.rooms.len() > Room::MOST {
+        return Err(HousesError::TooLarge {
+            at: at.field("rooms"),
+            what: "count of rooms",
+            found: file.rooms.len() as u64,
+            allowed: Room::MOST as u64,
         });
     }
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);

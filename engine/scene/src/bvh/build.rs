@@ -9,6 +9,7 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use super::binary::{BinaryNode, BinaryTree, median_tree};
 use super::node::WIDTH;
 use crate::bounds::Aabb;
+use glam::Vec3;
 
 // Measured on the sample house of 102,076 triangles (one core): building takes 33 ms; search distances of 1 to 2 save 4 ms
 // and cost 3 to 8 % of the rays a second; 14, or more reinsertion, gains nothing. Leaves by a traversal cost of 1 or 2 triangles
@@ -17,6 +18,9 @@ const SEARCH: PlocSearchDistance = PlocSearchDistance::Low;
 const SEARCH_FROM_DEPTH: usize = 2;
 const REINSERTED: f32 = 0.02;
 const TRAVERSAL_COST: f32 = 3.0;
+/// Longest stretch of boxes along the Morton curve of which no two merge in the first round. Where all lie alike, as in a row or at
+/// one place, each round merges one pair, so that n boxes take n² steps and make a tree n deep.
+const MAX_UNMERGED: usize = 4096;
 
 /// A tree of good quality (bottom-up clustering, reinsertion, leaves by cost); leaves hold at most [`WIDTH`] boxes.
 ///
@@ -30,7 +34,7 @@ pub(super) fn tree(boxes: &[Aabb]) -> BinaryTree {
             self.0
         }
     }
-    if boxes.len() <= WIDTH {
+    if boxes.len() <= WIDTH || longest_unmerged(boxes) > MAX_UNMERGED {
         return median_tree(boxes);
     }
     let primitives: Vec<Primitive> = boxes
@@ -67,5 +71,105 @@ pub(super) fn tree(boxes: &[Aabb]) -> BinaryTree {
     BinaryTree {
         nodes: nodes.collect(),
         order: built.primitive_indices,
+    }
+}
+
+/// The longest stretch of boxes along the Morton curve of which no two are each other's nearest; 0 for fewer boxes than matter.
+///
+/// # Source
+/// Meister and Bittner, "Parallel Locally-Ordered Clustering" (2018), section 3, with a search distance of 1.
+fn longest_unmerged(boxes: &[Aabb]) -> usize {
+    if boxes.len() <= MAX_UNMERGED {
+        return 0;
+    }
+    let mut centers = Aabb::EMPTY;
+    for b in boxes {
+        centers.add_point(b.center());
+    }
+    let size = centers.size().max(Vec3::splat(f32::MIN_POSITIVE));
+    let mut order: Vec<(u64, u32)> = (0_u32..)
+        .zip(boxes)
+        .map(|(k, b)| (morton((b.center() - centers.min) / size), k))
+        .collect();
+    order.sort_unstable();
+    let cost = |pair: &[(u64, u32)]| {
+        let [a, b] = [pair[0], pair[1]].map(|(_, k)| &boxes[k as usize]);
+        let size = a.union(b).size();
+        size.x * size.y + size.y * size.z + size.z * size.x
+    };
+    // A pair merges where it costs less than the pair before, and no more than the one after.
+    let (mut longest, mut since, mut falls) = (0, 0, true);
+    let mut costs = order.windows(2).map(cost).peekable();
+    while let Some(cost) = costs.next() {
+        since += 1;
+        let rises = costs.peek().is_none_or(|next| cost < *next);
+        if falls && rises {
+            since = 0;
+        }
+        longest = longest.max(since);
+        falls = costs.peek().is_some_and(|next| *next <= cost);
+    }
+    longest
+}
+
+/// The place of a point of the unit cube on the Morton curve, 21 bits an axis.
+fn morton(point: Vec3) -> u64 {
+    let spread = |x: f32| {
+        let x = u64::from((x * 2_097_151.0) as u32);
+        (0..21).fold(0, |code, bit| code | (x >> bit & 1) << (3 * bit))
+    };
+    spread(point.x) | spread(point.y) << 1 | spread(point.z) << 2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn depth(tree: &BinaryTree, k: usize) -> usize {
+        let node = &tree.nodes[k];
+        if node.count > 0 {
+            return 0;
+        }
+        let first = node.first as usize;
+        1 + depth(tree, first).max(depth(tree, first + 1))
+    }
+
+    /// A box of 1 m at a place.
+    fn at(x: f32, z: f32) -> Aabb {
+        Aabb::new(Vec3::new(x, 0.0, z), Vec3::new(x + 1.0, 1.0, z + 1.0))
+    }
+
+    /// 20,000 boxes that lie alike, beside 2,000 others: the tree is about as deep as those of boxes that differ.
+    fn is_balanced(alike: impl Fn(usize) -> Aabb) {
+        let mut boxes: Vec<Aabb> = (0..2_000)
+            .map(|k| at((k * k) as f32 * 0.37, 50.0))
+            .collect();
+        boxes.extend((0..20_000).map(alike));
+        assert!(longest_unmerged(&boxes) > MAX_UNMERGED);
+        let tree = tree(&boxes);
+        assert!(depth(&tree, 0) <= 16, "{}", depth(&tree, 0));
+        let mut order = tree.order;
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..boxes.len() as u32));
+    }
+
+    #[test]
+    fn boxes_at_one_place_make_a_balanced_tree() {
+        is_balanced(|_| at(5.0, 0.0));
+    }
+
+    #[test]
+    fn boxes_in_a_row_make_a_balanced_tree() {
+        is_balanced(|k| at(0.125 * k as f32, 0.0));
+    }
+
+    /// Of boxes at random places a third merges in each round.
+    #[test]
+    fn boxes_that_differ_are_clustered() {
+        let mut stream = crate::random::Key::root(3).stream();
+        let boxes: Vec<Aabb> = (0..20_000)
+            .map(|_| at(100.0 * stream.uniform_f32(), 100.0 * stream.uniform_f32()))
+            .collect();
+        assert!(longest_unmerged(&boxes) < 100);
     }
 }

@@ -1,6 +1,6 @@
 //! The one check of a house's tables.
 
-use super::data::{AgentStart, HouseData, Mobility};
+use super::data::{AgentStart, HouseData, Mobility, Room};
 use crate::articulation::Articulation;
 use crate::collider::Collider;
 use crate::error::{SceneError, range};
@@ -76,6 +76,8 @@ fn is_near(coordinate_m: f32) -> bool {
 
 /// Checks every index, name and range of `data`.
 pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
+    let rooms = data.rooms.len();
+    range("house", "rooms", rooms <= Room::MOST, rooms, "at most 500")?;
     unique("rooms", data.rooms.iter().map(|room| room.name.as_str()))?;
     unique(
         "structure",

@@ -101,6 +101,11 @@ pub struct Room {
     pub bounds: Aabb,
 }
 
+impl Room {
+    /// The most of a house, since where a thing stands is asked of every room. Houses of SUNCG and ProcTHOR have some dozens.
+    pub const MOST: usize = 500;
+}
+
 /// What a structure piece is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

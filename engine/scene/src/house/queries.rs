@@ -100,6 +100,7 @@ impl House {
         let mut stream = Key::root(0).child("floor").child(u64::from(id.0)).stream();
         let total = room.area_m2();
         let mut points = Vec::with_capacity(count);
+        crate::interrupt::check();
         for k in 0..count {
             let mut left = (k as f32 + 0.5) / count as f32 * total;
             let triangle = room.footprint.iter().find(|[a, b, c]| {

@@ -34,8 +34,8 @@ use crate::report::At;
 const CEILING_SLAB_M: f32 = 0.1;
 /// Thickness of floors, and of the ceiling under the roof, m.
 const FLOOR_SLAB_M: f32 = 0.2;
-/// The most storeys and rooms.
-const MOST: [usize; 2] = [20, 500];
+/// The most storeys.
+const MOST_STOREYS: usize = 20;
 /// The least floor of stairs, across and along their climb, m.
 const LEAST_STAIRS_M: [f32; 2] = [1.6, 2.4];
 
@@ -52,9 +52,10 @@ pub(in crate::authoring) fn raise(
         .iter()
         .map(|storey| storey.rooms.len())
         .sum();
-    if building.storeys.len() > MOST[0] || rooms > MOST[1] || rooms == 0 {
+    let most = dwell_scene::Room::MOST;
+    if building.storeys.len() > MOST_STOREYS || rooms > most || rooms == 0 {
         let found = format!("{} storeys with {rooms} rooms", building.storeys.len());
-        let possible = format!("1 to {} storeys with 1 to {} rooms", MOST[0], MOST[1]);
+        let possible = format!("1 to {MOST_STOREYS} storeys with 1 to {most} rooms");
         return Err(fault("storeys", found, possible));
     }
     let mut names = BTreeSet::new();
