@@ -236,9 +236,8 @@ def open_table(path: Path, delimiter: str) -> tuple[list[str], Iterator[tuple[in
             raise ModuleNotFoundError(
                 f"{path}: Parquet needs pyarrow; pip install 'dwell[data]'"
             ) from None
-        file = parquet.ParquetFile(open_file(path, _MOST_BYTES))
-        batches = (row for batch in file.iter_batches() for row in batch.to_pylist())
-        return list(file.schema_arrow.names), enumerate(batches, start=1)
+        with open_file(path, _MOST_BYTES) as file, parquet.ParquetFile(file) as table:
+            return list(table.schema_arrow.names), parquet_rows(path)
     if path.suffix != ".csv":
         raise ValueError(f"{path}: {path.suffix or 'no suffix'}; .csv and .parquet are read")
     try:
@@ -247,6 +246,15 @@ def open_table(path: Path, delimiter: str) -> tuple[list[str], Iterator[tuple[in
         raise ValueError(f"{path} line 1: {error}") from None
     columns = [name.strip() for name in head]
     return columns, csv_rows(path, columns, delimiter)
+
+
+def parquet_rows(path: Path) -> Iterator[tuple[int, Row]]:
+    """The rows of a Parquet file, counted from 1."""
+    import pyarrow.parquet as parquet
+
+    with open_file(path, _MOST_BYTES) as file, parquet.ParquetFile(file) as table:
+        batches = (row for batch in table.iter_batches() for row in batch.to_pylist())
+        yield from enumerate(batches, start=1)
 
 
 def opened(path: Path) -> io.TextIOWrapper:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gc
 import json
 import math
 import os
@@ -14,7 +15,7 @@ from typing import Any
 import pytest
 
 from dwell import _native
-from dwell.measured import import_files
+from dwell.measured import import_files, open_table
 
 ROOT = Path(__file__).resolve().parents[2]
 MAPS = ROOT / "examples" / "measured"
@@ -154,6 +155,19 @@ def test_ticks_become_turns_of_wheels(tmp_path: Path) -> None:
     path.write_text(json.dumps(mapping))
     with pytest.raises(ValueError, match="ticks_per_turn is 0"):
         import_files([table, index], path, tmp_path / "b.measured", quiet)
+
+
+def test_a_parquet_table_is_closed_where_its_rows_end(tmp_path: Path) -> None:
+    pyarrow = pytest.importorskip("pyarrow", reason="Parquet needs pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet", reason="Parquet needs pyarrow")
+    path = tmp_path / "data.parquet"
+    parquet.write_table(pyarrow.table({"t_s": [0.0, 0.5], "y": [1.0, 2.0]}), path)
+    # A file that is left open is a warning, which is an error here.
+    columns, rows = open_table(path, ",")
+    assert columns == ["t_s", "y"]
+    assert [*rows] == [(1, {"t_s": 0.0, "y": 1.0}), (2, {"t_s": 0.5, "y": 2.0})]
+    del rows
+    gc.collect()
 
 
 def shared() -> Path:
