@@ -12,16 +12,17 @@ import errno
 import json
 import math
 import os
+import shutil
 import stat
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any, BinaryIO, NoReturn
 
 from dwell import _native
 
-#: How the names of files in the making begin.
-DRAFT = ".partial-"
+#: Drafts for one name that may be in the making at once, and bytes that theirs take from it.
+_MOST_DRAFTS = 10_000
+_DRAFT_NAME_BYTES = 200
 #: A text that is read whole has at most so many bytes, as for the readers of houses.
 MOST_TEXT_BYTES = 64 * 2**20
 #: JSON is nested at most so deep, as for the readers of houses.
@@ -29,7 +30,7 @@ _MOST_DEPTH = 128
 #: Values and names of a JSON text: Python takes some 70 bytes for each.
 _MOST_VALUES = 4_000_000
 #: Digits of a whole number: no float is larger.
-_MOST_DIGITS = 309
+MOST_DIGITS = 309
 #: What file systems say that have no hard links.
 _NO_LINKS = {errno.EPERM, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EINVAL}
 
@@ -148,22 +149,133 @@ def atomic(path: _Name, *, new: bool = False) -> Iterator[Path]:
     path = Path(path)
     place = path if new else _place(path)
     make_folder(place.parent)
-    handle, name = tempfile.mkstemp(prefix=DRAFT, dir=place.parent)
-    os.close(handle)
     try:
-        yield Path(name)
-        os.chmod(name, 0o644)
-        if new:
-            _link(name, place)
-        else:
-            os.replace(name, place)
+        with _draft(place) as draft:
+            yield draft
+            os.chmod(draft, 0o644)
+            if new:
+                _link(os.fspath(draft), place)
+            else:
+                os.replace(draft, place)
     except OSError as error:
         # What people know is the name that they gave.
-        if error.filename in (None, name) and error.errno is not None:
+        named = Path(error.filename) if isinstance(error.filename, str | os.PathLike) else None
+        is_ours = named is None or any(is_draft(name) for name in (named.name, named.parent.name))
+        if is_ours and error.errno is not None:
             error.filename, error.filename2 = os.fspath(path), None
         raise
+
+
+def is_draft(name: str) -> bool:
+    """Whether a file or folder of this name is in the making, or was left by who was killed."""
+    return name.startswith(".") and ".partial-" in name
+
+
+@contextlib.contextmanager
+def _draft(place: Path) -> Iterator[Path]:
+    """An empty file in a folder of its own beside ``place``, both gone afterwards.
+
+    The folder's lock says that its process is alive, as those of the engine's drafts do: whoever
+    makes a draft for the same name removes those of processes that were killed. The file itself has
+    none, which HDF5 would take for another writer's.
+    """
+    folder, handle = _claim_draft(place)
+    try:
+        file = folder / "file"
+        file.touch(0o600)
+        yield file
     finally:
-        Path(name).unlink(missing_ok=True)
+        try:
+            if _is_at(handle, folder):
+                shutil.rmtree(folder, ignore_errors=True)
+        finally:
+            if handle is not None:
+                os.close(handle)
+
+
+def _claim_draft(place: Path) -> tuple[Path, int | None]:
+    """A folder that is nobody else's, and what holds its lock where there are any."""
+    name = os.fsencode(place.name)[:_DRAFT_NAME_BYTES].decode(errors="ignore")
+    for number in range(_MOST_DRAFTS):
+        folder = place.with_name(f".{name}.partial-{number}")
+        if os.path.lexists(folder) and not _is_cleared(folder):
+            continue
+        try:
+            folder.mkdir(0o700)
+            handle = _opened_folder(folder)
+        except (FileExistsError, FileNotFoundError):
+            # Somebody was quicker; or the folder above is gone, which the system says.
+            if place.parent.is_dir():
+                continue
+            raise
+        # Some file systems have no locks; their drafts are nobody's to remove.
+        if (handle is None or lock(handle) is not False) and _is_at(handle, folder):
+            return folder, handle
+        if handle is not None:
+            os.close(handle)
+    what = f"{_MOST_DRAFTS} drafts of this name are in the making"
+    raise FileExistsError(errno.EEXIST, what, os.fspath(place))
+
+
+def _is_cleared(draft: Path) -> bool:
+    """Removes the draft of a process that has ended; whether there was one."""
+    try:
+        facts = draft.lstat()
+        if not stat.S_ISDIR(facts.st_mode) and not stat.S_ISREG(facts.st_mode):
+            return False
+        handle = _opened_folder(draft)
+    except OSError:
+        return False
+    if handle is None:
+        return False
+    try:
+        # Held until it is gone, so that nobody removes what comes after it.
+        if lock(handle) is not True or not _is_at(handle, draft):
+            return False
+        if stat.S_ISDIR(facts.st_mode):
+            shutil.rmtree(draft)
+        else:
+            draft.unlink()
+    except OSError:
+        return False
+    else:
+        return True
+    finally:
+        os.close(handle)
+
+
+def _opened_folder(path: Path) -> int | None:
+    """A handle for a lock; ``None`` where the system has none for folders."""
+    if os.name == "nt":
+        return None
+    return os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
+
+
+def _is_at(handle: int | None, path: Path) -> bool:
+    """Whether a handle is that of what stands at ``path`` now."""
+    if handle is None:
+        return path.exists()
+    with contextlib.suppress(FileNotFoundError):
+        return os.path.samestat(os.fstat(handle), path.lstat())
+    return False
+
+
+def lock(file: int | IO[bytes]) -> bool | None:
+    """Locks what is open until it is closed; ``False``: another has, ``None``: there are no locks.
+
+    The system lets go of it when the process ends.
+    """
+    try:
+        import fcntl
+    except ImportError:  # Windows has none.
+        return None
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return None
+    return True
 
 
 def make_folder(folder: Path) -> None:
@@ -227,8 +339,8 @@ def _refuse_large(name: str, found: int, allowed: int) -> NoReturn:
 
 
 def _whole(text: str) -> int:
-    if len(text) > _MOST_DIGITS:
-        raise ValueError(f"a whole number of {len(text)} digits; at most {_MOST_DIGITS} are read")
+    if len(text) > MOST_DIGITS:
+        raise ValueError(f"a whole number of {len(text)} digits; at most {MOST_DIGITS} are read")
     return int(text)
 
 

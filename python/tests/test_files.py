@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 import signal
@@ -303,6 +304,75 @@ def test_drafts_of_killed_processes_are_removed(tmp_path: Path) -> None:
     (left / "half.obj").write_text("v 0")
     dwell.House.open("builtin:studio").write_into(tmp_path, "seed_0", "suncg")
     assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
+
+
+#: Writes half a file and waits to be killed.
+HALF = """
+import sys
+from dwell.files import atomic
+with atomic(sys.argv[1]) as draft:
+    draft.write_text("half")
+    print("ready", flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_drafts_of_the_living_stay_and_those_of_the_dead_go(tmp_path: Path) -> None:
+    place = tmp_path / "a.csv"
+    command = [sys.executable, "-c", HALF, str(place)]
+    other = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert other.stdout is not None
+    assert other.stdout.readline() == "ready\n"
+    # As the engine's writer leaves them.
+    (tmp_path / ".a.csv.partial-1").write_text("half")
+    (tmp_path / ".b.csv.partial-0").write_text("of another file")
+    with files.atomic(place) as draft:
+        draft.write_text("whole")
+    assert place.read_text() == "whole"
+    kept = [".a.csv.partial-0", ".b.csv.partial-0", "a.csv"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == kept
+    other.kill()
+    other.communicate()
+    with files.atomic(place) as draft:
+        draft.write_text("again")
+    assert place.read_text() == "again"
+    assert sorted(path.name for path in tmp_path.iterdir()) == kept[1:]
+
+
+def test_a_draft_that_has_no_room_is_told_by_the_name_that_was_given(tmp_path: Path) -> None:
+    place = tmp_path / "a"
+
+    def write() -> None:
+        with files.atomic(place):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(OSError, match="No space left") as refused:
+        write()
+    assert refused.value.filename == str(place)
+    assert not [*tmp_path.iterdir()]
+
+
+def test_a_journal_without_room_is_named(tmp_path: Path) -> None:
+    from dwell.cli.journal import Journal
+
+    journal = Journal(tmp_path / "rows", {"command": "x"})
+    journal._file.close()
+    journal._file = Path("/dev/full").open("wb")  # noqa: SIM115 - the journal closes it
+    with pytest.raises(OSError, match="No space left") as refused:
+        journal.add("a", [{"x": 1}])
+    assert refused.value.filename == str(tmp_path / ".rows.part")
+    journal.close()
+
+
+@pytest.mark.parametrize("out", ["", ".", "{}"])
+def test_a_folder_is_no_file_for_rows(
+    out: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status = cli.main(["describe", "builtin:studio", "--out", out.format(tmp_path)])
+    told = capsys.readouterr().err
+    assert status == (1 if out else 2)
+    assert ("is a folder, not a file" if out else "expected a path, found ''") in told
+    assert not [*tmp_path.iterdir()]
 
 
 def test_ranges_of_seeds_take_no_memory() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell.camera import PRESETS
-from dwell.cli.common import add_back_end, back_end, count, print_json
+from dwell.cli.common import add_back_end, back_end, count, path, print_json
 from dwell.files import read_json
 
 _STAGES = ("load", "render", "physics", "acoustics", "env")
@@ -20,11 +20,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("stage", choices=_STAGES)
     parser.add_argument("house", metavar="HOUSE", nargs="?", default="builtin:apartment")
     parser.add_argument(
-        "--views", type=Path, metavar="FILE", help="JSON list of position and forward"
+        "--views", type=path, metavar="FILE", help="JSON list of position and forward"
     )
     parser.add_argument(
         "--boxes",
-        type=Path,
+        type=path,
         metavar="FILE",
         help="physics: JSON of fixed and dynamic boxes, density_kg_m3 and physics_rate_hz",
     )

@@ -5,10 +5,9 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
-from dwell.cli.common import Bar, print_json
+from dwell.cli.common import Bar, path, print_json
 from dwell.files import atomic
 
 
@@ -26,7 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="scores of another simulator on the same pose trajectories",
     )
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="for report.html, report.json, found.json"
+        "--out", type=path, metavar="DIR", help="for report.html, report.json, found.json"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 

@@ -9,6 +9,7 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, TextIO
 
 #: A name of which an error shows the beginning alone.
@@ -49,6 +50,22 @@ def count(text: str) -> int:
         allowed = f"a whole number from 0 to {sys.maxsize}"
         raise argparse.ArgumentTypeError(f"expected {allowed}, found {text[:60]!r}")
     return int(text)
+
+
+def count_from_1(text: str) -> int:
+    """Reads a whole number of which there is at least one."""
+    value = count(text)
+    if value == 0:
+        allowed = f"a whole number from 1 to {sys.maxsize}"
+        raise argparse.ArgumentTypeError(f"expected {allowed}, found {text[:60]!r}")
+    return value
+
+
+def path(text: str) -> Path:
+    """Reads the path of a file or folder; to Python an empty one is where it runs."""
+    if not text:
+        raise argparse.ArgumentTypeError("expected a path, found ''")
+    return Path(text)
 
 
 def add_back_end(parser: argparse.ArgumentParser) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from dwell.cli.common import Bar, print_json
+from dwell.cli.common import Bar, path, print_json
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("house", metavar="HOUSE", nargs="?", default="builtin:apartment")
-    parser.add_argument("--out", type=Path, default=Path("out/demo"), metavar="DIR")
+    parser.add_argument("--out", type=path, default=Path("out/demo"), metavar="DIR")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from pathlib import Path
 from typing import Any
 
-from dwell.cli.common import Bar, count
+from dwell.cli.common import Bar, count, path
 from dwell.cli.journal import Journal
 from dwell.files import open_file
 
@@ -22,7 +21,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=count, help="draws the wording of instructions")
     parser.add_argument(
         "--out",
-        type=Path,
+        type=path,
         metavar="FILE.jsonl",
         help="one JSON object a line; a run that was stopped goes on",
     )

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 import numpy as np
 
 from dwell.cli import ir_grid, ir_picture, measured_room
-from dwell.cli.common import count, number, point, print_json
+from dwell.cli.common import count, number, path, point, print_json
 from dwell.cli.saving import add_bits, save_sound
 
 
@@ -25,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--head",
-        type=Path,
+        type=path,
         metavar="FILE.sofa",
         help="ears on the measured head of a SOFA file (SimpleFreeFieldHRIR)",
     )
@@ -35,7 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--image-order", type=count, default=3, help="0 to 4")
     parser.add_argument(
         "--laws",
-        type=Path,
+        type=path,
         metavar="FILE",
         help="JSON: a list of laws {id, version, target, params}, or what dwell calibrate found",
     )
@@ -46,7 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--receivers", metavar="ID,ID", help="of a measured room; default: all")
     parser.add_argument(
         "--out",
-        type=Path,
+        type=path,
         metavar="FILE",
         help="FILE.wav: the pressure in pascals for an impulse of 1 Pa at 1 m; of a measured room "
         "FILE.npz: ir, fs; of pictures FILE.png or .jpg; of a grid a folder",

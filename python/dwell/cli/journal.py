@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
-from dwell.files import DRAFT, atomic, lines, open_file, parse_json, read_json
+from dwell.files import atomic, is_draft, lines, lock, open_file, parse_json, read_json
 
 _JOB, _DONE = "job", "done"
 #: What is the same for a whole folder; it stands there from the beginning.
@@ -22,15 +23,28 @@ def claim(out: Path, dataset: dict[str, Any]) -> None:
     Raises:
         ValueError: It holds something else, or was begun by another job.
     """
+    refuse_other(out, dataset)
     path = out / _DATASET
     if not path.exists():
+        with contextlib.suppress(FileExistsError), atomic(path, new=True) as draft:
+            draft.write_text(json.dumps(dataset, indent=2) + "\n", "utf-8")
+        refuse_other(out, dataset)
+
+
+def refuse_other(out: Path, dataset: dict[str, Any]) -> None:
+    """Refuses a folder that :func:`claim` would, and leaves it as it is.
+
+    Raises:
+        ValueError: It holds something else, or was begun by another job.
+    """
+    path = out / _DATASET
+    if not path.exists():
+        holds = out.exists() and any(not is_draft(name) for name in os.listdir(out))
         # What another process has just begun is no other thing than this.
-        if out.exists() and any(not name.startswith(DRAFT) for name in os.listdir(out)):
-            if not path.exists():
-                raise ValueError(f"{out} holds something else; expected an empty or a new folder")
-        else:
-            with contextlib.suppress(FileExistsError), atomic(path, new=True) as draft:
-                draft.write_text(json.dumps(dataset, indent=2) + "\n", "utf-8")
+        if holds and not path.exists():
+            raise ValueError(f"{out} holds something else; expected an empty or a new folder")
+        if not path.exists():
+            return
     found = read_json(path)
     if not isinstance(found, dict):
         raise ValueError(f"{path}: expected an object, found {found!r:.60}")
@@ -38,22 +52,6 @@ def claim(out: Path, dataset: dict[str, Any]) -> None:
     if other:
         said = ", ".join(f"{key} {found.get(key)!r:.60}" for key in other)
         raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
-
-
-def _lock(file: IO[bytes]) -> bool:
-    """Locks a file until it is closed; whether no other process has locked it."""
-    try:
-        import fcntl
-    except ImportError:  # Windows has none.
-        return True
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:
-        # A file system without locks.
-        return True
-    return True
 
 
 class Journal:
@@ -68,7 +66,10 @@ class Journal:
 
         Raises:
             ValueError: There are rows of another job, which stay, or another process writes them.
+            OSError: The system refuses, or ``out`` is a folder.
         """
+        if out.is_dir():
+            raise IsADirectoryError(errno.EISDIR, "is a folder, not a file", os.fspath(out))
         self._out = out
         self._path = out.with_name(f".{out.name}.part")
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -92,7 +93,7 @@ class Journal:
                 # Refuses what is no regular file.
                 open_file(self._path).close()
             file = os.fdopen(os.open(self._path, os.O_RDWR | os.O_CREAT, 0o644), "r+b")
-            if not _lock(file):
+            if lock(file) is False:
                 file.close()
                 raise ValueError(
                     f"{self._path} is being written by another process; wait for its end, or give "
@@ -126,8 +127,13 @@ class Journal:
 
     def _write(self, rows: Sequence[object]) -> None:
         text = "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows)
-        self._file.write(text.encode())
-        self._file.flush()
+        try:
+            self._file.write(text.encode())
+            self._file.flush()
+        except OSError as error:
+            # People know the result by its name; the journal is where there is no room.
+            error.filename = error.filename or os.fspath(self._path)
+            raise
 
     def add(self, item: str, rows: Sequence[object]) -> None:
         """Keeps the rows of an item."""

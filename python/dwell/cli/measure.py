@@ -5,18 +5,17 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from pathlib import Path
 
-from dwell.cli.common import Bar, print_json
+from dwell.cli.common import Bar, path, print_json
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     what = parser.add_subparsers(dest="what", metavar="import", required=True)
     command = what.add_parser("import", help="read tables (CSV; Parquet with pyarrow)")
-    command.add_argument("files", nargs="*", type=Path, metavar="FILES", help="the tables")
-    command.add_argument("--map", type=Path, metavar="FILE", help="what the columns mean (JSON)")
-    command.add_argument("--out", type=Path, metavar="NAME.measured", help="the bundle to write")
+    command.add_argument("files", nargs="*", type=path, metavar="FILES", help="the tables")
+    command.add_argument("--map", type=path, metavar="FILE", help="what the columns mean (JSON)")
+    command.add_argument("--out", type=path, metavar="NAME.measured", help="the bundle to write")
     command.add_argument(
         "--init",
         nargs="?",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from dwell.camera import PRESETS, Camera, Channel
@@ -15,6 +14,7 @@ from dwell.cli.common import (
     back_end,
     count,
     number,
+    path,
     point,
     print_json,
 )
@@ -86,7 +86,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--cut-m", type=number, default=1.6, help="height of --dollhouse's cut")
     parser.add_argument("--columns", type=count, default=4, help="pictures in a row of --sheet")
     add_back_end(parser)
-    parser.add_argument("--out", type=Path, required=True, help="folder for the files")
+    parser.add_argument("--out", type=path, required=True, help="folder for the files")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 

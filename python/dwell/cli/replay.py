@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from dwell.camera import PRESETS, Camera, Channel
-from dwell.cli.common import Bar, add_back_end, back_end, count, number, print_json
+from dwell.cli.common import Bar, add_back_end, back_end, count, number, path, print_json
 from dwell.cli.saving import add_bits, save_sound, write_image
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ _AUDIO = "audio"
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    parser.add_argument("file", metavar="FILE", type=Path, help="as ReplayRecorder writes it")
+    parser.add_argument("file", metavar="FILE", type=path, help="as ReplayRecorder writes it")
     parser.add_argument(
         "--verify",
         action="store_true",
@@ -37,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--preset", choices=PRESETS, default="lit")
     add_back_end(parser)
     add_bits(parser)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where --sensors go")
+    parser.add_argument("--out", type=path, metavar="DIR", help="where --sensors go")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 

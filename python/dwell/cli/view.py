@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from dwell.cli.common import count, print_json
+from dwell.cli.common import count, path, print_json
 from dwell.files import atomic
 
 
@@ -16,7 +16,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("house", metavar="HOUSE|REPLAY", help="a replay file ends with .replay")
     parser.add_argument(
         "--out",
-        type=Path,
+        type=path,
         metavar="FILE.rrd",
         help="write a recording; without it the viewer opens",
     )
