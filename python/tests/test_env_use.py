@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+from typing import Any
+
 import gymnasium
 import numpy as np
 import pytest
@@ -191,6 +195,27 @@ def test_what_an_episode_ended_with_stands_in_final_info() -> None:
     assert final["_spl"].tolist() == infos["_final_info"].tolist() == [True, False]
     assert final["distance_to_goal"][0] == infos["distance_to_goal"][0] > 0.0
     assert final["path_length"][0] < 0.01
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_an_environment_that_nobody_holds_goes_at_once(many: bool) -> None:
+    houses = ["builtin:studio", "seed:1?home=studio"]
+    settings: dict[str, Any] = {"sensors": ["gps"], "houses": houses}
+    env = DwellVectorEnv(2, "Free", **settings) if many else DwellEnv("Free", **settings)
+    env.reset(seed=1)
+    env.step([1, 1] if many else 1)  # type: ignore[arg-type] # of either
+    if many:
+        # Whoever makes houses ahead holds them, not the environments.
+        env._places.close()  # type: ignore[union-attr] # of many
+    held = weakref.ref(env)
+    runner = weakref.ref(env._runner)
+    gc.disable()
+    try:
+        del env
+        assert held() is None
+        assert runner() is None
+    finally:
+        gc.enable()
 
 
 def test_a_restored_environment_goes_on_as_before() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import sys
 import weakref
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import isnan
 from types import FrameType
 from typing import Any, NoReturn
@@ -20,10 +20,11 @@ from dwell import ConfigError, UsageError, _native
 from dwell.arguments import mapping, refuse_unknown, shown, to_json, whole
 from dwell.camera import Camera, camera_settings
 from dwell.envs.config import KEPT, Houses, HouseShelf, arguments_of, env_json, step_limit
-from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.custom import Custom, RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.runner import GOAL_KEYS, INFO_KEYS, Runner
 from dwell.envs.saved import sealed, unsealed
 from dwell.envs.spaces import action_space
+from dwell.heads import Head
 from dwell.settings import Laws, with_head
 from dwell.telling import told_agents
 
@@ -109,9 +110,13 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             native, laws=laws, parameters=parameters, stride=stride, world=world
         )
         self._shelf = HouseShelf(houses)
-        self._threads = None if threads is None else whole("threads", threads, low=1)
+        threads = None if threads is None else whole("threads", threads, low=1)
         self._closed = False
-        self._runner_of = functools.lru_cache(KEPT)(self._run)
+        # Not of this environment: one that nobody holds any more goes at once, with its worlds.
+        run = functools.partial(
+            _run, self._shelf, self._config, threads, custom=self._custom, heads=self._heads
+        )
+        self._runner_of = functools.lru_cache(KEPT)(run)
         self._house = 0
         self._episode = 0
         self._seed = 0
@@ -127,15 +132,6 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def _runner(self) -> Runner:
         self._refuse_closed()
         return self._runner_of(self._house)
-
-    def _run(self, house: int) -> Runner:
-        return Runner(
-            [self._shelf[house]],
-            self._config,
-            self._threads,
-            custom=self._custom,
-            heads=self._heads,
-        )
 
     def _observation(self) -> dict[str, Any]:
         self._runner.observe(self._alone)
@@ -292,6 +288,19 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """The names of the actions, in the order of their numbers."""
         self._refuse_closed()
         return _native.actions()
+
+
+def _run(
+    shelf: HouseShelf,
+    config: str,
+    threads: int | None,
+    house: int,
+    *,
+    custom: Custom,
+    heads: Sequence[Head],
+) -> Runner:
+    """What runs in a house of a shelf."""
+    return Runner([shelf[house]], config, threads, custom=custom, heads=heads)
 
 
 def checked_render_mode(mode: object) -> str | None:
