@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell._native import ConfigError
-from dwell.files import parse_json
+from dwell.files import MOST_DIGITS, parse_json
 
 #: What the border holds: seeds and counts are unsigned and have 64 bits.
 _MOST = 2**64 - 1
@@ -24,6 +24,8 @@ _MOST = 2**64 - 1
 _LARGEST = float(np.finfo(np.float32).max)
 #: How deep lists and mappings lie in each other at most, as the native side reads them.
 _DEEPEST = 100
+#: The first whole number that is not read back from JSON.
+_TOO_LARGE = 10**MOST_DIGITS
 
 _Record = TypeVar("_Record")
 
@@ -38,6 +40,13 @@ def shown(value: object, most: int = 200) -> str:
     except (RecursionError, ValueError):
         return f"a {type(value).__name__} that cannot be written out"
     return row if len(row) <= most else f"{row[:most]}…"
+
+
+def some(values: Sequence[object], most: int = 8) -> str:
+    """The first of many for error messages, and how many there are."""
+    if len(values) <= most:
+        return shown([*values])
+    return f"[{', '.join(map(shown, values[:most]))}, …] ({len(values)} in all)"
 
 
 def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
@@ -78,8 +87,8 @@ def numbers(name: str, values: object, dtype: type[np.floating[Any]]) -> NDArray
         array = np.asarray(values)
         if array.dtype.kind not in "fiu" and array.size > 0:
             raise TypeError
-    except (TypeError, ValueError):
-        raise ConfigError(f"{name}: expected real numbers, found {values!r:.200}") from None
+    except (TypeError, ValueError, RecursionError):
+        raise ConfigError(f"{name}: expected real numbers, found {shown(values)}") from None
     # What the type does not hold becomes infinite, and is refused by its place.
     with np.errstate(over="ignore"):
         return np.ascontiguousarray(array, dtype)
@@ -109,11 +118,11 @@ def choice(name: str, value: object, allowed: Sequence[str]) -> str:
 def texts(name: str, values: object) -> list[str]:
     """A list of text; one text alone is none."""
     if isinstance(values, str | bytes | Mapping):
-        raise ConfigError(f"{name} is {values!r}; expected a list of text")
+        raise ConfigError(f"{name} is {shown(values)}; expected a list of text")
     try:
         rows = list(values)  # type: ignore[call-overload] # what this finds out
     except TypeError:
-        raise ConfigError(f"{name} is {values!r}; expected a list of text") from None
+        raise ConfigError(f"{name} is {shown(values)}; expected a list of text") from None
     return [text(f"{name}[{k}]", row) for k, row in enumerate(rows)]
 
 
@@ -265,20 +274,23 @@ def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any
         return [_plain(f"{at}[{k}]", part, depth + 1) for k, part in enumerate(value)]
     if isinstance(value, float):
         return finite(at, value)
+    if isinstance(value, int) and abs(value) >= _TOO_LARGE:
+        raise ConfigError(
+            f"{at} is a whole number of more than {MOST_DIGITS} digits, which no float reaches"
+        )
     if value is None or isinstance(value, str | int):
         return value
     raise ConfigError(f"{at} is {shown(value)}; expected numbers, text, lists or mappings")
 
 
-def to_json(settings: Mapping[str, object] | Sequence[object]) -> str:
-    """Settings as JSON text for the native side; what JSON cannot hold is refused by its place."""
-    try:
-        return json.dumps(_plain("", settings))
-    except ValueError as error:
-        # A whole number of more digits than Python writes.
-        if isinstance(error, ConfigError):
-            raise
-        raise ConfigError(f"settings: {error}") from None
+def to_json(settings: Mapping[str, object] | Sequence[object], at: str = "") -> str:
+    """Settings as JSON text for the native side; what JSON cannot hold is refused by its place.
+
+    Args:
+        settings: The settings.
+        at: What the places begin with.
+    """
+    return json.dumps(_plain(at, settings))
 
 
 def from_json(at: str, written: str | bytes) -> Any:  # noqa: ANN401 - any JSON value

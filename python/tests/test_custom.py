@@ -192,6 +192,19 @@ def test_seeds_and_snapshots_bring_the_same_episode_back() -> None:
     assert third.reset(seed=9)[0]["noisy"].tolist() != observation["noisy"].tolist()
 
 
+def test_a_state_of_thousands_of_digits_is_refused_by_its_place() -> None:
+    env = DwellEnv(GoThere, sensors=["gps", Noisy])
+    env.reset(seed=1)
+    task = env._runner.plays[0]._task
+    assert task is not None
+    task.state["count"] = 10**308
+    env.restore(env.snapshot())
+    task.state["count"] = 10**5000
+    told = r"task\.state\.count is a whole number of more than 309 digits"
+    with pytest.raises(dwell.ConfigError, match=told):
+        env.snapshot()
+
+
 @pytest.mark.parametrize("cut", ["none", "parts", "other"])
 def test_snapshots_of_other_parts_are_refused(cut: str) -> None:
     env = DwellEnv(GoThere, sensors=["gps", Noisy])

@@ -197,6 +197,28 @@ def test_what_an_episode_ended_with_stands_in_final_info() -> None:
     assert final["path_length"][0] < 0.01
 
 
+def test_errors_of_hundreds_of_environments_name_the_first_of_them() -> None:
+    env = DwellVectorEnv(
+        20,
+        "Free",
+        sensors=["gps"],
+        houses="builtin:studio",
+        max_episode_steps=1,
+        autoreset_mode="Disabled",
+    )
+    env.reset(seed=1)
+    with pytest.raises(dwell.ConfigError) as refused:
+        env.step(np.full(20, 99))
+    first, many = "[0, 1, 2, 3, 4, 5, 6, 7, …] (20 in all)", "[99, 99, 99, 99, 99, 99, 99, 99, …]"
+    told = f"actions of environments {first} are {many} (20 in all); allowed are 0 to 11"
+    assert str(refused.value) == told
+    env.step(np.zeros(20, np.int64))
+    with pytest.raises(dwell.UsageError) as refused_ended:
+        env.step(np.zeros(20, np.int64))
+    assert str(refused_ended.value).startswith(f"environments {first} have ended; ")
+    env.close()
+
+
 @pytest.mark.parametrize("many", [False, True])
 def test_an_environment_that_nobody_holds_goes_at_once(many: bool) -> None:
     houses = ["builtin:studio", "seed:1?home=studio"]
@@ -216,6 +238,24 @@ def test_an_environment_that_nobody_holds_goes_at_once(many: bool) -> None:
         assert runner() is None
     finally:
         gc.enable()
+
+
+def test_cut_and_empty_snapshots_are_called_so() -> None:
+    env = DwellEnv("Free", sensors=["gps"], houses="builtin:studio")
+    env.reset(seed=1)
+    saved = env.snapshot()
+    with pytest.raises(dwell.ConfigError, match="snapshot refused: it is empty"):
+        env.restore(b"")
+    told = rf"does not fit its {len(saved) - 1} bytes: it was cut short or damaged"
+    with pytest.raises(dwell.ConfigError, match=told):
+        env.restore(saved[:-1])
+    many = DwellVectorEnv(1, "Free", sensors=["gps"], houses="builtin:studio")
+    many.reset(seed=1)
+    (row,) = many.snapshot()
+    with pytest.raises(dwell.ConfigError, match=r"snapshots\[0\]: snapshot refused: it is empty"):
+        many.restore([b""])
+    with pytest.raises(dwell.ConfigError, match=r"snapshots\[0\]: .*cut short or damaged"):
+        many.restore([row[:-1]])
 
 
 def test_a_restored_environment_goes_on_as_before() -> None:

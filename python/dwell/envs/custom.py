@@ -273,11 +273,13 @@ class Play:
         Raises:
             ConfigError: It would come back as something else.
         """
-        states = {name: part.state for name, part in self._parts().items()}
-        saved = to_json(states).encode()
-        for name, state in states.items():
-            _refuse_what_changes(f"{name}.state", state)
-        return saved
+        saved = {}
+        for name, part in self._parts().items():
+            at = f"{name}.state"
+            saved[name] = to_json(part.state, at)
+            _refuse_what_changes(at, part.state)
+        rows = (f"{json.dumps(name)}: {state}" for name, state in saved.items())
+        return f"{{{', '.join(rows)}}}".encode()
 
     def loaded(self, saved: bytes) -> dict[str, dict[str, Any]]:
         """What :meth:`save` wrote, by part.

@@ -52,6 +52,8 @@ class Saved:
             raise ConfigError(f"{name} is {shown(snapshot, 60)}; expected bytes of snapshot()")
         head, _, rest = snapshot.partition(b"\0")
         at = f"{name}: snapshot refused"
+        if not snapshot:
+            raise ConfigError(f"{at}: it is empty")
         if head != _HEAD:
             raise ConfigError(f"{at}: it is none of a vector environment of this version")
         about, _, rest = unsealed(at, rest).partition(b"\0")
@@ -82,10 +84,13 @@ def unsealed(at: str, sealed_content: bytes) -> bytes:
     Raises:
         ConfigError: It is something else, or was damaged.
     """
+    if not sealed_content:
+        raise ConfigError(f"{at}: it is empty")
     found, _, content = sealed_content.partition(b"\0")
     if found != _sum(content):
         raise ConfigError(
-            f"{at}: its check sum does not fit: it is damaged, or none of this version"
+            f"{at}: its check sum does not fit its {len(sealed_content)} bytes: it was cut short "
+            "or damaged, or is none of this version"
         )
     return content
 

@@ -13,7 +13,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, refuse_unknown, shown, to_json, whole
+from dwell.arguments import mapping, refuse_unknown, shown, some, to_json, whole
 from dwell.camera import camera_settings
 from dwell.envs.config import KEPT, Houses, HouseShelf, arguments_of, env_json, step_limit
 from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
@@ -264,7 +264,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
                 given = list(seed)
             except TypeError:
                 expected = "expected a whole number, or one for each environment"
-                raise ConfigError(f"seed is {seed!r}; {expected}") from None
+                raise ConfigError(f"seed is {shown(seed)}; {expected}") from None
             seeds = [None if one is None else whole("seed", one) for one in given]
             if len(seeds) != self.num_envs:
                 raise ConfigError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
@@ -321,13 +321,13 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if any(stream is None for stream in self._streams):
             raise UsageError("step: no episode has begun; call reset first")
         if self._stopped.any():
-            which = np.flatnonzero(self._stopped).tolist()
+            which = some(np.flatnonzero(self._stopped).tolist())
             raise UsageError(f"step: no episode of environments {which} has begun; reset them")
         try:
             numbers = np.asarray(actions)
         except ValueError:
             raise ConfigError(
-                f"actions are {actions!r}; expected whole numbers of shape ({self.num_envs},)"
+                f"actions are {shown(actions)}; expected whole numbers of shape ({self.num_envs},)"
             ) from None
         if numbers.shape != (self.num_envs,) or numbers.dtype.kind not in "iu":
             raise ConfigError(
@@ -335,11 +335,15 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
                 f"found {numbers.dtype} of shape {numbers.shape}"
             )
         last = len(_native.actions()) - 1
-        if not ((numbers >= 0) & (numbers <= last)).all():
-            raise ConfigError(f"actions are {numbers.tolist()}; allowed are 0 to {last}")
+        wrong = np.flatnonzero((numbers < 0) | (numbers > last)).tolist()
+        if wrong:
+            found = some(numbers[wrong].tolist())
+            raise ConfigError(
+                f"actions of environments {some(wrong)} are {found}; allowed are 0 to {last}"
+            )
         begins = self._done.copy()
         if begins.any() and self.autoreset_mode is not AutoresetMode.NEXT_STEP:
-            which = np.flatnonzero(begins).tolist()
+            which = some(np.flatnonzero(begins).tolist())
             raise UsageError(f"environments {which} have ended; reset them with reset_mask first")
         if begins.any():
             self._start(begins)
