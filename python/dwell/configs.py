@@ -16,6 +16,8 @@ from dwell.heads import Head
 Home = Literal["studio", "apartment", "house", "office"]
 Doors = Literal["open", "closed", "ajar", "mixed"]
 Split = Literal["train", "val", "test", "all"]
+#: How an agent may get about.
+LOCOMOTIONS = ("walking", "differential_drive", "holonomic")
 Locomotion = str | Mapping[str, Mapping[str, float]]
 
 
@@ -157,8 +159,12 @@ def _air(name: str, value: object) -> dict[str, Any]:
 
 def _locomotion(name: str, value: object) -> object:
     if isinstance(value, str):
-        return value
+        # With its usual numbers.
+        value = {value: {}}
     kinds = mapping(name, value, "the name of a locomotion, or its numbers by that name")
+    if len(kinds) != 1 or not set(kinds) <= set(LOCOMOTIONS):
+        found = " and ".join(map(repr, kinds)) or "none"
+        raise ConfigError(f"{name}: found {found:.200}; allowed is one of {', '.join(LOCOMOTIONS)}")
     return {
         kind: {
             field: finite(f"{name}.{kind}.{field}", number)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from dwell.arguments import finite, point, whole
+from dwell._native import ConfigError
+from dwell.arguments import finite, point, shown, whole
 from dwell.directivity import Directivity, directivity_json
 from dwell.heads import Head, head_of
 
@@ -108,9 +109,16 @@ class Receiver:
             yaw_deg: Where the array's front points.
             pitch_deg: How far its front is raised.
         """
+        expected = "expected 1 to 128 microphones or points"
+        if isinstance(microphones, str | bytes | Mapping):
+            raise ConfigError(f"microphones is {shown(microphones)}; {expected}")
+        try:
+            given = list(microphones)
+        except TypeError:
+            raise ConfigError(f"microphones is {shown(microphones)}; {expected}") from None
         items = [
-            item if isinstance(item, Microphone) else Microphone(point("microphones", item))
-            for item in microphones
+            item if isinstance(item, Microphone) else Microphone(point(f"microphones[{k}]", item))
+            for k, item in enumerate(given)
         ]
         kind = {
             "array": [

@@ -81,6 +81,7 @@ class World(Acting, Guiding, Sounds):
             laws: Laws to install: a name, ``{name: {parameter: value}}``, or a list of names and of
                 ``{"id", "version", "target", "params"}`` (``docs/laws.md``); or what calibration
                 found (laws and parameters), as a mapping or as the path of its ``found.json``.
+                ``None`` and what is empty install none.
             parameters: Values by address, such as ``{"world/gravity_m_s2": 1.62}``; they go before
                 those that calibration found.
             **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``,

@@ -36,6 +36,18 @@ MOON = "world/gravity_m_s2"
         (lambda: DwellEnv(threads=-1), "threads is -1"),
         (lambda: DwellEnv(houses=7), "houses is 7"),  # type: ignore[arg-type]
         (lambda: DwellEnv(houses=[]), "at least one"),
+        (
+            lambda: dwell.Receiver.array((0, 0, 0), None),  # type: ignore[arg-type]
+            "microphones is None; expected 1 to 128 microphones or points",
+        ),
+        (
+            lambda: dwell.Receiver.array((0, 0, 0), [(0, 0, 0), None]),  # type: ignore[list-item]
+            r"microphones\[1\]: expected three numbers",
+        ),
+        (
+            lambda: dwell.Head.measured(nested(5000), [], 44_100),
+            "sources: expected real numbers, found a list that cannot be written out",
+        ),
         (lambda: DwellEnv(world={"laws": []}), "laws="),
         (lambda: DwellEnv(world={"parameters": {}}), "parameters="),
         (lambda: DwellVectorEnv(-1), "num_envs is -1"),

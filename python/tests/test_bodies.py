@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 import dwell
+from dwell.configs import LOCOMOTIONS
 
 DRIVE = {"locomotion": {"differential_drive": {"wheel_base_m": 0.4, "left_wheel_radius_m": 0.05}}}
 HOLONOMIC = {"locomotion": {"holonomic": {"max_sideways_m_s": 0.5}}}
@@ -84,8 +85,18 @@ def test_controls_that_cannot_be_are_refused(
 def test_a_body_that_cannot_be_is_refused() -> None:
     with pytest.raises(dwell.DwellError, match="radius_m"):
         dwell.World(_hall(), agents=[{"radius_m": -1.0}])
-    with pytest.raises(dwell.DwellError, match="unknown"):
-        dwell.World(_hall(), agents=[{"locomotion": {"hovering": {}}}])
+    known = "allowed is one of walking, differential_drive, holonomic"
+    for wrong in ("hovering", {"hovering": {}}, {}, {"walking": {}, "holonomic": {}}):
+        with pytest.raises(dwell.ConfigError, match=rf"agents\[0\].locomotion: found .*; {known}"):
+            dwell.World(_hall(), agents=[{"locomotion": wrong}])
+
+
+def test_a_locomotion_by_its_name_has_its_usual_numbers() -> None:
+    for name in LOCOMOTIONS:
+        by_name, in_full = (
+            dwell.World(_hall(), agents=[{"locomotion": given}]) for given in (name, {name: {}})
+        )
+        assert by_name.agents() == in_full.agents()
 
 
 def test_joints_are_read_told_and_set(apartment: dwell.House) -> None:
