@@ -152,6 +152,21 @@ impl HousesError {
         }
     }
 
+    /// The same of a file in a folder: the folder's name stands before the file's.
+    pub(crate) fn within(mut self, folder: &str) -> Self {
+        match &mut self {
+            Self::TooLarge { at, .. }
+            | Self::Syntax { at, .. }
+            | Self::Field { at, .. }
+            | Self::Version { at, .. }
+            | Self::PathLeavesRoot { at, .. }
+            | Self::Empty { at, .. }
+            | Self::Scene { at, .. } => at.file = format!("{folder}/{}", at.file),
+            _ => {}
+        }
+        self
+    }
+
     /// An [`HousesError::Empty`] at `at`, with what was reported on the way.
     pub(crate) fn empty(at: &At, report: &Report) -> Self {
         const TOLD: usize = 3;

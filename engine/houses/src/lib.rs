@@ -11,6 +11,7 @@ mod formats;
 pub mod generate;
 pub mod gltf;
 pub mod habitat;
+mod json;
 mod limits;
 mod loss;
 pub mod measured;

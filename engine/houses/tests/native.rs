@@ -193,27 +193,27 @@ fn foreign_and_broken_files_say_where_and_what() {
     assert_eq!(
         broken(folder.path(), |text| text
             .replace("\"version\":3", "\"version\":7")),
-        "house.json: version: version \"7\" is not read; allowed are [\"1\", \"2\", \"3\"]"
+        "a.dwell/house.json: version: version \"7\" is not read; allowed are [\"1\", \"2\", \"3\"]"
     );
     assert_eq!(
         broken(folder.path(), |_| "{}".to_owned()),
-        "house.json: format: expected \"dwell-house\", found \"\""
+        "a.dwell/house.json: format: expected \"dwell-house\", found \"\""
     );
     let message = broken(folder.path(), |text| {
         text.replace("\"floor_y\"", "\"flor_y\"")
     });
     assert!(
-        message.starts_with("house.json:1: missing field `floor_y`"),
+        message.starts_with("a.dwell/house.json:1: missing field `floor_y`"),
         "{message}"
     );
     assert_eq!(
         broken(folder.path(), |text| text
             .replace("\"triangles\":3", "\"triangles\":0")),
-        "house.json: mesh_accessors[0]: indices that are not whole numbers from 0"
+        "a.dwell/house.json: mesh_accessors[0]: indices that are not whole numbers from 0"
     );
     let message = broken(folder.path(), |text| text[..text.len() / 2].to_owned());
     assert!(
-        message.starts_with("house.json:1: EOF while parsing"),
+        message.starts_with("a.dwell/house.json:1: EOF while parsing"),
         "{message}"
     );
     std::fs::write(
@@ -226,8 +226,20 @@ fn foreign_and_broken_files_say_where_and_what() {
     assert!(matches!(error, HousesError::Syntax { .. }));
     assert_eq!(
         error.to_string(),
-        "house.glb: ends at byte 4, inside a header"
+        "a.dwell/house.glb: ends at byte 4, inside a header"
     );
+}
+
+#[test]
+fn tables_that_an_editor_saved_with_a_mark_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.dwell");
+    native::write(&shoebox(), &path).unwrap();
+    let tables = path.join("house.json");
+    let text = std::fs::read_to_string(&tables).unwrap();
+    std::fs::write(&tables, format!("\u{feff}{text}")).unwrap();
+    let (house, _) = open(&path.to_string_lossy()).unwrap();
+    assert_eq!(bits(&house), bits(&shoebox()));
 }
 
 fn broken_free(folder: &Path) -> String {

@@ -14,6 +14,7 @@ use super::files::Files;
 use super::map::Map;
 use crate::error::HousesError;
 use crate::formats::{Opened, open_with};
+use crate::json;
 use crate::limits::MAX_TEXT_BYTES;
 use crate::report::{At, Report};
 use crate::root::Named;
@@ -61,15 +62,7 @@ impl Default for Plan {
 /// # Errors
 /// [`HousesError::Syntax`] with what was found and what is allowed there.
 pub fn edits_from_json(text: &str) -> Result<Vec<Edit>, HousesError> {
-    serde_json::from_str(text).map_err(syntax(&At::file("edits")))
-}
-
-fn syntax(at: &At) -> impl FnOnce(serde_json::Error) -> HousesError {
-    let at = at.clone();
-    move |error| HousesError::Syntax {
-        at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: crate::plain(&error),
-    }
+    serde_json::from_str(text).map_err(json::syntax(&At::file("edits")))
 }
 
 impl Plan {
@@ -78,7 +71,7 @@ impl Plan {
     /// # Errors
     /// [`HousesError::Syntax`], [`HousesError::Field`] for another format, [`HousesError::Version`].
     pub fn from_json(text: &[u8], at: &At) -> Result<Self, HousesError> {
-        let plan: Self = serde_json::from_slice(text).map_err(syntax(at))?;
+        let plan: Self = json::from_slice(text).map_err(json::syntax(at))?;
         if plan.format != FORMAT {
             return Err(HousesError::Field {
                 at: at.field("format"),

@@ -6,6 +6,7 @@ use ::gltf::json::{Root, deserialize};
 use serde_json::Value;
 
 use super::indices;
+use crate::json::without_mark;
 use crate::limits::MAX_TEXT_BYTES;
 
 /// The tables and the binary chunk, empty when there is none. Text without the GLB header is glTF.
@@ -13,10 +14,13 @@ use crate::limits::MAX_TEXT_BYTES;
 /// # Errors
 /// A sentence when the bytes are neither.
 pub(super) fn split(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
+    if bytes.is_empty() {
+        return Err("the file is empty; expected a GLB, or glTF 2.0 as JSON".to_owned());
+    }
     let (text, blob) = if bytes.starts_with(b"glTF") {
         chunks(bytes)?
     } else {
-        (bytes, &[][..])
+        (without_mark(bytes), &[][..])
     };
     if text.len() as u64 > MAX_TEXT_BYTES {
         return Err(format!(
@@ -132,6 +136,12 @@ mod tests {
             message(b"glTF\x02\0\0\0\x14\0\0\0\x09\0\0\0JSON"),
             "chunk at byte 12 reaches beyond the file"
         );
+        assert_eq!(
+            message(b""),
+            "the file is empty; expected a GLB, or glTF 2.0 as JSON"
+        );
+        let marked = b"\xef\xbb\xbf{\"asset\": {\"version\": \"2.0\"}}";
+        assert!(split(marked).is_ok());
         assert!(message(b"{").starts_with("no valid glTF 2.0: EOF"));
         // Other shapes than an object with a list of textures, on the way that reads a tree.
         for text in ["[\"KHR_texture_basisu\"]", "\"KHR_texture_basisu\""] {

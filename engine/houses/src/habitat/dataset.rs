@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 use super::file::{DatasetFile, Lexicon, Section, SemanticFile};
 use crate::damage::Damage;
 use crate::error::HousesError;
+use crate::json;
 use crate::limits::{MAX_NODES, MAX_PATTERN_WORDS, MAX_TEXT_BYTES};
 use crate::report::{At, Report};
 use crate::root::{DataRoot, folder_of};
@@ -295,10 +296,7 @@ pub(super) fn read_json<T: DeserializeOwned>(
     path: &str,
 ) -> Result<T, HousesError> {
     let bytes = root.read(path, MAX_TEXT_BYTES)?;
-    serde_json::from_slice(&bytes).map_err(|error| HousesError::Syntax {
-        at: At::file(path).line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: crate::plain(&error),
-    })
+    json::from_slice(&bytes).map_err(json::syntax(&At::file(path)))
 }
 
 fn is_json(path: &str) -> bool {

@@ -7,6 +7,7 @@ mod convert;
 mod file;
 
 use crate::error::HousesError;
+use crate::json;
 use crate::limits::MAX_TEXT_BYTES;
 use crate::report::{At, Report};
 use crate::root::{DataRoot, is_json_with};
@@ -32,10 +33,7 @@ pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
     let root = DataRoot::new(folder)?;
     let bytes = root.read_named(&name, MAX_TEXT_BYTES)?;
     let at = At::file(&*name);
-    let file: RoomFile = serde_json::from_slice(&bytes).map_err(|error| HousesError::Syntax {
-        at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: crate::plain(&error),
-    })?;
+    let file: RoomFile = json::from_slice(&bytes).map_err(json::syntax(&at))?;
     let stem = name.rsplit_once('.').map_or(&*name, |(stem, _)| stem);
     let mut report = Report::new();
     let data = convert::convert(&file, stem, (&root, &at), &mut report)?;

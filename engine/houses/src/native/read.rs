@@ -1,5 +1,6 @@
 //! `NAME.dwell/` into a house.
 
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -12,6 +13,7 @@ use super::{GEOMETRY, TABLES};
 use crate::build::PixelBudget;
 use crate::error::HousesError;
 use crate::gltf::{Geometry, MeshAccessors};
+use crate::json;
 use crate::limits::{MAX_ALL_SOUND_BYTES, MAX_BUFFER_BYTES, MAX_TEXT_BYTES};
 use crate::report::{At, Report};
 use crate::root::DataRoot;
@@ -23,14 +25,26 @@ use crate::root::DataRoot;
 /// with the line or field for content that is not of this form or not what its name says, [`HousesError::Scene`] when the tables break a rule of the
 /// scene. The form is exact, so nothing is survived and the report stays empty.
 pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+    let meta = std::fs::metadata(path).map_err(HousesError::io(path))?;
+    if !meta.is_dir() {
+        let what = format!("is no folder; a .dwell is one, with {TABLES} and {GEOMETRY}");
+        let source = io::Error::new(io::ErrorKind::NotADirectory, what);
+        return Err(HousesError::io(path)(source));
+    }
+    let house = read(path, threads).map_err(|error| {
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        error.within(&name.to_string_lossy())
+    })?;
+    Ok((house, Report::new()))
+}
+
+/// Reads the house; places in errors are relative to its folder.
+fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
     let root = DataRoot::new(path)?;
     let text = root.read(TABLES, MAX_TEXT_BYTES)?;
     let at = At::file(TABLES);
-    let syntax = |error: serde_json::Error| HousesError::Syntax {
-        at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: crate::plain(&error),
-    };
-    let head: Head = serde_json::from_slice(&text).map_err(syntax)?;
+    let syntax = json::syntax(&at);
+    let head: Head = json::from_slice(&text).map_err(&syntax)?;
     if head.format != FORMAT {
         let found = format!("{:?}", head.format);
         return Err(HousesError::Field {
@@ -48,7 +62,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
             allowed,
         });
     }
-    let file: NativeFile = serde_json::from_slice(&text).map_err(syntax)?;
+    let file: NativeFile = json::from_slice(&text).map_err(&syntax)?;
     let bytes = root.read(GEOMETRY, MAX_BUFFER_BYTES)?;
     // Houses that were written together share what stands beside them.
     let library = DataRoot::new(path.join("../.."))?;
@@ -85,8 +99,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         left -= bytes.len() as u64;
         data.sound_files.push(Arc::new(SoundFile { name, bytes }));
     }
-    let house = House::new(data).map_err(HousesError::scene(&at))?;
-    Ok((house, Report::new()))
+    House::new(data).map_err(HousesError::scene(&at))
 }
 
 fn read_mesh(geometry: &Geometry<'_>, accessors: &MeshAccessors) -> Result<Mesh, String> {

@@ -16,6 +16,7 @@ use glam::{DVec2, Quat, Vec2, Vec3};
 use crate::building::assembly::Assembly;
 use crate::damage::Damage;
 use crate::error::HousesError;
+use crate::json;
 use crate::limits::{MAX_NODES, MAX_TEXT_BYTES};
 use crate::report::{At, Report};
 use crate::root::{DataRoot, is_json_with};
@@ -52,10 +53,7 @@ fn convert(
     mut report: Report,
 ) -> Result<(House, Report), HousesError> {
     let at = At::file(name);
-    let file: HouseFile = serde_json::from_slice(bytes).map_err(|error| HousesError::Syntax {
-        at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: crate::plain(&error),
-    })?;
+    let file: HouseFile = json::from_slice(bytes).map_err(json::syntax(&at))?;
     let openings = file.doors.len() + file.windows.len();
     let lamps = file.procedural_parameters.lights.len();
     let count = file.walls.len() + file.rooms.len() + openings + lamps + count(&file.objects);

@@ -46,7 +46,7 @@ impl Sizes {
 
     /// Reads the table; sizes that no thing can have are left out.
     fn read(text: &[u8]) -> Result<Self, String> {
-        let file: AssetsFile = serde_json::from_slice(text).map_err(crate::plain)?;
+        let file: AssetsFile = crate::json::from_slice(text).map_err(crate::plain)?;
         let mut known = BTreeMap::new();
         for (kind, assets) in file {
             for asset in assets {

@@ -19,9 +19,7 @@ use crate::report::{At, Report};
 /// [`HousesError::TooLarge`] for too many nodes.
 pub fn parse(text: &[u8], name: &str, report: &mut Report) -> Result<HouseFile, HousesError> {
     let at = At::file(name);
-    // Some files start with a byte order mark.
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let value: Value = serde_json::from_slice(text).map_err(|error| HousesError::Syntax {
+    let value: Value = crate::json::from_slice(text).map_err(|error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
         message: format!("no valid JSON: {error}"),
     })?;

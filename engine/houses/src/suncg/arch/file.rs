@@ -71,7 +71,7 @@ pub struct Hole {
 /// [`HousesError::Syntax`] when the text is no JSON, [`HousesError::TooLarge`] for too many elements.
 pub fn parse(text: &[u8], name: &str, report: &mut Report) -> Result<ArchFile, HousesError> {
     let at = At::file(name);
-    let value: Value = serde_json::from_slice(text).map_err(|error| HousesError::Syntax {
+    let value: Value = crate::json::from_slice(text).map_err(|error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
         message: format!("no valid JSON: {error}"),
     })?;

@@ -51,7 +51,7 @@ impl LightTable {
     pub fn read(text: &[u8], file: &str, report: &mut Report) -> Self {
         let at = At::file(file);
         let mut table = Self::default();
-        let models: BTreeMap<String, Value> = match serde_json::from_slice(text) {
+        let models: BTreeMap<String, Value> = match crate::json::from_slice(text) {
             Ok(models) => models,
             Err(error) => {
                 let damage = Damage::BadRow {

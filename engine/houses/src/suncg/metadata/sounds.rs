@@ -54,7 +54,7 @@ pub struct SoundTable {
 impl SoundTable {
     /// Reads the table.
     pub fn read(text: &[u8], file: &str, report: &mut Report) -> Self {
-        match serde_json::from_slice(text) {
+        match crate::json::from_slice(text) {
             Ok(entries) => Self { entries },
             Err(error) => {
                 let damage = Damage::BadRow {

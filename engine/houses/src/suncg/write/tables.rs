@@ -63,7 +63,7 @@ pub(super) fn read_rows(root: &DataRoot) -> Result<Vec<ModelRow>, HousesError> {
         .filter(|path| root.has_file(path));
     rows.map(|path| {
         let text = root.read(&path, MAX_TEXT_BYTES)?;
-        serde_json::from_slice(&text).map_err(|error| HousesError::Syntax {
+        crate::json::from_slice(&text).map_err(|error| HousesError::Syntax {
             at: At::file(&path),
             message: crate::plain(&error),
         })
