@@ -9,6 +9,7 @@ use dwell_scene::parallel::Threads;
 
 use crate::error::HousesError;
 use crate::report::Report;
+use crate::root::read_capped;
 
 /// A house and the damage that was survived on the way to it.
 pub type Opened = Result<(House, Report), HousesError>;
@@ -133,7 +134,7 @@ pub fn open(house: &str) -> Result<(House, Report), HousesError> {
 /// `seed:3?home=studio`, `seed:4?home=studio` and `seed:5?home=studio`. Nothing for any other string, which is one house.
 ///
 /// # Errors
-/// [`HousesError::Spec`] for a range that is empty, or none of whole numbers.
+/// [`HousesError::Spec`] for a range that is empty or none of whole numbers, and for fields that no house can have.
 ///
 /// ```
 /// let found = dwell_houses::seed_range("seed:3..5?home=studio")?;
@@ -154,6 +155,7 @@ pub fn seed_range(house: &str) -> Result<Option<(Range<u64>, &str)>, HousesError
             possible: format!("A..B with whole numbers A < B, up to {}", u64::MAX),
         });
     };
+    crate::generate::spec_of(fields.strip_prefix('?').unwrap_or(fields))?;
     Ok(Some((from..to, fields)))
 }
 
@@ -167,6 +169,7 @@ pub fn open_with(house: &str, threads: Threads) -> Result<(House, Report), House
         return crate::authoring::open_mapped(foreign, map, threads);
     }
     let Some(format) = formats().iter().find(|format| (format.recognizes)(house)) else {
+        refuse_irregular(Path::new(house))?;
         let allowed = formats()
             .iter()
             .map(|format| format.spelling)
@@ -197,6 +200,16 @@ pub fn open_with(house: &str, threads: Threads) -> Result<(House, Report), House
     Ok((house, report))
 }
 
+/// Refuses named pipes, sockets and devices, which are no house whatever their names end with.
+fn refuse_irregular(path: &Path) -> Result<(), HousesError> {
+    let is_known = |meta: std::fs::Metadata| meta.is_file() || meta.is_dir();
+    if std::fs::metadata(path).map_or(true, is_known) {
+        return Ok(());
+    }
+    // Opens nothing: what it is stands in the error.
+    read_capped(path, "", 0).map(|_| ())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -218,6 +231,9 @@ mod tests {
             let told = seed_range(wrong).unwrap_err().to_string();
             assert!(told.starts_with("seed: found"), "{told}");
         }
+        // What no house of it can have is told before any of them is made.
+        let told = seed_range("seed:0..3?home=studio&storeys=99").unwrap_err();
+        assert_eq!(told.to_string(), "storeys: found 99; possible: 1 to 3");
     }
 
     #[test]

@@ -106,6 +106,29 @@ fn house_strings_that_mean_nothing_list_what_is_allowed() {
     );
 }
 
+#[cfg(unix)]
+#[test]
+fn what_is_no_regular_file_is_no_house() {
+    let folder = tempfile::tempdir().unwrap();
+    let message = |path: &std::path::Path| {
+        let opened = open(&path.to_string_lossy()).map(|_| ());
+        opened.unwrap_err().to_string()
+    };
+    for name in ["pipe", "pipe.glb", "pipe.json"] {
+        let pipe = folder.path().join(name);
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.unwrap().success());
+        let told = format!("{}: is a named pipe, not a regular file", pipe.display());
+        assert_eq!(message(&pipe), told);
+    }
+    let told = "/dev/zero: is a device, not a regular file";
+    assert_eq!(message(std::path::Path::new("/dev/zero")), told);
+    let file = folder.path().join("a.dwell");
+    std::fs::write(&file, "").unwrap();
+    let told = "is no folder; a .dwell is one, with house.json and house.glb";
+    assert_eq!(message(&file), format!("{}: {told}", file.display()));
+}
+
 #[test]
 fn a_data_root_with_several_houses_is_not_guessed() {
     let folder = tempfile::tempdir().unwrap();

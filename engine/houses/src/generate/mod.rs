@@ -174,6 +174,19 @@ pub(crate) fn open(house: &str) -> Opened {
         possible: "a whole number from 0 to 18446744073709551615; A..B only where several houses are taken"
             .to_owned(),
     })?;
+    let generated = generate(seed, &spec_of(fields)?)?;
+    let mut report = Report::new();
+    for what in generated.report.given_up {
+        report.warn(At::file(house), Damage::GivenUp { what });
+    }
+    Ok((generated.house, report))
+}
+
+/// The spec that `field=value&field=value` says, as far as it can be for any seed.
+///
+/// # Errors
+/// [`HousesError::Spec`] names the field, what was found, and what is possible.
+pub(crate) fn spec_of(fields: &str) -> Result<HouseSpec, HousesError> {
     let mut spec = serde_json::Map::new();
     for field in fields.split('&').filter(|field| !field.is_empty()) {
         let (name, value) = field.split_once('=').unwrap_or((field, ""));
@@ -187,12 +200,8 @@ pub(crate) fn open(house: &str) -> Opened {
         }
     }
     let spec = parsed(spec)?;
-    let generated = generate(seed, &spec)?;
-    let mut report = Report::new();
-    for what in generated.report.given_up {
-        report.warn(At::file(house), Damage::GivenUp { what });
-    }
-    Ok((generated.house, report))
+    spec.check()?;
+    Ok(spec)
 }
 
 /// The spec that fields say; an error names the first that cannot be read.

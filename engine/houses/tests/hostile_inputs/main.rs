@@ -262,7 +262,7 @@ fn house_strings() {
         ("seed:seed:7", "seed: found seed:7"),
         ("\0", "is no house this version opens"),
         ("a\0.glb", "a\0.glb"),
-        ("/dev/zero", "is no house this version opens"),
+        ("/dev/zero", "is a device, not a regular file"),
         (".", "is no house this version opens"),
         (long.as_str(), "is no house this version opens"),
         ("/.dwell", "/.dwell"),
