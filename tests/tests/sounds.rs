@@ -224,6 +224,27 @@ fn a_file_sounds_at_the_level_it_is_told() {
 }
 
 #[test]
+fn a_folder_of_sounds_that_is_none_is_refused_when_the_world_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    for name in ["nowhere", "file"] {
+        let path = folder.path().join(name).to_str().unwrap().to_owned();
+        let config = WorldConfig {
+            sound_root: Some(path.clone()),
+            ..WorldConfig::default()
+        };
+        let house = House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
+        let told = World::new(Engines::new(Arc::new(house)), &config).unwrap_err();
+        let told = told.to_string();
+        assert!(
+            told.starts_with(&format!("sound_root is {path:?}: ")),
+            "{told}"
+        );
+        assert!(told.contains("the folder below which sound files are"));
+    }
+}
+
+#[test]
 fn wrong_requests_are_answered_and_change_nothing() {
     let mut world = bare(&WorldConfig::default());
     let before = world.hash();

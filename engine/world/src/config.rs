@@ -1,7 +1,7 @@
 //! How a world runs.
 
 use crate::error::WorldError;
-use dwell_acoustics::HeadId;
+use dwell_acoustics::{AcousticConfig, HeadId};
 use dwell_render::BackEnd;
 use dwell_scene::{AgentBody, LawSpec, SceneError};
 use serde::{Deserialize, Serialize};
@@ -110,6 +110,10 @@ impl WorldConfig {
             );
             return fault("sound_rate_hz", self.sound_rate_hz.to_string(), allowed);
         }
+        if !AcousticConfig::PRESETS.contains(&self.sound_preset.as_str()) {
+            let allowed = AcousticConfig::PRESETS.join(", ");
+            return fault("sound_preset", format!("{:?}", self.sound_preset), allowed);
+        }
         if self.agents.len() > 64 {
             return fault("agents", self.agents.len().to_string(), "at most 64".into());
         }
@@ -117,6 +121,26 @@ impl WorldConfig {
             body.check().map_err(|error| of_agent(k, error))?;
         }
         Ok(())
+    }
+
+    /// Looks whether the folder of sound files is there.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] with what the system says.
+    pub(crate) fn check_sound_root(&self) -> Result<(), WorldError> {
+        let Some(folder) = &self.sound_root else {
+            return Ok(());
+        };
+        // What is listed is a folder that may be read.
+        let told = match std::fs::read_dir(folder) {
+            Ok(_) => return Ok(()),
+            Err(error) => error,
+        };
+        Err(WorldError::Config {
+            field: "sound_root",
+            found: format!("{folder:?}: {told}"),
+            allowed: "the folder below which sound files are".to_owned(),
+        })
     }
 
     /// The length of a control step, s.
@@ -152,6 +176,21 @@ fn of_agent(number: usize, error: SceneError) -> SceneError {
 mod tests {
     use super::*;
     use dwell_scene::{DifferentialDrive, Locomotion};
+
+    #[test]
+    fn a_preset_of_sound_that_there_is_not_is_refused_with_those_there_are() {
+        let config = |preset: &str| WorldConfig {
+            sound_preset: preset.to_owned(),
+            ..WorldConfig::default()
+        };
+        for preset in AcousticConfig::PRESETS {
+            config(preset).check().unwrap();
+        }
+        assert_eq!(
+            config("loud").check().unwrap_err().to_string(),
+            "sound_preset is \"loud\"; allowed is rl, full, reference"
+        );
+    }
 
     #[test]
     fn a_body_out_of_range_is_named_by_agent_and_field() {

@@ -47,6 +47,7 @@ impl World {
     /// [`WorldError`] names the setting, parameter or law that is wrong, or a sound file of the house that is none.
     pub fn new(engines: Arc<Engines>, config: &WorldConfig) -> Result<Self, WorldError> {
         config.check()?;
+        config.check_sound_root()?;
         if config.renderer != BackEnd::Cpu {
             engines.pictures(&config.renderer)?;
         }
