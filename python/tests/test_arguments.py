@@ -37,6 +37,14 @@ MOON = "world/gravity_m_s2"
         (lambda: DwellEnv(houses=7), "houses is 7"),  # type: ignore[arg-type]
         (lambda: DwellEnv(houses=[]), "at least one"),
         (
+            lambda: DwellEnv("Free", sensors={"where": {"kind": "gps"}}),
+            'a sensor\'s name is "where"; allowed is "gps", the only one of its kind: give {"gps"',
+        ),
+        (
+            lambda: DwellEnv(task_settings={"min_distance_m": 5, "max_distance_m": 2}),
+            "min_distance_m is 5; allowed is at most max_distance_m, which is 2",
+        ),
+        (
             lambda: dwell.Receiver.array((0, 0, 0), None),  # type: ignore[arg-type]
             "microphones is None; expected 1 to 128 microphones or points",
         ),

@@ -205,7 +205,21 @@ pub fn build(
             known,
         });
     };
-    (kind.build)(settings, site)
+    (kind.build)(settings, site).map_err(|error| match &error {
+        // Of this kind there is one alone, called as the kind is.
+        WorldError::Settings { error: told, .. }
+            if told.to_string().starts_with("unknown field `name`") =>
+        {
+            let mut own = settings.clone();
+            own.as_object_mut().map(|fields| fields.remove("name"));
+            WorldError::Config {
+                field: "a sensor's name",
+                found: settings["name"].to_string(),
+                allowed: format!("{name:?}, the only one of its kind: give {{{name:?}: {own}}}"),
+            }
+        }
+        _ => error,
+    })
 }
 
 /// Reads a sensor's settings; `null` counts as `{}`.
@@ -222,3 +236,25 @@ pub(crate) fn settings<T: serde::de::DeserializeOwned + Default>(
 #[derive(Debug, Default, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct NoSettings {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::WorldConfig;
+    use serde_json::json;
+
+    #[test]
+    fn a_name_for_what_has_none_leads_to_the_settings_that_are_meant() {
+        let config = WorldConfig::default();
+        let site = Site { config: &config };
+        let told = |kind: &str, settings: serde_json::Value| {
+            build(kind, &settings, site).unwrap_err().to_string()
+        };
+        assert_eq!(
+            told("gps", json!({"name": "where"})),
+            "a sensor's name is \"where\"; allowed is \"gps\", the only one of its kind: give {\"gps\": {}}"
+        );
+        assert!(build("rgb", &json!({"name": "left"}), site).is_ok());
+        assert!(told("gps", json!({"nme": 1})).contains("unknown field `nme`"));
+    }
+}

@@ -83,6 +83,14 @@ fn build(value: &serde_json::Value, stride: Stride) -> Result<Box<dyn Task>, Wor
             allowed,
         });
     }
+    let (least, most) = (settings.min_distance_m, settings.max_distance_m);
+    if least > most {
+        return Err(WorldError::Config {
+            field: "min_distance_m",
+            found: least.to_string(),
+            allowed: format!("at most max_distance_m, which is {most}"),
+        });
+    }
     Ok(Box::new(InstructionFollowing {
         settings,
         stride,
@@ -306,5 +314,22 @@ impl Task for InstructionFollowing {
             return DiscreteAction::Wait;
         }
         DiscreteAction::Stop
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_nearest_start_beyond_the_furthest_is_refused() {
+        let made = |settings| build(&settings, Stride::default()).map(|_| ());
+        made(json!({"min_distance_m": 3.0, "max_distance_m": 3.0})).unwrap();
+        let told = made(json!({"min_distance_m": 5.0, "max_distance_m": 2.0}));
+        assert_eq!(
+            told.unwrap_err().to_string(),
+            "min_distance_m is 5; allowed is at most max_distance_m, which is 2"
+        );
     }
 }
