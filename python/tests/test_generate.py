@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import shutil
 import subprocess
 import sys
 import time
@@ -172,3 +173,44 @@ def test_folders_of_other_jobs_and_bad_options_are_refused(tmp_path: Path) -> No
     bad = generate("--count", "1", "--spec", "turrets=1", "--out", tmp_path / "bad")
     assert bad.returncode == 1
     assert "turrets" in bad.stderr
+
+
+def test_houses_that_were_deleted_are_made_again(tmp_path: Path) -> None:
+    out = tmp_path / "many"
+    two = ("--count", "2", "--spec", "home=studio", "--out", out, "--json")
+    assert generate(*two).returncode == 0
+    before = content(out)
+    first = out / rows(out / "manifest.jsonl")[0]["path"]
+    shutil.rmtree(first)
+    again = json.loads(generate(*two).stdout)
+    assert (again["houses"], again["made_now"]) == (2, 1)
+    assert content(out) == before
+    shutil.rmtree(out / "house")
+    assert json.loads(generate(*two).stdout)["made_now"] == 2
+    assert content(out) == before
+    # What this version does not make is not passed off as what the manifest names.
+    manifest = out / "manifest.jsonl"
+    other = [{**row, "hash": "0"} for row in rows(manifest)]
+    manifest.write_text("".join(json.dumps(row) + "\n" for row in other), "utf-8")
+    shutil.rmtree(first)
+    refused = generate(*two)
+    assert refused.returncode == 1
+    assert "gives another house now than the manifest says" in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--count", "0"), "expected a whole number from 1"),
+        (("--count", "1", "--workers", "0"), "expected a whole number from 1"),
+        (("--count", "1", "--spec", "storeys=99"), "storeys: found 99; possible: 1 to 3"),
+    ],
+)
+def test_what_cannot_be_asked_for_begins_no_folder(
+    options: tuple[str, ...], told: str, tmp_path: Path
+) -> None:
+    refused = generate(*options, "--out", tmp_path / "out")
+    assert refused.returncode in (1, 2)
+    assert told in refused.stderr
+    assert not refused.stdout
+    assert not (tmp_path / "out").exists()

@@ -217,3 +217,24 @@ def test_points_are_microphones_and_what_is_none_is_refused_by_name() -> None:
             scene.impulse_responses((1.0, 1.0, 1.0), given)
         with pytest.raises(dwell.ConfigError, match="mics is"):
             scene.metrics_at((1.0, 1.0, 1.0), given)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--grid", "0"), "spacing_m is 0"),
+        (("--grid", "1.5", "--height", "9"), "height_m is 9"),
+        (("--grid", "1.5", "--image-order", "9"), "image_order"),
+    ],
+)
+def test_what_cannot_be_asked_for_begins_no_folder(
+    options: tuple[str, ...], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main(["ir", HOUSE, "--out", str(out), *FEW, *options]) == 1
+    assert told in capsys.readouterr().err
+    assert not out.exists()
+    out.mkdir()
+    (out / "letter").write_text("dear")
+    assert main(["ir", HOUSE, "--out", str(out), *FEW, *options]) == 1
+    assert "holds something else" in capsys.readouterr().err

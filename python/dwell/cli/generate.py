@@ -14,7 +14,9 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from dwell.cli.common import Bar, count, print_json
+from dwell import _native
+from dwell.arguments import whole
+from dwell.cli.common import Bar, count, count_from_1, path, print_json
 from dwell.cli.journal import Journal, claim
 from dwell.files import lines, open_file, parse_json
 
@@ -26,8 +28,8 @@ _MOST_TOLD = 10
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("--seed", type=count, default=0, help="the first seed (default 0)")
-    parser.add_argument("--count", type=count, required=True, help="how many houses")
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--count", type=count_from_1, required=True, help="how many houses")
+    parser.add_argument("--out", type=path, required=True, metavar="DIR")
     parser.add_argument("--format", choices=_FORMS, default="dwell")
     parser.add_argument(
         "--split",
@@ -46,7 +48,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--shard", type=_shard, default=(0, 1), metavar="K/N", help="the K-th of N parts, from 0"
     )
-    parser.add_argument("--workers", type=count, help="threads (default: as many as processors)")
+    parser.add_argument(
+        "--workers", type=count_from_1, help="threads (default: as many as processors)"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
@@ -64,6 +68,8 @@ def run(args: argparse.Namespace) -> int:
         "split": args.split,
         "spec": [_field(field) for field in args.spec],
     }
+    # Before the folder is begun with them.
+    _native.seed_range(f"seed:0..1?{'&'.join(args.spec)}")
     claim(args.out, dataset)
     shard, shards = args.shard
     name = "manifest" if shards == 1 else f"manifest-{shard:05}-of-{shards:05}"
@@ -71,17 +77,15 @@ def run(args: argparse.Namespace) -> int:
     start, made = time.perf_counter(), 0
     if not manifest.exists():
         made = _make(args, manifest, {**dataset, "shard": [shard, shards]})
+    made += _make_again(args, manifest)
     seconds = time.perf_counter() - start
     rows, failed, told = 0, 0, []
-    with open_file(manifest) as file:
-        for line in lines(file, manifest):
-            row, rows = parse_json(line, str(manifest)), rows + 1
-            if not isinstance(row, dict):
-                raise ValueError(f"{manifest} line {rows}: expected an object, found {row!r:.60}")
-            if "error" in row:
-                failed += 1
-                if failed <= _MOST_TOLD:
-                    told.append(f"{row.get('house')}: {row['error']}")
+    for row in _rows(manifest):
+        rows += 1
+        if "error" in row:
+            failed += 1
+            if failed <= _MOST_TOLD:
+                told.append(f"{row.get('house')}: {row['error']}")
     summary = {
         "houses": rows - failed,
         "failed": failed,
@@ -122,8 +126,9 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
             if not ahead:
                 break
             seed, future = ahead.popleft()
-            journal.add(str(seed), [future.result()])
-            made += 1
+            row = future.result()
+            journal.add(str(seed), [row])
+            made += "error" not in row
             bar(len(journal.done) / all_seeds, f"seed {seed}")
         House.finish_folder(args.out, args.format)
         journal.finish()
@@ -135,6 +140,49 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
     finally:
         pool.shutdown(cancel_futures=True)
     return made
+
+
+def _make_again(args: argparse.Namespace, manifest: Path) -> int:
+    """Makes the houses of the manifest that are not there any more; returns how many.
+
+    Raises:
+        ValueError: One is another house now than the manifest says.
+    """
+    from dwell.house import House
+
+    missing = (row for row in _rows(manifest) if "error" not in row and not _is_there(args, row))
+    made = 0
+    with ThreadPoolExecutor(args.workers or os.cpu_count() or 1) as pool:
+        while some := list(itertools.islice(missing, 64)):
+            for row, new in zip(some, pool.map(lambda row: _again(args, row), some), strict=True):
+                if new != row:
+                    raise ValueError(
+                        f"{manifest}: {row.get('path')} was missing, and seed {row.get('seed')} "
+                        "gives another house now than the manifest says; remove "
+                        f"{args.out} and make all anew, or use the version that made it"
+                    )
+                made += 1
+    if made:
+        House.finish_folder(args.out, args.format)
+    return made
+
+
+def _again(args: argparse.Namespace, row: dict[str, Any]) -> dict[str, Any]:
+    return _house(args, whole(f"{args.out}: seed", row.get("seed")))
+
+
+def _is_there(args: argparse.Namespace, row: dict[str, Any]) -> bool:
+    return Path(args.out, str(row.get("path"))).exists()
+
+
+def _rows(manifest: Path) -> Iterator[dict[str, Any]]:
+    """The rows of a manifest."""
+    with open_file(manifest) as file:
+        for number, line in enumerate(lines(file, manifest), start=1):
+            row = parse_json(line, str(manifest))
+            if not isinstance(row, dict):
+                raise ValueError(f"{manifest} line {number}: expected an object, found {row!r:.60}")
+            yield row
 
 
 def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:

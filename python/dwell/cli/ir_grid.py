@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell.cli.common import Bar, number, print_json
-from dwell.cli.journal import claim
+from dwell.cli.journal import claim, refuse_other
 from dwell.files import atomic, read, read_json
 from dwell.listening import Receiver
 
@@ -60,13 +60,14 @@ def run(args: argparse.Namespace) -> int:
     if len(set(files.values())) < len(files):
         raise ValueError("two houses would have one file; compute them into two folders")
     job = _job(args)
-    claim(args.out, {"command": "ir --grid", "format": args.format, **job})
+    dataset = {"command": "ir --grid", "format": args.format, **job}
+    refuse_other(args.out, dataset)
     made, failed, started = 0, [], time.perf_counter()
     for house, file in files.items():
         if file.exists():
             continue
         try:
-            made += _house(args, house, file, job)
+            made += _house(args, house, file, job, dataset)
         except DwellError as error:
             failed.append((house, str(error)))
     took = time.perf_counter() - started
@@ -108,7 +109,9 @@ def _job(args: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def _house(args: argparse.Namespace, name: str, out: Path, job: dict[str, Any]) -> int:
+def _house(
+    args: argparse.Namespace, name: str, out: Path, job: dict[str, Any], dataset: dict[str, Any]
+) -> int:
     """Computes what is missing of one house, writes its file; returns how many responses."""
     from dwell import __version__
     from dwell.acoustics import AcousticScene
@@ -125,6 +128,8 @@ def _house(args: argparse.Namespace, name: str, out: Path, job: dict[str, Any]) 
         sources = random_sources(scene.house, job["sources"], args.source_height, args.seed)
     fingerprint = str(scene.house.info()["fingerprint"])
     parts = out.with_name(f".{out.name}.parts")
+    # What cannot be was refused by now.
+    claim(args.out, dataset)
     _begin(parts, {**job, "house": name, "fingerprint": fingerprint, "dwell": __version__})
     made, bar = 0, Bar()
     for k, source in enumerate(sources):
