@@ -208,6 +208,20 @@ def bounced(rows: Rows) -> None:
             row[3] = 0.02 - 3.0 * t - 4.905 * t * t
 
 
+def flat(rows: Rows) -> None:
+    # A ball with topspin, which falls at twice g, seen to a millimetre as cameras see table tennis.
+    ways = [(0.007 * k, k) for k in range(25)]
+    rows[:] = [
+        [f"e{name}", t, 4.0 * t, 1.0 - 10.0 * t * t, 0.001 * (k % 3 == 1)]
+        for name in range(4)
+        for t, k in ways
+    ]
+
+
+def test_steps_of_what_measures_are_no_fall_along_another_axis(tmp_path: Path) -> None:
+    assert brought(tmp_path, FLIGHT, flat)["episodes"] == 4
+
+
 def test_a_bounce_is_told_with_where_to_cut(tmp_path: Path) -> None:
     told = refused(tmp_path, FLIGHT, bounced)
     assert "trajectory.csv, episode e2: y is falling until t_s 5.19" in told

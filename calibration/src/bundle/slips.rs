@@ -15,7 +15,7 @@ const FACTOR_TOLERANCE: f64 = 0.3;
 const LONGEST_STEP_S: f64 = 0.5;
 /// Share of a motion that must fall as things fall for nothing to be said.
 const FALLING_SHARE: f64 = 0.1;
-/// Share that must fall in another unit or along another axis for that to be said.
+/// Share that must fall in another unit or along another axis, to two of three reaches at least, for that to be said.
 const TELLING_SHARE: f64 = 0.25;
 /// Below this a rise after a fall is no bounce, m; nor below so many standard deviations of the noise.
 const LEAST_RISE_M: f64 = 0.02;
@@ -244,13 +244,19 @@ fn falls(at: &str, manifest: &Manifest, all: &[[Track; 3]]) -> Checked {
         }
     });
     let share = |key| shares.iter().map(|of| of(key)).fold(0.0, f64::max);
+    // Steps of what measures, a millimetre each, look like any fall to near samples, but not to further ones.
+    let telling = |key| {
+        let mut found = shares.each_ref().map(|of| of(key));
+        found.sort_by(f64::total_cmp);
+        found[1]
+    };
     if g == 0.0 || share((1, -1, 0)) >= FALLING_SHARE {
         return Ok(());
     }
     let keys = (0..3).flat_map(|axis| [-1, 1].map(|sign| (axis, sign)));
     let keys = keys.flat_map(|(axis, sign)| (0..=LENGTHS.len()).map(move |k| (axis, sign, k)));
-    let best = keys.max_by(|a, b| share(*a).total_cmp(&share(*b)));
-    let Some((axis, sign, k)) = best.filter(|key| share(*key) >= TELLING_SHARE) else {
+    let best = keys.max_by(|a, b| telling(*a).total_cmp(&telling(*b)));
+    let Some((axis, sign, k)) = best.filter(|key| telling(*key) >= TELLING_SHARE) else {
         return Ok(());
     };
     let unit = k.checked_sub(1).map(|k| LENGTHS[k]);
