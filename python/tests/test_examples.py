@@ -30,16 +30,20 @@ def test_examples_are_short_and_listed() -> None:
         assert len(example.read_text("utf-8").splitlines()) < 60
 
 
-def test_the_program_of_the_readme_runs() -> None:
-    text = (ROOT / "README.md").read_text("utf-8")
-    programs = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    assert len(programs) == 1
+PROGRAMS = re.findall(
+    r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL
+)
+
+
+@pytest.mark.parametrize("program", PROGRAMS, ids=range(len(PROGRAMS)))
+def test_the_programs_of_the_readme_run(program: str) -> None:
     done = subprocess.run(
-        [sys.executable, "-c", programs[0]],
+        [sys.executable, "-c", program],
         capture_output=True,
         text=True,
         timeout=300,
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert "True" in done.stdout
+    # The first one's expert succeeds.
+    assert ("True" if "success" in program else "(") in done.stdout
