@@ -317,7 +317,7 @@ mod tests {
         for rate_hz in [8_000.0, 16_000.0, 44_100.0, 48_000.0] {
             let n = rate_hz as usize / 2;
             let bank = FilterBank::new(rate_hz, n, 0.5);
-            let mut stream = dwell_scene::random::Key::root(3).stream();
+            let mut stream = dwell_scene::random::RandomKey::root(3).stream();
             let noise: Vec<f32> = (0..n).map(|_| stream.normal() as f32).collect();
             let spectrum = bank.fft.clone().forward(&noise);
             let sifted = bank.sift(&noise);

@@ -2,7 +2,7 @@
 
 use crate::bands::{BAND_COUNT, Banded};
 use dwell_scene::math::sin_cos;
-use dwell_scene::random::Stream;
+use dwell_scene::random::RandomStream;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::FRAC_PI_4;
@@ -136,7 +136,7 @@ pub(crate) struct Sampler {
 
 impl Sampler {
     /// A direction that sound comes from, and the gain of its bands.
-    pub(crate) fn draw(&self, stream: &mut Stream) -> (Vec3, &Banded) {
+    pub(crate) fn draw(&self, stream: &mut RandomStream) -> (Vec3, &Banded) {
         let place = stream.uniform_f32() * self.up_to[CELL_COUNT - 1];
         let cell = self.up_to.partition_point(|sum| *sum <= place);
         let cell = cell.min(CELL_COUNT - 1);
@@ -148,7 +148,7 @@ impl Sampler {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     #[test]
     fn places_within_cells_are_found_in_them_again() {
@@ -169,7 +169,7 @@ mod tests {
     /// Counts are binomial: within five standard errors in every cell.
     #[test]
     fn cells_are_of_equal_area() {
-        let mut stream = Key::root(4).stream();
+        let mut stream = RandomKey::root(4).stream();
         let n = 48_000;
         let mut count = [0.0; CELL_COUNT];
         for _ in 0..n {
@@ -190,7 +190,7 @@ mod tests {
         directions.energy[3][2] = 5.0;
         directions.energy[40][6] = 0.1;
         let sampler = directions.sampler();
-        let mut stream = Key::root(1).stream();
+        let mut stream = RandomKey::root(1).stream();
         let n = 20_000;
         let mut found = vec![[0.0_f64; BAND_COUNT]; CELL_COUNT];
         for _ in 0..n {
@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn without_energy_sound_comes_from_all_sides() {
         let sampler = Directions::default().sampler();
-        let mut stream = Key::root(2).stream();
+        let mut stream = RandomKey::root(2).stream();
         let n = 20_000;
         let sum: Vec3 = (0..n).map(|_| sampler.draw(&mut stream).0).sum();
         // Each component has a variance of a third.

@@ -53,7 +53,7 @@ mod tests {
     use crate::{AcousticConfig, AcousticScene, Receiver, Source};
     use dwell_scene::Pose;
     use dwell_scene::parallel::Threads;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
     use dwell_scene::rays::RayScene;
     use glam::Vec3;
     use std::sync::Arc;
@@ -64,7 +64,7 @@ mod tests {
         let house = Arc::new(dwell_houses::open("builtin:apartment").unwrap().0);
         let rays = RayScene::new(house.clone());
         let scene = AcousticScene::new(house, AcousticConfig::rl()).unwrap();
-        let (place, key) = (Vec3::new(2.0, 1.5, 2.0), Key::root(4));
+        let (place, key) = (Vec3::new(2.0, 1.5, 2.0), RandomKey::root(4));
         let source = Source::at(place + 0.5 * Vec3::X);
         let echogram = scene
             .echogram(&rays, &source, place, key, Threads::ONE)

@@ -17,7 +17,7 @@ use crate::tail::Late;
 use crate::{images, tail};
 use dwell_scene::bvh::Hit;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Address, House, LawSpec, MaterialId, Pose, State};
 use glam::Vec3;
@@ -277,7 +277,7 @@ impl AcousticScene {
         rays: &RayScene,
         source: &Source,
         receiver: Vec3,
-        key: Key,
+        key: RandomKey,
         threads: Threads,
     ) -> Result<Echogram, AcousticsError> {
         let echograms = self.echograms(rays, source, &[receiver], key, threads)?;
@@ -296,7 +296,7 @@ impl AcousticScene {
         rays: &RayScene,
         source: &Source,
         receivers: &[Vec3],
-        key: Key,
+        key: RandomKey,
         threads: Threads,
     ) -> Result<Vec<Echogram>, AcousticsError> {
         self.check(rays, source, receivers)?;
@@ -310,7 +310,7 @@ impl AcousticScene {
         source: &Source,
         receivers: &[Vec3],
         count: usize,
-        key: Key,
+        key: RandomKey,
         threads: Threads,
     ) -> Vec<Echogram> {
         let position = source.position();
@@ -368,7 +368,7 @@ impl AcousticScene {
         rays: &RayScene,
         source: &Source,
         receiver: &Receiver,
-        key: Key,
+        key: RandomKey,
         threads: Threads,
     ) -> Result<ImpulseResponse, AcousticsError> {
         let responses =
@@ -388,7 +388,7 @@ impl AcousticScene {
         rays: &RayScene,
         source: &Source,
         receivers: &[Receiver],
-        key: Key,
+        key: RandomKey,
         threads: Threads,
     ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
         let placed: Vec<Receiver> = receivers.iter().map(|r| self.effects.placed(r)).collect();
@@ -405,14 +405,24 @@ impl AcousticScene {
     ///
     /// With the key of [`Self::impulse_response`] it has the same random arrivals. The microphones of an array hear the centre's
     /// early paths as plane waves here. A head that the scene does not know is heard as the built-in one.
-    pub fn respond(&self, echogram: Echogram, receiver: &Receiver, key: Key) -> ImpulseResponse {
+    pub fn respond(
+        &self,
+        echogram: Echogram,
+        receiver: &Receiver,
+        key: RandomKey,
+    ) -> ImpulseResponse {
         let receiver = &self.effects.placed(receiver);
         let noise = between(key, echogram.source, receiver.position());
         self.record(self.arrive(echogram, receiver, None, noise), receiver, key)
     }
 
     /// What the laws of microphones make of a response.
-    fn record(&self, response: ImpulseResponse, receiver: &Receiver, key: Key) -> ImpulseResponse {
+    fn record(
+        &self,
+        response: ImpulseResponse,
+        receiver: &Receiver,
+        key: RandomKey,
+    ) -> ImpulseResponse {
         let own = key.child("microphone").child(0);
         let listener = self.listener(receiver, key.child("room"), own);
         let rate_hz = f64::from(self.config.rate_hz);
@@ -426,8 +436,8 @@ impl AcousticScene {
     pub(crate) fn listener<'a>(
         &'a self,
         receiver: &'a Receiver,
-        room: Key,
-        own: Key,
+        room: RandomKey,
+        own: RandomKey,
     ) -> Listener<'a> {
         Listener {
             receiver,
@@ -451,8 +461,8 @@ impl AcousticScene {
         rays: &RayScene,
         source: &Source,
         receivers: &[Receiver],
-        key: Key,
-        noise: impl Fn(&Receiver) -> Key + Sync,
+        key: RandomKey,
+        noise: impl Fn(&Receiver) -> RandomKey + Sync,
         threads: Threads,
     ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
         for receiver in receivers {
@@ -537,7 +547,7 @@ impl AcousticScene {
         echogram: Echogram,
         receiver: &Receiver,
         early: Option<&[Vec<Path>]>,
-        key: Key,
+        key: RandomKey,
     ) -> ImpulseResponse {
         self.arrive_with(KnownLevels::default(), echogram, receiver, early, key)
     }
@@ -547,7 +557,7 @@ impl AcousticScene {
         &self,
         response: &ImpulseResponse,
         receiver: &Receiver,
-        key: Key,
+        key: RandomKey,
     ) -> ImpulseResponse {
         let (levels, echogram) = (response.levels.clone(), response.echogram.clone());
         self.arrive_with(levels, echogram, receiver, None, key)
@@ -559,7 +569,7 @@ impl AcousticScene {
         echogram: Echogram,
         receiver: &Receiver,
         early: Option<&[Vec<Path>]>,
-        key: Key,
+        key: RandomKey,
     ) -> ImpulseResponse {
         let (hearing, key) = (self.hearing(receiver), key.child("noise"));
         let synthesizer = &self.synthesizer;
@@ -576,7 +586,7 @@ impl AcousticScene {
 
 /// The key of the random arrivals from one place to another: tails of places apart have nothing in common, and nobody who
 /// stands a hair elsewhere hears others.
-pub(crate) fn between(key: Key, source: Vec3, receiver: Vec3) -> Key {
+pub(crate) fn between(key: RandomKey, source: Vec3, receiver: Vec3) -> RandomKey {
     let places = source.to_array().into_iter().chain(receiver.to_array());
     let cell = |x: f32| (f64::from(x) / CELL_M + CELL_START).floor() as i64;
     places.fold(key, |key, x| key.child(cell(x).cast_unsigned()))

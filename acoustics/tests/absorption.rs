@@ -7,7 +7,7 @@ mod common;
 use common::{Hall, box_sides, dry, material, pieces};
 use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, Source, bands, metrics};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 use std::sync::Arc;
@@ -42,7 +42,7 @@ fn particles_t30_s(scattering: f64) -> f64 {
     const BIN_S: f64 = 0.01;
     let size = [10.0, 3.5, 7.5];
     let mut bins = [0.0_f64; 300];
-    let mut random = Key::root(3).stream();
+    let mut random = RandomKey::root(3).stream();
     for _ in 0..PARTICLES {
         let (mut at, mut time_s, mut energy) = ([2.1, 1.5, 1.7], 0.0, 1.0);
         let mut heading = [random.normal(), random.normal(), random.normal()];
@@ -115,7 +115,8 @@ fn particles_t30_s(scattering: f64) -> f64 {
 fn one_soft_side_and_little_scattering_make_long_decays() {
     let (source, ear) = (Vec3::new(2.1, 1.5, 1.7), Vec3::new(7.3, 1.3, 5.2));
     let scatterings = [0.05, 0.1, 0.3, 1.0];
-    let found = scatterings.map(|s| t30_s(&soft_floor(s).echogram(source, ear, Key::root(11))));
+    let found =
+        scatterings.map(|s| t30_s(&soft_floor(s).echogram(source, ear, RandomKey::root(11))));
     assert!(found.windows(2).all(|pair| pair[1] < pair[0]), "{found:?}");
     for (found, scattering) in found.iter().zip(scatterings) {
         let wanted = particles_t30_s(f64::from(scattering));
@@ -162,7 +163,7 @@ fn scattering_does_not_absorb() {
                 ..dry(20_000)
             };
             let hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.2, scattering), config);
-            let echogram = hall.echogram(source, ear, Key::root(16));
+            let echogram = hall.echogram(source, ear, RandomKey::root(16));
             let direct = f64::from(echogram.direct().unwrap().energy[BAND]);
             (
                 t30_s(&echogram),
@@ -203,7 +204,7 @@ fn source_and_receiver_may_change_places() {
         (rooms[0], rooms[0] + Vec3::new(0.6, -0.3, 0.5)),
     ] {
         let hear = |from: Vec3, to: Vec3, seed: u64| {
-            let key = Key::root(seed);
+            let key = RandomKey::root(seed);
             scene
                 .echogram(&rays, &Source::at(from), to, key, Threads::exactly(2))
                 .unwrap()

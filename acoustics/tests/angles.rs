@@ -9,7 +9,7 @@ use dwell_acoustics::{AcousticConfig, Histogram, Microphone, Receiver, Source};
 use dwell_acoustics::{cell_of, metrics, within};
 use dwell_scene::Pose;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f64::consts::TAU;
 
@@ -175,7 +175,7 @@ fn a_room_of_mirrors_decays_as_the_sum_over_its_directions() {
         let found = hall.echogram(
             Vec3::new(2.1, 1.1, 1.7),
             Vec3::new(6.4, 1.5, 3.9),
-            Key::root(3),
+            RandomKey::root(3),
         );
         let found_s = metrics::of_echogram(&found)[BAND].t30_s.unwrap();
         assert!(
@@ -238,7 +238,7 @@ fn the_tail_of_a_long_room_is_that_of_a_diffuse_field() {
         for k in 0..12 {
             let angle = f32::to_radians(30.0 * k as f32);
             let source = Source::at(middle + 2.0 * Vec3::new(angle.cos(), 0.0, angle.sin()));
-            let (key, threads) = (Key::root(0), Threads::exactly(2));
+            let (key, threads) = (RandomKey::root(0), Threads::exactly(2));
             let heard = hall
                 .scene
                 .impulse_response(&hall.rays, &source, &receiver, key, threads)
@@ -287,7 +287,7 @@ fn every_pair_of_places_has_arrivals_of_its_own() {
     let (near, far) = (Vec3::new(2.0, 1.2, 2.0), Vec3::new(7.0, 1.4, 4.0));
     let hear = |source: Vec3, ear: Vec3| {
         let (source, receiver) = (Source::at(source), Receiver::omni(ear));
-        let (key, threads) = (Key::root(1), Threads::ONE);
+        let (key, threads) = (RandomKey::root(1), Threads::ONE);
         let heard = hall
             .scene
             .impulse_response(&hall.rays, &source, &receiver, key, threads)

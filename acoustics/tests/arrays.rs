@@ -9,7 +9,7 @@ use dwell_acoustics::{
 };
 use dwell_scene::Pose;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
@@ -65,9 +65,11 @@ fn the_tail_is_as_coherent_as_a_diffuse_field() {
         let size = 512;
         let mut sums = vec![(0.0, 0.0, Complex::default()); frequencies_hz.len()];
         for seed in 0..4 {
-            let heard =
-                hall.scene
-                    .respond(echogram(directions.clone()), &receiver, Key::root(seed));
+            let heard = hall.scene.respond(
+                echogram(directions.clone()),
+                &receiver,
+                RandomKey::root(seed),
+            );
             let (left, right) = (heard.channel(0), heard.channel(1));
             for start in (2000..left.len() - 4000).step_by(size) {
                 for (sum, f) in sums.iter_mut().zip(frequencies_hz) {
@@ -119,7 +121,13 @@ fn an_array_hears_differences_of_time() {
         let source = Source::at(middle + 50.0 * towards);
         let heard = hall
             .scene
-            .impulse_response(&hall.rays, &source, &receiver, Key::root(0), Threads::ONE)
+            .impulse_response(
+                &hall.rays,
+                &source,
+                &receiver,
+                RandomKey::root(0),
+                Threads::ONE,
+            )
             .unwrap();
         for (k, place) in places.iter().enumerate().skip(1) {
             let f = 1000.0;
@@ -151,7 +159,13 @@ fn the_microphones_of_an_array_hear_their_own_early_paths() {
     let alone = Receiver::omni(pose.transform_point(place));
     let hear = |receiver: &Receiver| {
         hall.scene
-            .impulse_response(&hall.rays, &source, receiver, Key::root(0), Threads::ONE)
+            .impulse_response(
+                &hall.rays,
+                &source,
+                receiver,
+                RandomKey::root(0),
+                Threads::ONE,
+            )
             .unwrap()
             .samples
     };
@@ -175,7 +189,7 @@ fn ambisonics_encode_where_sound_comes_from() {
                 &hall.rays,
                 &Source::at(middle - 10.0 * Vec3::X),
                 &Receiver::ambisonics(pose, 1),
-                Key::root(0),
+                RandomKey::root(0),
                 Threads::ONE,
             )
             .unwrap();
@@ -197,7 +211,7 @@ fn a_directive_source_fills_the_room_with_less() {
     let hear = |source: &Source| {
         let threads = Threads::exactly(2);
         hall.scene
-            .echogram(&hall.rays, source, ear, Key::root(3), threads)
+            .echogram(&hall.rays, source, ear, RandomKey::root(3), threads)
             .unwrap()
     };
     // Forward -Z turned to -X: away from the ear.
@@ -229,12 +243,12 @@ fn receivers_share_rays() {
     ];
     let together = hall
         .scene
-        .echograms(&hall.rays, &source, &ears, Key::root(1), Threads::ONE)
+        .echograms(&hall.rays, &source, &ears, RandomKey::root(1), Threads::ONE)
         .unwrap();
     for (ear, together) in ears.iter().zip(&together) {
         let alone = hall
             .scene
-            .echogram(&hall.rays, &source, *ear, Key::root(2), Threads::ONE)
+            .echogram(&hall.rays, &source, *ear, RandomKey::root(2), Threads::ONE)
             .unwrap();
         assert_eq!(alone.paths, together.paths);
         for band in 0..BAND_COUNT {
@@ -265,7 +279,7 @@ fn tracing_ends_when_the_error_is_small_enough() {
                 &hall.rays,
                 &source,
                 ear,
-                Key::root(1),
+                RandomKey::root(1),
                 Threads::exactly(threads),
             )
             .unwrap()
@@ -281,7 +295,7 @@ fn receivers_and_sources_out_of_range_are_refused() {
     let source = Source::at(Vec3::new(1.2, 1.5, 1.4));
     let pose = Pose::from_position(Vec3::new(4.6, 1.2, 3.3));
     let ask = |source: &Source, receiver: &Receiver| {
-        let (rays, key) = (&hall.rays, Key::root(0));
+        let (rays, key) = (&hall.rays, RandomKey::root(0));
         let heard = hall
             .scene
             .impulse_response(rays, source, receiver, key, Threads::ONE);

@@ -8,7 +8,7 @@ use common::{Hall, box_sides, dry, material, pieces, rectangle};
 use dwell_acoustics::bands::{BAND_COUNT, NOMINAL_CENTRES_HZ};
 use dwell_acoustics::{AcousticConfig, Receiver, Source};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, Material};
 use glam::Vec3;
 use std::f64::consts::{PI, TAU};
@@ -249,7 +249,7 @@ fn small_things_shadow_short_waves_only() {
             &hall.rays,
             &Source::at(source),
             &Receiver::omni(receiver),
-            Key::root(1),
+            RandomKey::root(1),
             Threads::ONE,
         )
         .unwrap();

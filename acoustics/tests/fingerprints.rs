@@ -16,7 +16,7 @@ use dwell_acoustics::{
     StreamConfig, laws,
 };
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::{Key, Stream as Random};
+use dwell_scene::random::{RandomKey, RandomStream as Random};
 use dwell_scene::{LawSpec, Pose, State};
 use glam::Vec3;
 
@@ -67,7 +67,8 @@ fn heard(hall: &Hall, hidden: &[LawSpec], source: &Source, receiver: &Receiver) 
     let mut scene = hall.scene.clone();
     scene.update(&state(hall, hidden.to_vec()));
     let threads = Threads::exactly(2);
-    let response = scene.impulse_response(&hall.rays, source, receiver, Key::root(1), threads);
+    let response =
+        scene.impulse_response(&hall.rays, source, receiver, RandomKey::root(1), threads);
     response.unwrap()
 }
 
@@ -76,7 +77,7 @@ fn recording(hall: &Hall, hidden: &[LawSpec], at: Vec3, seed: u64, signal: &[f32
     let mut laws = vec![known_noise()];
     laws.extend(hidden.iter().cloned());
     let state = state(hall, laws);
-    let key = Key::root(seed);
+    let key = RandomKey::root(seed);
     // Microphones of their own, in one place.
     let own = key.child(u64::from(at.x.to_bits()));
     let stream = Stream::new(hall.scene.clone(), StreamConfig::full(), own, Threads::ONE);
@@ -403,7 +404,7 @@ fn every_law_is_found_by_its_fingerprint() {
     let hall = room();
     for info in laws::all() {
         for seed in 0..3 {
-            let mut random = Key::root(seed).child(info.id).stream();
+            let mut random = RandomKey::root(seed).child(info.id).stream();
             let hidden = hide(info.id, &mut random);
             let found = verdict(&hall, std::slice::from_ref(&hidden), seed);
             assert_eq!(found, Some(info.id), "{hidden:?}");

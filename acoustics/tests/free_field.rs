@@ -7,7 +7,7 @@ mod common;
 use common::{Hall, dry};
 use dwell_acoustics::{AcousticConfig, Receiver, Source, bands};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{House, HouseData, Pose};
 use glam::Vec3;
 
@@ -17,7 +17,7 @@ fn nowhere(config: AcousticConfig) -> Hall {
 
 fn response(hall: &Hall, source: Vec3, receiver: &Receiver) -> dwell_acoustics::ImpulseResponse {
     let source = Source::at(source);
-    let (key, threads) = (Key::root(0), Threads::ONE);
+    let (key, threads) = (RandomKey::root(0), Threads::ONE);
     hall.scene
         .impulse_response(&hall.rays, &source, receiver, key, threads)
         .unwrap()
@@ -193,7 +193,7 @@ fn a_point_that_is_nowhere_is_refused() {
         &hall.rays,
         &source,
         &Receiver::omni(Vec3::ZERO),
-        Key::root(0),
+        RandomKey::root(0),
         Threads::ONE,
     );
     assert!(refused.unwrap_err().to_string().contains("the source"));

@@ -10,7 +10,7 @@ use dwell_acoustics::{
     AcousticConfig, ActiveSource, Head, Receiver, Source, Stream, StreamConfig, metrics,
 };
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Pose, State};
 use glam::Vec3;
 use std::f64::consts::TAU;
@@ -37,7 +37,7 @@ fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
     let pose = Pose::from_position_yaw(Vec3::new(3.0, 1.5, -2.0), 0.7);
     let source = Source::at(pose.transform_point(in_head * FAR_M));
     let receiver = Receiver::wearing(head.id(), pose);
-    let (key, threads) = (Key::root(1), Threads::ONE);
+    let (key, threads) = (RandomKey::root(1), Threads::ONE);
     let response = scene.impulse_response(&hall.rays, &source, &receiver, key, threads);
     let response = response.unwrap();
     [0, 1].map(|ear| response.channel(ear).to_vec())
@@ -147,7 +147,7 @@ const FREQUENCIES_HZ: [f64; 9] = [
 ];
 
 fn spread(count: usize, seed: u64) -> Vec<Vec3> {
-    let mut stream = Key::root(seed).stream();
+    let mut stream = RandomKey::root(seed).stream();
     (0..count).map(|_| stream.direction()).collect()
 }
 
@@ -349,7 +349,7 @@ fn bad_measurements_are_refused_by_name() {
     let hall = nowhere(16_000);
     let stranger = Receiver::wearing(WHOLE.id(), Pose::IDENTITY);
     let source = Source::at(Vec3::ONE);
-    let (key, threads) = (Key::root(1), Threads::ONE);
+    let (key, threads) = (RandomKey::root(1), Threads::ONE);
     let refused = hall
         .scene
         .impulse_response(&hall.rays, &source, &stranger, key, threads);
@@ -389,7 +389,13 @@ fn threads_and_readings_do_not_matter() {
         scene.add_head(head);
         let source = Source::at(SOURCE);
         scene
-            .impulse_response(&hall.rays, &source, &listener(), Key::root(4), threads)
+            .impulse_response(
+                &hall.rays,
+                &source,
+                &listener(),
+                RandomKey::root(4),
+                threads,
+            )
             .unwrap()
     };
     let one = hear(&WHOLE, Threads::ONE);
@@ -404,7 +410,7 @@ fn streams_wear_heads() {
     let hall = room();
     let mut scene = hall.scene.clone();
     scene.add_head(&WHOLE);
-    let (key, block) = (Key::root(8), 800);
+    let (key, block) = (RandomKey::root(8), 800);
     let stream = || Stream::new(scene.clone(), StreamConfig::full(), key, Threads::ONE).unwrap();
     let play = |stream: &mut Stream, blocks: std::ops::Range<usize>| {
         let mut heard = [Vec::new(), Vec::new()];
@@ -459,7 +465,7 @@ fn the_tail_is_as_coherent_as_at_the_sphere() {
         let source = Source::at(SOURCE);
         let mut sums = vec![0.0_f64; 8];
         for seed in 0..6 {
-            let (key, threads) = (Key::root(seed), Threads::ONE);
+            let (key, threads) = (RandomKey::root(seed), Threads::ONE);
             let response = scene.impulse_response(&hall.rays, &source, &receiver, key, threads);
             let response = response.unwrap();
             let found = metrics::of_ears(

@@ -6,7 +6,7 @@ mod common;
 
 use common::{Hall, dry, material, pieces, rectangle};
 use dwell_acoustics::AcousticConfig;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 
 /// V6: e = 2 (h1 + h2)/d³ with d the length over the mirror image, within 0.5 %.
@@ -38,7 +38,7 @@ fn an_endless_scattering_plane_gives_its_closed_form() {
             Vec3::Y * h1 as f32,
             Vec3::new(distance as f32, h2 as f32, 0.0),
         );
-        let found = hall.echogram(source, ear, Key::root(6));
+        let found = hall.echogram(source, ear, RandomKey::root(6));
         for energy in found.tail.total() {
             assert!(
                 (energy / wanted - 1.0).abs() < 5e-3,

@@ -7,7 +7,7 @@ mod common;
 use common::{Hall, dry, law, material};
 use dwell_acoustics::{AcousticConfig, ActiveSource, Receiver, Source, Stream, StreamConfig, laws};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{LawSpec, Pose, State};
 use glam::Vec3;
 
@@ -75,14 +75,14 @@ fn head() -> Receiver {
 }
 
 fn stream(hall: &Hall) -> Stream {
-    let key = Key::root(8);
+    let key = RandomKey::root(8);
     let stream = Stream::new(hall.scene.clone(), StreamConfig::full(), key, Threads::ONE).unwrap();
     // The place in which the offline responses are computed.
     stream.in_room(key.child("source").child(ID).child("room"))
 }
 
 fn noise(samples: usize) -> Vec<f32> {
-    let mut stream = Key::root(77).stream();
+    let mut stream = RandomKey::root(77).stream();
     (0..samples).map(|_| 0.3 * stream.normal() as f32).collect()
 }
 
@@ -119,7 +119,7 @@ fn response(hall: &Hall, laws: &[LawSpec]) -> [Vec<f32>; 2] {
     let mut state = State::new(&hall.house);
     state.laws = laws.to_vec();
     scene.update(&state);
-    let key = Key::root(8).child("source").child(ID);
+    let key = RandomKey::root(8).child("source").child(ID);
     let (source, threads) = (Source::at(SOURCE), Threads::ONE);
     let response = scene
         .impulse_response(&hall.rays, &source, &head(), key, threads)

@@ -11,7 +11,7 @@ use dwell_acoustics::{
     StreamConfig,
 };
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{LawSpec, Pose, State};
 use glam::{Quat, Vec3};
 
@@ -33,7 +33,7 @@ fn echogram(hall: &Hall, laws: Vec<LawSpec>) -> Echogram {
     state.laws = laws;
     let mut scene = hall.scene.clone();
     scene.update(&state);
-    let (key, threads) = (Key::root(3), Threads::ONE);
+    let (key, threads) = (RandomKey::root(3), Threads::ONE);
     scene
         .echogram(&hall.rays, &Source::at(SOURCE), EAR, key, threads)
         .unwrap()
@@ -194,7 +194,7 @@ fn sources_turn_and_narrow() {
         scene.update(&state);
         let pose = Pose::from_position_yaw(SOURCE, yaw_rad);
         let source = Source::facing(pose, Directivity::CARDIOID);
-        let (key, threads) = (Key::root(3), Threads::ONE);
+        let (key, threads) = (RandomKey::root(3), Threads::ONE);
         scene
             .echogram(&hall.rays, &source, EAR, key, threads)
             .unwrap()
@@ -226,7 +226,7 @@ fn receivers_are_where_laws_put_them() {
         state.laws = laws;
         let mut scene = hall.scene.clone();
         scene.update(&state);
-        let (source, key) = (Source::at(SOURCE), Key::root(3));
+        let (source, key) = (Source::at(SOURCE), RandomKey::root(3));
         let threads = Threads::ONE;
         let heard = scene.impulse_response(&hall.rays, &source, receiver, key, threads);
         heard.unwrap().samples
@@ -280,7 +280,7 @@ fn receivers_are_where_laws_put_them() {
 fn streams_follow_changes_of_air_and_sources() {
     let hall = hall();
     let config = StreamConfig::rl();
-    let stream = Stream::new(hall.scene.clone(), config, Key::root(1), Threads::ONE);
+    let stream = Stream::new(hall.scene.clone(), config, RandomKey::root(1), Threads::ONE);
     let (mut stream, mut state) = (stream.unwrap(), State::new(&hall.house));
     let signal = vec![0.1; 800];
     let mut traced = |laws: Vec<LawSpec>| {
@@ -317,7 +317,7 @@ fn an_array_hears_the_gain_of_its_source_early_and_late() {
         scene.update(&state);
         let microphones = [Vec3::X * 0.05, Vec3::X * -0.05].map(Microphone::omni);
         let array = Receiver::array(Pose::from_position(EAR), microphones.into());
-        let (key, threads) = (Key::root(3), Threads::ONE);
+        let (key, threads) = (RandomKey::root(3), Threads::ONE);
         scene
             .impulse_response(&hall.rays, &Source::at(SOURCE), &array, key, threads)
             .unwrap()

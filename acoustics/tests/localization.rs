@@ -8,7 +8,7 @@ mod common;
 use common::{Hall, material};
 use dwell_acoustics::{AcousticConfig, Microphone, Receiver, Source};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{Bands, Material, Pose};
 use glam::{DVec3, Vec3};
 use realfft::RealFftPlanner;
@@ -64,7 +64,7 @@ fn through(signal: &[f32], response: &[f32]) -> Vec<f32> {
 }
 
 /// A second of noise with equal power in every octave from 48 Hz.
-fn pink(noise: &mut Stream) -> Vec<f32> {
+fn pink(noise: &mut RandomStream) -> Vec<f32> {
     let mut planner = RealFftPlanner::<f32>::new();
     let size = RATE_HZ as usize;
     let (forward, back) = (
@@ -175,7 +175,7 @@ fn an_array_hears_where_sources_are_in_a_reverberant_room() {
     // The front looks along the room, as that of the array of the measured laboratory.
     let pose = Pose::from_position_yaw(middle, -FRAC_PI_2);
     let receiver = Receiver::array(pose, microphones);
-    let key = Key::root(20);
+    let key = RandomKey::root(20);
     let mut noise = key.child("signal").stream();
     let signal = pink(&mut noise);
     let (mut errors, mut ratios_db) = (Vec::new(), Vec::new());

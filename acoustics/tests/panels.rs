@@ -6,7 +6,7 @@ mod common;
 
 use common::{Hall, dry, material, pieces, rectangle};
 use dwell_acoustics::AcousticConfig;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 
 /// The first-order reflection of a hard panel of 1 m², 3 m away, at 45 degrees; `wall`: how far before one it hangs, m, and by
@@ -32,7 +32,7 @@ fn mirrored(wall: Option<(f32, f32)>) -> [f32; 8] {
         Vec3::new(-across, 0.0, across),
         Vec3::new(across, 0.0, across),
     );
-    let found = hall.echogram(source, ear, Key::root(0));
+    let found = hall.echogram(source, ear, RandomKey::root(0));
     let path = found
         .paths
         .iter()

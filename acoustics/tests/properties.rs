@@ -8,7 +8,7 @@ use common::{Hall, dry, material};
 use dwell_acoustics::{AcousticConfig, Receiver, Source};
 use dwell_scene::Pose;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use proptest::prelude::*;
 
@@ -36,8 +36,8 @@ proptest! {
         let config = AcousticConfig { image_order: 2, max_duration_s: 0.3, ..dry(64) };
         let hall = Hall::shoebox(size, &material(absorption, scattering), config);
         let [from, to] = places.map(|place| inside(size, place));
-        let there = hall.echogram(from, to, Key::root(seed));
-        let back = hall.echogram(to, from, Key::root(seed));
+        let there = hall.echogram(from, to, RandomKey::root(seed));
+        let back = hall.echogram(to, from, RandomKey::root(seed));
         prop_assert_eq!(there.paths.len(), back.paths.len());
         for (a, b) in there.paths.iter().zip(&back.paths) {
             prop_assert!((a.length_m - b.length_m).abs() < 1e-5);
@@ -56,7 +56,7 @@ proptest! {
         prop_assert_eq!(there.trace.escaped, 0);
         let head = Receiver::binaural(Pose::from_position_yaw(to, yaw_rad));
         let source = Source::at(from);
-        let response = hall.scene.impulse_response(&hall.rays, &source, &head, Key::root(seed), Threads::ONE).unwrap();
+        let response = hall.scene.impulse_response(&hall.rays, &source, &head, RandomKey::root(seed), Threads::ONE).unwrap();
         prop_assert!(response.samples.iter().all(|x| x.is_finite()));
         let start = (from.distance(to) / 343.2 - 0.001) * 16_000.0 - 46.0;
         for channel in 0..2 {

@@ -6,7 +6,7 @@
 use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source, metrics, signals};
 use dwell_scene::navigation::{NavConfig, NavGrid};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, Pose, Room, State};
 use glam::{Vec2, Vec3};
@@ -75,7 +75,7 @@ fn rooms_sound_like_rooms(house: &Arc<House>) {
                 &rays,
                 &Source::at(from),
                 &receiver,
-                Key::root(1),
+                RandomKey::root(1),
                 Threads::exactly(2),
             )
             .unwrap();

@@ -7,7 +7,7 @@ mod common;
 use common::{Hall, dry, material};
 use dwell_acoustics::{AcousticConfig, Receiver, Source, bands, metrics};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, Material};
 use glam::Vec3;
 
@@ -43,7 +43,7 @@ fn a_scattering_room_decays_as_eyring_says_in_every_band() {
     let found = hall.echogram(
         Vec3::new(1.2, 1.5, 1.4),
         Vec3::new(4.6, 1.2, 3.3),
-        Key::root(10),
+        RandomKey::root(10),
     );
     let air = hall.scene.config().air.energy_decay_per_m();
     for (band, metrics) in metrics::of_echogram(&found).iter().enumerate() {
@@ -81,7 +81,7 @@ fn three_rooms_have_their_times() {
                 ..dry(1500)
             };
             let hall = Hall::shoebox(size, &material(absorption, scattering), config);
-            let found = metrics::of_echogram(&hall.echogram(source, ear, Key::root(3)));
+            let found = metrics::of_echogram(&hall.echogram(source, ear, RandomKey::root(3)));
             let t30 = found[4].t30_s.unwrap();
             let at =
                 format!("{size:?} s {scattering}: {t30}, Eyring {eyring}, Kuttruff {kuttruff}");
@@ -108,7 +108,7 @@ fn energy_is_conserved_and_rays_fly_their_mean_free_path() {
     let found = hall.echogram(
         Vec3::new(1.2, 1.5, 1.4),
         Vec3::new(4.6, 1.2, 3.3),
-        Key::root(7),
+        RandomKey::root(7),
     );
     let (volume, surface) = (
         f64::from(x * y * z),
@@ -153,7 +153,7 @@ fn the_reverberant_level_is_that_of_a_diffuse_field() {
     let found = hall.echogram(
         Vec3::new(1.2, 1.5, 1.4),
         Vec3::new(4.6, 1.2, 3.3),
-        Key::root(9),
+        RandomKey::root(9),
     );
     let wanted = 16.0 * std::f64::consts::PI * 0.9 / (0.1 * 126.0);
     let error_db = 10.0 * (found.tail.total()[4] / wanted).log10();
@@ -172,7 +172,7 @@ fn the_order_of_the_images_does_not_change_the_energy() {
         let found = hall.echogram(
             Vec3::new(1.2, 1.5, 1.4),
             Vec3::new(4.6, 1.2, 3.3),
-            Key::root(2),
+            RandomKey::root(2),
         );
         found.total()[4]
     });
@@ -196,7 +196,7 @@ fn roulette_is_unbiased() {
         };
         let hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.3, 0.5), config);
         let (source, ear) = (Vec3::new(1.2, 1.5, 1.4), Vec3::new(4.6, 1.2, 3.3));
-        let found = (0..TRACES).map(|key| hall.echogram(source, ear, Key::root(key)));
+        let found = (0..TRACES).map(|key| hall.echogram(source, ear, RandomKey::root(key)));
         found.collect::<Vec<_>>()
     });
     assert!(thinned[0].trace.segments < all[0].trace.segments / 2);
@@ -218,7 +218,7 @@ fn a_band_does_not_feel_how_others_scatter() {
     let (source, ear) = (Vec3::new(1.2, 1.5, 1.4), Vec3::new(4.6, 1.2, 3.3));
     let level = |wall: &Material| {
         let hall = Hall::shoebox([6.0, 3.0, 5.0], wall, dry(6000));
-        let found = hall.echogram(source, ear, Key::root(21));
+        let found = hall.echogram(source, ear, RandomKey::root(21));
         let windows = found.tail.bins[50..200].chunks(50);
         windows
             .map(|bins| {
@@ -250,14 +250,14 @@ fn threads_do_not_change_a_bit() {
     let [one, two, seven] = [1, 2, 7].map(|threads| {
         let threads = Threads::exactly(threads);
         hall.scene
-            .impulse_response(&hall.rays, &source, &ear, Key::root(5), threads)
+            .impulse_response(&hall.rays, &source, &ear, RandomKey::root(5), threads)
             .unwrap()
     });
     assert_eq!(one, two);
     assert_eq!(one, seven);
     let other = hall
         .scene
-        .impulse_response(&hall.rays, &source, &ear, Key::root(6), Threads::ONE)
+        .impulse_response(&hall.rays, &source, &ear, RandomKey::root(6), Threads::ONE)
         .unwrap();
     assert_ne!(one.samples, other.samples);
 }
@@ -276,7 +276,13 @@ fn the_impulse_response_decays_as_its_echogram() {
     ] {
         let response = hall
             .scene
-            .impulse_response(&hall.rays, &source, &receiver, Key::root(4), Threads::ONE)
+            .impulse_response(
+                &hall.rays,
+                &source,
+                &receiver,
+                RandomKey::root(4),
+                Threads::ONE,
+            )
             .unwrap();
         let energies = metrics::of_echogram(&response.echogram);
         for channel in 0..receiver.channels() {

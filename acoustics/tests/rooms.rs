@@ -8,7 +8,7 @@ use common::{Hall, box_sides, dry, material, pieces, rectangle};
 use dwell_acoustics::bands::BAND_COUNT;
 use dwell_acoustics::{AcousticConfig, Echogram, Source};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, Material, Mesh};
 use glam::Vec3;
 
@@ -42,7 +42,7 @@ fn mean_db(echograms: &[Echogram], band: usize) -> f64 {
 fn hear(hall: &Hall, source: Vec3, ears: &[Vec3]) -> Vec<Echogram> {
     let (source, threads) = (Source::at(source), Threads::exactly(2));
     hall.scene
-        .echograms(&hall.rays, &source, ears, Key::root(1), threads)
+        .echograms(&hall.rays, &source, ears, RandomKey::root(1), threads)
         .unwrap()
 }
 

@@ -7,7 +7,7 @@ mod common;
 use common::{Hall, box_sides, material, pieces, rectangle};
 use dwell_acoustics::{AcousticConfig, ActiveSource, Echogram, Receiver, Stream, StreamConfig};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{House, State};
 use glam::Vec3;
 
@@ -71,7 +71,7 @@ impl Walk {
 
     /// What is heard where the way ends.
     fn heard(&self, hall: &Hall, settings: StreamConfig, seed: u64) -> Echogram {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let mut stream = Stream::new(hall.scene.clone(), settings, key, Threads::ONE).unwrap();
         let state = State::new(&hall.house);
         let (signal, mut out) = ([0.01; 800], [0.0; 800]);
@@ -118,7 +118,8 @@ fn the_late_sound_is_that_of_the_room_one_is_in() {
                 carried,
             };
             let fine = &presets[1].1;
-            let there = |x_m: f32| fine.echogram(walk.radio(x_m), Walk::ear(x_m), Key::root(3));
+            let there =
+                |x_m: f32| fine.echogram(walk.radio(x_m), Walk::ear(x_m), RandomKey::root(3));
             let (begin, end) = (there(from_m), there(to_m));
             for (preset, hall, settings) in &presets {
                 let heard = [1, 2].map(|seed| walk.heard(hall, *settings, seed));

@@ -6,7 +6,7 @@ mod common;
 
 use common::{Hall, box_sides, dry, material, pieces, rectangle};
 use dwell_acoustics::AcousticConfig;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, House, Material, ShoeboxMaterials};
 use glam::Vec3;
 
@@ -27,7 +27,7 @@ fn a_box_has_its_number_of_images() {
     for (order, count) in [(0, 1), (1, 7), (2, 25), (3, 63), (4, 129)] {
         let hall = Hall::shoebox(SIZE, &material(0.1, 0.0), images_only(order));
         assert_eq!(
-            hall.echogram(SOURCE, EAR, Key::root(0)).paths.len(),
+            hall.echogram(SOURCE, EAR, RandomKey::root(0)).paths.len(),
             count,
             "order {order}"
         );
@@ -42,7 +42,10 @@ fn cut_walls_have_the_same_images() {
         let house = pieces(sides.map(|side| (side, material(0.1, 0.0))).into());
         let hall = Hall::new(house, images_only(3));
         assert_eq!(hall.scene.planes().len(), 6);
-        assert_eq!(hall.echogram(SOURCE, EAR, Key::root(0)).paths.len(), 63);
+        assert_eq!(
+            hall.echogram(SOURCE, EAR, RandomKey::root(0)).paths.len(),
+            63
+        );
     }
     // Each wall of two pieces of its own.
     let size = Vec3::from_array(SIZE);
@@ -55,7 +58,10 @@ fn cut_walls_have_the_same_images() {
     });
     let hall = Hall::new(pieces(halves.collect()), images_only(3));
     assert_eq!(hall.scene.planes().len(), 6);
-    assert_eq!(hall.echogram(SOURCE, EAR, Key::root(0)).paths.len(), 63);
+    assert_eq!(
+        hall.echogram(SOURCE, EAR, RandomKey::root(0)).paths.len(),
+        63
+    );
 }
 
 /// Different materials on the six sides, different in every band.
@@ -116,7 +122,7 @@ fn images_lie_where_allen_and_berkley_have_them() {
         south,
     };
     let hall = Hall::new(House::shoebox(SIZE, &materials).unwrap(), images_only(3));
-    let found = hall.echogram(SOURCE, EAR, Key::root(0)).paths;
+    let found = hall.echogram(SOURCE, EAR, RandomKey::root(0)).paths;
     let wanted = allen_berkley(3);
     assert_eq!(found.len(), wanted.len());
     for (printed, path) in [3.906, 4.739, 5.105, 5.809].into_iter().zip(&found) {
@@ -165,7 +171,7 @@ fn one_wall_mirrors_once() {
     );
     let hall = Hall::new(pieces(vec![(floor, material(0.3, 0.0))]), images_only(2));
     let paths = hall
-        .echogram(Vec3::Y, Vec3::new(2.0, 1.0, 0.0), Key::root(0))
+        .echogram(Vec3::Y, Vec3::new(2.0, 1.0, 0.0), RandomKey::root(0))
         .paths;
     assert_eq!(paths.len(), 2);
     assert!((f64::from(paths[1].energy[4]) - 0.7 / 8.0).abs() < 1e-6);
@@ -190,8 +196,8 @@ fn a_screen_hides_what_lies_behind_it() {
         pieces(items)
     };
     let (source, ear) = (Vec3::Y, Vec3::new(2.0, 1.0, 0.0));
-    let open = Hall::new(house(false), images_only(2)).echogram(source, ear, Key::root(0));
-    let hidden = Hall::new(house(true), images_only(2)).echogram(source, ear, Key::root(0));
+    let open = Hall::new(house(false), images_only(2)).echogram(source, ear, RandomKey::root(0));
+    let hidden = Hall::new(house(true), images_only(2)).echogram(source, ear, RandomKey::root(0));
     assert_eq!(open.paths.len(), 2);
     // Over the floor the way is free below the screen; the straight one is not.
     assert!(hidden.direct().is_none() && hidden.paths.len() == 1 && hidden.paths[0].order() == 1);
@@ -200,8 +206,8 @@ fn a_screen_hides_what_lies_behind_it() {
 #[test]
 fn both_ways_have_the_same_paths() {
     let hall = Hall::shoebox(SIZE, &material(0.2, 0.1), images_only(3));
-    let there = hall.echogram(SOURCE, EAR, Key::root(0)).paths;
-    let back = hall.echogram(EAR, SOURCE, Key::root(0)).paths;
+    let there = hall.echogram(SOURCE, EAR, RandomKey::root(0)).paths;
+    let back = hall.echogram(EAR, SOURCE, RandomKey::root(0)).paths;
     assert_eq!(there.len(), back.len());
     for (a, b) in there.iter().zip(&back) {
         assert!(

@@ -9,7 +9,7 @@ use dwell_acoustics::{
     AcousticConfig, ActiveSource, Microphone, Receiver, Source, Stream, StreamConfig, signals,
 };
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{House, HouseData, LawSpec, Pose, State};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -37,7 +37,7 @@ fn nowhere() -> Hall {
 }
 
 fn stream(hall: &Hall, config: StreamConfig) -> Stream {
-    Stream::new(hall.scene.clone(), config, Key::root(8), Threads::ONE).unwrap()
+    Stream::new(hall.scene.clone(), config, RandomKey::root(8), Threads::ONE).unwrap()
 }
 
 fn head(position: Vec3, yaw_rad: f32) -> Receiver {
@@ -90,7 +90,7 @@ fn a_still_scene_is_a_convolution() {
         &signal,
         |_| (SOURCE, receiver.clone()),
     );
-    let key = Key::root(8).child("source").child(5);
+    let key = RandomKey::root(8).child("source").child(5);
     let response = hall
         .scene
         .impulse_response(

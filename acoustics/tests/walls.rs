@@ -9,7 +9,7 @@ use dwell_acoustics::{
     AcousticConfig, ActiveSource, Echogram, Receiver, Source, Stream, StreamConfig, metrics,
 };
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
     Bands, Category, House, LevelId, Material, Mesh, MeshId, Mobility, Object, ObjectId, Part,
@@ -120,7 +120,7 @@ fn a_closed_box_is_silent() {
             },
         );
         for (from, to) in [(SOURCE, EAR), (EAR, SOURCE)] {
-            let found = hall.echogram(from, to, Key::root(1));
+            let found = hall.echogram(from, to, RandomKey::root(1));
             assert!(found.is_silent() && found.paths.is_empty());
             let receiver = Receiver::binaural(Pose::from_position(to));
             let heard = hall
@@ -129,7 +129,7 @@ fn a_closed_box_is_silent() {
                     &hall.rays,
                     &Source::at(from),
                     &receiver,
-                    Key::root(1),
+                    RandomKey::root(1),
                     Threads::ONE,
                 )
                 .unwrap();
@@ -137,7 +137,7 @@ fn a_closed_box_is_silent() {
         }
         assert!(
             !hall
-                .echogram(SOURCE, Vec3::new(3.0, 1.0, 3.0), Key::root(1))
+                .echogram(SOURCE, Vec3::new(3.0, 1.0, 3.0), RandomKey::root(1))
                 .is_silent()
         );
     }
@@ -155,7 +155,7 @@ fn a_closed_door_silences_and_an_open_one_does_not() {
         state.part_pose[PartId(0)] = Pose::from_position_yaw(hinge, yaw_rad);
         hall.rays.update(&state);
         hall.scene.update(&state);
-        let found = hall.echogram(SOURCE, EAR, Key::root(4));
+        let found = hall.echogram(SOURCE, EAR, RandomKey::root(4));
         found.total()[4]
     };
     assert!(level_at(0.0, 0.0) <= 0.0);
@@ -173,7 +173,7 @@ fn a_door_that_swings_is_heard_on_its_way_and_exactly_where_it_rests() {
     let mut state = State::new(&hall.house);
     let new = |hall: &Hall| {
         let config = StreamConfig::rl();
-        Stream::new(hall.scene.clone(), config, Key::root(8), Threads::ONE).unwrap()
+        Stream::new(hall.scene.clone(), config, RandomKey::root(8), Threads::ONE).unwrap()
     };
     let receiver = Receiver::omni(EAR);
     let signal = vec![1.0; 800];
@@ -243,7 +243,7 @@ fn a_door_with_many_sounds_takes_little_in_each_block() {
     };
     let new = |hall: &Hall, threads: usize| {
         let threads = Threads::exactly(threads);
-        Stream::new(hall.scene.clone(), config, Key::root(8), threads).unwrap()
+        Stream::new(hall.scene.clone(), config, RandomKey::root(8), threads).unwrap()
     };
     let receiver = Receiver::binaural(Pose::from_position(EAR));
     let signal = vec![0.1; 800];
@@ -319,7 +319,13 @@ fn a_moved_plate_mirrors_from_its_new_place() {
     scene.update(&state);
     let (source, ear) = (Vec3::new(1.0, 1.0, 1.5), Vec3::new(2.0, 1.4, 1.6));
     let found = scene
-        .echogram(&rays, &Source::at(source), ear, Key::root(0), Threads::ONE)
+        .echogram(
+            &rays,
+            &Source::at(source),
+            ear,
+            RandomKey::root(0),
+            Threads::ONE,
+        )
         .unwrap();
     let wanted = Vec3::new(2.0 * 2.98 - 1.0, 1.0, 1.5).distance(ear);
     let path = found
@@ -348,7 +354,7 @@ fn direct_sound_passes_a_solid_wall_once() {
         let found = hall.echogram(
             Vec3::new(1.0, 1.2, 0.7),
             Vec3::new(7.0, 1.2, 0.7),
-            Key::root(0),
+            RandomKey::root(0),
         );
         found.direct().cloned()
     };
@@ -376,7 +382,7 @@ fn sound_passes_three_walls_and_no_more() {
                 ..dry(0)
             },
         );
-        let found = hall.echogram(Vec3::ZERO, Vec3::X * 8.0, Key::root(0));
+        let found = hall.echogram(Vec3::ZERO, Vec3::X * 8.0, RandomKey::root(0));
         assert_eq!(found.direct().is_some(), expected);
         if let Some(path) = found.direct() {
             assert_eq!(path.walls, walls);
@@ -391,7 +397,7 @@ fn sound_passes_three_walls_and_no_more() {
 fn an_overridden_band_decays_faster_and_alone() {
     let mut hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.1, 1.0), dry(1000));
     let before =
-        metrics::of_echogram(&hall.echogram(SOURCE, Vec3::new(4.0, 1.2, 3.0), Key::root(0)));
+        metrics::of_echogram(&hall.echogram(SOURCE, Vec3::new(4.0, 1.2, 3.0), RandomKey::root(0)));
     let mut state = State::new(&hall.house);
     for side in ["floor", "ceiling"] {
         for hz in [500, 1000, 2000] {
@@ -402,7 +408,7 @@ fn an_overridden_band_decays_faster_and_alone() {
     }
     hall.scene.update(&state);
     let after =
-        metrics::of_echogram(&hall.echogram(SOURCE, Vec3::new(4.0, 1.2, 3.0), Key::root(0)));
+        metrics::of_echogram(&hall.echogram(SOURCE, Vec3::new(4.0, 1.2, 3.0), RandomKey::root(0)));
     assert!(after[4].t30_s.unwrap() < 0.5 * before[4].t30_s.unwrap());
     for band in [1, 2, 3, 5, 6] {
         assert!(

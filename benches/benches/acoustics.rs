@@ -11,7 +11,7 @@ use dwell_acoustics::{
 };
 use dwell_houses::open;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, Pose, ShoeboxMaterials, State};
 use glam::Vec3;
@@ -101,7 +101,7 @@ fn respond(bencher: Bencher<'_, '_>, name: &str, config: AcousticConfig) {
     );
     bencher
         .counter(ItemsCount::new(1_usize))
-        .bench(|| scene.impulse_response(&rays, &source, &ear, Key::root(0), Threads::ONE));
+        .bench(|| scene.impulse_response(&rays, &source, &ear, RandomKey::root(0), Threads::ONE));
 }
 
 /// Binaural impulse responses with the settings for learning agents. Items: responses.
@@ -131,7 +131,7 @@ fn rays(bencher: Bencher<'_, '_>, name: &str) {
     );
     let trace = || {
         let source = Source::at(case.source);
-        scene.echogram(&rays, &source, case.ear, Key::root(0), Threads::ONE)
+        scene.echogram(&rays, &source, case.ear, RandomKey::root(0), Threads::ONE)
     };
     let segments = trace().map_or(0, |echogram| echogram.trace.segments);
     bencher.counter(ItemsCount::new(segments)).bench(trace);
@@ -145,7 +145,7 @@ fn stream_rl(bencher: Bencher<'_, '_>, name: &str) {
     let rays = RayScene::new(case.house.clone());
     let state = State::new(&case.house);
     let scene = scene.expect("presets are in range");
-    let stream = Stream::new(scene, StreamConfig::rl(), Key::root(0), Threads::ONE);
+    let stream = Stream::new(scene, StreamConfig::rl(), RandomKey::root(0), Threads::ONE);
     let mut stream = stream.expect("presets are in range");
     let mut signal = vec![0.0; 800];
     signals::synthesize("radio", 16_000, 0, &mut signal).expect("the radio is in the list");

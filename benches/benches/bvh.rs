@@ -7,7 +7,7 @@ use divan::counter::ItemsCount;
 use dwell_houses::open;
 use dwell_scene::bvh::{PacketHits, Ray, RayMask, RayPacket, TriangleBvh};
 use dwell_scene::navigation::{NavConfig, NavGrid};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{EntityId, House, State};
 use glam::Vec3;
@@ -49,7 +49,7 @@ static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
 fn walked_views(house: &House) -> Vec<[Vec3; 2]> {
     let grid = NavGrid::build(house, &State::new(house), &NavConfig::default());
     let grid = grid.expect("the built-in apartment has floors");
-    let key = Key::root(0);
+    let key = RandomKey::root(0);
     let view = |k: usize| {
         let cell = grid.sample(key.child(k as u64), |_| true);
         let floor = cell.map_or(Vec3::ZERO, |cell| grid.position(cell));

@@ -10,7 +10,7 @@ use divan::counter::ItemsCount;
 use dwell::{Engines, World, WorldConfig};
 use dwell_benches::Crowd;
 use dwell_scene::House;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::fmt;
 use std::sync::Arc;
 
@@ -99,7 +99,7 @@ fn reset(bencher: Bencher<'_, '_>, case: Case) {
     let mut world = case.world();
     bencher
         .counter(case.items())
-        .bench_local(|| world.reset(Key::root(1)).unwrap());
+        .bench_local(|| world.reset(RandomKey::root(1)).unwrap());
 }
 
 #[divan::bench(args = CASES, sample_count = 3, sample_size = 1)]

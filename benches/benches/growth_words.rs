@@ -192,7 +192,7 @@ fn timed<R>(work: impl FnOnce() -> R) -> (f64, Option<R>) {
             std::thread::sleep(Duration::from_millis(5));
         }
     });
-    let result = interrupt::stoppable(|| LATE.load(Ordering::Relaxed), work).ok();
+    let result = interrupt::interruptible(|| LATE.load(Ordering::Relaxed), work).ok();
     let seconds = begun.elapsed().as_secs_f64();
     done.store(true, Ordering::Relaxed);
     watcher.join().unwrap();

@@ -10,7 +10,7 @@
 use dwell_houses::generate::{HomeKind, HouseSpec, generate};
 use dwell_render::{Camera, Channels, CpuRenderer, Frame, FrameMut, Preset, View};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
     Aabb, House, HouseData, Level, LevelId, MaterialId, MeshId, ObjectId, PartId, Pose, RoomId,
@@ -237,7 +237,7 @@ impl World {
         let camera = Camera::from_fov(128, 128, 90.0).unwrap();
         let views: Vec<View> = (0..VIEWS)
             .map(|k| {
-                let mut stream = Key::root(3).child(k as u64).stream();
+                let mut stream = RandomKey::root(3).child(k as u64).stream();
                 // Rooms of all houses alike; somewhere on their floors, at the height of a head.
                 let room = &house.rooms[RoomId((k * house.rooms.len() / VIEWS) as u32)];
                 let [a, b, c] = room.footprint[stream.below(room.footprint.len())];

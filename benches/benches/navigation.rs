@@ -5,8 +5,8 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use dwell_houses::open;
-use dwell_scene::navigation::{Cell, Doors, NavConfig, NavGrid};
-use dwell_scene::random::Key;
+use dwell_scene::navigation::{DoorPolicy, NavCell, NavConfig, NavGrid};
+use dwell_scene::random::RandomKey;
 use dwell_scene::{House, Pose, State};
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -44,18 +44,18 @@ fn house(name: &str) -> &'static House {
 
 fn grid(house: &House) -> NavGrid {
     let config = NavConfig {
-        doors: Doors::Open,
+        doors: DoorPolicy::Open,
         ..NavConfig::default()
     };
     NavGrid::build(house, &State::new(house), &config).expect("a house with floors")
 }
 
 /// Ends of ways that exist.
-fn ends(grid: &NavGrid) -> Vec<[Cell; 2]> {
-    let on_island = |cell: Cell| grid.island(cell) == Some(0);
+fn ends(grid: &NavGrid) -> Vec<[NavCell; 2]> {
+    let on_island = |cell: NavCell| grid.island(cell) == Some(0);
     (0..WAYS)
         .filter_map(|k| {
-            let key = Key::root(5).child(k as u64);
+            let key = RandomKey::root(5).child(k as u64);
             Some([
                 grid.sample(key.child(0_u64), on_island)?,
                 grid.sample(key.child(1_u64), on_island)?,

@@ -10,7 +10,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use dwell_physics::{AgentControl, PhysicsConfig, PhysicsModel, PhysicsWorld};
 use dwell_scene::navigation::{NavConfig, NavGrid};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{
     AgentBody, AgentState, Collider, House, HouseData, Id, IdVec, MaterialId, Mesh, Mobility,
     Object, ObjectId, Part, PartId, Pose, State,
@@ -105,7 +105,7 @@ fn boxes(house: &House) -> House {
         .expect("a house with an object")
         .clone();
     for k in 0..TOYS {
-        let cell = grid.sample(Key::root(7).child(k), |_| true);
+        let cell = grid.sample(RandomKey::root(7).child(k), |_| true);
         let floor = cell.map_or(Vec3::ZERO, |cell| grid.position(cell));
         let toy = Object {
             name: format!("toy_{k}"),

@@ -12,7 +12,7 @@ use dwell_calibration::rollout::{
 };
 use dwell_physics::ContactFriction;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::{DQuat, DVec3};
 
 const HALF_M: f64 = 0.0524;
@@ -146,7 +146,7 @@ fn roll_outs_meet_their_own_tosses_and_threads_change_nothing() {
     let rigs = vec![&rig; 5];
     let windowing = |threads| Windowing {
         stride: 7,
-        guard: Some(Key::root(0)),
+        guard: Some(RandomKey::root(0)),
         threads,
     };
     let found = ends(&tracks, &rigs, &windowing(Threads::ONE)).unwrap();
@@ -303,6 +303,13 @@ fn a_cube_on_its_edge_is_chance_and_a_flat_one_is_not() {
         position_m: 1e-5,
         rotation_rad: 2e-3,
     };
-    let found = diverging(&rig(0.3), &tracks, &[0, 1], Key::root(2), Threads::ONE).unwrap();
+    let found = diverging(
+        &rig(0.3),
+        &tracks,
+        &[0, 1],
+        RandomKey::root(2),
+        Threads::ONE,
+    )
+    .unwrap();
     assert_eq!(found, [true, false]);
 }

@@ -9,7 +9,7 @@ use dwell_calibration::rollout::drive::{Drive, Drives, NominalBase, models};
 use dwell_calibration::rollout::drop::Drops;
 use dwell_calibration::rollout::series::{Modelled as _, SeriesOptions, SeriesReport, run};
 use dwell_calibration::rollout::{Regime, Subject as _};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::fmt::Write as _;
 
 const RATE_HZ: f64 = 20.0;
@@ -21,7 +21,7 @@ const BASE: NominalBase = NominalBase {
 /// A robot whose wheels are (left, right) and whose base is so much larger than believed, driven along a path by Euler
 /// steps of a 200th of a sample, seen with 1 mm and 0.3 degrees of noise by a tracker whose heading is off.
 fn drive(name: &str, factors: [f64; 3], tracker_off_rad: f64, seed: u64) -> Drive {
-    let mut stream = Key::root(seed).stream();
+    let mut stream = RandomKey::root(seed).stream();
     let bend = if seed.is_multiple_of(2) { 0.4 } else { -0.5 };
     let (mut place, mut planar, mut turned) = ([0.0_f64; 3], Vec::new(), Vec::new());
     for k in 0..300 {
@@ -150,7 +150,7 @@ fn dropped(folder: &std::path::Path, c_d: [f64; 2]) {
         "episode,split_group,conditions\n".to_owned(),
         "episode,t_s,entity,channel,value\n".to_owned(),
     );
-    let mut stream = Key::root(4).stream();
+    let mut stream = RandomKey::root(4).stream();
     for (b, (name, mass, radius)) in balls.into_iter().enumerate() {
         let density = 101_325.0 / (287.05 * 293.15);
         let k = 0.5 * density * c_d[b] * std::f64::consts::PI * radius * radius / mass;

@@ -13,7 +13,7 @@ use crate::contact::touching;
 use crate::engine::Engine;
 use crate::workspace::Workspace;
 use crate::world::PhysicsWorld;
-use dwell_scene::{Contact, Rest, State};
+use dwell_scene::{Contact, State, SupportRelation};
 use glam::Vec3;
 use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle, RigidBodyType};
 use rapier3d::geometry::{Aabb, Collider, ColliderHandle};
@@ -419,8 +419,13 @@ impl PhysicsWorld {
         contacts.extend(self.touching_now().into_iter().map(|(_, contact)| contact));
         contacts.extend(self.engine.laid.contacts());
         // A pair of parts may touch with several pieces: it is listed once, as carrying if any of them carries.
-        contacts
-            .sort_unstable_by_key(|contact| (contact.a, contact.b, contact.rest == Rest::Beside));
+        contacts.sort_unstable_by_key(|contact| {
+            (
+                contact.a,
+                contact.b,
+                contact.rest == SupportRelation::Beside,
+            )
+        });
         contacts.dedup_by_key(|contact| (contact.a, contact.b));
     }
 

@@ -18,7 +18,7 @@ use crate::laid::Laid;
 use crate::laws::{self, Installed};
 use crate::limits::Crowding;
 use crate::world::{Assembly, PhysicsWorld, Weights, assemble, pose_of};
-use dwell_scene::columns;
+use dwell_scene::columnar;
 use dwell_scene::packing::{pack_within, unpack};
 use dwell_scene::{AgentId, Id, State};
 use rapier3d::dynamics::{ImpulseJointSet, IslandManager, RigidBodySet};
@@ -143,7 +143,7 @@ impl PhysicsWorld {
     }
 
     fn body(&self) -> Vec<u8> {
-        columns::to_bytes(&self.shot())
+        columnar::to_bytes(&self.shot())
             .expect("rapier's sets are plain data that say how long they are")
     }
 
@@ -177,7 +177,7 @@ impl PhysicsWorld {
     /// state; the world is then as it was before.
     pub fn restore(&mut self, state: &mut State, bytes: &[u8]) -> Result<(), PhysicsError> {
         let body = self.check_header(bytes)?;
-        let shot: Shot = columns::from_bytes(&body)
+        let shot: Shot = columnar::from_bytes(&body)
             .map_err(|error| PhysicsError::Snapshot(error.to_string()))?;
         let memory = shot.memory;
         let bodies = shot.bodies.0.into_owned();

@@ -10,7 +10,7 @@ use dwell_acoustics::metrics::BandWidth;
 use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, Receiver, Source, metrics};
 use dwell_scene::LawSpec;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
@@ -78,7 +78,7 @@ impl PyAcousticScene {
         let responses = py.engine(|| {
             let source: Source = serde_json::from_str(source_json)?;
             let receivers: Vec<Receiver> = serde_json::from_str(receivers_json)?;
-            let (key, threads) = (Key::root(seed), Threads::requested(threads)?);
+            let (key, threads) = (RandomKey::root(seed), Threads::requested(threads)?);
             let mut scene = self.scene.clone();
             for head in &heads {
                 scene.add_head(&head.get().head);
@@ -167,7 +167,7 @@ impl PyAcousticScene {
         threads: Option<usize>,
     ) -> Result<Vec<Echogram>, Fault> {
         let centres: Vec<Vec3> = receivers.iter().map(Receiver::position).collect();
-        let (key, threads) = (Key::root(seed), Threads::requested(threads)?);
+        let (key, threads) = (RandomKey::root(seed), Threads::requested(threads)?);
         let echograms = self
             .scene
             .echograms(&self.rays, source, &centres, key, threads)?;

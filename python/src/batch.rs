@@ -90,7 +90,7 @@ impl PyBatch {
         py.engine(|| {
             let mut batch = self.lock()?;
             // Not through the guard: it would take the unwinding for a panic. The batch mends itself.
-            interrupt::attempt(|| work(&mut batch))?
+            interrupt::catch_interrupt(|| work(&mut batch))?
         })
     }
 

@@ -46,7 +46,7 @@ impl Doorway for Python<'_> {
             // What a panic leaves half done is never looked at again: the object that raised is poisoned by its mutex.
             let outcome = catch_unwind(AssertUnwindSafe(|| {
                 let outcome = if hears_signals {
-                    interrupt::stoppable(ask, work)
+                    interrupt::interruptible(ask, work)
                 } else {
                     Ok(work())
                 };

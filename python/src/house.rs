@@ -8,7 +8,7 @@ use dwell::Engines;
 use dwell_houses::Loss;
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, House, Material, Pose, ShoeboxMaterials, State};
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{Goal, InstructionKind, candidates, choose};
@@ -276,7 +276,7 @@ pub(crate) fn describe_level(
                     let worded = key.and_then(|seed| {
                         choose(
                             std::slice::from_ref(&instruction),
-                            Key::root(seed).child(k as u64),
+                            RandomKey::root(seed).child(k as u64),
                         )
                     });
                     let instruction = worded.unwrap_or(instruction);

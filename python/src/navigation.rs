@@ -5,8 +5,8 @@ use crate::errors::Fault;
 use crate::house::PyHouse;
 use dwell::Engines;
 use dwell_scene::interrupt;
-use dwell_scene::navigation::{Cell, NavConfig, NavGrid};
-use dwell_scene::random::Key;
+use dwell_scene::navigation::{NavCell, NavConfig, NavGrid};
+use dwell_scene::random::RandomKey;
 use dwell_scene::{House, LevelId, State};
 use glam::Vec3;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
@@ -62,18 +62,18 @@ impl PyNavigation {
     /// Follows what has moved; returns how many columns were looked at again.
     pub(crate) fn follow(&self, state: &State) -> Result<usize, Fault> {
         let mut moment = self.moment()?;
-        interrupt::whole(|| {
+        interrupt::uninterruptible(|| {
             // A grid that others have, too, is theirs.
             let rebuilt = Arc::make_mut(&mut moment.grid).update(&self.house, state)?;
             moment.state = Some(state.clone());
-            Ok(rebuilt.looked_at)
+            Ok(rebuilt.rechecked)
         })
     }
 
     /// The grid for one call, which no signal ends half-way.
     fn with<T>(&self, work: impl FnOnce(&NavGrid) -> T) -> Result<T, Fault> {
         let moment = self.moment()?;
-        Ok(interrupt::whole(|| work(&moment.grid)))
+        Ok(interrupt::uninterruptible(|| work(&moment.grid)))
     }
 
     fn moment(&self) -> Result<MutexGuard<'_, Moment>, Fault> {
@@ -131,7 +131,7 @@ impl PyNavigation {
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let points = py.engine(|| {
             self.with(|grid| -> Vec<Vec3> {
-                let place = |cell: Cell| grid.position(cell);
+                let place = |cell: NavCell| grid.position(cell);
                 match start {
                     None => grid.walkable().map(place).collect(),
                     Some(start) => {
@@ -170,12 +170,12 @@ impl PyNavigation {
             }
             self.with(|grid| -> Vec<Vec3> {
                 let start = start.map(|start| grid.nearest(Vec3::from_array(start), NEAR_M));
-                let cells: Vec<Cell> = match start {
+                let cells: Vec<NavCell> = match start {
                     None => grid.walkable().collect(),
                     Some(None) => Vec::new(),
                     Some(Some(start)) => grid.reachable(start).collect(),
                 };
-                let mut stream = Key::root(seed).child("navigation").stream();
+                let mut stream = RandomKey::root(seed).child("navigation").stream();
                 let chosen = (0..count).filter_map(|_| stream.choose(&cells).copied());
                 chosen.map(|cell| grid.position(cell)).collect()
             })

@@ -13,7 +13,7 @@ use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
 use dwell::{PlayRequest, SoundPlace};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
 use dwell_scene::interrupt;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Address, JointCommand, JointId, Pose, Velocity};
 use glam::{Quat, Vec3};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
@@ -46,7 +46,7 @@ impl PyWorld {
         py: Python<'_>,
         work: impl FnOnce(&mut Running<'_>) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
-        py.engine(|| self.reach(|running| interrupt::whole(|| work(running))))
+        py.engine(|| self.reach(|running| interrupt::uninterruptible(|| work(running))))
     }
 
     /// Changes the world in one stroke at the end of what may take its time: a signal before it leaves the world as it was.
@@ -56,7 +56,7 @@ impl PyWorld {
         work: impl FnOnce(&mut Running<'_>) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
         // Within the guards: they would take the unwinding for a panic.
-        py.engine(|| self.reach(|running| interrupt::attempt(|| work(running))?))
+        py.engine(|| self.reach(|running| interrupt::catch_interrupt(|| work(running))?))
     }
 
     /// Looks at the world, which may take its time: a signal ends it, and the world is as it was.
@@ -65,7 +65,7 @@ impl PyWorld {
         py: Python<'_>,
         work: impl FnOnce(&Running<'_>) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
-        py.engine(|| self.reach(|running| interrupt::attempt(|| work(running))?))
+        py.engine(|| self.reach(|running| interrupt::catch_interrupt(|| work(running))?))
     }
 
     /// The world for one call, without the GIL.
@@ -124,7 +124,7 @@ impl PyWorld {
         let world = py.engine(|| -> Result<World, Fault> {
             let config: WorldConfig = serde_json::from_str(config_json)?;
             let mut world = World::new(engines, &config)?;
-            world.reset(Key::root(seed))?;
+            world.reset(RandomKey::root(seed))?;
             Ok(world)
         })?;
         Ok(Self {

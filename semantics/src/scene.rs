@@ -8,8 +8,8 @@ use crate::semantics::Semantics;
 use dwell_scene::bvh::BoxTree;
 use dwell_scene::interrupt;
 use dwell_scene::{
-    Aabb, AgentId, Entity, EntityId, Holding, House, Id, IdVec, ObjectId, Pose, RoomId, State,
-    StructureId,
+    Aabb, AgentId, Entity, EntityId, House, Id, IdVec, ObjectId, Pose, ReceptacleKind, RoomId,
+    State, StructureId,
 };
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -200,7 +200,7 @@ impl<'a> Scene<'a> {
         let row = self.facts(object).category;
         let mut places = self.house().receptacles_of(object);
         row.is_some_and(|row| seats.contains(&row.nyu40_name) && !row.contains)
-            && !places.any(|place| place.holding == Holding::In)
+            && !places.any(|place| place.holding == ReceptacleKind::In)
     }
 
     /// Who holds the object.

@@ -1,7 +1,7 @@
 //! The built-in apartment: what is said of it is what was put there.
 
 use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentBody, AgentId, AgentState, Holding, House, ObjectId, State};
+use dwell_scene::{AgentBody, AgentId, AgentState, House, ObjectId, ReceptacleKind, State};
 use dwell_semantics::color::Vocabulary;
 use dwell_semantics::describe::{caption, describe_house};
 use dwell_semantics::graph::scene_graph;
@@ -204,7 +204,7 @@ fn things_in_marked_places_rest_on_their_furniture() {
             if !place.space_in_part.grown(0.001).contains(in_part) || in_part.y > low + 0.03 {
                 continue;
             }
-            let name = if place.holding == Holding::In {
+            let name = if place.holding == ReceptacleKind::In {
                 "in"
             } else {
                 "on"

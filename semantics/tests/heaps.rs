@@ -3,7 +3,7 @@
 mod common;
 
 use common::Builder;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{House, State};
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::predicates::find;
@@ -21,7 +21,7 @@ fn heap(count: usize, nested: bool) -> Arc<House> {
     b.room("kitchen", [0.05, 0.05], [3.95, 3.95]);
     let red = b.material("plastic", [180, 20, 25]);
     let blue = b.material("plastic", [30, 60, 150]);
-    let mut stream = Key::root(8).stream();
+    let mut stream = RandomKey::root(8).stream();
     for k in 0..count {
         let kind = ["cup", "bowl", "food"][k % 3];
         let material = if stream.below(2) == 0 { red } else { blue };

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Builder, small_house};
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, ObjectId, Pose, State};
 use dwell_semantics::predicates::{all, find};
@@ -44,7 +44,7 @@ fn terms(house: &House) -> Vec<Term> {
 /// Throws every object somewhere, turned about the vertical.
 fn shaken(house: &House, seed: u64) -> State {
     let mut state = State::new(house);
-    let mut stream = Key::root(seed).child("shake").stream();
+    let mut stream = RandomKey::root(seed).child("shake").stream();
     for part in house.parts.ids() {
         let height = [0.0, 0.0, 0.75, 0.45][stream.below(4)];
         let position = Vec3::new(stream.range(0.3, 7.7), height, stream.range(0.3, 7.7));
@@ -223,7 +223,7 @@ fn on_agrees_with_rays_from_above() {
                     total += 1;
                     let ray = Ray::new(Vec3::new(x, bounds.min.y + 0.029, z), Vec3::NEG_Y)
                         .between(0.0, 0.058);
-                    if let Some(hit) = rays.closest_without(&ray, RayMask::ALL, id) {
+                    if let Some(hit) = rays.closest_excluding(&ray, RayMask::ALL, id) {
                         // Undersides carry nothing.
                         if rays.surface(&hit).normal.y < 0.5 {
                             continue;
@@ -272,7 +272,7 @@ fn left_and_right_agree_with_a_projected_picture() {
     let state = State::new(&s.house);
     let scene = semantics.scene(&state);
     let left = find("left_of").unwrap();
-    let mut stream = Key::root(5).stream();
+    let mut stream = RandomKey::root(5).stream();
     let (mut told, mut undecided) = (0, 0);
     for _ in 0..300 {
         let eye = Vec3::new(

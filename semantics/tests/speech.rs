@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Builder, small_house};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentBody, AgentId, AgentState, Pose, State};
 use dwell_semantics::describe::{caption, describe_house, describe_room, describe_view};
@@ -239,7 +239,7 @@ fn the_graph_holds_exactly_what_the_predicates_say() {
 
 /// Twelve chairs in four colours and two materials over three rooms, with tables as landmarks.
 fn crowded(seed: u64) -> std::sync::Arc<dwell_scene::House> {
-    let mut stream = Key::root(seed).stream();
+    let mut stream = RandomKey::root(seed).stream();
     let mut b = Builder::new("crowded");
     let kinds = ["kitchen", "bedroom", "bedroom", "office"];
     for (k, kind) in kinds.iter().enumerate() {
@@ -401,7 +401,7 @@ fn every_instruction_tokenises_and_keeps_to_its_charset() {
         for kind in InstructionKind::ALL {
             let all = candidates(&scene, kind);
             for draw in 0..30 {
-                let Some(chosen) = choose(&all, Key::root(draw)) else {
+                let Some(chosen) = choose(&all, RandomKey::root(draw)) else {
                     continue;
                 };
                 texts += 1;
@@ -415,7 +415,7 @@ fn every_instruction_tokenises_and_keeps_to_its_charset() {
                     .replace(" .", ".")
                     .replace(" ,", ",");
                 assert_eq!(again, chosen.text.to_lowercase());
-                assert_eq!(Some(&chosen), choose(&all, Key::root(draw)).as_ref());
+                assert_eq!(Some(&chosen), choose(&all, RandomKey::root(draw)).as_ref());
             }
         }
     }
@@ -505,7 +505,7 @@ fn a_house_without_a_unique_thing_says_so() {
     let semantics = Semantics::new(&house);
     let state = State::new(&house);
     let scene = semantics.scene(&state);
-    let error = instruction(&scene, InstructionKind::FindObject, Key::root(1)).unwrap_err();
+    let error = instruction(&scene, InstructionKind::FindObject, RandomKey::root(1)).unwrap_err();
     assert_eq!(
         error.to_string(),
         "house \"twins\" offers no instruction of kind find_object: no object can be told from all others by words"

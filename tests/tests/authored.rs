@@ -10,7 +10,7 @@ use dwell::{Engines, World, WorldConfig};
 use dwell_acoustics::{AcousticConfig, AcousticScene};
 use dwell_houses::authoring::{Files, Plan, build};
 use dwell_physics::Action;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, House, State};
 use glam::Vec3;
 use serde_json::{Value, json};
@@ -41,7 +41,7 @@ fn rooms(edits: Value) -> Value {
 
 fn world(house: House) -> World {
     let mut world = World::new(Engines::new(Arc::new(house)), &WorldConfig::default()).unwrap();
-    world.reset(Key::root(5)).unwrap();
+    world.reset(RandomKey::root(5)).unwrap();
     world
 }
 
@@ -307,7 +307,7 @@ fn agents_and_free_episodes_start_where_the_house_says() {
         ..WorldConfig::default()
     };
     let mut world = World::new(engines.clone(), &config).unwrap();
-    world.reset(Key::root(5)).unwrap();
+    world.reset(RandomKey::root(5)).unwrap();
     let agents = world.state().agents.as_slice();
     let room = |k: usize| {
         let room = house.room_at(agents[k].position + Vec3::Y * 0.1).unwrap();

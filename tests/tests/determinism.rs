@@ -7,7 +7,7 @@
 
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, WorldConfig};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, LawSpec, Locomotion};
 use dwell_tests::observed::{all_sensors, observe};
 use std::path::PathBuf;
@@ -62,7 +62,7 @@ fn batch(count: usize, threads: usize) -> Batch {
 
 /// Everything but `stop`, walking more often than not.
 fn actions() -> Vec<DiscreteAction> {
-    let mut stream = Key::root(31).child("actions").stream();
+    let mut stream = RandomKey::root(31).child("actions").stream();
     let draw = |_| match stream.below(3) {
         0 => DiscreteAction::ALL[1 + stream.below(DiscreteAction::ALL.len() - 1)],
         _ => DiscreteAction::ALL[1 + stream.below(3)],

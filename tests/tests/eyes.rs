@@ -10,7 +10,7 @@ use dwell::{
 use dwell_physics::AgentControl;
 use dwell_render::{Camera, Channels, Preset};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId, House, LawSpec, Pose, ShoeboxMaterials};
 use glam::{Quat, Vec2, Vec3};
 use serde_json::{Value, json};
@@ -48,7 +48,7 @@ fn moving(laws: Vec<LawSpec>) -> World {
         ..WorldConfig::default()
     };
     let mut world = World::new(room(), &config).unwrap();
-    world.reset(Key::root(3)).unwrap();
+    world.reset(RandomKey::root(3)).unwrap();
     world
         .place_agent(AgentId(0), Vec3::new(3.0, 0.0, 3.0), 0.3)
         .unwrap();
@@ -127,7 +127,7 @@ fn turning(laws: Vec<LawSpec>) -> World {
         ..WorldConfig::default()
     };
     let mut world = World::new(room(), &config).unwrap();
-    world.reset(Key::root(3)).unwrap();
+    world.reset(RandomKey::root(3)).unwrap();
     let yaw = 3.0_f32.atan2(2.5);
     world
         .place_agent(AgentId(0), Vec3::new(3.0, 0.0, 2.5), yaw - 0.05)

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_tests::hostile::{NAMES, OTHERS, live_in, mutated, read, sample, seeds};
 
 /// Of how many houses that opened one is lived in.
@@ -14,7 +14,7 @@ fn run(name: &str, count: usize) -> (usize, Vec<String>) {
     let sample = sample(name);
     let (mut opened, mut panicked) = (0, Vec::new());
     for k in 0..count {
-        let mut random = Key::root(71).child(name).child(k as u64).stream();
+        let mut random = RandomKey::root(71).child(name).child(k as u64).stream();
         // The file that leads gets half of them.
         let file = if random.below(2) == 0 {
             0

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell_scene::LawInfo;
-use dwell_scene::law::Engine;
+use dwell_scene::law::EngineKind;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -57,12 +57,12 @@ response (clipping, automatic gain, noise, a clock) does to a response what it d
 comes, changes or goes while a stream runs is crossfaded over one block.
 ";
 
-fn heading(engine: Engine) -> &'static str {
+fn heading(engine: EngineKind) -> &'static str {
     match engine {
-        Engine::Physics => "Physics",
-        Engine::Acoustics => "Sound",
-        Engine::Render => "Cameras and depth sensors",
-        Engine::Measurement => "Clocks and trackers",
+        EngineKind::Physics => "Physics",
+        EngineKind::Acoustics => "Sound",
+        EngineKind::Render => "Cameras and depth sensors",
+        EngineKind::Measurement => "Clocks and trackers",
     }
 }
 
@@ -123,10 +123,10 @@ fn entry(law: &LawInfo, page: &mut String) {
 fn the_page_lists_every_law() {
     let mut page = HEAD.to_owned();
     for engine in [
-        Engine::Physics,
-        Engine::Acoustics,
-        Engine::Render,
-        Engine::Measurement,
+        EngineKind::Physics,
+        EngineKind::Acoustics,
+        EngineKind::Render,
+        EngineKind::Measurement,
     ] {
         let laws: Vec<&LawInfo> = dwell::laws::all()
             .filter(|law| law.engine == engine)

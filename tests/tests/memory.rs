@@ -6,7 +6,7 @@
 use dwell::{DiscreteAction, Engines, Stride, World, WorldConfig};
 use dwell_acoustics::{ActiveSource, Receiver, Stream, StreamConfig, signals};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, Pose, State};
 use glam::Vec3;
@@ -32,7 +32,7 @@ fn in_use() -> i64 {
 /// A world that was reset and walked a little.
 fn running(engines: &Arc<Engines>) -> World {
     let mut world = World::new(engines.clone(), &WorldConfig::default()).unwrap();
-    world.reset(Key::root(5)).unwrap();
+    world.reset(RandomKey::root(5)).unwrap();
     walk(&mut world, 20);
     world
 }
@@ -100,7 +100,7 @@ fn resets_leave_nothing_behind() {
         let mut world = running(&engines);
         let (mut first, mut most) = (0, 0);
         for k in 0..resets {
-            world.reset(Key::root(k)).unwrap();
+            world.reset(RandomKey::root(k)).unwrap();
             walk(&mut world, 3);
             let now = in_use();
             if k == 20 {
@@ -139,7 +139,8 @@ fn an_hour_of_sound_keeps_memory_flat() {
     let middle = (a + b + c) / 3.0;
     let spot = Vec3::new(middle.x, room.floor_y + 1.6, middle.y);
     let scene = engines.acoustics("rl", 16_000).unwrap();
-    let mut stream = Stream::new(scene, StreamConfig::rl(), Key::root(2), Threads::ONE).unwrap();
+    let mut stream =
+        Stream::new(scene, StreamConfig::rl(), RandomKey::root(2), Threads::ONE).unwrap();
     let mut signal = vec![0.0; BLOCK];
     signals::synthesize("radio", 16_000, 0, &mut signal).unwrap();
     let mut out = vec![0.0; 2 * BLOCK];

@@ -6,7 +6,7 @@ use dwell::sensors::Out;
 use dwell::{Batch, Env, EnvConfig, SensorConfig, World, WorldConfig};
 use dwell_physics::BodyState;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{
     AgentBody, AgentId, House, LawSpec, Mobility, PartId, Pose, ShoeboxMaterials, Velocity,
 };
@@ -217,7 +217,7 @@ fn what_is_set_and_set_back_leaves_no_trace() {
         // Bands lie between their neighbours, so that one that is set stays set.
         if matches!(address.words()[..], ["material", _, _, _]) {
             assert!(state.overrides.contains_key(&address));
-            world.reset(Key::root(0)).unwrap();
+            world.reset(RandomKey::root(0)).unwrap();
             continue;
         }
         assert_eq!(state.overrides, start.overrides, "{address}");
@@ -231,7 +231,7 @@ fn what_is_set_and_set_back_leaves_no_trace() {
             assert_eq!(world.hash(), whole, "{address}");
             quiet += 1;
         } else {
-            world.reset(Key::root(0)).unwrap();
+            world.reset(RandomKey::root(0)).unwrap();
         }
     }
     println!("{gone} numbers, {quiet} of them without a trace in physics");
@@ -392,7 +392,7 @@ fn a_set_of_numbers_is_taken_whole_or_not_at_all() {
     fork.restore(&saved).unwrap();
     assert_eq!(get(&fork, "agent/0/body/height_m") as f32, 1.1);
     assert_eq!(steps(&mut fork, 4), end);
-    fork.reset(dwell_scene::random::Key::root(0)).unwrap();
+    fork.reset(dwell_scene::random::RandomKey::root(0)).unwrap();
     assert_eq!(get(&fork, "agent/0/body/height_m"), 1.5);
     // Settings are such a set, too: the order of their names does not matter.
     let config = WorldConfig {

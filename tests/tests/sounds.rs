@@ -4,7 +4,7 @@
 
 use dwell::{Engines, PlayRequest, SoundName, SoundPlace, World, WorldConfig};
 use dwell_physics::BodyState;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, House, ObjectId, Pose, ShoeboxMaterials, Velocity};
 use glam::Vec3;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ const BLOCK: usize = 800;
 fn bare(config: &WorldConfig) -> World {
     let house = House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
     let mut world = World::new(Engines::new(Arc::new(house)), config).unwrap();
-    world.reset(Key::root(3)).unwrap();
+    world.reset(RandomKey::root(3)).unwrap();
     world
         .place_agent(AGENT, Vec3::new(3.0, 0.0, 2.5), 0.0)
         .unwrap();
@@ -330,7 +330,7 @@ fn a_restored_world_sounds_the_same() {
 #[test]
 fn sounds_of_objects_are_silenced_and_move_with_what_they_sit_on() {
     let mut world = World::new(dwell_tests::apartment(), &WorldConfig::default()).unwrap();
-    world.reset(Key::root(1)).unwrap();
+    world.reset(RandomKey::root(1)).unwrap();
     let count = world.house().emitters.len();
     assert!(count > 0);
     let on = world.sounds().iter().position(|sound| sound.on);

@@ -4,7 +4,7 @@
 
 use dwell::{World, WorldConfig};
 use dwell_physics::{AgentControl, BodyState};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Address, AgentId, JointCommand, JointId, JointKind, Pose, Velocity};
 use glam::Vec3;
 
@@ -15,7 +15,7 @@ const BLOCK: usize = 800;
 /// same.
 fn quiet(near: Vec3) -> World {
     let mut world = World::new(dwell_tests::apartment(), &WorldConfig::default()).unwrap();
-    world.reset(Key::root(6)).unwrap();
+    world.reset(RandomKey::root(6)).unwrap();
     for sound in world.sounds() {
         world.stop_sound(sound.handle).unwrap();
     }

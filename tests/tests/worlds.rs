@@ -4,7 +4,7 @@
 
 use dwell::{DiscreteAction, Stride, World, WorldConfig, objects_now};
 use dwell_physics::{Action, AgentControl, BodyState};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Mobility, ObjectId, Pose, Velocity};
 use glam::Vec3;
 
@@ -17,7 +17,7 @@ fn world() -> World {
 #[test]
 fn a_restored_world_continues_with_the_same_bits() {
     let mut world = world();
-    world.reset(Key::root(4)).unwrap();
+    world.reset(RandomKey::root(4)).unwrap();
     let walk = |world: &mut World, steps: usize| -> Vec<u64> {
         (0..steps)
             .map(|k| {
@@ -46,7 +46,7 @@ fn a_restored_world_continues_with_the_same_bits() {
 #[test]
 fn snapshots_of_worlds_stay_within_their_size() {
     let mut world = world();
-    world.reset(Key::root(4)).unwrap();
+    world.reset(RandomKey::root(4)).unwrap();
     let bound = (256 + 2 * world.start_report().bodies) * 1024;
     let mut sizes = Vec::new();
     for listens in [false, true] {
@@ -88,7 +88,7 @@ fn a_snapshot_of_a_heap_stays_within_its_size_and_goes_on_with_the_same_bits() {
 fn throw(seed: u64) {
     let mut world = world();
     let house = world.house().clone();
-    let mut stream = Key::root(seed).stream();
+    let mut stream = RandomKey::root(seed).stream();
     let rooms = house.rooms.iter();
     let area = |room: &&dwell_scene::Room| room.bounds.size().x * room.bounds.size().z;
     let room = rooms.max_by(|a, b| area(a).total_cmp(&area(b))).unwrap();
@@ -334,7 +334,7 @@ fn the_size_of_a_room_is_the_same_in_numbers_and_in_words() {
     let info = dwell::info(&engines, &serde_json::json!([]));
     let views = dwell::viewpoints(&engines).unwrap();
     for (k, room) in engines.house().rooms.ids().enumerate() {
-        let own = engines.house().own_area_m2(room);
+        let own = engines.house().footprint_area_m2(room);
         assert_eq!(info["rooms"][k]["area_m2"], serde_json::json!(own));
         assert_eq!(views[k].area_m2, own);
         assert_eq!(engines.semantics().room(room).area_m2, own);
@@ -394,7 +394,7 @@ fn the_expert_walks_with_the_strides_of_its_environment() {
 #[test]
 fn worlds_of_one_config_begin_alike_and_go_back_to_it() {
     let mut first = world();
-    first.reset(Key::root(4)).unwrap();
+    first.reset(RandomKey::root(4)).unwrap();
     let before = first.hash();
     for _ in 0..10 {
         first
@@ -409,9 +409,9 @@ fn worlds_of_one_config_begin_alike_and_go_back_to_it() {
         .unwrap();
     assert_ne!(first.hash(), before);
     let mut second = world();
-    second.reset(Key::root(4)).unwrap();
+    second.reset(RandomKey::root(4)).unwrap();
     assert_eq!(second.hash(), before);
-    first.reset(Key::root(4)).unwrap();
+    first.reset(RandomKey::root(4)).unwrap();
     assert_eq!(first.hash(), before);
     for _ in 0..10 {
         first.step(&[]).unwrap();

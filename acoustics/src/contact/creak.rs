@@ -3,7 +3,7 @@
 use super::radiation::Radiator;
 use super::strike::add_half_sine;
 use super::{Partner, samples};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -34,7 +34,7 @@ pub struct CreakSound {
     /// What hangs on it, and what it hangs on.
     pub partners: [Partner; 2],
     /// The hinge.
-    pub place: Key,
+    pub place: RandomKey,
 }
 
 impl CreakSound {
@@ -105,7 +105,7 @@ mod tests {
                 Partner::body("wood_door", 20.0, [0.9, 2.0, 0.04]),
                 Partner::leaf("gypsum_board", 40.0),
             ],
-            place: Key::root(8),
+            place: RandomKey::root(8),
         }
     }
 

@@ -4,7 +4,7 @@ use super::radiation::Radiator;
 use super::rub::{RubKind, RubSound};
 use super::strike::{add_half_sine, hertz_s, modulus_pa};
 use super::{Partner, samples};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -42,7 +42,7 @@ pub struct FootstepSound {
     /// What is trodden on.
     pub floor: Partner,
     /// Tells steps apart.
-    pub key: Key,
+    pub key: RandomKey,
 }
 
 impl FootstepSound {
@@ -115,7 +115,7 @@ mod tests {
             speed_m_s,
             period_s: 0.5,
             floor: Partner::leaf(floor, leaf),
-            key: Key::root(2),
+            key: RandomKey::root(2),
         }
     }
 
@@ -169,7 +169,7 @@ mod tests {
         );
         let one = step(75.0, 1.3, "oak", 150.0);
         let two = FootstepSound {
-            key: Key::root(3),
+            key: RandomKey::root(3),
             ..one.clone()
         };
         assert_ne!(one.render(16_000), two.render(16_000));

@@ -3,7 +3,7 @@
 use super::radiation::Radiator;
 use super::strike::{add_half_sine, lasts_s};
 use super::{Partner, samples};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +26,7 @@ pub struct ImpactSound {
     /// The two.
     pub partners: [Partner; 2],
     /// Tells blows apart that are otherwise equal.
-    pub key: Key,
+    pub key: RandomKey,
 }
 
 impl ImpactSound {
@@ -61,7 +61,7 @@ mod tests {
             impulse_n_s,
             speed_m_s,
             partners,
-            key: Key::root(1),
+            key: RandomKey::root(1),
         }
     }
 

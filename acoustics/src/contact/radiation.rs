@@ -2,7 +2,7 @@
 
 use super::modes::Panel;
 use super::{Partner, PartnerKind, elastic};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::f64::consts::{LN_10, PI, TAU};
 
 /// Density of air, kg/m³, and speed of sound, m/s, at 20 degrees: what things radiate into hardly depends on the weather.
@@ -36,7 +36,7 @@ pub(super) struct Radiator {
 
 impl Radiator {
     /// `key` says where on the things the force acts, and how uneven they are.
-    pub(super) fn new(partners: &[Partner], key: Key) -> Self {
+    pub(super) fn new(partners: &[Partner], key: RandomKey) -> Self {
         let mut all = Self {
             modes: Vec::new(),
             push: 0.0,
@@ -56,7 +56,7 @@ impl Radiator {
         all
     }
 
-    fn add_body(&mut self, partner: &Partner, key: Key) {
+    fn add_body(&mut self, partner: &Partner, key: RandomKey) {
         let PartnerKind::Body(body) = partner.kind else {
             return;
         };
@@ -179,7 +179,7 @@ mod tests {
     use super::*;
 
     fn rung(partners: &[Partner], rate_hz: u32, samples: usize) -> Vec<f64> {
-        let radiator = Radiator::new(partners, Key::root(5));
+        let radiator = Radiator::new(partners, RandomKey::root(5));
         let mut out = vec![0.0; samples];
         radiator.respond(&[f64::from(rate_hz)], rate_hz, &mut out);
         out
@@ -190,7 +190,7 @@ mod tests {
     fn a_mode_decays_as_its_loss_factor_says() {
         let of = elastic("steel");
         let rod = Partner::body("steel", 0.2 * 1e-4 * 7850.0, [0.01, 0.2, 0.01]);
-        let mode = Radiator::new(std::slice::from_ref(&rod), Key::root(5)).modes[0];
+        let mode = Radiator::new(std::slice::from_ref(&rod), RandomKey::root(5)).modes[0];
         let hz = mode.omega / TAU;
         assert!((hz / super::super::modes::bar_hz(1, 0.2, 0.01, &of) - 1.0).abs() < 0.016);
         let rate_hz = 4_000;
@@ -207,7 +207,7 @@ mod tests {
     /// What W = ρ c S σ <v²> radiates arrives as p² = W ρ c / 4π, and the mode takes J φ / M.
     #[test]
     fn a_wall_gives_the_force_and_a_body_its_mean_square_velocity() {
-        let radiator = Radiator::new(&[Partner::leaf("concrete", 100.0)], Key::root(1));
+        let radiator = Radiator::new(&[Partner::leaf("concrete", 100.0)], RandomKey::root(1));
         let mut out = [0.0; 400];
         radiator.respond(&[500.0], 16_000, &mut out);
         assert!((out[0] - 1.2 * 500.0 / (TAU * 100.0)).abs() < 1e-12 && out[1] == 0.0);

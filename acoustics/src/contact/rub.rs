@@ -3,7 +3,7 @@
 use super::radiation::Radiator;
 use super::strike::modulus_pa;
 use super::{Partner, elastic, samples};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -52,9 +52,9 @@ pub struct RubSound {
     /// The two.
     pub partners: [Partner; 2],
     /// What is random in the noise.
-    pub key: Key,
+    pub key: RandomKey,
     /// Where on the two they touch: the same as long as the touch lasts.
-    pub place: Key,
+    pub place: RandomKey,
 }
 
 impl RubSound {
@@ -142,8 +142,8 @@ mod tests {
                 Partner::body("oak", 6.0, [0.45, 0.9, 0.5]),
                 Partner::leaf(under, 150.0),
             ],
-            key: Key::root(3),
-            place: Key::root(4),
+            key: RandomKey::root(3),
+            place: RandomKey::root(4),
         }
     }
 
@@ -153,7 +153,7 @@ mod tests {
         let mut sum = vec![0.0_f64; 3 * rate_hz as usize];
         for k in 0..40_u64 {
             let stretch = RubSound {
-                key: Key::root(7).child(k),
+                key: RandomKey::root(7).child(k),
                 ..of.clone()
             };
             for (y, x) in sum[k as usize * 800..]
@@ -207,7 +207,7 @@ mod tests {
         for trial in 0..60_u64 {
             let mut sum = vec![0.0_f64; 8_000];
             for k in 0..6_u64 {
-                let key = Key::root(trial).child(k);
+                let key = RandomKey::root(trial).child(k);
                 let stretch = RubSound { key, ..of.clone() };
                 for (y, x) in sum[k as usize * 800..]
                     .iter_mut()

@@ -3,7 +3,7 @@
 use super::stage::{Block, Memory, Stage};
 use super::{Acts, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -14,7 +14,7 @@ pub(super) const LAW: Law = Law {
                    smoothed square s (Pa2), L_target that of target_pa^2; ds/dt = (p^2 - s) / tau, tau = attack_s while p^2 > s, \
                    else release_s; p^2 is the mean over a receiver's channels, which share g; before the first sound s = target_pa^2",
         source: "D. Giannoulis, M. Massberg, J. D. Reiss, Digital dynamic range compressor design, J. Audio Eng. Soc. 60(6), 399 (2012)",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[
             ParamInfo {

@@ -7,8 +7,8 @@ use crate::fft::RealFft;
 
 use crate::channel::Channel;
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::Key;
+use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::random::RandomKey;
 use glam::DVec3;
 use realfft::num_complex::Complex;
 use std::f64::consts::{PI, TAU};
@@ -24,7 +24,7 @@ pub(super) const LAW: Law = Law {
                    hum is alike everywhere. Before all laws of microphones, in the same air for all microphones of a place",
         source: "R. K. Cook et al., Measurement of correlation coefficients in reverberant sound fields, JASA 27, 1072 (1955); \
                  ISO 3382-2:2008, 5.2.2 (background noise and decays)",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[
             ParamInfo {
@@ -199,7 +199,7 @@ impl Field {
         }
     }
 
-    fn hum(&self, room: Key, out: &mut [f32]) {
+    fn hum(&self, room: RandomKey, out: &mut [f32]) {
         let start = room.child("hum").stream().uniform();
         for (k, x) in (self.time..).zip(out) {
             let turns = self.hum_hz * (k as f64 / self.rate_hz) + start;
@@ -329,7 +329,7 @@ mod tests {
 
     fn heard(at: &Receiver, room: u64, samples: usize) -> Vec<f32> {
         let laws = [law("background_noise", &[("level_pa", 0.02)])];
-        with_listener(at, room, Key::root(99), |listener| {
+        with_listener(at, room, RandomKey::root(99), |listener| {
             let silence = vec![0.0; at.channels() * samples];
             Microphones::record(&laws, RATE_HZ, listener, silence)
         })

@@ -3,7 +3,7 @@
 use super::stage::{Block, Memory, Stage, fade, rise};
 use super::{Acts, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 use std::sync::LazyLock;
 
 pub(super) const LAW: Law = Law {
@@ -16,7 +16,7 @@ pub(super) const LAW: Law = Law {
                    recording would be less than some 33 samples behind the world, it falls back by 10 ms, and where it is more than 1 s \
                    beyond the offset behind it, it catches up by 0.5 s, both crossfaded over 5 ms, as sound cards skip",
         source: "H. Gamper, Clock drift estimation and compensation for asynchronous impulse response measurements, HSCMA (2017)",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[
             ParamInfo {

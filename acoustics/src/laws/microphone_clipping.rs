@@ -3,7 +3,7 @@
 use super::stage::{Block, Each, Stage};
 use super::{Acts, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -14,7 +14,7 @@ pub(super) const LAW: Law = Law {
                    k + (limit_pa - k) tanh((x - k) / (limit_pa - k)); softness 0 is a hard clip at limit_pa, 1 bends from the start",
         source: "IEC 60268-4:2018 (microphones), overload sound pressure; U. Zoelzer (ed.), DAFX: Digital Audio Effects (2011), \
                  section 4.3",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[
             ParamInfo {

@@ -3,7 +3,7 @@
 use super::stage::{Block, Each, Stage};
 use super::{Acts, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -12,7 +12,7 @@ pub(super) const LAW: Law = Law {
         name: "gain of the microphones",
         equation: "p_out = 10^(gain_db / 20) p (Pa), for all microphones",
         source: "IEC 60268-4:2018 (microphones), sensitivity",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[ParamInfo {
             name: "gain_db",

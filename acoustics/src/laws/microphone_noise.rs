@@ -3,7 +3,7 @@
 use super::stage::{Block, Each, Stage};
 use super::{Acts, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -12,7 +12,7 @@ pub(super) const LAW: Law = Law {
         name: "self-noise of the microphones",
         equation: "p_out = p + w, w white and normal with standard deviation sigma_pa (Pa), independent in every sample and channel",
         source: "IEC 60268-4:2018, clause 17 (equivalent sound pressure due to inherent noise)",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[ParamInfo {
             name: "sigma_pa",

@@ -2,7 +2,7 @@
 
 use super::{Acts, Effects, Law, Values, angle};
 use dwell_scene::LawInfo;
-use dwell_scene::law::Engine;
+use dwell_scene::law::EngineKind;
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -12,7 +12,7 @@ pub(super) const LAW: Law = Law {
         equation: "Q = Q_stated R_y(yaw_deg) R_x(pitch_deg) R_z(roll_deg) (degrees: to the left, up, to the left), Q from the receiver's \
                    axes to the house's; heads and arrays turn about their centre, and an omnidirectional microphone hears no difference",
         source: "IEC 60268-4:2018 (microphones), directional pattern",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[
             angle("yaw_deg", 180.0, 30.0),

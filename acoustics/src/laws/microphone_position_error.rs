@@ -2,7 +2,7 @@
 
 use super::{Acts, Effects, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 /// How far a microphone is off along one axis.
 const fn offset(name: &'static str) -> ParamInfo {
@@ -24,7 +24,7 @@ pub(super) const LAW: Law = Law {
         equation: "x = x_stated + Q (right_m, up_m, back_m) (m), Q from the receiver's axes to the house's (1 for a single microphone); \
                    heads and arrays move as a whole",
         source: "ISO 3382-1:2009, 4.3 (positions of microphones)",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[offset("right_m"), offset("up_m"), offset("back_m")],
         rivals: &["recording_delay", "temperature_error", "room_scale"],

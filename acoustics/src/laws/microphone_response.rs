@@ -5,7 +5,7 @@ use super::stage::Stage;
 use super::{Acts, BAND_DB, Law, Values};
 use crate::synthesis::minimum_phase::PathFilters;
 use dwell_scene::LawInfo;
-use dwell_scene::law::Engine;
+use dwell_scene::law::EngineKind;
 
 /// Time that the transform spans, s: the lowest band is as wide as one over this.
 const SPAN_S: f64 = 0.064;
@@ -19,7 +19,7 @@ pub(super) const LAW: Law = Law {
                    centres a raised cosine of log f, constant beyond the lowest and the highest",
         source: "IEC 60268-4:2018 (microphones), frequency response; A. V. Oppenheim, R. W. Schafer, Discrete-Time Signal Processing \
                  (2010), section 13.5",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &BAND_DB,
         rivals: &["source_response", "absorption", "no_air_absorption"],

@@ -212,7 +212,7 @@ mod tests {
     /// Whether blocks of any size give what one piece gives.
     #[test]
     fn the_size_of_blocks_does_not_matter() {
-        let mut stream = dwell_scene::random::Key::root(3).stream();
+        let mut stream = dwell_scene::random::RandomKey::root(3).stream();
         let pressure: Vec<f32> = (0..6000).map(|_| stream.normal() as f32).collect();
         for (id, name, value) in [
             ("microphone_gain", "gain_db", 7.0),

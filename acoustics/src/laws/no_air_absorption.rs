@@ -2,7 +2,7 @@
 
 use super::{Acts, Effects, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -12,7 +12,7 @@ pub(super) const LAW: Law = Law {
         equation: "m = (1 - missing) m_air, with m_air the energy decay in air (1/m) by temperature, humidity and pressure: over \
                    d metres exp(-m d) of the energy is left",
         source: "ISO 9613-1:1993, equations (3) to (6)",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "world",
         params: &[ParamInfo {
             name: "missing",

@@ -4,7 +4,7 @@ use super::fir::Fir;
 use super::stage::Stage;
 use super::{Acts, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 /// Most taps on either side of a delay between samples.
 const HALF: usize = 32;
@@ -17,7 +17,7 @@ pub(super) const LAW: Law = Law {
         equation: "p_out(t) = p(t - delay_s) (s); between samples by a windowed sinc of 64 taps, or by Lagrange's polynomial where the \
                    delay is shorter than 31 samples (the shorter, the more the highest octave is damped between samples)",
         source: "T. I. Laakso et al., Splitting the unit delay, IEEE Signal Processing Magazine 13(1), 30 (1996)",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[ParamInfo {
             name: "delay_s",

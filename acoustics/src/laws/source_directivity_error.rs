@@ -2,7 +2,7 @@
 
 use super::{Acts, Effects, Law, Values, angle};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -14,7 +14,7 @@ pub(super) const LAW: Law = Law {
                    it is, on which the level stays",
         source: "ISO 3382-1:2009, 4.2.1 (directivity of sources); L. L. Beranek, Acoustics (1954), chapter 4: loudspeakers are the \
                  narrower the shorter the wave",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "world",
         params: &[
             angle("yaw_deg", 180.0, 45.0),

@@ -2,7 +2,7 @@
 
 use super::{Acts, Effects, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -11,7 +11,7 @@ pub(super) const LAW: Law = Law {
         name: "gain of the sources",
         equation: "p_source = 10^(gain_db / 20) p_stated, at 1 m (Pa), for all sources",
         source: "ISO 3382-1:2009, A.2.1: the strength G needs a source of known power",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "world",
         params: &[ParamInfo {
             name: "gain_db",

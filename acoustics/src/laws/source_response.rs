@@ -2,7 +2,7 @@
 
 use super::{Acts, BAND_DB, Effects, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::Engine;
+use dwell_scene::law::EngineKind;
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -13,7 +13,7 @@ pub(super) const LAW: Law = Law {
                    parameter (dB), the same into all directions; minimum phase, smooth between the bands",
         source: "IEC 60268-21:2018 (output-based measurement of loudspeakers), frequency response; A. V. Oppenheim, R. W. Schafer, \
                  Discrete-Time Signal Processing (2010), section 13.5",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "world",
         params: &BAND_DB,
         rivals: &["microphone_response", "absorption", "no_air_absorption"],

@@ -2,7 +2,7 @@
 
 use crate::head::Heads;
 use crate::receiver::Receiver;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -15,9 +15,9 @@ pub(crate) struct Listener<'a> {
     /// Of sound, m/s.
     pub(crate) speed_m_s: f64,
     /// What is random in the place, for all who listen there.
-    pub(crate) room: Key,
+    pub(crate) room: RandomKey,
     /// What is random in the microphones themselves.
-    pub(crate) own: Key,
+    pub(crate) own: RandomKey,
 }
 
 /// A block of pressure and where it stands.
@@ -29,7 +29,7 @@ pub(crate) struct Block<'a> {
     /// How many channels there are, at least 1.
     pub(crate) channels: usize,
     /// What is random in this block for this law.
-    pub(crate) key: Key,
+    pub(crate) key: RandomKey,
     /// Whether this is all there is: nothing comes after it but silence. Else what comes is not known yet.
     pub(crate) whole: bool,
 }

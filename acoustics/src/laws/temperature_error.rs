@@ -2,7 +2,7 @@
 
 use super::{Acts, Effects, Law, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -12,7 +12,7 @@ pub(super) const LAW: Law = Law {
         equation: "T = T_stated + offset_k, within -40 to 60 degrees Celsius; the speed of sound 343.2 sqrt(T / 293.15 K) m/s and \
                    the absorption of air follow",
         source: "ISO 9613-1:1993, equations (A.5) and (3) to (6)",
-        engine: Engine::Acoustics,
+        engine: EngineKind::Acoustics,
         acts_on: "world",
         params: &[ParamInfo {
             name: "offset_k",

@@ -5,7 +5,7 @@ use crate::head::Heads;
 use crate::microphones::Microphones;
 use crate::receiver::Receiver;
 use dwell_scene::LawSpec;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 pub(super) const RATE_HZ: f64 = 16_000.0;
 
@@ -25,12 +25,12 @@ pub(super) fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
 pub(super) fn with_listener<T>(
     receiver: &Receiver,
     room: u64,
-    own: Key,
+    own: RandomKey,
     then: impl FnOnce(&Listener<'_>) -> T,
 ) -> T {
     static HEADS: std::sync::LazyLock<Heads> =
         std::sync::LazyLock::new(|| Heads::with_bins(0.0875, 343.2, RATE_HZ, 9));
-    let (heads, room) = (&*HEADS, Key::root(room));
+    let (heads, room) = (&*HEADS, RandomKey::root(room));
     then(&Listener {
         receiver,
         heads,
@@ -43,7 +43,7 @@ pub(super) fn with_listener<T>(
 /// What one microphone gives out, its ringing included.
 pub(super) fn recorded(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32> {
     let here = Receiver::omni(glam::Vec3::ZERO);
-    with_listener(&here, seed, Key::root(seed), |listener| {
+    with_listener(&here, seed, RandomKey::root(seed), |listener| {
         Microphones::record(laws, RATE_HZ, listener, pressure.to_vec())
     })
 }
@@ -54,7 +54,7 @@ pub(super) fn streamed(laws: &[LawSpec], pressure: &[f32], block: usize) -> Vec<
     let here = Receiver::omni(glam::Vec3::ZERO);
     let mut out = pressure.to_vec();
     for (k, samples) in out.chunks_mut(block).enumerate() {
-        let own = Key::root(0).child(k as u64);
+        let own = RandomKey::root(0).child(k as u64);
         with_listener(&here, 0, own, |listener| {
             microphones.hear(laws, listener, samples);
         });

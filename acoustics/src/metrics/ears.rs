@@ -170,7 +170,7 @@ fn between(row: &[f64], place: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::head::woodworth_delay_s;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     const RATE_HZ: f64 = 48_000.0;
 
@@ -188,7 +188,7 @@ mod tests {
     }
 
     fn noise(seed: u64) -> Vec<f32> {
-        let mut stream = Key::root(seed).stream();
+        let mut stream = RandomKey::root(seed).stream();
         (0..24_000).map(|_| stream.normal() as f32).collect()
     }
 

@@ -68,11 +68,11 @@ pub(super) fn energy(samples: &[f32]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     /// Noise that falls by 60 dB in `t60` s.
     fn decaying(rate_hz: f64, t60: f64, samples: usize) -> Vec<f32> {
-        let mut stream = Key::root(3).stream();
+        let mut stream = RandomKey::root(3).stream();
         let per_sample = -3.0 * std::f64::consts::LN_10 / rate_hz / t60;
         (0..samples)
             .map(|k| (stream.normal() * libm::exp(per_sample * k as f64)) as f32)

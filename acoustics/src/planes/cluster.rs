@@ -2,7 +2,7 @@
 
 use super::TRIANGLES_PER_CHECK;
 use dwell_scene::Aabb;
-use dwell_scene::interrupt::Pace;
+use dwell_scene::interrupt::PollEvery;
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
@@ -50,7 +50,7 @@ impl Plane {
 /// Equal input, equal output: larger triangles come first, equal ones in order.
 pub(super) fn cluster(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
     let mut order: Vec<(usize, f64, DVec3)> = Vec::with_capacity(corners.len());
-    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
+    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     for (index, [a, b, c]) in corners.iter().enumerate() {
         pace.turn();
         let (ab, ac) = ((*b - *a).as_dvec3(), (*c - *a).as_dvec3());

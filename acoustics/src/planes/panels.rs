@@ -3,7 +3,7 @@
 use super::sets::Sets;
 use super::{NO_PLANE, TRIANGLES_PER_CHECK};
 use dwell_scene::Aabb;
-use dwell_scene::interrupt::Pace;
+use dwell_scene::interrupt::PollEvery;
 use glam::Vec3;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -39,7 +39,7 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Panels {
             .then(a.cmp(b))
     });
     let mut sets = Sets::new(corners.len());
-    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
+    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     let apart = join_equal(&order, &boxes, of_triangle, &mut sets);
     for (place, &a) in apart.iter().enumerate() {
         pace.turn();

@@ -3,7 +3,7 @@
 use super::panels::{self, Panels};
 use super::{NO_PLANE, Plane, TRIANGLES_PER_CHECK, WALL_M2};
 use dwell_scene::Aabb;
-use dwell_scene::interrupt::Pace;
+use dwell_scene::interrupt::PollEvery;
 use glam::{DVec3, Vec3};
 
 /// Walls further away than this are not looked for, m: only waves below 50 Hz would take both for one.
@@ -34,7 +34,7 @@ pub(super) fn reliefs(
         .collect();
     small.sort_unstable();
     let mut reliefs = vec![f32::INFINITY; corners.len()];
-    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
+    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     let mut pieces = Vec::new();
     for panel in small.chunk_by(|a, b| a.0 == b.0) {
         pieces.clear();

@@ -3,7 +3,7 @@
 use super::edges::Edge;
 use super::sets::Sets;
 use super::{NO_PLANE, TRIANGLES_PER_CHECK};
-use dwell_scene::interrupt::{self, Pace};
+use dwell_scene::interrupt::{self, PollEvery};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 use std::f32::consts::{PI, TAU};
@@ -64,7 +64,7 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Edge> {
     let sides = sides(&corners, &of_triangle);
     let cover = Cover::new(&corners, &of_triangle);
     let (mut rims, mut edges) = (Vec::new(), Vec::new());
-    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
+    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     for group in sides.chunk_by(|a, b| a.key == b.key) {
         let folds = |side: &Side| {
             let mut others = group.iter();
@@ -119,7 +119,7 @@ fn join(rims: &[Rim]) -> Vec<Edge> {
         });
         corners.map(|p| (p / CELL_M).floor().to_array().map(|x| x as i32))
     };
-    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
+    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     let mut places = Vec::new();
     let mut own = Vec::new();
     for (k, rim) in rims.iter().enumerate() {
@@ -186,7 +186,7 @@ impl Rim {
 /// All sides of triangles, those of equal ends together.
 fn sides(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Side> {
     let mut sides = Vec::with_capacity(3 * corners.len());
-    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
+    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     for (triangle, plane) in corners.iter().zip(of_triangle) {
         pace.turn();
         if *plane == NO_PLANE {
@@ -261,7 +261,7 @@ fn merge(pieces: &[Edge]) -> Vec<Edge> {
         .collect();
     ends.sort_unstable();
     let mut sets = Sets::new(pieces.len());
-    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
+    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     for at in ends.chunk_by(|a, b| a.0 == b.0) {
         for (n, (_, a)) in at.iter().enumerate() {
             pace.turn();

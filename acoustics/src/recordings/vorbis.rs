@@ -56,13 +56,13 @@ fn length(bytes: &[u8]) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::super::vorbis_headers::tests::{file_with, packets};
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     /// Packets with right check sums that hold anything: what a decoder makes of them is sound, or an error.
     #[test]
     fn packets_of_nonsense_end_nothing() {
         let packets = packets();
-        let mut stream = Key::root(11).stream();
+        let mut stream = RandomKey::root(11).stream();
         let mut heard = 0;
         for _ in 0..4_000 {
             let which = 2 + stream.below(packets.len() - 2);

@@ -2,7 +2,7 @@
 
 use crate::fft::RealFft;
 use dwell_scene::interrupt;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
@@ -24,12 +24,12 @@ const SAMPLES_PER_CHECK: usize = 1 << 12;
 #[derive(Debug)]
 pub(super) struct Canvas {
     pub(super) rate_hz: f64,
-    pub(super) key: Key,
+    pub(super) key: RandomKey,
     samples: Vec<f64>,
 }
 
 impl Canvas {
-    pub(super) fn new(rate_hz: f64, loop_s: f64, key: Key) -> Self {
+    pub(super) fn new(rate_hz: f64, loop_s: f64, key: RandomKey) -> Self {
         Self {
             rate_hz,
             key,

@@ -17,7 +17,7 @@ pub use measuring::{Sweep, maximum_length_sequence};
 use crate::error::AcousticsError;
 use canvas::Canvas;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -96,7 +96,7 @@ impl Signal {
         let made = made(info, rate_hz);
         // Not under the lock, so that several are made at once.
         let samples = made.get_or_init(|| {
-            let key = Key::root(0).child("signals").child(info.name);
+            let key = RandomKey::root(0).child("signals").child(info.name);
             let mut canvas = Canvas::new(f64::from(rate_hz), info.loop_s, key);
             (info.paint)(&mut canvas);
             canvas.normalized().into()
@@ -213,7 +213,7 @@ mod tests {
         assert!(!is_to_be_made("clock", RATE_HZ));
         let opened = Signal::open("television", RATE_HZ).unwrap();
         let info = info("television").unwrap();
-        let key = Key::root(0).child("signals").child("television");
+        let key = RandomKey::root(0).child("signals").child("television");
         let mut alone = Canvas::new(f64::from(RATE_HZ), info.loop_s, key);
         (info.paint)(&mut alone);
         assert_eq!(opened.samples(), alone.normalized());

@@ -122,12 +122,12 @@ fn transform(fft: &mut RealFft, two_blocks: &[f32]) -> Option<Spectrum> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     #[test]
     fn blocks_give_the_whole_convolution_for_odd_sizes() {
         for (block, taps) in [(10, 7), (64, 300), (125, 1000), (800, 801)] {
-            let mut stream = Key::root(block as u64).stream();
+            let mut stream = RandomKey::root(block as u64).stream();
             let mut noise = |n: usize| (0..n).map(|_| stream.normal() as f32).collect::<Vec<_>>();
             let (ir, signal) = (noise(2 * taps), noise(block * 8));
             let partitions = taps.div_ceil(block);

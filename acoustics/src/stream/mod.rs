@@ -21,7 +21,7 @@ use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
 use crate::scene::AcousticScene;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{PartId, Pose, State};
 use early::{Followed, Glide};
@@ -76,9 +76,9 @@ pub struct BlockReport {
 pub struct Stream {
     scene: AcousticScene,
     config: StreamConfig,
-    key: Key,
+    key: RandomKey,
     /// What is random in the place.
-    room: Key,
+    room: RandomKey,
     threads: Threads,
     partitions: usize,
     large_parts: Vec<PartId>,
@@ -111,7 +111,7 @@ impl Stream {
     pub fn new(
         scene: AcousticScene,
         config: StreamConfig,
-        key: Key,
+        key: RandomKey,
         threads: Threads,
     ) -> Result<Self, AcousticsError> {
         config.check()?;
@@ -138,7 +138,7 @@ impl Stream {
 
     /// The same stream in a place whose own sounds `room` names: streams that begin together hear one background noise.
     #[must_use]
-    pub fn in_room(self, room: Key) -> Self {
+    pub fn in_room(self, room: RandomKey) -> Self {
         Self { room, ..self }
     }
 
@@ -410,7 +410,7 @@ impl Stream {
     }
 
     /// What is random in how a source is heard.
-    fn key_of(&self, source: u64) -> Key {
+    fn key_of(&self, source: u64) -> RandomKey {
         self.key.child("source").child(source)
     }
 

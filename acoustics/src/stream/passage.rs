@@ -5,7 +5,7 @@
     reason = "what is not inline does not use the wider instructions of the function around it"
 )]
 
-use dwell_scene::instructions::{Kernel, Level};
+use dwell_scene::simd::{SimdKernel, SimdLevel};
 use std::sync::LazyLock;
 
 /// Taps on either side of a place between samples, at most.
@@ -59,7 +59,7 @@ impl<'a> Passage<'a> {
     pub(super) fn filtered(&self, response: &[f32], amplitude: f32) -> Vec<f32> {
         let mut filtered = vec![0.0; self.count.next_multiple_of(LANES)];
         let met = self.met(response.len(), filtered.len());
-        Level::best().run(Filter {
+        SimdLevel::best().run(Filter {
             met: &met,
             response,
             amplitude,
@@ -93,7 +93,7 @@ impl<'a> Passage<'a> {
         fade: &[f32],
         out: &mut [f32],
     ) {
-        Level::best().run(Read {
+        SimdLevel::best().run(Read {
             passage: self,
             old,
             new,
@@ -113,7 +113,7 @@ struct Filter<'a> {
     out: &'a mut [f32],
 }
 
-impl Kernel for Filter<'_> {
+impl SimdKernel for Filter<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -145,7 +145,7 @@ struct Read<'a> {
     out: &'a mut [f32],
 }
 
-impl Kernel for Read<'_> {
+impl SimdKernel for Read<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -248,19 +248,19 @@ fn sum(mut values: [f32; TAPS]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     /// A filter and a delay that stands still are a convolution; all instruction levels give its bits.
     #[test]
     fn all_instruction_levels_give_the_same_bits() {
-        let mut stream = Key::root(8).stream();
+        let mut stream = RandomKey::root(8).stream();
         let mut noise = |n: usize| (0..n).map(|_| stream.normal() as f32).collect::<Vec<_>>();
         let (history, size) = (noise(900), 300);
         let fade: Vec<f32> = (1..=size).map(|k| k as f32 / size as f32).collect();
         for (taps, delays) in [(80, (40.0, 40.0)), (3, (700.7, 690.2)), (1, (2.5, 1.0))] {
             let responses = [noise(taps), noise(taps + 5)];
             let passage = Passage::new(&history, size, delays);
-            let answer = |level: Level| {
+            let answer = |level: SimdLevel| {
                 let parts = responses.each_ref().map(|response| {
                     let mut out = vec![0.0; passage.count.next_multiple_of(LANES)];
                     let met = passage.met(response.len(), out.len());
@@ -282,8 +282,8 @@ mod tests {
                 });
                 out
             };
-            let portable = answer(Level::Portable);
-            for level in Level::available() {
+            let portable = answer(SimdLevel::Portable);
+            for level in SimdLevel::available() {
                 assert_eq!(answer(level), portable, "{level:?}");
             }
             if delays.0 == delays.1 {

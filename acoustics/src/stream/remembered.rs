@@ -128,7 +128,7 @@ mod tests {
     use crate::receiver::Receiver;
     use crate::tail::Progress;
     use dwell_scene::parallel::Threads;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
     use dwell_scene::rays::RayScene;
     use dwell_scene::{House, HouseData, Pose, State};
     use glam::Vec3;
@@ -149,7 +149,7 @@ mod tests {
             block_samples: BLOCK,
             ..StreamConfig::rl()
         };
-        let mut stream = Stream::new(scene, settings, Key::root(3), Threads::ONE).unwrap();
+        let mut stream = Stream::new(scene, settings, RandomKey::root(3), Threads::ONE).unwrap();
         for k in 0..3 {
             hear(&mut stream, k);
         }

@@ -8,7 +8,7 @@ use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
 use crate::synthesis::KnownLevels;
 use crate::tail::Progress;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Address, Pose};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ pub(super) struct Situation {
     /// before, or only a few rays were traced yet.
     pub(super) rough: bool,
     /// The tail's random arrivals: those between the places where it was first heard.
-    pub(super) noise: Key,
+    pub(super) noise: RandomKey,
 }
 
 /// How a situation differs from another.

@@ -9,7 +9,7 @@ use crate::response::ImpulseResponse;
 use crate::scene::AcousticScene;
 use crate::tail::{Progress, Trace};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 
 /// From where to where a stream hears.
@@ -19,9 +19,9 @@ pub(super) struct Way<'a> {
     pub(super) source: Source,
     pub(super) receiver: &'a Receiver,
     /// Of the rays.
-    pub(super) key: Key,
+    pub(super) key: RandomKey,
     /// Of the tail's random arrivals.
-    pub(super) noise: Key,
+    pub(super) noise: RandomKey,
     pub(super) threads: Threads,
 }
 
@@ -88,7 +88,7 @@ impl Way<'_> {
         self.scene.check_receiver(self.receiver)
     }
 
-    fn echogram(&self, count: usize, key: Key) -> Result<Echogram, AcousticsError> {
+    fn echogram(&self, count: usize, key: RandomKey) -> Result<Echogram, AcousticsError> {
         self.check()?;
         let centre = [self.receiver.position()];
         let (rays, source) = (self.rays, &self.source);

@@ -5,7 +5,7 @@
     reason = "what is not inline does not use the wider instructions of the function around it"
 )]
 
-use dwell_scene::instructions::{Kernel, Level};
+use dwell_scene::simd::{SimdKernel, SimdLevel};
 
 /// Half of the longest interpolation filter, samples.
 const HALF: usize = 40;
@@ -62,7 +62,7 @@ impl Taps {
 
     /// Adds `response`, moved by the delay less `lead` samples and scaled, to `out`. What falls outside is dropped.
     pub(crate) fn add(&self, out: &mut [f32], response: &[f32], lead: usize, gain: f32) {
-        Level::best().run(Add {
+        SimdLevel::best().run(Add {
             taps: self,
             out,
             response,
@@ -81,7 +81,7 @@ struct Add<'a> {
     gain: f32,
 }
 
-impl Kernel for Add<'_> {
+impl SimdKernel for Add<'_> {
     type Output = ();
 
     #[inline(always)]

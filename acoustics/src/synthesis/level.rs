@@ -174,14 +174,14 @@ impl PartialEq for KnownLevels {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     /// Noise that is twice too loud or too faint, and in phase with paths, gets the energy that is asked.
     #[test]
     fn windows_get_the_energy_that_is_asked_for() {
         let (band, rate_hz, length, asked) = (5, 16_000.0, 4000, 0.15);
         let bank = FilterBank::new(rate_hz, length, 0.5);
-        let mut stream = Key::root(5).stream();
+        let mut stream = RandomKey::root(5).stream();
         let noise: Vec<f32> = (0..length)
             .map(|k| stream.normal() as f32 * if k < 2000 { 2.0 } else { 0.4 })
             .collect();

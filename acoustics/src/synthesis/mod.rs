@@ -14,7 +14,7 @@ use crate::echogram::{Echogram, Path};
 use crate::fft::RealFft;
 use crate::head::Heads;
 use crate::receiver::Receiver;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use fractional::Taps;
 pub(crate) use level::KnownLevels;
 use minimum_phase::{EAR_LEAD_S, PathFilters};
@@ -173,7 +173,7 @@ impl Synthesizer {
         hearing: &Hearing<'_>,
         early: Option<&[Vec<Path>]>,
         levels: &mut KnownLevels,
-        key: Key,
+        key: RandomKey,
     ) -> Vec<f32> {
         let Hearing {
             receiver,

@@ -6,7 +6,7 @@ use crate::bands::{BAND_COUNT, Banded, FilterBank};
 use crate::channel::{Channel, Delay};
 use crate::directions::Directions;
 use crate::echogram::Echogram;
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use glam::Vec3;
 use std::sync::LazyLock;
 
@@ -107,7 +107,7 @@ impl Noise<'_> {
     /// # Source
     /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
     /// section 5.3.4.
-    pub(super) fn arrivals(&self, key: Key) -> Vec<Arrival> {
+    pub(super) fn arrivals(&self, key: RandomKey) -> Vec<Arrival> {
         let tail = &self.echogram.tail;
         let nowhere = Directions::default();
         let mut sampler = None;
@@ -288,7 +288,7 @@ impl Between {
 ///
 /// # Source
 /// D. E. Knuth, *The Art of Computer Programming* 2, section 3.4.1, in pieces of 16 so that nothing underflows.
-fn poisson(mean: f64, stream: &mut Stream) -> usize {
+fn poisson(mean: f64, stream: &mut RandomStream) -> usize {
     let mut count = 0;
     let mut left = mean.clamp(0.0, 1e4);
     while left > 0.0 {
@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn counts_have_poissons_mean_and_variance() {
         for (seed, mean) in [(0, 0.3), (1, 5.0), (2, 40.0)] {
-            let mut stream = Key::root(seed).stream();
+            let mut stream = RandomKey::root(seed).stream();
             let n = 20_000;
             let (mut first, mut second) = (0.0, 0.0);
             for _ in 0..n {

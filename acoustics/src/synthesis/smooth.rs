@@ -62,10 +62,10 @@ fn pass(bins: &[[f64; BAND_COUNT]]) -> Vec<[f64; BAND_COUNT]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     fn decay(grain: f64) -> Histogram {
-        let mut stream = Key::root(1).stream();
+        let mut stream = RandomKey::root(1).stream();
         let bins = (0..250).map(|k| {
             let level = libm::exp(-0.1 * f64::from(k)) * (1.0 + grain * (stream.uniform() - 0.5));
             [level; BAND_COUNT]

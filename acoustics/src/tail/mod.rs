@@ -17,7 +17,7 @@ use crate::receiver::Source;
 use crate::scene::AcousticScene;
 use dwell_scene::math::sin_cos;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::rays::RayScene;
 use glam::{Quat, Vec3};
 use listener::Listener;
@@ -84,7 +84,7 @@ fn on_sphere(y: f64, turns: f64) -> Vec3 {
 ///
 /// # Source
 /// K. Shoemake, Graphics Gems III (1992), p. 124.
-fn random_rotation(stream: &mut Stream) -> Quat {
+fn random_rotation(stream: &mut RandomStream) -> Quat {
     let u = stream.uniform_f32();
     let (s1, c1) = sin_cos(std::f32::consts::TAU * stream.uniform_f32());
     let (s2, c2) = sin_cos(std::f32::consts::TAU * stream.uniform_f32());
@@ -213,7 +213,7 @@ pub(crate) struct Trace<'a> {
     listeners: Vec<Listener>,
     /// Rays.
     count: usize,
-    key: Key,
+    key: RandomKey,
     threads: Threads,
 }
 
@@ -224,7 +224,7 @@ pub(crate) fn trace(
     source: &Source,
     receivers: &[Vec3],
     count: usize,
-    key: Key,
+    key: RandomKey,
     threads: Threads,
 ) -> Vec<Late> {
     let trace = Trace::new(scene, rays, source, receivers, count, key, threads);
@@ -241,7 +241,7 @@ impl<'a> Trace<'a> {
         source: &'a Source,
         receivers: &[Vec3],
         count: usize,
-        key: Key,
+        key: RandomKey,
         threads: Threads,
     ) -> Self {
         let config = scene.config();

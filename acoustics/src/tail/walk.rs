@@ -11,7 +11,7 @@ use crate::surface::Parts;
 use crate::transmission;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::math::sin_cos;
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::rays::RayScene;
 use glam::{Quat, Vec3};
 use std::f32::consts::TAU;
@@ -58,12 +58,12 @@ pub(super) struct Walk<'a> {
 
 /// Chance: of rays that never went through a wall, and of all the rest.
 struct Random<'a> {
-    own: &'a mut Stream,
-    aside: &'a mut Stream,
+    own: &'a mut RandomStream,
+    aside: &'a mut RandomStream,
 }
 
 impl Random<'_> {
-    fn of(&mut self, one: &Traveller) -> &mut Stream {
+    fn of(&mut self, one: &Traveller) -> &mut RandomStream {
         if one.walls == 0 { self.own } else { self.aside }
     }
 }
@@ -91,7 +91,7 @@ struct Traveller {
 
 impl Walk<'_> {
     /// Traces the rays of `range`, at most a chunk.
-    pub(super) fn chunk(&self, range: Range<usize>, key: Key) -> Chunk {
+    pub(super) fn chunk(&self, range: Range<usize>, key: RandomKey) -> Chunk {
         debug_assert!(range.len() <= RAYS_PER_CHUNK);
         let receivers = self.listeners.len();
         let mut chunk = Chunk {
@@ -227,7 +227,7 @@ impl Walk<'_> {
         normal: Vec3,
         one: &Traveller,
         scattered: &Banded,
-        aside: &mut Stream,
+        aside: &mut RandomStream,
         chunk: &mut Chunk,
     ) {
         let looks_through = self.through > 0.0 && aside.uniform_f32() < LOOK_THROUGH;
@@ -271,7 +271,13 @@ impl Walk<'_> {
     }
 
     /// Now and then, lets what a wall lets through go on behind it.
-    fn pass(&self, one: &Traveller, hit: &Hit, aside: &mut Stream, beyond: &mut Vec<Traveller>) {
+    fn pass(
+        &self,
+        one: &Traveller,
+        hit: &Hit,
+        aside: &mut RandomStream,
+        beyond: &mut Vec<Traveller>,
+    ) {
         if one.walls == transmission::MOST_WALLS || aside.uniform_f32() >= self.through {
             return;
         }
@@ -297,7 +303,7 @@ impl Walk<'_> {
     }
 
     /// Counts a ray where it crosses the balls around receivers.
-    fn cross(&self, one: &Traveller, reach_m: f32, stream: &mut Stream, chunk: &mut Chunk) {
+    fn cross(&self, one: &Traveller, reach_m: f32, stream: &mut RandomStream, chunk: &mut Chunk) {
         // Drawn once, so that a receiver's energies do not depend on which others there are.
         let place = stream.uniform_f32();
         for (receiver, listener) in self.listeners.iter().enumerate() {
@@ -448,7 +454,7 @@ impl Traveller {
         normal: Vec3,
         parts: &Parts,
         worth: &Banded,
-        stream: &mut Stream,
+        stream: &mut RandomStream,
     ) -> bool {
         let part = |of: &Banded| -> f32 {
             let energy = self.energy.iter().zip(worth).map(|(e, worth)| e * worth);
@@ -483,7 +489,7 @@ fn multiply(energy: &mut Banded, factors: &Banded) {
 }
 
 /// A direction above a surface with the density of Lambert's cosine law.
-fn lambert(normal: Vec3, stream: &mut Stream) -> Vec3 {
+fn lambert(normal: Vec3, stream: &mut RandomStream) -> Vec3 {
     let u = stream.uniform_f32();
     let (s, c) = sin_cos(TAU * stream.uniform_f32());
     let (tangent, bitangent) = normal.any_orthonormal_pair();
@@ -561,7 +567,7 @@ mod tests {
     fn scattered_directions_follow_lambert() {
         let normal = Vec3::new(0.36, 0.48, 0.8);
         for seed in 0..5 {
-            let mut stream = Key::root(seed).stream();
+            let mut stream = RandomKey::root(seed).stream();
             let n = 40_000;
             let (mut first, mut second, mut across) = (0.0_f64, 0.0_f64, Vec3::ZERO);
             for _ in 0..n {

@@ -5,7 +5,7 @@
 
 use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, Source};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
     Bands, House, HouseData, LawSpec, Level, LevelId, Material, Mesh, ShoeboxMaterials, Structure,
@@ -73,7 +73,7 @@ impl Hall {
         Self::new(House::shoebox(size_m, &materials).unwrap(), config)
     }
 
-    pub(crate) fn echogram(&self, source: Vec3, receiver: Vec3, key: Key) -> Echogram {
+    pub(crate) fn echogram(&self, source: Vec3, receiver: Vec3, key: RandomKey) -> Echogram {
         let source = Source::at(source);
         let threads = Threads::exactly(2);
         self.scene

@@ -4,7 +4,7 @@ mod flight;
 
 use crate::error::CalibrationError;
 use crate::report::whole;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -35,7 +35,7 @@ pub fn write(folder: &Path, seed: u64) -> Result<String, CalibrationError> {
         path: folder.to_owned(),
         source,
     })?;
-    let key = Key::root(seed).child("calibration example");
+    let key = RandomKey::root(seed).child("calibration example");
     let mut stream = key.child("throws").stream();
     let c_d = 0.4 + 0.12 * stream.uniform();
     let drag_per_m = 0.5 * AIR_KG_M3 * c_d * std::f64::consts::PI * RADIUS_M * RADIUS_M / MASS_KG;

@@ -4,7 +4,7 @@
 //! N. Hansen, "The CMA Evolution Strategy: A Tutorial", arXiv 1604.00772 (2016): weights and constants of its table 1,
 //! updates of its equations (38) to (49), without negative weights.
 
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// A search in the unit cube. Points are asked for, judged by the caller, and told.
@@ -15,7 +15,7 @@ pub(crate) struct CmaEs {
     path_sigma: DVector<f64>,
     path_c: DVector<f64>,
     generation: u32,
-    stream: Stream,
+    stream: RandomStream,
     constants: Constants,
 }
 
@@ -62,7 +62,7 @@ impl Constants {
 impl CmaEs {
     /// A search around `mean` (each in 0..1) with the standard deviation `sigma` and `lambda` points a generation (at
     /// least 4).
-    pub(crate) fn new(mean: &[f64], sigma: f64, lambda: usize, key: Key) -> Self {
+    pub(crate) fn new(mean: &[f64], sigma: f64, lambda: usize, key: RandomKey) -> Self {
         let n = mean.len();
         Self {
             mean: DVector::from_column_slice(mean),
@@ -161,7 +161,7 @@ mod tests {
     use super::*;
 
     fn minimum(f: &dyn Fn(&[f64]) -> f64, dimension: usize, seed: u64) -> Vec<f64> {
-        let mut search = CmaEs::new(&vec![0.5; dimension], 0.3, 10, Key::root(seed));
+        let mut search = CmaEs::new(&vec![0.5; dimension], 0.3, 10, RandomKey::root(seed));
         for _ in 0..150 {
             let points = search.ask();
             let costs: Vec<f64> = points.iter().map(|x| f(x)).collect();

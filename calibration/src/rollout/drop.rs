@@ -10,7 +10,7 @@ use crate::report::Found;
 use crate::twin::stage::{Stage, Thing, between};
 use crate::twin::{air_density_kg_m3, gravity_m_s2};
 use dwell_physics::PhysicsConfig;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{LawSpec, PartId};
 use glam::{DQuat, DVec3};
 use std::path::Path;
@@ -283,7 +283,7 @@ impl Subject for Drops {
         episode: usize,
         at: usize,
         samples: usize,
-        nudge: Option<Key>,
+        nudge: Option<RandomKey>,
     ) -> Result<Vec<Motion>, CalibrationError> {
         let drop = &self.episodes[episode];
         let from = (at + 1).saturating_sub(PAST);

@@ -7,7 +7,7 @@ use super::subject::Subject;
 use super::track::{Track, Tracks};
 use crate::error::CalibrationError;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde::Serialize;
 
 /// Means over the samples of an episode, from its start to its last sample.
@@ -89,7 +89,7 @@ pub fn diverging(
     rig: &Rig,
     tracks: &Tracks,
     which: &[usize],
-    key: Key,
+    key: RandomKey,
     threads: Threads,
 ) -> Result<Vec<bool>, CalibrationError> {
     let limit = tracks.divergence();
@@ -100,7 +100,7 @@ pub fn diverging(
             let rolled = rig.roll(start, samples)?;
             Ok::<_, CalibrationError>(rolled.last().copied().unwrap_or(*start))
         };
-        let estimate = |nudge: Option<Key>| {
+        let estimate = |nudge: Option<RandomKey>| {
             let (step_s, g) = (tracks.step_s(), tracks.gravity_m_s2);
             window_start(track, track.start, step_s, g, &tracks.noise, nudge)
         };

@@ -5,7 +5,7 @@ use super::regime::Regime;
 use super::track::Track;
 use crate::bundle::turn;
 use crate::fit::median;
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 
@@ -66,14 +66,14 @@ pub fn window_start(
     step_s: f64,
     gravity_m_s2: f64,
     noise: &Noise,
-    nudge: Option<Key>,
+    nudge: Option<RandomKey>,
 ) -> Motion {
     let past = (at + 1).saturating_sub(SAMPLES)..at + 1;
     let (motions, regimes) = (&track.motions[past.clone()], &track.regimes[past]);
     let here = track.motions[at];
-    let mut stream = nudge.map(Key::stream);
+    let mut stream = nudge.map(RandomKey::stream);
     let mut off = |sd: f64| {
-        let mut normal = || stream.as_mut().map_or(0.0, Stream::normal);
+        let mut normal = || stream.as_mut().map_or(0.0, RandomStream::normal);
         sd * DVec3::new(normal(), normal(), normal())
     };
     let places: Vec<DVec3> = motions
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn a_flight_start_is_the_line_of_least_squares() {
         let (step_s, g, noise, count) = (0.01, 9.81, 1e-3, SAMPLES);
-        let mut stream = Key::root(8).stream();
+        let mut stream = RandomKey::root(8).stream();
         let truth = |t: f64| DVec3::new(t, 2.0 * t - 0.5 * g * t * t, 0.0);
         let values: Vec<DVec3> = (0..count)
             .map(|k| {
@@ -226,7 +226,7 @@ mod tests {
         let draws = 2_000_u64;
         let (mut linear, mut angular) = (0.0, 0.0);
         for k in 0..draws {
-            let nudged = start(Some(Key::root(3).child(k)));
+            let nudged = start(Some(RandomKey::root(3).child(k)));
             linear += nudged.linear.length_squared();
             angular += nudged.angular.length_squared();
         }

@@ -3,7 +3,7 @@
 use super::motion::{Deviation, Motion};
 use super::regime::Regime;
 use crate::error::CalibrationError;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// Measured episodes with a simulation that starts from any of their samples.
 pub trait Subject: Sync {
@@ -41,6 +41,6 @@ pub trait Subject: Sync {
         episode: usize,
         at: usize,
         samples: usize,
-        nudge: Option<Key>,
+        nudge: Option<RandomKey>,
     ) -> Result<Vec<Motion>, CalibrationError>;
 }

@@ -8,7 +8,7 @@ use super::subject::Subject;
 use crate::bundle::{self, Bundle, Episode, Rates, turn};
 use crate::error::CalibrationError;
 use crate::twin::gravity_m_s2;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::DVec3;
 use std::path::Path;
 
@@ -187,7 +187,7 @@ impl Subject for Tracks {
         episode: usize,
         at: usize,
         samples: usize,
-        nudge: Option<Key>,
+        nudge: Option<RandomKey>,
     ) -> Result<Vec<Motion>, CalibrationError> {
         let track = &self.episodes[episode];
         let (step_s, g) = (self.step_s(), self.gravity_m_s2);

@@ -6,7 +6,7 @@ use super::subject::Subject;
 use crate::error::CalibrationError;
 use crate::fit::median;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde::Serialize;
 
 /// How many samples ahead windows look.
@@ -20,7 +20,7 @@ pub struct Windowing {
     /// They start at every so many samples.
     pub stride: usize,
     /// Seed of the chaos guard's nudges; `None`: no guard, nothing diverges.
-    pub guard: Option<Key>,
+    pub guard: Option<RandomKey>,
     /// Threads.
     pub threads: Threads,
 }

@@ -9,7 +9,7 @@ use crate::options::Options;
 use crate::progress::Tell;
 use crate::twin::{Point, Slot, Structure, Twin, range_of};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// What comparisons share.
 pub(crate) struct Comparison<'a> {
@@ -119,7 +119,7 @@ impl Comparison<'_> {
         let ratio =
             smaller.fit.loss.max(f64::MIN_POSITIVE) / larger.fit.loss.max(f64::MIN_POSITIVE);
         let robust = self.options.robust.then_some(&larger.held_out);
-        let key = Key::root(self.options.seed).child("gain");
+        let key = RandomKey::root(self.options.seed).child("gain");
         Against {
             delta_bic: n * ratio.ln() - more * n.ln(),
             gain: gain(

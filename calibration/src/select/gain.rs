@@ -1,6 +1,6 @@
 //! What a cause gains on episodes that no fit has seen.
 
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde::Serialize;
 
 /// Gain on held-out episodes, each with its 95 % interval over episodes.
@@ -27,7 +27,7 @@ pub(super) fn gain(
     scale: f64,
     worth: f64,
     draws: usize,
-    key: Key,
+    key: RandomKey,
 ) -> Gain {
     let count = before.len();
     let mut stream = key.child("bootstrap").stream();
@@ -66,7 +66,7 @@ pub(crate) fn share_gained(
     before: &[f64],
     after: &[f64],
     draws: usize,
-    key: Key,
+    key: RandomKey,
 ) -> (f64, [f64; 2]) {
     let found = gain(before, after, 1.0, 1.0, draws.max(1), key);
     (found.share, found.share_interval)
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_gain_in_every_episode_is_certain_and_one_outlier_is_not() {
-        let key = Key::root(5);
+        let key = RandomKey::root(5);
         let certain = gain(
             &[10.0, 12.0, 11.0, 9.0],
             &[1.0, 1.5, 0.8, 1.1],

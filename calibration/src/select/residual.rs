@@ -267,12 +267,12 @@ impl Remainder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     #[test]
     fn noise_is_seen_through_a_smooth_misfit() {
         for seed in 0..5 {
-            let mut stream = Key::root(seed).stream();
+            let mut stream = RandomKey::root(seed).stream();
             let values: Vec<f64> = (0..400)
                 .map(|k| 3.0 * (f64::from(k) * 0.02).sin() + 0.1 * stream.normal())
                 .collect();
@@ -284,7 +284,7 @@ mod tests {
 
     #[test]
     fn correlated_numbers_are_worth_less() {
-        let mut stream = Key::root(1).stream();
+        let mut stream = RandomKey::root(1).stream();
         let mut last = 0.0;
         let correlated: Vec<f64> = (0..2000)
             .map(|_| {

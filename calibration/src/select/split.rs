@@ -1,7 +1,7 @@
 //! Which episodes are held out from all fitting.
 
 use crate::twin::Measured;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::collections::BTreeSet;
 
 /// Positions of the episodes that are fitted, and of those that judge.
@@ -40,7 +40,10 @@ impl Split {
         };
         let labels: BTreeSet<&str> = (0..episodes.len()).map(label).collect();
         let mut labels: Vec<&str> = labels.into_iter().collect();
-        Key::root(seed).child("split").stream().shuffle(&mut labels);
+        RandomKey::root(seed)
+            .child("split")
+            .stream()
+            .shuffle(&mut labels);
         let members = |label_here: &str| {
             (0..episodes.len())
                 .filter(|k| label(*k) == label_here)

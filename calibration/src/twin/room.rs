@@ -10,7 +10,7 @@ use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::{AcousticConfig, AcousticScene, Air, Source};
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Bands, House, Material, ShoeboxMaterials, State};
 use glam::Vec3;
@@ -185,7 +185,7 @@ impl RoomTwin {
         let mut levels = Vec::new();
         for (k, (source, receiver)) in self.pairs[episode].iter().enumerate() {
             // The same rays whatever the parameters are, so that differences are smooth.
-            let key = Key::root(self.seed)
+            let key = RandomKey::root(self.seed)
                 .child("room")
                 .child(episode as u64)
                 .child(k as u64);

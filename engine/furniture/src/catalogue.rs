@@ -7,7 +7,7 @@ use super::models::{
     tables, tableware, wear,
 };
 use super::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// A way to make one kind of thing.
 pub struct Entry {
@@ -20,7 +20,7 @@ pub struct Entry {
     /// How many there are in one style: sizes and colours drawn anew.
     pub variants: u64,
     /// Makes one, its size and colours drawn from the key.
-    pub build: fn(&Style, Key) -> Model,
+    pub build: fn(&Style, RandomKey) -> Model,
 }
 
 /// Variants of most entries in one style.
@@ -31,7 +31,7 @@ const MANY: u64 = 16;
 const fn entry(
     kind: &'static str,
     category: &'static str,
-    build: fn(&Style, Key) -> Model,
+    build: fn(&Style, RandomKey) -> Model,
 ) -> Entry {
     Entry {
         kind,
@@ -322,7 +322,7 @@ mod tests {
                 if !entry.suits(style) {
                     continue;
                 }
-                let model = (entry.build)(style, Key::root(3).child(entry.kind));
+                let model = (entry.build)(style, RandomKey::root(3).child(entry.kind));
                 let at = format!("{} ({}) in {}", entry.kind, model.name, style.name);
                 let row = category([entry.category]);
                 if row.is_none_or(|row| row.name != entry.category) {

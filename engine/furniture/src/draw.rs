@@ -1,6 +1,6 @@
 //! Draws of one model: its sizes out of `assets/furniture_sizes.csv`, and its variants.
 
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -46,12 +46,12 @@ pub(crate) fn spreads() -> &'static Table {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Draw {
     model: &'static str,
-    key: Key,
+    key: RandomKey,
 }
 
 impl Draw {
     /// The draws of `model` under `key`.
-    pub(crate) fn new(model: &'static str, key: Key) -> Self {
+    pub(crate) fn new(model: &'static str, key: RandomKey) -> Self {
         Self {
             model,
             key: key.child(model),
@@ -78,7 +78,7 @@ impl Draw {
     }
 
     /// A stream for something of the model's own.
-    pub(crate) fn stream(&self, purpose: &'static str) -> Stream {
+    pub(crate) fn stream(&self, purpose: &'static str) -> RandomStream {
         self.key.child(purpose).stream()
     }
 
@@ -129,7 +129,7 @@ mod tests {
     fn draws_keep_their_median_and_their_ends() {
         let spread = &spreads()["sofa"]["depth"];
         let drawn: Vec<f32> = (0..2000)
-            .map(|k| Draw::new("sofa", Key::root(k)).m("depth"))
+            .map(|k| Draw::new("sofa", RandomKey::root(k)).m("depth"))
             .collect();
         let share = |test: &dyn Fn(f32) -> bool| {
             drawn.iter().filter(|d| test(**d)).count() as f32 / drawn.len() as f32

@@ -5,7 +5,7 @@
 
 use super::finish::Finish;
 use super::shapes::Solid;
-use dwell_scene::{Aabb, Collider, Holding, JointKind, LightShape, Mesh, Mobility, Pose};
+use dwell_scene::{Aabb, Collider, JointKind, LightShape, Mesh, Mobility, Pose, ReceptacleKind};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -108,7 +108,7 @@ pub struct ModelSpace {
     /// What the part, joint or space is called in the model.
     pub name: &'static str,
     /// Whether things lie on it or in it.
-    pub holding: Holding,
+    pub holding: ReceptacleKind,
     /// The room for things, in the space of the part, m.
     pub space: Aabb,
 }
@@ -255,16 +255,22 @@ impl Model {
     /// The same model; things can stand on its newest part, in the free space between two corners.
     #[must_use]
     pub fn top(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
-        self.space(name, Holding::On, min, max)
+        self.space(name, ReceptacleKind::On, min, max)
     }
 
     /// The same model; things can lie inside its newest part, in the free space between two corners.
     #[must_use]
     pub fn inside(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
-        self.space(name, Holding::In, min, max)
+        self.space(name, ReceptacleKind::In, min, max)
     }
 
-    fn space(mut self, name: &'static str, holding: Holding, min: [f32; 3], max: [f32; 3]) -> Self {
+    fn space(
+        mut self,
+        name: &'static str,
+        holding: ReceptacleKind,
+        min: [f32; 3],
+        max: [f32; 3],
+    ) -> Self {
         let part = self.parts.len() - 1;
         self.spaces.push(ModelSpace {
             part,

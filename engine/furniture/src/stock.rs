@@ -3,7 +3,7 @@
 use super::catalogue::{Entry, entries_of};
 use super::model::Model;
 use super::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Aabb, Collider, JointKind, Pose};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -141,7 +141,7 @@ pub fn made_to_measure(settings: String, build: impl FnOnce() -> Model) -> Arc<M
 }
 
 /// One of the entries of a kind that suit a style, in one of its variants; `None` when there is no such kind.
-pub fn stock(kind: &str, style: &Style, key: Key) -> Option<Arc<Stock>> {
+pub fn stock(kind: &str, style: &Style, key: RandomKey) -> Option<Arc<Stock>> {
     let mut draw = key.stream();
     let (index, entry) = *draw.choose(&entries_of(kind, style))?;
     let variant = draw.bits() % entry.variants;
@@ -157,7 +157,7 @@ fn variant_of(index: usize, entry: &'static Entry, style: &Style, variant: u64) 
     if let Some(known) = lock().get(&place) {
         return known.clone();
     }
-    let key = Key::root(0)
+    let key = RandomKey::root(0)
         .child("furniture")
         .child(entry.kind)
         .child(index as u64)

@@ -188,7 +188,7 @@ pub fn substance_of(name: &str) -> Option<&'static Substance> {
     };
     let found = by_prefix
         .or_else(|| library().get(&base))
-        .or_else(|| words().find_map(|word| library().by_word(word)));
+        .or_else(|| words().find_map(|word| library().find_by_word(word)));
     // "color_1" and the like name the default substance, which means that they say nothing.
     found.filter(|substance| substance.name != library().default_substance().name)
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::error::HousesError;
-use dwell_scene::file::{self, Draft};
+use dwell_scene::file::{self, StagedPath};
 
 /// Writes a file under another name and moves it into place.
 ///
@@ -38,12 +38,12 @@ pub(crate) fn write_folder(
         });
     }
     let refused = |source| HousesError::io(&place)(source);
-    let draft = Draft::folder(&place).map_err(refused)?;
+    let draft = StagedPath::folder(&place).map_err(refused)?;
     fill(draft.path())?;
     if !place.exists() {
         return fs::rename(draft.path(), &place).map_err(refused);
     }
-    let aside = Draft::folder(&place).map_err(refused)?;
+    let aside = StagedPath::folder(&place).map_err(refused)?;
     let old = aside.path().join("old");
     fs::rename(&place, &old).map_err(refused)?;
     fs::rename(draft.path(), &place).map_err(|source| {

@@ -2,7 +2,7 @@
 
 use crate::color::Srgb;
 use crate::texture::Textures;
-use dwell_scene::bvh::flat::Row;
+use dwell_scene::bvh::flat::PackedRow;
 use dwell_scene::{House, Id, Material};
 
 /// No texture.
@@ -105,7 +105,7 @@ impl Look {
     }
 
     /// As rows: colour and opacity; emission and pixels of the image; the image and whether it is a mirror.
-    pub(crate) fn flat(&self) -> [Row; 3] {
+    pub(crate) fn flat(&self) -> [PackedRow; 3] {
         let row = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last].map(f32::to_bits);
         [
             row(self.base, self.opacity),

@@ -1,10 +1,10 @@
 //! What each triangle of a house looks like, in the order in which hits name triangles.
 
 use crate::look::Look;
-use dwell_scene::bvh::flat::Row;
-use dwell_scene::interrupt::Pace;
+use dwell_scene::bvh::flat::PackedRow;
+use dwell_scene::interrupt::PollEvery;
 use dwell_scene::rays::{BODY_PIECES, body_meshes};
-use dwell_scene::{House, Id, Mesh, PartId, Placed, Pose, State, SurfaceOwner};
+use dwell_scene::{House, Id, Mesh, PartId, PlacedMesh, Pose, State, SurfaceOwner};
 use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 use std::collections::BTreeMap;
 
@@ -116,7 +116,7 @@ impl Surfaces {
             movable: geometry.movable.clone(),
             bodies: [0; BODY_PIECES],
         };
-        let mut pace = Pace::new(TRIANGLES_PER_CHECK);
+        let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
         for source in &geometry.static_triangles {
             pace.turn();
             let placed = &geometry.placed[source.placed as usize];
@@ -177,7 +177,7 @@ impl Surfaces {
     fn add(
         &mut self,
         house: &House,
-        placed: &Placed,
+        placed: &PlacedMesh,
         map: &Affine3A,
         triangle: usize,
         looks: &[Look],
@@ -215,7 +215,7 @@ impl Surfaces {
     }
 
     /// As rows, four a triangle: the map to texture coordinates, normal and density, material and normals of the corners.
-    pub(crate) fn flat(&self) -> Vec<Row> {
+    pub(crate) fn flat(&self) -> Vec<PackedRow> {
         let bits = |row: Vec4| row.to_array().map(f32::to_bits);
         let mut rows = Vec::with_capacity(self.triangles.len() * 4);
         for (triangle, [a, b, c]) in self.triangles.iter().zip(&self.corner_normals) {

@@ -6,8 +6,8 @@
 )]
 
 use crate::color::Srgb;
-use dwell_scene::bvh::flat::Row;
-use dwell_scene::interrupt::{self, Pace};
+use dwell_scene::bvh::flat::PackedRow;
+use dwell_scene::interrupt::{self, PollEvery};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Id, Texture, TextureId};
 use glam::{Vec2, Vec4};
@@ -119,7 +119,7 @@ impl Textures {
 
     /// As rows: of each level its first texel, width and height; of each image its first level, last level and whether some
     /// texel lets light through. Then all texels, as bytes R, G, B, A.
-    pub(crate) fn flat(&self) -> (Vec<Row>, Vec<Row>, Vec<[u8; 4]>) {
+    pub(crate) fn flat(&self) -> (Vec<PackedRow>, Vec<PackedRow>, Vec<[u8; 4]>) {
         let srgb = Srgb::tables();
         let levels = self.images.iter().flat_map(|image| {
             (0..=image.last_level).map(|level| {
@@ -276,7 +276,7 @@ fn halve(texels: &[[u8; 4]], (width, height): (usize, usize)) -> (Vec<[u8; 4]>, 
     // An odd edge gives its last row to its neighbours.
     let covers =
         |k: usize, from: usize, to: usize| (k * from / to, ((k + 1) * from).div_ceil(to).min(from));
-    let mut pace = Pace::new(TEXELS_PER_CHECK);
+    let mut pace = PollEvery::new(TEXELS_PER_CHECK);
     for y in 0..size.1 {
         pace.turns(width);
         let (top, bottom) = covers(y, height, size.1);

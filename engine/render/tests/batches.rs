@@ -10,7 +10,7 @@ mod common;
 use common::{Builder, World, look, point, quad};
 use dwell_render::{Camera, Channels, Frame, FrameMut, Job, Preset, RenderError, View};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{
     House, Light, LightShape, Mesh, ObjectId, PartId, Pose, ShoeboxMaterials, Texture,
 };
@@ -20,7 +20,7 @@ use std::sync::Arc;
 fn furnished() -> World {
     let mut builder =
         Builder::from(&House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap());
-    let mut stream = Key::root(3).stream();
+    let mut stream = RandomKey::root(3).stream();
     let rgba: Vec<u8> = (0..40 * 30)
         .flat_map(|_| (stream.bits() as u32 | 0xff00_0000).to_le_bytes())
         .collect();
@@ -65,7 +65,7 @@ fn furnished() -> World {
 }
 
 fn views() -> Vec<View> {
-    let mut stream = Key::root(9).stream();
+    let mut stream = RandomKey::root(9).stream();
     let mut views = Vec::new();
     for k in 0..10_u32 {
         // Sizes that no packet and no band fits.

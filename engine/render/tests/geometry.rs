@@ -9,7 +9,7 @@ mod common;
 
 use common::{Builder, World, look, meets, point, quad};
 use dwell_render::{Camera, Projection, semantic_classes};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{EntityId, House, Mesh, Pose, ShoeboxMaterials, StructureId, space};
 use glam::{Vec2, Vec3};
 
@@ -25,7 +25,7 @@ fn every_pixel_of_a_room_has_the_depth_and_id_of_the_closed_form() {
     };
     let camera = Camera::new(67, 59, projection).unwrap();
     let names = semantic_classes(&world.house);
-    let mut stream = Key::root(1).stream();
+    let mut stream = RandomKey::root(1).stream();
     for _ in 0..12 {
         let eye = Vec3::new(
             stream.range(0.2, 5.8),
@@ -154,7 +154,7 @@ fn a_ball_has_the_silhouette_and_depth_of_a_sphere() {
 
 #[test]
 fn random_triangles_are_seen_as_brute_force_sees_them() {
-    let mut stream = Key::root(5).stream();
+    let mut stream = RandomKey::root(5).stream();
     let mut builder = Builder::empty();
     let mut all: Vec<([Vec3; 3], i32)> = Vec::new();
     for object in 0..10 {

@@ -7,7 +7,7 @@ mod common;
 use common::{Builder, World, look, meets, quad};
 use dwell_render::{Before, Camera, Channels, Frame, Job, View, sightings};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{
     Aabb, AgentBody, AgentState, EntityId, House, Id, Mesh, ObjectId, PartId, Pose,
@@ -200,7 +200,7 @@ fn normals_and_reflectance_are_those_of_the_walls() {
 #[test]
 fn lists_of_things_agree_with_brute_force() {
     for seed in 0..3 {
-        let mut stream = Key::root(seed).stream();
+        let mut stream = RandomKey::root(seed).stream();
         let mut builder = Builder::empty();
         for k in 0..9 {
             let place = Pose::new(

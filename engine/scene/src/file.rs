@@ -76,7 +76,7 @@ pub fn read(path: &Path, max_bytes: u64) -> Result<Vec<u8>, ReadError> {
 /// When the system refuses, and where something stands that is no regular file; it stays as it is.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let place = place(path)?;
-    let mut draft = Draft::file(&place)?;
+    let mut draft = StagedPath::file(&place)?;
     draft.handle.write_all(bytes)?;
     fs::rename(&draft.path, &place)
 }
@@ -107,13 +107,13 @@ fn place(path: &Path) -> io::Result<PathBuf> {
 /// Its lock says that its process is alive: whoever makes a draft for the same name removes those of processes that were
 /// ended before they could.
 #[derive(Debug)]
-pub struct Draft {
+pub struct StagedPath {
     path: PathBuf,
     /// Holds the lock, which the system lets go when the process ends.
     handle: File,
 }
 
-impl Draft {
+impl StagedPath {
     /// An empty file beside `place`.
     ///
     /// # Errors
@@ -179,7 +179,7 @@ impl Draft {
     }
 }
 
-impl Drop for Draft {
+impl Drop for StagedPath {
     fn drop(&mut self) {
         // Moved into place, it is no draft any more, and another one may have its name.
         if is_at(&self.handle, &self.path) {
@@ -354,10 +354,10 @@ mod tests {
         let left = folder.path().join(".house.partial-0");
         fs::create_dir(&left).unwrap();
         fs::write(left.join("mesh"), "half").unwrap();
-        let mine = Draft::folder(&place).unwrap();
+        let mine = StagedPath::folder(&place).unwrap();
         assert_eq!(mine.path(), left);
         assert_eq!(fs::read_dir(&left).unwrap().count(), 0);
-        let other = Draft::folder(&place).unwrap();
+        let other = StagedPath::folder(&place).unwrap();
         assert_ne!(mine.path(), other.path());
         assert!(mine.path().exists());
         drop((mine, other));

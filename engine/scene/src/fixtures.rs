@@ -131,7 +131,7 @@ impl SoundFile {
 /// How a receptacle holds things.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Holding {
+pub enum ReceptacleKind {
     /// On top of a surface.
     On,
     /// Inside.
@@ -148,7 +148,7 @@ pub struct Receptacle {
     /// The name, unique in its object.
     pub name: String,
     /// On or in.
-    pub holding: Holding,
+    pub holding: ReceptacleKind,
     /// The free space above the surface or inside, in part space; things stand on its lower face.
     pub space_in_part: Aabb,
 }

@@ -1,11 +1,11 @@
 //! Work that its caller can stop.
 //!
 //! Long loops call [`check`] between pieces of at most some 20 ms; `parallel` does so between all pieces that it hands out.
-//! Who wants to be able to stop a call wraps it in [`stoppable`], with a question that is asked every [`INTERVAL`] on the
+//! Who wants to be able to stop a call wraps it in [`interruptible`], with a question that is asked every [`INTERVAL`] on the
 //! calling thread. When the answer is yes, `check` unwinds the stack, of pool threads too, with [`Interrupted`], and
-//! `stoppable` returns it. That is no panic: no hook sees it. (salsa cancels its queries in the same way.)
+//! `interruptible` returns it. That is no panic: no hook sees it. (salsa cancels its queries in the same way.)
 //!
-//! What must not stop half-way runs in [`whole`]; what holds a lock or half a result meanwhile uses [`attempt`]. What a
+//! What must not stop half-way runs in [`uninterruptible`]; what holds a lock or half a result meanwhile uses [`catch_interrupt`]. What a
 //! `LazyLock` makes must not meet a `check`: stopped once, it is lost for good. A `OnceLock` stays empty, and is filled the next time.
 
 use std::cell::{Cell, RefCell};
@@ -30,26 +30,26 @@ impl Interrupted {
 }
 
 /// Whether a call is to stop. Shared with all threads that work for it.
-pub(crate) type Token = Arc<AtomicBool>;
+pub(crate) type CancelToken = Arc<AtomicBool>;
 
 /// What is asked, and when again.
-type Ask = Option<(fn() -> bool, Instant)>;
+type PollSchedule = Option<(fn() -> bool, Instant)>;
 
 thread_local! {
     /// Of the call that this thread works for; none: nobody can stop it.
-    static TOKEN: RefCell<Option<Token>> = const { RefCell::new(None) };
+    static TOKEN: RefCell<Option<CancelToken>> = const { RefCell::new(None) };
     /// Only on the thread that called.
-    static ASK: Cell<Ask> = const { Cell::new(None) };
+    static ASK: Cell<PollSchedule> = const { Cell::new(None) };
 }
 
 /// Puts back what stood there, also when the stack unwinds.
-struct Restore {
-    token: Option<Token>,
-    ask: Ask,
+struct ScopeGuard {
+    token: Option<CancelToken>,
+    ask: PollSchedule,
 }
 
-impl Restore {
-    fn and_set(token: Option<Token>, ask: Ask) -> Self {
+impl ScopeGuard {
+    fn set_and_guard(token: Option<CancelToken>, ask: PollSchedule) -> Self {
         Self {
             token: TOKEN.replace(token),
             ask: ASK.replace(ask),
@@ -57,7 +57,7 @@ impl Restore {
     }
 }
 
-impl Drop for Restore {
+impl Drop for ScopeGuard {
     fn drop(&mut self) {
         TOKEN.set(self.token.take());
         ASK.set(self.ask);
@@ -69,18 +69,18 @@ impl Drop for Restore {
 ///
 /// # Errors
 /// [`Interrupted`] when the work was stopped. Work that ends before it meets a [`check`] is done, whatever the answer was.
-pub fn stoppable<R>(ask: fn() -> bool, work: impl FnOnce() -> R) -> Result<R, Interrupted> {
+pub fn interruptible<R>(ask: fn() -> bool, work: impl FnOnce() -> R) -> Result<R, Interrupted> {
     let token = Arc::new(AtomicBool::new(false));
-    let _restore = Restore::and_set(Some(token), Some((ask, Instant::now() + INTERVAL)));
-    attempt(work)
+    let _restore = ScopeGuard::set_and_guard(Some(token), Some((ask, Instant::now() + INTERVAL)));
+    catch_interrupt(work)
 }
 
 /// Does `work`, and takes hold of the unwinding when it is stopped. Panics go on.
 ///
 /// # Errors
 /// [`Interrupted`] when the work was stopped; hand it on by [`Interrupted::resume`] or as an error.
-pub fn attempt<R>(work: impl FnOnce() -> R) -> Result<R, Interrupted> {
-    // Panics go on, and what was interrupted is for the caller to mend: that is what `attempt` is for.
+pub fn catch_interrupt<R>(work: impl FnOnce() -> R) -> Result<R, Interrupted> {
+    // Panics go on, and what was interrupted is for the caller to mend: that is what `catch_interrupt` is for.
     catch_unwind(AssertUnwindSafe(work)).map_err(|cause| match cause.downcast::<Interrupted>() {
         Ok(interrupted) => *interrupted,
         Err(panic) => resume_unwind(panic),
@@ -88,8 +88,8 @@ pub fn attempt<R>(work: impl FnOnce() -> R) -> Result<R, Interrupted> {
 }
 
 /// Does `work` to its end: nothing in it stops, and nothing is asked meanwhile.
-pub fn whole<R>(work: impl FnOnce() -> R) -> R {
-    let _restore = Restore::and_set(None, None);
+pub fn uninterruptible<R>(work: impl FnOnce() -> R) -> R {
+    let _restore = ScopeGuard::set_and_guard(None, None);
     work()
 }
 
@@ -105,12 +105,12 @@ pub fn check() {
 
 /// Looks by [`check`] once in so many turns: for loops whose turns are hardly longer than a look.
 #[derive(Debug)]
-pub struct Pace {
+pub struct PollEvery {
     every: usize,
     left: usize,
 }
 
-impl Pace {
+impl PollEvery {
     /// Looks at the first turn, and again after `every` turns, at least one.
     pub fn new(every: usize) -> Self {
         Self { every, left: 0 }
@@ -133,7 +133,7 @@ impl Pace {
     }
 }
 
-fn is_set(token: &Token) -> bool {
+fn is_set(token: &CancelToken) -> bool {
     token.load(Ordering::Relaxed)
 }
 
@@ -158,14 +158,14 @@ pub(crate) fn ask_now() {
 }
 
 /// The token of the call that this thread works for.
-pub(crate) fn token() -> Option<Token> {
+pub(crate) fn token() -> Option<CancelToken> {
     TOKEN.with_borrow(Clone::clone)
 }
 
 /// Does a piece of the work of the call that `token` belongs to, on whatever thread.
-pub(crate) fn piece<R>(token: Option<&Token>, work: impl FnOnce() -> R) -> R {
+pub(crate) fn run_piece<R>(token: Option<&CancelToken>, work: impl FnOnce() -> R) -> R {
     // The thread that called asks, too, when it has pieces to do itself.
-    let _restore = Restore::and_set(token.cloned(), ASK.get());
+    let _restore = ScopeGuard::set_and_guard(token.cloned(), ASK.get());
     check();
     work()
 }
@@ -196,9 +196,9 @@ mod tests {
     #[test]
     fn a_loop_stops_when_its_caller_wants_it_to() {
         let start = Instant::now();
-        assert_eq!(stoppable(yes, || spin(100_000)), Err(Interrupted(())));
+        assert_eq!(interruptible(yes, || spin(100_000)), Err(Interrupted(())));
         assert!(start.elapsed() >= INTERVAL);
-        assert_eq!(stoppable(no, || spin(40)), Ok(40));
+        assert_eq!(interruptible(no, || spin(40)), Ok(40));
         check();
     }
 
@@ -207,7 +207,7 @@ mod tests {
         for threads in [1, 2, 7] {
             let done = AtomicUsize::new(0);
             let count = 100_000;
-            let stopped = stoppable(yes, || {
+            let stopped = interruptible(yes, || {
                 Threads::exactly(threads).map(count, |_| {
                     std::thread::sleep(Duration::from_millis(1));
                     done.fetch_add(1, Ordering::Relaxed)
@@ -223,8 +223,8 @@ mod tests {
     #[test]
     fn what_must_be_whole_is_whole() {
         let mut turns = 0;
-        let stopped = stoppable(yes, || {
-            turns = whole(|| spin(60) + Threads::exactly(2).map(60, |_| spin(1)).len());
+        let stopped = interruptible(yes, || {
+            turns = uninterruptible(|| spin(60) + Threads::exactly(2).map(60, |_| spin(1)).len());
             spin(100_000)
         });
         assert!(stopped.is_err());
@@ -240,7 +240,7 @@ mod tests {
         }
         let looks = |turns: &[usize]| {
             ASKED.store(0, Ordering::Relaxed);
-            let mut pace = Pace::new(10);
+            let mut pace = PollEvery::new(10);
             for count in turns {
                 // Every look is one that asks.
                 ASK.set(Some((note, Instant::now())));
@@ -256,8 +256,8 @@ mod tests {
     #[test]
     fn half_work_can_be_mended_on_the_way() {
         let mut mended = false;
-        let stopped = stoppable(yes, || {
-            attempt(|| spin(100_000)).unwrap_or_else(|interrupted| {
+        let stopped = interruptible(yes, || {
+            catch_interrupt(|| spin(100_000)).unwrap_or_else(|interrupted| {
                 mended = true;
                 interrupted.resume()
             })
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn a_panic_is_no_interruption() {
-        let panicked = catch_unwind(|| stoppable(no, || panic!("on purpose")));
+        let panicked = catch_unwind(|| interruptible(no, || panic!("on purpose")));
         assert!(panicked.is_err());
         assert!(!asks() && token().is_none());
     }

@@ -89,7 +89,7 @@ impl LawSpec {
 /// The engine a law acts in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Engine {
+pub enum EngineKind {
     /// Forces, joints, contacts.
     Physics,
     /// Sound.
@@ -131,7 +131,7 @@ pub struct LawInfo {
     /// Where the equation comes from.
     pub source: &'static str,
     /// The engine it acts in.
-    pub engine: Engine,
+    pub engine: EngineKind,
     /// What it acts on: `"object"`, `"contact"`, `"joint"`, `"material"`, `"world"`, `"sensor"`; see [`LawSpec::target`].
     pub acts_on: &'static str,
     /// Its parameters.

@@ -8,13 +8,12 @@ mod articulation;
 mod bounds;
 pub mod bvh;
 mod collider;
-pub mod columns;
+pub mod columnar;
 mod error;
 pub mod file;
 mod fixtures;
 mod house;
 mod ids;
-pub mod instructions;
 pub mod interrupt;
 pub mod law;
 pub mod material;
@@ -25,6 +24,7 @@ pub mod packing;
 pub mod parallel;
 pub mod random;
 pub mod rays;
+pub mod simd;
 mod sky;
 pub mod space;
 mod state;
@@ -35,10 +35,10 @@ pub use articulation::{Articulation, JointCommand, JointKind, Mimic, Servo};
 pub use bounds::Aabb;
 pub use collider::Collider;
 pub use error::SceneError;
-pub use fixtures::{Holding, Light, LightShape, Receptacle, SoundEmitter, SoundFile};
+pub use fixtures::{Light, LightShape, Receptacle, ReceptacleKind, SoundEmitter, SoundFile};
 pub use house::{
     AgentStart, Category, Geometry, House, HouseData, Inertial, Level, Mobility, Object, Part,
-    Placed, Room, ShoeboxMaterials, StaticTriangle, Structure, StructureKind, Surface,
+    PlacedMesh, Room, ShoeboxMaterials, StaticTriangle, Structure, StructureKind, SurfaceHit,
     SurfaceOwner,
 };
 pub use ids::{
@@ -48,10 +48,10 @@ pub use ids::{
 pub use law::{LawInfo, LawSpec};
 pub use material::{Bands, Material};
 pub use mesh::Mesh;
-pub use sky::{Daytime, Dome, Sky, Weather};
+pub use sky::{Daytime, Sky, SkyDome, Weather};
 pub use space::Pose;
 pub use state::{
-    Address, AgentBody, AgentState, BaseState, Contact, DifferentialDrive, Gait, HolonomicBase,
-    JointValues, Locomotion, Parameter, Rest, State, Velocity,
+    Address, AgentBody, AgentState, BaseState, Contact, DifferentialDrive, HolonomicBase,
+    JointParameters, LeggedLocomotion, Locomotion, Parameter, State, SupportRelation, Velocity,
 };
 pub use texture::Texture;

@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn what_would_be_too_large_is_packed_harder() {
-        let mut stream = crate::random::Key::root(3).stream();
+        let mut stream = crate::random::RandomKey::root(3).stream();
         let words: Vec<[u8; 5]> = (0..400)
             .map(|_| std::array::from_fn(|_| stream.bits() as u8))
             .collect();
@@ -166,7 +166,7 @@ mod tests {
     /// A megabyte whose second half is the first one again.
     #[test]
     fn what_repeats_far_away_is_packed_once() {
-        let mut stream = crate::random::Key::root(1).stream();
+        let mut stream = crate::random::RandomKey::root(1).stream();
         let half: Vec<u8> = (0..500_000).map(|_| stream.bits() as u8).collect();
         let packed = pack(&[half.clone(), half.clone()].concat(), &[]);
         assert!(
@@ -179,7 +179,7 @@ mod tests {
     /// Half a megabyte of noise beside the same noise with one byte in a thousand changed; another base does not give it back.
     #[test]
     fn what_the_base_has_takes_next_to_nothing() {
-        let mut stream = crate::random::Key::root(2).stream();
+        let mut stream = crate::random::RandomKey::root(2).stream();
         let base: Vec<u8> = (0..500_000).map(|_| stream.bits() as u8).collect();
         let mut bytes = base.clone();
         for byte in bytes.iter_mut().step_by(1000) {

@@ -1,6 +1,6 @@
 //! Keyed random streams: equal paths give equal numbers, and nobody shifts anybody else's.
 //!
-//! A [`Key`] is derived like a path, `Key::root(seed).child("microphone").child(step)`. Two different paths give
+//! A [`RandomKey`] is derived like a path, `RandomKey::root(seed).child("microphone").child(step)`. Two different paths give
 //! independent streams; adding a sensor or a thread changes no other stream.
 
 use rand_chacha::ChaCha8Rng;
@@ -10,7 +10,7 @@ use xxhash_rust::xxh3::xxh3_128_with_seed;
 
 /// The name of a random stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Key(u128);
+pub struct RandomKey(u128);
 
 /// One step of a key's path: a word or a number.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +33,7 @@ impl From<u64> for Label<'_> {
     }
 }
 
-impl Key {
+impl RandomKey {
     /// The key of a seed.
     pub fn root(seed: u64) -> Self {
         Self(xxh3_128_with_seed(&seed.to_le_bytes(), 0))
@@ -61,19 +61,19 @@ impl Key {
     }
 
     /// A generator at the start of this key's stream (`ChaCha8`).
-    pub fn stream(self) -> Stream {
+    pub fn stream(self) -> RandomStream {
         let mut seed = [0; 32];
         seed[..16].copy_from_slice(&self.0.to_le_bytes());
         seed[16..].copy_from_slice(&xxh3_128_with_seed(&self.0.to_le_bytes(), 3).to_le_bytes());
-        Stream(ChaCha8Rng::from_seed(seed))
+        RandomStream(ChaCha8Rng::from_seed(seed))
     }
 }
 
 /// A stream of random numbers.
 #[derive(Clone, Debug)]
-pub struct Stream(ChaCha8Rng);
+pub struct RandomStream(ChaCha8Rng);
 
-impl Stream {
+impl RandomStream {
     /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0.next_u64()
@@ -135,11 +135,11 @@ mod tests {
 
     #[test]
     fn equal_paths_give_equal_numbers_and_others_do_not() {
-        let a = Key::root(7).child("microphone").child(3);
-        assert_eq!(a, Key::root(7).child("microphone").child(3));
-        assert_ne!(a, Key::root(7).child("microphone").child(4));
-        assert_ne!(a, Key::root(8).child("microphone").child(3));
-        assert_ne!(Key::root(0).child("a"), Key::root(0).child(97));
+        let a = RandomKey::root(7).child("microphone").child(3);
+        assert_eq!(a, RandomKey::root(7).child("microphone").child(3));
+        assert_ne!(a, RandomKey::root(7).child("microphone").child(4));
+        assert_ne!(a, RandomKey::root(8).child("microphone").child(3));
+        assert_ne!(RandomKey::root(0).child("a"), RandomKey::root(0).child(97));
         assert_eq!(a.stream().bits(), a.stream().bits());
     }
 
@@ -148,7 +148,7 @@ mod tests {
     fn uniform_and_normal_have_their_moments() {
         let n = 100_000;
         for seed in 0..5 {
-            let mut stream = Key::root(seed).stream();
+            let mut stream = RandomKey::root(seed).stream();
             let (mut u1, mut n1, mut n2) = (0.0, 0.0, 0.0);
             for _ in 0..n {
                 u1 += stream.uniform();

@@ -6,13 +6,13 @@ use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 /// Makes the pixels of a texture.
-type Painter = Arc<dyn Fn() -> Vec<u8> + Send + Sync>;
+type TexturePainter = Arc<dyn Fn() -> Vec<u8> + Send + Sync>;
 
 /// An image that materials show, sRGB-encoded with straight alpha.
 ///
 /// Its pixels are there from the start, or painted when someone first asks for them.
 #[derive(Clone, Serialize, Deserialize)]
-#[serde(from = "Stored", into = "Stored")]
+#[serde(from = "StoredTexture", into = "StoredTexture")]
 pub struct Texture {
     /// The name in the source, without folder and ending.
     pub name: String,
@@ -21,26 +21,26 @@ pub struct Texture {
     /// Pixels down.
     pub height: u32,
     pixels: OnceLock<Vec<u8>>,
-    painter: Option<Painter>,
+    painter: Option<TexturePainter>,
 }
 
 /// A texture as data.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Texture")]
-struct Stored {
+struct StoredTexture {
     name: String,
     width: u32,
     height: u32,
     rgba: Vec<u8>,
 }
 
-impl From<Stored> for Texture {
-    fn from(stored: Stored) -> Self {
+impl From<StoredTexture> for Texture {
+    fn from(stored: StoredTexture) -> Self {
         Self::new(stored.name, stored.width, stored.height, stored.rgba)
     }
 }
 
-impl From<Texture> for Stored {
+impl From<Texture> for StoredTexture {
     fn from(texture: Texture) -> Self {
         Self {
             rgba: texture.rgba().to_vec(),

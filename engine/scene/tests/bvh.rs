@@ -7,7 +7,7 @@ use dwell_scene::bvh::{
     Hit, Instance, InstanceSet, PacketHits, Ray, RayMask, RayPacket, SceneBvh, TriangleBvh,
     TriangleTag,
 };
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::{Affine3A, Quat, Vec3};
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -47,7 +47,7 @@ proptest! {
 
     #[test]
     fn the_tree_finds_what_brute_force_finds(seed in any::<u64>(), count in 0_usize..400, far in 0_usize..3) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let offset = [Vec3::ZERO, Vec3::new(40.0, 1.0, 45.0), Vec3::splat(-3e3)][far];
         let soup = Soup::random(key, count, offset);
         let oracle = Oracle::new(&soup);
@@ -66,7 +66,7 @@ proptest! {
 
     #[test]
     fn packets_and_single_rays_give_the_same_bits(seed in any::<u64>(), count in 0_usize..600) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let soup = Soup::random(key, count, Vec3::new(40.0, 1.0, 45.0));
         let (fixed, moving) = soup.split(key.child("poses"));
         let scene = SceneBvh { fixed: &fixed, moving: &moving };
@@ -80,7 +80,7 @@ proptest! {
 
     #[test]
     fn packets_and_single_rays_agree_on_coincident_surfaces(seed in any::<u64>(), count in 1_usize..300) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let soup = Soup::flat(key, count, Vec3::new(40.0, 1.0, 45.0));
         let tree = soup.tree();
         let moving = InstanceSet::default();
@@ -90,7 +90,7 @@ proptest! {
 
     #[test]
     fn the_order_of_triangles_does_not_matter(seed in any::<u64>(), count in 1_usize..300) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         // Many triangles in few planes: coincident surfaces everywhere.
         let soup = Soup::flat(key, count, Vec3::new(40.0, 1.0, 45.0));
         let other = permuted(&soup, key.child("order"));
@@ -103,7 +103,7 @@ proptest! {
 
     #[test]
     fn instances_are_as_good_as_baked_triangles(seed in any::<u64>(), count in 1_usize..300) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let soup = Soup::random(key, count, Vec3::ZERO);
         let (fixed, moving) = soup.split(key.child("poses"));
         let scene = SceneBvh { fixed: &fixed, moving: &moving };
@@ -116,7 +116,7 @@ proptest! {
 
     #[test]
     fn moved_one_by_one_or_all_at_once_is_the_same(seed in any::<u64>(), count in 1_usize..200) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let soup = Soup::random(key, count, Vec3::ZERO);
         let (fixed, mut one_by_one) = soup.split(key.child("poses"));
         let mut at_once = one_by_one.clone();
@@ -134,23 +134,23 @@ proptest! {
 
     #[test]
     fn masks_and_hidden_ids_remove_what_they_name(seed in any::<u64>(), count in 1_usize..200) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let soup = Soup::random(key, count, Vec3::ZERO);
         let (fixed, moving) = soup.split(key.child("poses"));
         let scene = SceneBvh { fixed: &fixed, moving: &moving };
         for ray in rays_at(key.child("rays"), 64, &soup) {
             let mut all = Vec::new();
-            scene.every_hit(&ray, RayMask::ALL, &mut all);
+            scene.all_hits(&ray, RayMask::ALL, &mut all);
             prop_assert!(all.is_sorted_by(|a, b| a.distance_m <= b.distance_m));
             let Some(first) = scene.closest(&ray, RayMask::ALL) else {
                 prop_assert!(all.is_empty());
                 continue;
             };
             prop_assert_eq!(all[0].distance_m.to_bits(), first.distance_m.to_bits());
-            let behind = scene.closest_without(&ray, RayMask::ALL, first.id);
+            let behind = scene.closest_excluding(&ray, RayMask::ALL, first.id);
             let expected = all.iter().find(|hit| hit.id != first.id);
             prop_assert_eq!(behind.map(|hit| hit.distance_m), expected.map(|hit| hit.distance_m));
-            prop_assert_eq!(scene.occluded_without(&ray, RayMask::ALL, first.id), expected.is_some());
+            prop_assert_eq!(scene.occluded_excluding(&ray, RayMask::ALL, first.id), expected.is_some());
             // Odd ids are for ears only in the soup.
             let seen = scene.closest(&ray, RayMask::EYE);
             let expected = all.iter().find(|hit| hit.id % 2 == 0);
@@ -163,10 +163,10 @@ proptest! {
 #[test]
 fn no_ray_leaves_a_closed_room() {
     for (center, seed) in [(Vec3::new(41.3, 1.2, 38.7), 1), (Vec3::ZERO, 2)] {
-        let (positions, triangles) = room(center, 9, Key::root(seed));
+        let (positions, triangles) = room(center, 9, RandomKey::root(seed));
         let tree = TriangleBvh::build(&positions, &triangles);
         assert_eq!(tree.left_out(), 0);
-        let mut stream = Key::root(seed).child("rays").stream();
+        let mut stream = RandomKey::root(seed).child("rays").stream();
         let eye = center + stream.direction() * 0.3;
         let mut targets = positions.clone();
         for [a, b, c] in triangles.iter().map(|t| t.map(|k| positions[k as usize])) {
@@ -192,7 +192,7 @@ fn no_ray_leaves_a_closed_room() {
 
 #[test]
 fn of_two_floors_in_one_plane_the_lower_id_is_seen_everywhere() {
-    let mut stream = Key::root(7).stream();
+    let mut stream = RandomKey::root(7).stream();
     // The same rectangle, cut differently, at the coordinates of a real house.
     let first = ground(Vec3::new(30.0, 0.04, 33.0), [14.0, 11.0], 1);
     let second = ground(Vec3::new(30.0, 0.04, 33.0), [14.0, 11.0], 7);
@@ -338,7 +338,7 @@ fn empty_scenes_and_bad_rays_meet_nothing() {
         assert_eq!(scene.closest(&ray, RayMask::ALL), None, "{ray:?}");
         assert!(!scene.occluded(&ray, RayMask::ALL), "{ray:?}");
         let mut all = vec![];
-        scene.every_hit(&ray, RayMask::ALL, &mut all);
+        scene.all_hits(&ray, RayMask::ALL, &mut all);
         assert!(all.is_empty());
         let mut packet = RayPacket::<8>::new(ray.origin);
         packet.set(3, ray.direction, ray.near_m, ray.far_m);
@@ -452,7 +452,7 @@ fn trees_of_hopeless_input_are_right() {
 
 #[test]
 fn instances_keep_their_accuracy_far_from_the_origin() {
-    let (positions, triangles) = room(Vec3::ZERO, 3, Key::root(11));
+    let (positions, triangles) = room(Vec3::ZERO, 3, RandomKey::root(11));
     let mesh = Arc::new(TriangleBvh::build(&positions, &triangles));
     let turn = Quat::from_axis_angle(Vec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
     let eye = Vec3::new(47.0, 1.0, 39.0);
@@ -468,7 +468,7 @@ fn instances_keep_their_accuracy_far_from_the_origin() {
         fixed: &fixed,
         moving: &moving,
     };
-    let mut stream = Key::root(12).stream();
+    let mut stream = RandomKey::root(12).stream();
     for _ in 0..5000 {
         let ray = Ray::new(eye, stream.direction());
         let hit = scene.closest(&ray, RayMask::ALL).expect("a closed room");

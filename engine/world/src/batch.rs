@@ -262,7 +262,7 @@ impl Batch {
         active: &[bool],
         work: impl FnOnce(&mut Self) -> Result<R, WorldError>,
     ) -> Result<R, WorldError> {
-        interrupt::attempt(|| work(self)).unwrap_or_else(|interrupted| {
+        interrupt::catch_interrupt(|| work(self)).unwrap_or_else(|interrupted| {
             let stopped = self.envs.iter_mut().zip(active).filter(|(_, on)| **on);
             stopped.for_each(|(env, _)| env.give_up());
             self.under_way.clear();

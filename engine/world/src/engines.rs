@@ -10,7 +10,7 @@ use dwell_acoustics::signals::Signal;
 use dwell_acoustics::{AcousticConfig, AcousticScene, Head, HeadId};
 use dwell_physics::PhysicsModel;
 use dwell_render::{BackEnd, CpuRenderer, Renderer};
-use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
+use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{House, SoundFileId, State};
 use dwell_semantics::Semantics;
 use glam::Vec3;
@@ -198,7 +198,7 @@ impl Engines {
             radius_m: body.radius_m,
             height_m: body.height_m,
             step_m: body.step_height_m,
-            doors: Doors::Open,
+            doors: DoorPolicy::Open,
             ..NavConfig::default()
         })
     }

@@ -12,7 +12,7 @@ use crate::tasks::{self, Task, TaskKind};
 use crate::world::World;
 use dwell_render::{Camera, Preset};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Id, Pose};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -111,7 +111,7 @@ pub struct Env {
     pub(crate) results: Results,
     pub(crate) episode: Option<Episode>,
     pub(crate) seed: u64,
-    episode_key: Key,
+    episode_key: RandomKey,
     /// Whether the world is as it was made.
     is_new: bool,
     /// Steps of the episode.
@@ -180,7 +180,7 @@ impl Env {
             results: Results::default(),
             episode: None,
             seed: 0,
-            episode_key: Key::root(0),
+            episode_key: RandomKey::root(0),
             is_new: true,
             steps: 0,
             done: false,
@@ -228,7 +228,7 @@ impl Env {
     /// # Errors
     /// [`WorldError::Unplayable`] when the house does not hold what the task needs.
     pub fn reset(&mut self, seed: u64) -> Result<&Episode, WorldError> {
-        let key = Key::root(seed).child("episode");
+        let key = RandomKey::root(seed).child("episode");
         // What fails from here on leaves no episode behind that could go on.
         self.give_up();
         // A copy of the start beside the first one would only take its time and memory.
@@ -482,7 +482,7 @@ mod tests {
     struct Refusing;
 
     impl Task for Refusing {
-        fn reset(&mut self, world: &mut World, _: Key) -> Result<Episode, WorldError> {
+        fn reset(&mut self, world: &mut World, _: RandomKey) -> Result<Episode, WorldError> {
             Err(WorldError::Unplayable {
                 task: "Refusing",
                 house: world.house().name.clone(),

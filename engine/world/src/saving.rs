@@ -12,7 +12,7 @@ use crate::start::Start;
 use crate::world::World;
 use dwell_physics::PhysicsWorld;
 use dwell_scene::packing::{pack_within, unpack};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, House, Id, State};
 use std::collections::BTreeMap;
 use xxhash_rust::xxh3::xxh3_64;
@@ -36,7 +36,7 @@ struct Parts {
     state: Vec<u8>,
     physics: Vec<u8>,
     sound: Vec<u8>,
-    key: Key,
+    key: RandomKey,
     past: Past,
 }
 
@@ -65,7 +65,7 @@ impl Base {
                     engines.house(),
                     &start.state,
                     &start.physics,
-                    (Vec::new(), Key::root(0), Past::default()),
+                    (Vec::new(), RandomKey::root(0), Past::default()),
                 )
             },
         );
@@ -78,7 +78,7 @@ fn body(
     house: &House,
     state: &State,
     physics: &PhysicsWorld,
-    (sound, key, past): (Vec<u8>, Key, Past),
+    (sound, key, past): (Vec<u8>, RandomKey, Past),
 ) -> Vec<u8> {
     let parts = Parts {
         state: state.to_bytes(house),

@@ -12,7 +12,7 @@ use dwell_physics::{
 };
 use dwell_render::BackEnd;
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
     Address, AgentId, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId, Parameter, State,
@@ -31,7 +31,7 @@ pub struct World {
     pub(crate) rays: RayScene,
     pub(crate) sound: Sound,
     pub(crate) events: Vec<ContactEvent>,
-    pub(crate) key: Key,
+    pub(crate) key: RandomKey,
     /// Where things were before the last step.
     pub(crate) past: Past,
     /// Memory for it.
@@ -67,7 +67,7 @@ impl World {
             rays,
             sound: Sound::new(config),
             events: Vec::new(),
-            key: Key::root(0),
+            key: RandomKey::root(0),
             past: Past::default(),
             before: Before::default(),
             start,
@@ -78,7 +78,7 @@ impl World {
     ///
     /// # Errors
     /// None so far: the start is a copy of one that was possible.
-    pub fn reset(&mut self, key: Key) -> Result<(), WorldError> {
+    pub fn reset(&mut self, key: RandomKey) -> Result<(), WorldError> {
         self.state.clone_from(&self.start.state);
         self.physics.clone_from(&self.start.physics);
         self.rays.update(&self.state);
@@ -90,7 +90,7 @@ impl World {
     }
 
     /// As [`Self::reset`], in a world in which nothing has happened since it was made.
-    pub(crate) fn begin(&mut self, key: Key) {
+    pub(crate) fn begin(&mut self, key: RandomKey) {
         self.key = key;
     }
 

@@ -162,7 +162,7 @@ impl PhysicsWorld {
                 pitch + LOOK_STEP_RAD * y as f32,
             );
             let ray = Ray::new(eye, turned * Vec3::NEG_Z).between(0.0, actor.body.body.reach_m);
-            let Some(hit) = actor.rays.closest_without(&ray, RayMask::EYE, held) else {
+            let Some(hit) = actor.rays.closest_excluding(&ray, RayMask::EYE, held) else {
                 continue;
             };
             let surface = actor.rays.surface(&hit);

@@ -10,7 +10,7 @@ use crate::contact::Toucher;
 use crate::convert::to_rapier;
 use crate::model::BodyPlan;
 use crate::world::PhysicsWorld;
-use dwell_scene::{Aabb, Holding, ObjectId, Pose, Receptacle, State};
+use dwell_scene::{Aabb, ObjectId, Pose, Receptacle, ReceptacleKind, State};
 use glam::Vec3;
 use rapier3d::geometry::{Collider, ColliderHandle, Ray};
 use rapier3d::math::Pose as RapierPose;
@@ -63,7 +63,7 @@ impl PhysicsWorld {
         let spaces: Vec<&Receptacle> = house
             .receptacles
             .iter()
-            .filter(|space| space.object == object && space.holding == Holding::In)
+            .filter(|space| space.object == object && space.holding == ReceptacleKind::In)
             .collect();
         if spaces.is_empty() {
             let sentence = format!(

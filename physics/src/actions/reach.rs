@@ -114,7 +114,7 @@ impl PhysicsWorld {
         for point in sample_points(house, state, object, nearest) {
             let ray = Ray::new(eye, point - eye);
             let hit = match held {
-                Some(held) => rays.closest_without(&ray, RayMask::EYE, held),
+                Some(held) => rays.closest_excluding(&ray, RayMask::EYE, held),
                 None => rays.closest(&ray, RayMask::EYE),
             };
             if let Some(hit) = hit {

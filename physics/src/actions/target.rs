@@ -139,7 +139,7 @@ impl PhysicsWorld {
             .body
             .holding
             .map_or(EntityId::VOID, |held| house.entity_of_object(held));
-        let hit = actor.rays.closest_without(&ray, RayMask::EYE, held);
+        let hit = actor.rays.closest_excluding(&ray, RayMask::EYE, held);
         let until = hit.map_or(FAR_M, |hit| hit.distance_m);
         if let Some((agent, distance)) = self.meet_agent(state, actor.id, origin, direction, until)
         {

@@ -4,7 +4,7 @@ use super::{AgentControl, Probe, Push, Shell, Walk};
 use crate::actions::{ActionCode, ActionOutcome, Notice};
 use crate::bases::{self, Rolling};
 use crate::world::PhysicsWorld;
-use dwell_scene::{AgentBody, AgentId, AgentState, Gait, Id, Locomotion, State};
+use dwell_scene::{AgentBody, AgentId, AgentState, Id, LeggedLocomotion, Locomotion, State};
 use glam::Vec3;
 
 /// What an agent wanted to do and did in a control step.
@@ -157,7 +157,7 @@ impl PhysicsWorld {
         state: &State,
         id: AgentId,
         agent: &mut AgentState,
-        gait: &Gait,
+        gait: &LeggedLocomotion,
         crouch: bool,
     ) {
         let body = &agent.body;
@@ -244,7 +244,7 @@ impl PhysicsWorld {
 }
 
 /// Where a walker goes in one physics step if nothing stops it: as told, up to its fastest.
-fn stride(agent: &AgentState, gait: &Gait, control: &AgentControl, dt_s: f32) -> Vec3 {
+fn stride(agent: &AgentState, gait: &LeggedLocomotion, control: &AgentControl, dt_s: f32) -> Vec3 {
     let fastest = if agent.crouched_by_m > 0.0 {
         gait.max_crouched_speed_m_s.min(gait.max_speed_m_s)
     } else {

@@ -1,7 +1,7 @@
 //! Who touches whom.
 
 use super::entry::{Entry, Toucher, entry_index};
-use dwell_scene::{Contact, Rest};
+use dwell_scene::{Contact, SupportRelation};
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::{ColliderSet, NarrowPhase};
 
@@ -18,7 +18,7 @@ pub(crate) fn touching(
 ) -> Vec<([RigidBodyHandle; 2], Contact)> {
     let mut out = Vec::new();
     for pair in narrow_phase.contact_pairs() {
-        let (mut near, mut rest) = (false, Rest::Beside);
+        let (mut near, mut rest) = (false, SupportRelation::Beside);
         for manifold in pair.solver_manifolds() {
             let touches = manifold
                 .points
@@ -28,7 +28,11 @@ pub(crate) fn touching(
             // The normal points from the first collider to the second.
             let up = manifold.data.normal.y;
             if touches && up.abs() >= CARRIES {
-                rest = if up > 0.0 { Rest::BOnA } else { Rest::AOnB };
+                rest = if up > 0.0 {
+                    SupportRelation::BOnA
+                } else {
+                    SupportRelation::AOnB
+                };
             }
         }
         if !near || !pair.has_any_active_contact() {
@@ -67,10 +71,10 @@ pub(crate) fn touching(
 }
 
 /// The same seen from the other side.
-fn turned(rest: Rest) -> Rest {
+fn turned(rest: SupportRelation) -> SupportRelation {
     match rest {
-        Rest::Beside => Rest::Beside,
-        Rest::AOnB => Rest::BOnA,
-        Rest::BOnA => Rest::AOnB,
+        SupportRelation::Beside => SupportRelation::Beside,
+        SupportRelation::AOnB => SupportRelation::BOnA,
+        SupportRelation::BOnA => SupportRelation::AOnB,
     }
 }

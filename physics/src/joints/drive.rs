@@ -2,7 +2,7 @@
 
 use super::element::{Gain, Pull};
 use super::latch::tolerance;
-use dwell_scene::{AgentId, JointCommand, JointId, JointKind, JointValues};
+use dwell_scene::{AgentId, JointCommand, JointId, JointKind, JointParameters};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -113,7 +113,7 @@ impl Drive {
 /// `hand`: the hand that moves a joint without a servo.
 pub(crate) fn advance(
     kind: JointKind,
-    values: &JointValues,
+    values: &JointParameters,
     command: JointCommand,
     hand: Option<&mut Drive>,
     (position, velocity): (f32, f32),

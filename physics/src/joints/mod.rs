@@ -33,7 +33,7 @@ use crate::body::Body;
 use crate::convert::to_rapier;
 use crate::engine::Engine;
 use crate::model::PhysicsModel;
-use dwell_scene::{Articulation, JointId, JointKind, JointValues, PartId, Pose, State};
+use dwell_scene::{Articulation, JointId, JointKind, JointParameters, PartId, Pose, State};
 use glam::{DVec3, Quat, Vec3};
 use rapier3d::dynamics::{
     GenericJointBuilder, ImpulseJointHandle, JointAxesMask, JointAxis, RigidBodyHandle,
@@ -57,7 +57,7 @@ pub(crate) struct Joint {
     /// Whether it hangs on what never moves and opens by hand: then it can be shut for good.
     pub(crate) latchable: bool,
     /// What is in force. Stops that rapier can keep it keeps too: it feels what presses against them.
-    pub(crate) values: JointValues,
+    pub(crate) values: JointParameters,
 }
 
 impl Joint {
@@ -143,7 +143,7 @@ fn free_axis(kind: JointKind) -> JointAxis {
 const SLACK: f32 = 1e-5;
 
 /// The limits that rapier keeps too.
-fn held_by_rapier(kind: JointKind, values: &JointValues) -> Option<[f32; 2]> {
+fn held_by_rapier(kind: JointKind, values: &JointParameters) -> Option<[f32; 2]> {
     let limits = values.limits?;
     element::rapier_holds(kind, limits).then_some([limits[0] - SLACK, limits[1] + SLACK])
 }

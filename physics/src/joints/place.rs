@@ -138,7 +138,7 @@ pub(crate) fn says_the_same(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     /// Random sums of 30 rad/s about random axes: along the axis within 1e-6, where plain rounding is off by twice that, and no
     /// component is moved by more than ten times its rounding.
@@ -146,7 +146,7 @@ mod tests {
     fn a_velocity_is_rounded_so_that_its_part_along_the_axis_stays() {
         let (mut plain, mut worst) = (0.0_f64, 0.0_f64);
         for round in 0..20_000 {
-            let mut draws = Key::root(11).child(round).stream();
+            let mut draws = RandomKey::root(11).child(round).stream();
             let mut draw = || 2.0 * f64::from(draws.uniform_f32()) - 1.0;
             let velocity = DVec3::new(draw(), draw(), draw()) * 30.0;
             let axis = DVec3::new(draw(), draw(), draw()).normalize_or(DVec3::X);

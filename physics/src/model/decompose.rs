@@ -150,7 +150,7 @@ mod tests {
         open.triangles.truncate(7);
         open.triangles.push([0, 0, 0]);
         assert!(!pieces(&open, &Affine3A::IDENTITY).is_empty());
-        let mut stream = dwell_scene::random::Key::root(2).stream();
+        let mut stream = dwell_scene::random::RandomKey::root(2).stream();
         for _ in 0..20 {
             let count = 12;
             let positions = (0..count).map(|_| stream.direction()).collect();

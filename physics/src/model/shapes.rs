@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn a_hull_of_many_points_keeps_most_of_its_volume() {
         // Points on a unit sphere: the kept hull has at least 90 % of 4/3 pi.
-        let mut stream = dwell_scene::random::Key::root(1).stream();
+        let mut stream = dwell_scene::random::RandomKey::root(1).stream();
         let points: Vec<Vec3> = (0..5000).map(|_| stream.direction()).collect();
         let volume = hull(&points).unwrap().shape.mass_properties(1.0).mass();
         assert!(volume > 0.9 * 4.0 / 3.0 * std::f32::consts::PI, "{volume}");

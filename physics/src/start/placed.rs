@@ -76,13 +76,13 @@ fn to_parry(bounds: &Aabb) -> rapier3d::geometry::Aabb {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
     use glam::Vec3;
 
     /// Against a list that is walked: who meets a box, in order, while things come, go and move.
     #[test]
     fn those_near_a_box_are_those_of_a_list() {
-        let mut stream = Key::root(4).stream();
+        let mut stream = RandomKey::root(4).stream();
         let mut standing = Standing::default();
         let mut list: Vec<Placed> = Vec::new();
         let mut draw = |grow: f32| {

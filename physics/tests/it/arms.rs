@@ -2,7 +2,7 @@
 
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::PhysicsConfig;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{
     Articulation, Collider, JointCommand, JointId, JointKind, Mobility, ObjectId, PartId, Pose,
     Servo, State,
@@ -131,7 +131,7 @@ pub(crate) fn angles(state: &State) -> [f64; 6] {
     std::array::from_fn(|k| f64::from(state.joint_position[JointId(k as u32)]))
 }
 
-fn pose(run: &mut Run, key: Key, reach: f32) -> [f32; 6] {
+fn pose(run: &mut Run, key: RandomKey, reach: f32) -> [f32; 6] {
     let q =
         std::array::from_fn(|k| reach * (2.0 * key.child(k as u64).stream().uniform_f32() - 1.0));
     for (k, q) in q.iter().enumerate() {
@@ -158,7 +158,7 @@ fn an_arm_told_to_hold_its_pose_holds_it() {
     let mut run = arm(2.0, Some(STRONG)).run_with(awake());
     for seed in 0..5 {
         let reach = if seed == 0 { 0.0 } else { 1.5 };
-        let start = pose(&mut run, Key::root(seed), reach);
+        let start = pose(&mut run, RandomKey::root(seed), reach);
         for (k, q) in start.iter().enumerate() {
             run.state.joint_command[JointId(k as u32)] = JointCommand::Position(*q);
         }
@@ -185,7 +185,7 @@ fn a_plain_position_motor_gives_way_by_load_over_stiffness() {
         ..STRONG
     };
     let mut run = arm(2.0, Some(servo)).run_with(awake());
-    let start = pose(&mut run, Key::root(3), 1.0);
+    let start = pose(&mut run, RandomKey::root(3), 1.0);
     for (k, q) in start.iter().enumerate() {
         run.state.joint_command[JointId(k as u32)] = JointCommand::Position(*q);
     }
@@ -207,7 +207,7 @@ fn a_plain_position_motor_gives_way_by_load_over_stiffness() {
 #[test]
 fn efforts_that_balance_the_weight_hold_the_arm() {
     let mut run = arm(1.0, Some(STRONG)).run_with(awake());
-    pose(&mut run, Key::root(9), 1.0);
+    pose(&mut run, RandomKey::root(9), 1.0);
     let start = angles(&run.state);
     for _ in 0..20 {
         let loads = weights(&run, &angles(&run.state), 1.0);
@@ -229,7 +229,7 @@ fn any_pose_and_velocity_reads_back() {
     let object = ObjectId(0);
     let (mut worst_q, mut worst_v, mut worst_link) = (0.0_f32, 0.0_f32, 0.0_f64);
     for round in 0..10_000 {
-        let key = Key::root(77).child(round);
+        let key = RandomKey::root(77).child(round);
         let q: [f32; 6] =
             std::array::from_fn(|k| 2.9 * (2.0 * key.child(k as u64).stream().uniform_f32() - 1.0));
         let v: [f32; 6] = std::array::from_fn(|k| {

@@ -2,7 +2,7 @@
 
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::{ContactFriction, PhysicsConfig};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{JointKind, ObjectId};
 use glam::{Quat, Vec3};
 
@@ -94,7 +94,7 @@ fn boxes_that_bounce_on_corners_gain_no_energy() {
     ] {
         let mut worst = 0.0_f64;
         for seed in 0..12 {
-            let mut key = Key::root(seed).child("corners").stream();
+            let mut key = RandomKey::root(seed).child("corners").stream();
             let mut build = Build::room_of([6.0, 6.0, 6.0], "marble");
             let half = Vec3::new(0.05, 0.08, 0.12);
             let axis = Vec3::new(

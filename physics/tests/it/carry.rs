@@ -2,7 +2,7 @@
 
 use crate::common::{Build, Piece, Run, forward};
 use dwell_physics::{Action, ActionCode, AgentControl, Grasp};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
 
@@ -86,7 +86,7 @@ fn a_held_thing_never_crosses_a_wall_however_its_holder_moves() {
         .enumerate()
         {
             let (mut run, agent, thing) = doorway(half, grasp);
-            let mut stream = Key::root(7).child(k as u64).child(g as u64).stream();
+            let mut stream = RandomKey::root(7).child(k as u64).child(g as u64).stream();
             let mut held_steps = 0;
             for step in 0..300 {
                 // At a run, turning on the spot, along walls and into corners.

@@ -5,9 +5,9 @@ use dwell_scene::material::library;
 use dwell_scene::navigation::{NavConfig, NavGrid};
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Aabb, AgentBody, AgentId, AgentState, Articulation, Category, Collider, Holding, House,
-    HouseData, Id, JointId, JointKind, LevelId, Material, MaterialId, Mesh, Mobility, Object,
-    ObjectId, Part, PartId, Pose, Receptacle, RoomId, ShoeboxMaterials, State,
+    Aabb, AgentBody, AgentId, AgentState, Articulation, Category, Collider, House, HouseData, Id,
+    JointId, JointKind, LevelId, Material, MaterialId, Mesh, Mobility, Object, ObjectId, Part,
+    PartId, Pose, Receptacle, ReceptacleKind, RoomId, ShoeboxMaterials, State,
 };
 use glam::{Affine3A, Quat, Vec3};
 use std::sync::Arc;
@@ -233,7 +233,7 @@ impl Build {
             object: chest,
             part: leaf,
             name: "drawer".to_owned(),
-            holding: Holding::In,
+            holding: ReceptacleKind::In,
             space_in_part: Aabb::new(Vec3::new(-0.21, -0.08, -0.17), Vec3::new(0.21, 0.09, 0.17)),
         });
         (chest, joint)

@@ -1,14 +1,14 @@
 //! Many things at once.
 
 use crate::common::{Build, Piece, gravity};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::{Quat, Vec3};
 
 /// 500 random things fall into a room: every number stays finite, nothing leaves, and the heap comes to rest.
 #[test]
 fn five_hundred_random_things_stay_finite_and_inside() {
     let mut build = Build::room([8.0, 12.0, 8.0]);
-    let mut random = Key::root(11).stream();
+    let mut random = RandomKey::root(11).stream();
     let substances = [
         "wood",
         "steel",

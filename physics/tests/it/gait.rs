@@ -2,10 +2,10 @@
 
 use crate::common::{Build, Piece, forward, gravity};
 use dwell_physics::{ActionCode, AgentControl};
-use dwell_scene::{AgentBody, Gait, Locomotion};
+use dwell_scene::{AgentBody, LeggedLocomotion, Locomotion};
 use glam::{Quat, Vec3};
 
-fn body(gait: Gait) -> AgentBody {
+fn body(gait: LeggedLocomotion) -> AgentBody {
     AgentBody {
         locomotion: Locomotion::Walking(gait),
         ..AgentBody::default()
@@ -22,9 +22,9 @@ fn crouched(speed: f32) -> AgentControl {
 #[test]
 fn nobody_runs_faster_than_its_limit_and_a_slower_limit_holds_at_once() {
     let mut run = Build::room([4.0, 3.0, 30.0]).run();
-    let gait = Gait {
+    let gait = LeggedLocomotion {
         max_speed_m_s: 3.0,
-        ..Gait::default()
+        ..LeggedLocomotion::default()
     };
     let id = run.agent_with(body(gait), Vec3::new(2.0, 0.0, 28.0), 0.0);
     let fast_and_aside = AgentControl {

@@ -2,7 +2,7 @@
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{Action, AgentControl, Grasp, Target};
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{AgentId, AgentState, EntityId, ObjectId, PartId};
 use glam::Vec3;
 
@@ -37,7 +37,7 @@ fn house() -> Run {
 }
 
 /// A number that is usually sensible.
-fn number(stream: &mut Stream, size: f32) -> f32 {
+fn number(stream: &mut RandomStream, size: f32) -> f32 {
     match stream.below(24) {
         0 => f32::NAN,
         1 => f32::INFINITY,
@@ -47,7 +47,7 @@ fn number(stream: &mut Stream, size: f32) -> f32 {
     }
 }
 
-fn vector(stream: &mut Stream, size: f32) -> Vec3 {
+fn vector(stream: &mut RandomStream, size: f32) -> Vec3 {
     Vec3::new(
         number(stream, size),
         number(stream, size),
@@ -55,7 +55,7 @@ fn vector(stream: &mut Stream, size: f32) -> Vec3 {
     )
 }
 
-fn target(run: &Run, stream: &mut Stream, agent: AgentId) -> Target {
+fn target(run: &Run, stream: &mut RandomStream, agent: AgentId) -> Target {
     let objects = run.house.objects.len();
     match stream.below(8) {
         0..=2 => Target::Object(ObjectId(stream.below(objects + 2) as u32)),
@@ -81,7 +81,7 @@ fn target(run: &Run, stream: &mut Stream, agent: AgentId) -> Target {
     }
 }
 
-fn action(run: &Run, stream: &mut Stream, agent: AgentId) -> Action {
+fn action(run: &Run, stream: &mut RandomStream, agent: AgentId) -> Action {
     let target = target(run, stream, agent);
     let force_n = (stream.below(2) == 0).then(|| number(stream, 200.0).abs());
     match stream.below(16) {
@@ -182,7 +182,7 @@ fn check(run: &Run, before: &Run, told: &str) {
 fn run_for(run: &mut Run, steps: std::ops::Range<usize>, checked: bool) -> Vec<u64> {
     let mut hashes = Vec::new();
     for step in steps {
-        let mut stream = Key::root(11).child(step as u64).stream();
+        let mut stream = RandomKey::root(11).child(step as u64).stream();
         let before = checked.then(|| run.clone());
         let agent = AgentId(if stream.below(50) == 0 {
             7

@@ -147,7 +147,7 @@ fn the_real_house_starts_at_rest() {
 /// An agent follows shortest paths between far points of every storey for a while: it arrives, and never leaves the floor.
 fn walks(mut run: Run) {
     let grid = NavGrid::build(&run.house, &run.state, &NavConfig::default()).unwrap();
-    let key = dwell_scene::random::Key::root(4);
+    let key = dwell_scene::random::RandomKey::root(4);
     let start = grid.position(grid.sample(key.child("start"), |_| true).unwrap());
     let id = run.agent(start, 0.0);
     let inside = run

@@ -2,7 +2,7 @@
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{Action, ActionCode, PhysicsConfig, Target};
-use dwell_scene::{AgentId, Collider, Mobility, ObjectId, Pose, Rest};
+use dwell_scene::{AgentId, Collider, Mobility, ObjectId, Pose, SupportRelation};
 use glam::{Quat, Vec3};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -275,7 +275,11 @@ fn what_rests_on_what_follows_a_stack() {
     assert_eq!(rests(&run, beside), [None]);
     for contact in &run.state.contacts {
         if contact.b.is_none() {
-            assert_eq!(contact.rest, Rest::AOnB, "everything stands on the floor");
+            assert_eq!(
+                contact.rest,
+                SupportRelation::AOnB,
+                "everything stands on the floor"
+            );
         }
     }
 }

@@ -3,22 +3,22 @@
 use crate::arms::{STRONG, arm, arm_on};
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{Action, AgentControl, BodyState, Grasp, JointState, PhysicsConfig, Target};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Collider, JointId, Mobility, ObjectId, PartId, Pose, Velocity};
 use glam::{Quat, Vec3};
 
 const RESETS: u64 = 10_000;
 
-fn unit(key: Key) -> f32 {
+fn unit(key: RandomKey) -> f32 {
     2.0 * key.stream().uniform_f32() - 1.0
 }
 
-fn vector(key: Key, size: f32) -> Vec3 {
+fn vector(key: RandomKey, size: f32) -> Vec3 {
     Vec3::from_array([0, 1, 2].map(|k| size * unit(key.child(k))))
 }
 
 /// Any place in a room of 4 by 3 by 4 m, any rotation, up to 10 m/s and 20 rad/s along each axis.
-fn any(part: PartId, key: Key) -> BodyState {
+fn any(part: PartId, key: RandomKey) -> BodyState {
     let [x, y, z, w] = [0, 1, 2, 3].map(|k| unit(key.child("turn").child(k)));
     BodyState {
         part,
@@ -73,7 +73,7 @@ fn any_pose_and_velocity_of_a_free_body_reads_back() {
     let part = run.root(object);
     let (mut by_state, mut by_engine) = ([0.0_f32; 4], [0.0_f32; 4]);
     for round in 0..RESETS {
-        let set = any(part, Key::root(5).child(round));
+        let set = any(part, RandomKey::root(5).child(round));
         run.world.set_bodies(&mut run.state, &[set]).unwrap();
         worst(&mut by_state, apart(&told(&run, part), &set));
         worst(
@@ -97,7 +97,7 @@ fn any_pose_and_velocity_of_a_robot_that_stands_free_reads_back() {
     let root = run.root(ObjectId(0));
     let (mut by_state, mut joints_off) = ([0.0_f32; 4], [0.0_f32; 2]);
     for round in 0..RESETS {
-        let key = Key::root(6).child(round);
+        let key = RandomKey::root(6).child(round);
         let mut set = any(root, key);
         set.velocity.angular *= 0.25;
         let joints: Vec<JointState> = (0..6)

@@ -1,7 +1,7 @@
 //! What rests: no more pairs than stand near each other, and the same bits after a restore at any moment of falling asleep.
 
 use crate::common::{Build, Piece, Run};
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{Aabb, Pose, Velocity};
 use glam::Vec3;
 
@@ -22,7 +22,7 @@ fn slats() -> Run {
 }
 
 /// Throws everything up, each thing its own way.
-fn fling(run: &mut Run, stream: &mut Stream) {
+fn fling(run: &mut Run, stream: &mut RandomStream) {
     for part in run.house.parts.ids() {
         let up = Vec3::Y * stream.range(1.0, 3.0);
         run.state.part_velocity[part] = Velocity {
@@ -59,7 +59,7 @@ fn near_by_hand(run: &Run) -> usize {
 #[test]
 fn what_fell_asleep_keeps_no_pairs() {
     let mut run = slats();
-    let mut stream = Key::root(5).stream();
+    let mut stream = RandomKey::root(5).stream();
     for round in 0..3 {
         fling(&mut run, &mut stream);
         let mut steps = 0;
@@ -85,7 +85,7 @@ fn what_fell_asleep_keeps_no_pairs() {
 #[test]
 fn a_world_restored_while_things_fall_asleep_continues_bit_for_bit() {
     let mut run = slats();
-    fling(&mut run, &mut Key::root(6).stream());
+    fling(&mut run, &mut RandomKey::root(6).stream());
     let mut compared = 0;
     let mut awake = run.world.awake_count();
     for _ in 0..400 {

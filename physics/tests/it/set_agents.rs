@@ -4,7 +4,7 @@ use crate::arms::awake;
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_houses::{open_robot, with_robot};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState, JointState, PhysicsConfig};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{
     AgentBody, AgentId, DifferentialDrive, HolonomicBase, Id, JointId, JointKind, Locomotion,
     Mobility, ObjectId, PartId, Pose, Velocity,
@@ -16,11 +16,11 @@ use std::sync::Arc;
 
 const RESETS: u64 = 10_000;
 
-fn unit(key: Key) -> f32 {
+fn unit(key: RandomKey) -> f32 {
     2.0 * key.stream().uniform_f32() - 1.0
 }
 
-fn vector(key: Key, size: f32) -> Vec3 {
+fn vector(key: RandomKey, size: f32) -> Vec3 {
     Vec3::from_array([0, 1, 2].map(|k| size * unit(key.child(k))))
 }
 
@@ -56,7 +56,7 @@ fn any_pose_and_velocity_of_an_agent_reads_back() {
     let (mut run, [legs, drive, base]) = one_of_each();
     let mut worst = 0.0_f32;
     for round in 0..RESETS {
-        let key = Key::root(41).child(round);
+        let key = RandomKey::root(41).child(round);
         let place = |agent: AgentId| {
             let key = key.child(u64::from(agent.0) + 100);
             AgentPlacement {
@@ -146,7 +146,7 @@ fn any_pose_and_velocity_of_a_urdf_robot_reads_back() {
     let (mut by_engine, mut joints_off) = ([0.0_f32; 4], [0.0_f32; 2]);
     let mut by_poses = [0.0_f64; 2];
     for round in 0..RESETS {
-        let key = Key::root(42).child(round);
+        let key = RandomKey::root(42).child(round);
         let joints: Vec<JointState> = run
             .house
             .joints
@@ -269,7 +269,7 @@ fn a_slide_goes_on_from_the_very_numbers_it_is_put_to() {
     });
     let (mut worst, mut coarse) = ([0.0_f64; 2], 0.0_f64);
     for round in 0..1000 {
-        let key = Key::root(43).child(round);
+        let key = RandomKey::root(43).child(round);
         let set = JointState {
             joint,
             position: 0.4 * unit(key.child("q")),

@@ -158,7 +158,7 @@ fn damaged_and_foreign_bytes_are_refused_and_nothing_changes() {
     run.walk(10, &controls(0));
     let bytes = run.world.snapshot();
     let before = run.hash();
-    let mut key = dwell_scene::random::Key::root(3).stream();
+    let mut key = dwell_scene::random::RandomKey::root(3).stream();
     for _ in 0..200 {
         let mut damaged = bytes.clone();
         let at = key.below(damaged.len());

@@ -208,7 +208,7 @@ fn mass_kg(run: &Run, thing: ObjectId) -> f64 {
 fn collisions_keep_momentum_and_make_no_energy() {
     for restitution in [1.0_f64, 0.5] {
         let mut build = Build::room([60.0, 60.0, 60.0]);
-        let mut key = dwell_scene::random::Key::root(7).stream();
+        let mut key = dwell_scene::random::RandomKey::root(7).stream();
         let mut balls = Vec::new();
         for k in 0..8_u8 {
             let corner = Vec3::new(f32::from(k & 1), f32::from(k >> 1 & 1), f32::from(k >> 2));

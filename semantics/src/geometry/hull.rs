@@ -144,7 +144,7 @@ impl Hull {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     fn square(x: f32, z: f32, half: f32) -> Hull {
         Hull::around(
@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn distances_agree_with_sampling() {
         for seed in 0..20 {
-            let mut stream = Key::root(seed).stream();
+            let mut stream = RandomKey::root(seed).stream();
             let mut cloud = |x: f32| -> Vec<Vec2> {
                 (0..12)
                     .map(|_| Vec2::new(x + stream.range(-1.0, 1.0), stream.range(-1.0, 1.0)))

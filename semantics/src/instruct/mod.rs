@@ -10,7 +10,7 @@ pub use task::{Goal, Instruction, InstructionKind, Progress};
 
 use crate::error::SemanticsError;
 use crate::scene::Scene;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// How much room a text has at most, in characters.
 pub const MAX_TEXT_LEN: usize = 120;
@@ -37,7 +37,7 @@ pub fn candidates(scene: &Scene<'_>, kind: InstructionKind) -> Vec<Instruction> 
 ///
 /// # Determinism
 /// Equal candidates and keys give equal instructions.
-pub fn choose(candidates: &[Instruction], key: Key) -> Option<Instruction> {
+pub fn choose(candidates: &[Instruction], key: RandomKey) -> Option<Instruction> {
     let mut stream = key.child("instruction").stream();
     let chosen = stream.choose(candidates)?;
     Some(chosen.reworded(stream.bits()))
@@ -50,7 +50,7 @@ pub fn choose(candidates: &[Instruction], key: Key) -> Option<Instruction> {
 pub fn instruction(
     scene: &Scene<'_>,
     kind: InstructionKind,
-    key: Key,
+    key: RandomKey,
 ) -> Result<Instruction, SemanticsError> {
     choose(&candidates(scene, kind), key).ok_or_else(|| SemanticsError::NoInstruction {
         house: scene.house().name.clone(),

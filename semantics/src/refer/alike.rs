@@ -4,7 +4,7 @@ use super::expression::{Expression, Relation};
 use crate::predicates;
 use crate::scene::Scene;
 use crate::size::Size;
-use dwell_scene::interrupt::Pace;
+use dwell_scene::interrupt::PollEvery;
 use dwell_scene::{ObjectId, RoomId};
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -72,7 +72,7 @@ impl Alike {
     pub(crate) fn gather(scene: &Scene<'_>, noun: &str) -> Self {
         let semantics = scene.semantics;
         let things = semantics.kinds().things(&semantics.kinds_called(noun));
-        let mut pace = Pace::new(THINGS_PER_CHECK);
+        let mut pace = PollEvery::new(THINGS_PER_CHECK);
         let mut in_rooms = BTreeMap::new();
         for id in &things {
             pace.turn();
@@ -97,7 +97,7 @@ impl Alike {
 
     fn having(&self, scene: &Scene<'_>) -> &BTreeMap<Trait, Things> {
         self.having.get_or_init(|| {
-            let mut pace = Pace::new(THINGS_PER_CHECK);
+            let mut pace = PollEvery::new(THINGS_PER_CHECK);
             let mut lists: BTreeMap<Trait, Vec<ObjectId>> = BTreeMap::new();
             for id in self.things.iter().copied() {
                 pace.turn();
@@ -149,7 +149,7 @@ impl Alike {
 
     fn pairs(&self, scene: &Scene<'_>) -> &BTreeMap<(&'static str, u32), Pairs> {
         self.pairs.get_or_init(|| {
-            let mut pace = Pace::new(1);
+            let mut pace = PollEvery::new(1);
             let mut pairs: BTreeMap<(&'static str, u32), Pairs> = BTreeMap::new();
             for predicate in predicates::all() {
                 if !TELLING.contains(&predicate.name()) {

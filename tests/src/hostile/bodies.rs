@@ -6,7 +6,7 @@ use dwell::{DiscreteAction, Engines, PictureRequest, Place, Stride, World, World
 use dwell_houses::{HousesError, Report};
 use dwell_render::{Camera, Channels, Preset};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, House, Pose};
 
 use super::samples::Sample;
@@ -34,7 +34,7 @@ pub fn live_in(house: House) {
     let Ok(mut world) = World::new(engines, &WorldConfig::default()) else {
         return;
     };
-    if world.reset(Key::root(1)).is_err() {
+    if world.reset(RandomKey::root(1)).is_err() {
         return;
     }
     let step = DiscreteAction::ALL[1];

@@ -1,6 +1,6 @@
 //! Mutations: bits, bytes, pieces, numbers, and the tokens of JSON, XML and OBJ.
 
-use dwell_scene::random::Stream;
+use dwell_scene::random::RandomStream;
 
 /// Numbers that no field means.
 const NUMBERS: [&str; 16] = [
@@ -38,7 +38,7 @@ const VALUES: [&str; 12] = [
 ];
 
 /// The bytes with one to four changes.
-pub fn mutated(bytes: &[u8], random: &mut Stream) -> Vec<u8> {
+pub fn mutated(bytes: &[u8], random: &mut RandomStream) -> Vec<u8> {
     // Inside of a GLB most changes to the text would end at its stated length.
     if bytes.starts_with(b"glTF")
         && random.below(3) > 0
@@ -53,7 +53,7 @@ pub fn mutated(bytes: &[u8], random: &mut Stream) -> Vec<u8> {
     changed(bytes, random)
 }
 
-fn changed(bytes: &[u8], random: &mut Stream) -> Vec<u8> {
+fn changed(bytes: &[u8], random: &mut RandomStream) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for _ in 0..=random.below(4) {
         change(&mut bytes, random);
@@ -61,7 +61,7 @@ fn changed(bytes: &[u8], random: &mut Stream) -> Vec<u8> {
     bytes
 }
 
-fn change(bytes: &mut Vec<u8>, random: &mut Stream) {
+fn change(bytes: &mut Vec<u8>, random: &mut RandomStream) {
     if bytes.is_empty() {
         bytes.extend_from_slice(VALUES[random.below(VALUES.len())].as_bytes());
         return;

@@ -3,7 +3,7 @@
 use super::Fault;
 use dwell_furniture::tables::category;
 use dwell_furniture::testing::overlap::{Convex, deepest, object_pieces, part_pieces};
-use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
+use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{Aabb, House, ObjectId, State};
 use glam::Vec2;
 use std::collections::BTreeSet;
@@ -154,7 +154,7 @@ fn outside_rooms(house: &House, bodies: &[Body]) -> Vec<String> {
 
 fn unreached(house: &House) -> Vec<String> {
     let config = NavConfig {
-        doors: Doors::Open,
+        doors: DoorPolicy::Open,
         ..NavConfig::default()
     };
     let grid = match NavGrid::build(house, &State::new(house), &config) {

@@ -9,7 +9,7 @@ use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, World, viewpoints};
 use dwell_physics::AgentControl;
 use dwell_scene::AgentId;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_tests::observed::{all_sensors, observe};
 use glam::Vec3;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ fn houses() -> usize {
 
 struct Homes {
     batches: Vec<Batch>,
-    stream: Stream,
+    stream: RandomStream,
     /// Of all that was seen and of all states.
     digest: u64,
 }
@@ -54,7 +54,7 @@ impl Homes {
         let batch = |env: Env| Batch::new(vec![env], Threads::exactly(2)).unwrap();
         let mut homes = Self {
             batches: (0..houses()).map(|seed| batch(env(seed))).collect(),
-            stream: Key::root(41).stream(),
+            stream: RandomKey::root(41).stream(),
             digest: 0,
         };
         homes.warm_up();

@@ -2,7 +2,7 @@
 
 use dwell::World;
 use dwell_physics::{Action, AgentControl, BodyState, Grasp, Target};
-use dwell_scene::random::Stream;
+use dwell_scene::random::RandomStream;
 use dwell_scene::{
     Address, AgentBody, EntityId, JointCommand, JointId, Locomotion, ObjectId, Parameter, PartId,
     Velocity,
@@ -10,7 +10,7 @@ use dwell_scene::{
 use glam::Vec3;
 
 /// Mostly forward, now and then anywhere; on legs sometimes faster than any leg, and sometimes low.
-pub(crate) fn control(stream: &mut Stream, body: &AgentBody) -> AgentControl {
+pub(crate) fn control(stream: &mut RandomStream, body: &AgentBody) -> AgentControl {
     let drive = matches!(body.locomotion, Locomotion::DifferentialDrive(_));
     let pitch_rate_rad_s = stream.range(-1.0, 1.0);
     if drive && stream.below(2) == 0 {
@@ -32,7 +32,7 @@ pub(crate) fn control(stream: &mut Stream, body: &AgentBody) -> AgentControl {
 }
 
 /// Something to act on: mostly an object, now and then one that does not exist, or a ray that leads anywhere or nowhere.
-fn target(stream: &mut Stream, objects: usize) -> Target {
+fn target(stream: &mut RandomStream, objects: usize) -> Target {
     match stream.below(8) {
         0 => Target::Gaze,
         1 => Target::Ray {
@@ -49,7 +49,7 @@ fn target(stream: &mut Stream, objects: usize) -> Target {
 }
 
 /// Any action, with and without sense.
-pub(crate) fn action(stream: &mut Stream, objects: usize) -> Action {
+pub(crate) fn action(stream: &mut RandomStream, objects: usize) -> Action {
     let target = target(stream, objects);
     let number = *stream
         .choose(&[0.0, 0.5, 3.0, -1.0, 1e30, f32::NAN])
@@ -89,7 +89,7 @@ pub(crate) fn action(stream: &mut Stream, objects: usize) -> Action {
 }
 
 /// Any joint and any command: doors know positions only, some numbers are none, and one joint does not exist.
-pub(crate) fn command(stream: &mut Stream, joints: usize) -> (JointId, JointCommand) {
+pub(crate) fn command(stream: &mut RandomStream, joints: usize) -> (JointId, JointCommand) {
     let joint = JointId(stream.below(joints + 1) as u32);
     let number = stream.range(-2.0, 2.0);
     let command = match stream.below(6) {
@@ -104,7 +104,7 @@ pub(crate) fn command(stream: &mut Stream, joints: usize) -> (JointId, JointComm
 
 /// Any parameter of the house and of laws: as it was, somewhat off, or no number that can be. A law that is not installed
 /// comes in with a fiftieth of what it may have at most.
-pub(crate) fn setting(stream: &mut Stream, known: &[(Address, Parameter)]) -> (Address, f64) {
+pub(crate) fn setting(stream: &mut RandomStream, known: &[(Address, Parameter)]) -> (Address, f64) {
     let (address, was) = &known[stream.below(known.len())];
     let share = f64::from(stream.range(0.0, 1.0));
     let value = match stream.below(8) {
@@ -118,7 +118,7 @@ pub(crate) fn setting(stream: &mut Stream, known: &[(Address, Parameter)]) -> (A
 }
 
 /// A part as it is, but thrown; most parts cannot be.
-pub(crate) fn thrown(stream: &mut Stream, world: &World) -> BodyState {
+pub(crate) fn thrown(stream: &mut RandomStream, world: &World) -> BodyState {
     let part = PartId(stream.below(world.state().part_pose.len()) as u32);
     BodyState {
         part,
@@ -131,7 +131,7 @@ pub(crate) fn thrown(stream: &mut Stream, world: &World) -> BodyState {
 }
 
 /// A joint with a place and a speed, now and then beyond its limits.
-pub(crate) fn joint(stream: &mut Stream, world: &World) -> (JointId, f32, f32) {
+pub(crate) fn joint(stream: &mut RandomStream, world: &World) -> (JointId, f32, f32) {
     let joint = JointId(stream.below(world.house().joints.len()) as u32);
     let limits = world.house().joints[joint].limits;
     let [low, high] = limits.unwrap_or([-3.0, 3.0]);

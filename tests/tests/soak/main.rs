@@ -19,7 +19,7 @@ use checks::{check, largest_snapshot, places};
 use dwell::{Engines, Viewpoint, World, WorldConfig, viewpoints};
 use dwell_houses::with_robot;
 use dwell_physics::{ActionCode, AgentControl};
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{
     Address, AgentBody, AgentId, DifferentialDrive, House, Id, Locomotion, Parameter, Pose,
 };
@@ -73,7 +73,7 @@ fn stand(rooms: &[Viewpoint], k: usize) -> Vec3 {
 /// A world and what goes on in it.
 struct Play {
     world: World,
-    stream: Stream,
+    stream: RandomStream,
     controls: [AgentControl; AGENTS],
     /// Every parameter as it was at the start.
     parameters: Vec<(Address, Parameter)>,
@@ -90,7 +90,7 @@ impl Play {
             ..WorldConfig::default()
         };
         let mut world = World::new(engines.clone(), &config).unwrap();
-        world.reset(Key::root(11)).unwrap();
+        world.reset(RandomKey::root(11)).unwrap();
         let rooms = viewpoints(engines).unwrap();
         for k in 0..AGENTS {
             let id = AgentId::from_index(k);
@@ -100,7 +100,7 @@ impl Play {
             parameters: world.parameters(),
             lately: Vec::new(),
             world,
-            stream: Key::root(12).stream(),
+            stream: RandomKey::root(12).stream(),
             controls: [AgentControl::default(); AGENTS],
         }
     }
@@ -173,7 +173,7 @@ impl Play {
     fn go_astray(&mut self) {
         let (saved, hash) = (self.world.snapshot(), self.world.hash());
         let (stream, controls) = (self.stream.clone(), self.controls);
-        self.stream = Key::root(13).stream();
+        self.stream = RandomKey::root(13).stream();
         for _ in 0..ASTRAY {
             self.step();
         }

@@ -280,7 +280,7 @@ fn middle(side: usize, u: usize, v: usize) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
 
     /// Rings of equal height, as most measurements have them, and a pole.
     fn rings() -> Vec<DVec3> {
@@ -298,7 +298,7 @@ mod tests {
     }
 
     fn scattered(count: usize) -> Vec<DVec3> {
-        let mut stream = Key::root(5).stream();
+        let mut stream = RandomKey::root(5).stream();
         (0..count)
             .map(|_| {
                 let d = stream.direction().as_dvec3();
@@ -334,7 +334,7 @@ mod tests {
     fn every_direction_is_among_its_three_points() {
         for points in [rings(), scattered(300)] {
             let mesh = Triangulation::new(&points).unwrap();
-            let mut stream = Key::root(6).stream();
+            let mut stream = RandomKey::root(6).stream();
             for _ in 0..5000 {
                 let direction = stream.direction();
                 let (corners, weights) = mesh.locate(direction);

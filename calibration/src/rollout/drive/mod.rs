@@ -15,7 +15,7 @@ use crate::bundle::file::DriveRow;
 use crate::bundle::{self, Bundle, Episode};
 use crate::error::CalibrationError;
 use crate::report::Found;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -206,7 +206,7 @@ impl Subject for Drives {
         episode: usize,
         at: usize,
         samples: usize,
-        nudge: Option<Key>,
+        nudge: Option<RandomKey>,
     ) -> Result<Vec<Motion>, CalibrationError> {
         let drive = &self.episodes[episode];
         let from = at.saturating_sub(PAST);

@@ -18,7 +18,7 @@ use crate::fit::{Variable, least_squares, median};
 use crate::progress::{Progress, Tell};
 use crate::report::{Found, page};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 
 /// Settings of [`run`]. Every field has a default; unknown fields are refused.
@@ -124,7 +124,9 @@ pub fn run<S: Modelled>(
             model,
             fold_of: &fold_of,
             options,
-            key: Key::root(options.seed).child("series").child(model.name),
+            key: RandomKey::root(options.seed)
+                .child("series")
+                .child(model.name),
         };
         let (mut outcome, ends) = study.run(share, &progress)?;
         let extended = model
@@ -209,7 +211,7 @@ struct Study<'a, S: Modelled> {
     model: &'a Model,
     fold_of: &'a [usize],
     options: &'a SeriesOptions,
-    key: Key,
+    key: RandomKey,
 }
 
 impl<S: Modelled> Study<'_, S> {
@@ -278,7 +280,7 @@ impl<S: Modelled> Study<'_, S> {
             .filter(|episode| self.fold_of[*episode] != fold)
             .collect();
         // All models look at the same episodes.
-        let key = Key::root(self.options.seed)
+        let key = RandomKey::root(self.options.seed)
             .child("part")
             .child(fold as u64);
         key.stream().shuffle(&mut train);

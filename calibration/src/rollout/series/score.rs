@@ -6,7 +6,7 @@ use crate::fit::median;
 use crate::rollout::{Deviation, Motion};
 use crate::select::share_gained;
 use crate::words::{number, percent};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -165,7 +165,7 @@ pub(super) fn gained<S: Modelled>(
     before: &ModelOutcome,
     after: &ModelOutcome,
     draws: usize,
-    key: Key,
+    key: RandomKey,
 ) -> Gained {
     let mut groups: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
     let mut better = 0;

@@ -24,7 +24,7 @@ use crate::progress::{Progress, Tell};
 use crate::report::{Found, page};
 use crate::twin::stage::{BOARD_SUBSTANCE, THING_SUBSTANCE};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -218,7 +218,9 @@ fn study(
     progress: &dyn Tell,
 ) -> Result<(ModelReport, Vec<End>), CalibrationError> {
     let threads = Threads::resolve(options.threads);
-    let key = Key::root(options.seed).child("study").child(model.name);
+    let key = RandomKey::root(options.seed)
+        .child("study")
+        .child(model.name);
     let plain = Rig::new(tracks, model.contact_friction)?;
     let plain_fine = Rig::finer(tracks, model.contact_friction, FINER)?;
     let (mut chosen, mut rigs, mut fine) = (Vec::new(), Vec::new(), Vec::new());

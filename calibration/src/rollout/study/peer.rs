@@ -5,7 +5,7 @@ use crate::error::CalibrationError;
 use crate::fit::median;
 use crate::rollout::{Score, Summary, Tracks};
 use dwell_scene::file;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -98,7 +98,7 @@ pub(super) fn compare(
     ours: &[Score],
     peer: &Peer,
     draws: usize,
-    key: Key,
+    key: RandomKey,
 ) -> Result<Comparison, CalibrationError> {
     let mut theirs = Vec::with_capacity(ours.len());
     for episode in &tracks.episodes {

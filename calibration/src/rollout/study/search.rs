@@ -7,7 +7,7 @@ use crate::fit::CmaEs;
 use crate::progress::Tell;
 use crate::rollout::{Rig, Score, Tracks, scores};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// The share of episodes, the best in each quantity, that the cost looks at: one toss in eight lands on another face than
 /// predicted, by chance rather than by parameters.
@@ -37,7 +37,7 @@ pub(super) fn search(
     tracks: &Tracks,
     train: &[usize],
     options: &StudyOptions,
-    key: Key,
+    key: RandomKey,
     progress: &dyn Tell,
 ) -> Result<Vec<f64>, CalibrationError> {
     let threads = Threads::resolve(options.threads);

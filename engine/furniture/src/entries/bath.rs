@@ -6,7 +6,7 @@ use crate::finish::{Finish, plastic, sanitary};
 use crate::model::Model;
 use crate::models::{bath, bath_things, toilet};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::f32::consts::FRAC_PI_2;
 
 /// Sanitary ware is white, sometimes of a pale colour.
@@ -23,7 +23,7 @@ fn ware(d: &Draw) -> Finish {
     }
 }
 
-pub(crate) fn bathtub(style: &Style, key: Key) -> Model {
+pub(crate) fn bathtub(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("bathtub", key);
     let (length, left) = (d.m("width"), d.chance("left", 0.5));
     let tub = bath::bathtub(length, d.m("depth"), left).repainted("white_porcelain", &ware(&d));
@@ -39,15 +39,15 @@ fn vanity(style: &Style, d: &Draw) -> Model {
     tapped(basin, style, d, sizes, [0.0, bath::BASIN_RIM_M, -0.17], 0.0)
 }
 
-pub(crate) fn washbasin(style: &Style, key: Key) -> Model {
+pub(crate) fn washbasin(style: &Style, key: RandomKey) -> Model {
     vanity(style, &Draw::new("washbasin", key))
 }
 
-pub(crate) fn hand_basin(style: &Style, key: Key) -> Model {
+pub(crate) fn hand_basin(style: &Style, key: RandomKey) -> Model {
     vanity(style, &Draw::new("hand_basin", key))
 }
 
-pub(crate) fn water_closet(style: &Style, key: Key) -> Model {
+pub(crate) fn water_closet(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("toilet", key);
     let seat = Finish {
         name: "toilet_seat",
@@ -65,26 +65,26 @@ pub(crate) fn water_closet(style: &Style, key: Key) -> Model {
     }
 }
 
-pub(crate) fn shower_head(_style: &Style, key: Key) -> Model {
+pub(crate) fn shower_head(_style: &Style, key: RandomKey) -> Model {
     bath::shower_head().resized(Draw::new("shower_head", key).m("height") / 1.33)
 }
 
-pub(crate) fn shower_screen(_style: &Style, key: Key) -> Model {
+pub(crate) fn shower_screen(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("shower_screen", key);
     bath::shower_screen(d.m("depth"), d.m("height"))
 }
 
-pub(crate) fn bath_mat(style: &Style, key: Key) -> Model {
+pub(crate) fn bath_mat(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("bath_mat", key);
     bath_things::bath_mat(d.m("width"), d.m("depth"))
         .repainted("aqua_terry", style.terry(&mut d.stream("terry")))
 }
 
-pub(crate) fn laundry_basket(_style: &Style, key: Key) -> Model {
+pub(crate) fn laundry_basket(_style: &Style, key: RandomKey) -> Model {
     bath_things::laundry_basket().resized(Draw::new("laundry_basket", key).m("height") / 0.6)
 }
 
-pub(crate) fn waste_bin(style: &Style, key: Key) -> Model {
+pub(crate) fn waste_bin(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("waste_bin", key);
     let tone = style.cloth(&mut d.stream("tone")).srgb;
     let metal = Finish {
@@ -99,7 +99,7 @@ pub(crate) fn waste_bin(style: &Style, key: Key) -> Model {
     bath_things::pedal_bin(d.m("height"), &color)
 }
 
-pub(crate) fn scale(_style: &Style, key: Key) -> Model {
+pub(crate) fn scale(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("scale", key);
     let pane = Finish::plain(
         "scale_glass",
@@ -120,27 +120,27 @@ pub(crate) fn scale(_style: &Style, key: Key) -> Model {
         .repainted("green_glass", &pane)
 }
 
-pub(crate) fn folded_towel(style: &Style, key: Key) -> Model {
+pub(crate) fn folded_towel(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("folded_towel", key);
     bath_things::folded_towel(style.terry(&mut d.stream("terry"))).resized(d.m("width") / 0.34)
 }
 
-pub(crate) fn towel_rail(style: &Style, key: Key) -> Model {
+pub(crate) fn towel_rail(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("towel_rail", key);
     bath_things::towel_rail(d.m("width") - 0.018, style.terry(&mut d.stream("terry")))
 }
 
-pub(crate) fn paper_holder(_style: &Style, key: Key) -> Model {
+pub(crate) fn paper_holder(_style: &Style, key: RandomKey) -> Model {
     bath_things::paper_holder().resized(Draw::new("paper_holder", key).m("width") / 0.155)
 }
 
-pub(crate) fn soap_dispenser(style: &Style, key: Key) -> Model {
+pub(crate) fn soap_dispenser(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("soap_dispenser", key);
     let tone = style.glaze(&mut d.stream("tone")).srgb;
     bath_things::soap_dispenser(&plastic("dispenser_plastic", tone)).resized(d.m("height") / 0.172)
 }
 
-pub(crate) fn toothbrushes(_style: &Style, key: Key) -> Model {
+pub(crate) fn toothbrushes(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("toothbrushes", key);
     let tones = [
         [88, 168, 112],
@@ -157,7 +157,7 @@ pub(crate) fn toothbrushes(_style: &Style, key: Key) -> Model {
         .repainted("blue_plastic", &plastic("second_brush", tones[second]))
 }
 
-pub(crate) fn wall_mirror(style: &Style, key: Key) -> Model {
+pub(crate) fn wall_mirror(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("wall_mirror", key);
     let rim = if d.chance("metal", 0.5) {
         style.metal.clone()

@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::models::kitchen_unit::{Bay, KitchenUnit, WORKTOP_M, wall_cabinet as cabinets};
 use crate::models::{appliances, cooker, crockery, food, fridge, taps};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// The casing of an appliance: the style's, or white, or steel.
 fn casing(style: &Style, d: &Draw, name: &'static str) -> Finish {
@@ -41,7 +41,7 @@ fn run(style: &Style, bay_m: f32, bays: Vec<Bay>) -> Model {
     .build()
 }
 
-pub(crate) fn base_unit_1(style: &Style, key: Key) -> Model {
+pub(crate) fn base_unit_1(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("base_unit_1", key);
     run(
         style,
@@ -50,7 +50,7 @@ pub(crate) fn base_unit_1(style: &Style, key: Key) -> Model {
     )
 }
 
-pub(crate) fn base_unit_2(style: &Style, key: Key) -> Model {
+pub(crate) fn base_unit_2(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("base_unit_2", key);
     let bays = d.of(
         "order",
@@ -74,19 +74,19 @@ fn sink(style: &Style, d: &Draw, bay_m: f32, bays: Vec<Bay>) -> Model {
     )
 }
 
-pub(crate) fn sink_unit(style: &Style, key: Key) -> Model {
+pub(crate) fn sink_unit(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("sink_unit", key);
     sink(style, &d, d.m("width"), vec![Bay::Sink])
 }
 
-pub(crate) fn sink_unit_2(style: &Style, key: Key) -> Model {
+pub(crate) fn sink_unit_2(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("sink_unit_2", key);
     let other = d.of("other", [Bay::Door, Bay::Drawers]);
     let bays = d.of("order", [[Bay::Sink, other], [other, Bay::Sink]]);
     sink(style, &d, 0.5 * d.m("width"), bays.to_vec())
 }
 
-pub(crate) fn sink_unit_3(style: &Style, key: Key) -> Model {
+pub(crate) fn sink_unit_3(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("sink_unit_3", key);
     let other = d.of("other", [Bay::Door, Bay::Drawers]);
     let orders = [
@@ -102,7 +102,7 @@ pub(crate) fn sink_unit_3(style: &Style, key: Key) -> Model {
     )
 }
 
-fn cabinet(style: &Style, name: &'static str, key: Key, doors: usize) -> Model {
+fn cabinet(style: &Style, name: &'static str, key: RandomKey, doors: usize) -> Model {
     let d = Draw::new(name, key);
     cabinets(
         doors,
@@ -112,30 +112,30 @@ fn cabinet(style: &Style, name: &'static str, key: Key, doors: usize) -> Model {
     )
 }
 
-pub(crate) fn wall_cabinet(style: &Style, key: Key) -> Model {
+pub(crate) fn wall_cabinet(style: &Style, key: RandomKey) -> Model {
     cabinet(style, "wall_cabinet", key, 1)
 }
 
-pub(crate) fn wall_cabinet_2(style: &Style, key: Key) -> Model {
+pub(crate) fn wall_cabinet_2(style: &Style, key: RandomKey) -> Model {
     cabinet(style, "wall_cabinet_2", key, 2)
 }
 
-pub(crate) fn wall_cabinet_3(style: &Style, key: Key) -> Model {
+pub(crate) fn wall_cabinet_3(style: &Style, key: RandomKey) -> Model {
     cabinet(style, "wall_cabinet_3", key, 3)
 }
 
-pub(crate) fn refrigerator(style: &Style, key: Key) -> Model {
+pub(crate) fn refrigerator(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("refrigerator", key);
     let case = casing(style, &d, "fridge_casing");
     fridge::refrigerator(d.m("width"), d.m("height"), d.m("depth")).repainted("fridge_white", &case)
 }
 
-pub(crate) fn stove(style: &Style, key: Key) -> Model {
+pub(crate) fn stove(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("cooker", key);
     cooker::cooker().repainted("cooker_steel", &casing(style, &d, "cooker_casing"))
 }
 
-pub(crate) fn range_hood(_style: &Style, key: Key) -> Model {
+pub(crate) fn range_hood(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("range_hood", key);
     let shine = if d.chance("dark", 0.3) {
         painted_steel("hood_black", [44, 44, 47])
@@ -148,19 +148,19 @@ pub(crate) fn range_hood(_style: &Style, key: Key) -> Model {
     cooker::range_hood(d.m("width")).repainted("steel", &shine)
 }
 
-pub(crate) fn microwave(style: &Style, key: Key) -> Model {
+pub(crate) fn microwave(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("microwave", key);
     appliances::microwave()
         .resized(d.m("width") / 0.48)
         .repainted("microwave_white", &casing(style, &d, "microwave_casing"))
 }
 
-pub(crate) fn washer(style: &Style, key: Key) -> Model {
+pub(crate) fn washer(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("washer", key);
     appliances::washer().repainted("washer_white", &casing(style, &d, "washer_casing"))
 }
 
-pub(crate) fn kettle(style: &Style, key: Key) -> Model {
+pub(crate) fn kettle(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("kettle", key);
     let tone = style.cloth(&mut d.stream("tone")).srgb;
     let body = match d.below("body", 3) {
@@ -176,7 +176,7 @@ pub(crate) fn kettle(style: &Style, key: Key) -> Model {
         .repainted("steel", &body)
 }
 
-pub(crate) fn toaster(style: &Style, key: Key) -> Model {
+pub(crate) fn toaster(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("toaster", key);
     let tone = style.cloth(&mut d.stream("tone")).srgb;
     let case = plastic(
@@ -191,7 +191,7 @@ pub(crate) fn toaster(style: &Style, key: Key) -> Model {
         .repainted("cream_plastic", &case)
 }
 
-pub(crate) fn coffee_machine(style: &Style, key: Key) -> Model {
+pub(crate) fn coffee_machine(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("coffee_machine", key);
     let tone = style.cloth(&mut d.stream("tone")).srgb;
     let case = plastic(
@@ -203,7 +203,7 @@ pub(crate) fn coffee_machine(style: &Style, key: Key) -> Model {
         .repainted("anthracite_plastic", &case)
 }
 
-pub(crate) fn mixer_tap(style: &Style, key: Key) -> Model {
+pub(crate) fn mixer_tap(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("mixer_tap", key);
     let metal = Finish {
         name: "tap_metal",
@@ -218,7 +218,7 @@ pub(crate) fn mixer_tap(style: &Style, key: Key) -> Model {
     }
 }
 
-pub(crate) fn bottle(_style: &Style, key: Key) -> Model {
+pub(crate) fn bottle(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("bottle", key);
     let body = Finish {
         srgb: d.of("glass", [[52, 92, 60], [110, 60, 40], [186, 206, 214]]),
@@ -246,12 +246,12 @@ pub(crate) fn bottle(_style: &Style, key: Key) -> Model {
     crockery::bottle(d.m("height"), &body, &label, &cap)
 }
 
-pub(crate) fn bowl(style: &Style, key: Key) -> Model {
+pub(crate) fn bowl(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("bowl", key);
     crockery::bowl(0.5 * d.m("width"), style.glaze(&mut d.stream("glaze")))
 }
 
-pub(crate) fn jar(style: &Style, key: Key) -> Model {
+pub(crate) fn jar(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("jar", key);
     let lid = if d.chance("wood", 0.5) {
         style.wood.clone()
@@ -261,17 +261,17 @@ pub(crate) fn jar(style: &Style, key: Key) -> Model {
     crockery::jar(d.m("height"), style.glaze(&mut d.stream("glaze")), &lid)
 }
 
-pub(crate) fn mug(style: &Style, key: Key) -> Model {
+pub(crate) fn mug(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("mug", key);
     crockery::mug(style.glaze(&mut d.stream("glaze"))).resized(d.m("height") / 0.095)
 }
 
-pub(crate) fn plate(style: &Style, key: Key) -> Model {
+pub(crate) fn plate(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("plate", key);
     crockery::plate(0.5 * d.m("width"), style.glaze(&mut d.stream("glaze")))
 }
 
-pub(crate) fn pan(_style: &Style, key: Key) -> Model {
+pub(crate) fn pan(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("pan", key);
     let iron = painted_steel(
         "pan_metal",
@@ -280,7 +280,7 @@ pub(crate) fn pan(_style: &Style, key: Key) -> Model {
     crockery::pan(0.5 * d.m("depth")).repainted("black_steel", &iron)
 }
 
-pub(crate) fn pot(style: &Style, key: Key) -> Model {
+pub(crate) fn pot(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("pot", key);
     let tone = style.cloth(&mut d.stream("tone")).srgb;
     let metal = if d.chance("enamel", 0.5) {
@@ -296,11 +296,11 @@ pub(crate) fn pot(style: &Style, key: Key) -> Model {
     }
 }
 
-pub(crate) fn tumbler(_style: &Style, key: Key) -> Model {
+pub(crate) fn tumbler(_style: &Style, key: RandomKey) -> Model {
     crockery::tumbler().resized(Draw::new("tumbler", key).m("height") / 0.12)
 }
 
-pub(crate) fn utensils(style: &Style, key: Key) -> Model {
+pub(crate) fn utensils(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("utensils", key);
     let cup = Finish {
         name: "beaker",
@@ -312,11 +312,11 @@ pub(crate) fn utensils(style: &Style, key: Key) -> Model {
         .repainted("steel", &cup)
 }
 
-pub(crate) fn bread(_style: &Style, key: Key) -> Model {
+pub(crate) fn bread(_style: &Style, key: RandomKey) -> Model {
     food::bread().resized(Draw::new("bread", key).m("width") / 0.26)
 }
 
-pub(crate) fn cutting_board(style: &Style, key: Key) -> Model {
+pub(crate) fn cutting_board(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("cutting_board", key);
     let wood = &style.wood;
     let board = food::cutting_board().resized(d.m("width") / 0.38);
@@ -327,24 +327,24 @@ pub(crate) fn cutting_board(style: &Style, key: Key) -> Model {
     }
 }
 
-pub(crate) fn fruit(_style: &Style, key: Key) -> Model {
+pub(crate) fn fruit(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("fruit", key);
     let skins = [food::red_skin(), food::green_skin(), food::orange_skin()];
     food::fruit(0.5 * d.m("width"), &skins[d.below("skin", 3)])
 }
 
-pub(crate) fn knife_block(_style: &Style, key: Key) -> Model {
+pub(crate) fn knife_block(_style: &Style, key: RandomKey) -> Model {
     food::knife_block().resized(Draw::new("knife_block", key).m("height") / 0.31)
 }
 
-pub(crate) fn knife(_style: &Style, key: Key) -> Model {
+pub(crate) fn knife(_style: &Style, key: RandomKey) -> Model {
     food::cutlery("knife").resized(Draw::new("knife", key).m("depth") / 0.21)
 }
 
-pub(crate) fn fork(_style: &Style, key: Key) -> Model {
+pub(crate) fn fork(_style: &Style, key: RandomKey) -> Model {
     food::cutlery("fork").resized(Draw::new("fork", key).m("depth") / 0.2)
 }
 
-pub(crate) fn spoon(_style: &Style, key: Key) -> Model {
+pub(crate) fn spoon(_style: &Style, key: RandomKey) -> Model {
     food::cutlery("spoon").resized(Draw::new("spoon", key).m("depth") / 0.205)
 }

@@ -13,7 +13,7 @@ use crate::models::table::Table;
 use crate::models::tv_stand::Lowboard;
 use crate::models::{lamps, plants, radio, seats, television, textiles};
 use crate::style::{Leg, Style};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// Builds and proportions that seats of one family share.
 fn seat(style: &Style, d: &Draw, cover: Finish) -> Sofa {
@@ -38,7 +38,7 @@ fn seat(style: &Style, d: &Draw, cover: Finish) -> Sofa {
     }
 }
 
-pub(crate) fn sofa(style: &Style, key: Key) -> Model {
+pub(crate) fn sofa(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("sofa", key);
     let family = seat(style, &d, style.cover(&mut d.stream("cover")).clone());
     let width = d.m("width") - 2.0 * family.arm_m;
@@ -51,7 +51,7 @@ pub(crate) fn sofa(style: &Style, key: Key) -> Model {
     .build()
 }
 
-pub(crate) fn armchair(style: &Style, key: Key) -> Model {
+pub(crate) fn armchair(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("armchair", key);
     let family = seat(style, &d, style.cover(&mut d.stream("cover")).clone());
     Sofa {
@@ -61,24 +61,24 @@ pub(crate) fn armchair(style: &Style, key: Key) -> Model {
     .build()
 }
 
-pub(crate) fn office_chair(style: &Style, key: Key) -> Model {
+pub(crate) fn office_chair(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("office_chair", key);
     seats::office_chair(style.cover(&mut d.stream("cover"))).resized(d.m("height") / 1.08)
 }
 
-pub(crate) fn stool(style: &Style, key: Key) -> Model {
+pub(crate) fn stool(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("stool", key);
     let wood = style.any_wood(&mut d.stream("wood"));
     seats::stool(d.m("height"), wood, style.leg_finish())
 }
 
-pub(crate) fn ottoman(style: &Style, key: Key) -> Model {
+pub(crate) fn ottoman(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("ottoman", key);
     let cover = style.cover(&mut d.stream("cover"));
     seats::pouf(0.5 * d.m("width"), d.m("height"), cover)
 }
 
-pub(crate) fn shoe_bench(style: &Style, key: Key) -> Model {
+pub(crate) fn shoe_bench(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("shoe_bench", key);
     let (wood, cloth) = (
         style.any_wood(&mut d.stream("wood")),
@@ -87,7 +87,7 @@ pub(crate) fn shoe_bench(style: &Style, key: Key) -> Model {
     seats::shoe_bench(d.m("width"), wood, cloth)
 }
 
-pub(crate) fn desk(style: &Style, key: Key) -> Model {
+pub(crate) fn desk(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("desk", key);
     let wood = style.any_wood(&mut d.stream("wood")).clone();
     if d.chance("plain", 0.3) {
@@ -119,7 +119,7 @@ pub(crate) fn desk(style: &Style, key: Key) -> Model {
     .build()
 }
 
-pub(crate) fn bookshelf(style: &Style, key: Key) -> Model {
+pub(crate) fn bookshelf(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("bookshelf", key);
     let height = d.m("height");
     Bookshelf {
@@ -132,7 +132,7 @@ pub(crate) fn bookshelf(style: &Style, key: Key) -> Model {
     .build()
 }
 
-pub(crate) fn dresser(style: &Style, key: Key) -> Model {
+pub(crate) fn dresser(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("dresser", key);
     let height = d.m("height");
     Dresser {
@@ -159,20 +159,20 @@ fn lowboard(style: &Style, d: &Draw, name: &'static str, category: &'static str)
     .build()
 }
 
-pub(crate) fn tv_stand(style: &Style, key: Key) -> Model {
+pub(crate) fn tv_stand(style: &Style, key: RandomKey) -> Model {
     lowboard(style, &Draw::new("tv_stand", key), "tv_stand", "tv_stand")
 }
 
-pub(crate) fn sideboard(style: &Style, key: Key) -> Model {
+pub(crate) fn sideboard(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("sideboard", key);
     lowboard(style, &d, "sideboard", "wardrobe_cabinet")
 }
 
-pub(crate) fn television(_style: &Style, key: Key) -> Model {
+pub(crate) fn television(_style: &Style, key: RandomKey) -> Model {
     television::television(Draw::new("television", key).m("width"))
 }
 
-pub(crate) fn loudspeaker(style: &Style, key: Key) -> Model {
+pub(crate) fn loudspeaker(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("loudspeaker", key);
     let case = style.any_wood(&mut d.stream("wood"));
     let plain = Finish::plain("speaker_case", "wood", case.srgb);
@@ -188,7 +188,7 @@ pub(crate) fn loudspeaker(style: &Style, key: Key) -> Model {
         .repainted("walnut", &case)
 }
 
-pub(crate) fn floor_lamp(style: &Style, key: Key) -> Model {
+pub(crate) fn floor_lamp(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("floor_lamp", key);
     let cloth = shade(style, &d);
     if d.chance("tripod", 0.35) {
@@ -202,13 +202,13 @@ pub(crate) fn floor_lamp(style: &Style, key: Key) -> Model {
     lamps::floor_lamp(d.m("height"), &cloth).repainted("black_plastic", &foot)
 }
 
-pub(crate) fn table_lamp(style: &Style, key: Key) -> Model {
+pub(crate) fn table_lamp(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("table_lamp", key);
     let base = style.glaze(&mut d.stream("base"));
     lamps::table_lamp(d.m("height"), base, &shade(style, &d))
 }
 
-pub(crate) fn desk_lamp(style: &Style, key: Key) -> Model {
+pub(crate) fn desk_lamp(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("desk_lamp", key);
     let accent = Finish::plain(
         "lamp_lacquer",
@@ -223,7 +223,7 @@ pub(crate) fn desk_lamp(style: &Style, key: Key) -> Model {
     lamps::desk_lamp(&lacquer).resized(d.m("height") / 0.42)
 }
 
-pub(crate) fn plant(style: &Style, key: Key) -> Model {
+pub(crate) fn plant(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("plant", key);
     let height = d.m("height");
     let pot = style.glaze(&mut d.stream("pot")).clone();
@@ -244,12 +244,12 @@ pub(crate) fn plant(style: &Style, key: Key) -> Model {
     .build()
 }
 
-pub(crate) fn snake_plant(style: &Style, key: Key) -> Model {
+pub(crate) fn snake_plant(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("snake_plant", key);
     plants::sansevieria(d.m("height"), style.glaze(&mut d.stream("pot")))
 }
 
-pub(crate) fn small_plant(style: &Style, key: Key) -> Model {
+pub(crate) fn small_plant(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("small_plant", key);
     let height = d.m("height");
     Plant {
@@ -269,7 +269,7 @@ pub(crate) fn small_plant(style: &Style, key: Key) -> Model {
     .build()
 }
 
-pub(crate) fn rug(style: &Style, key: Key) -> Model {
+pub(crate) fn rug(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("rug", key);
     let [a, b] = ["ground", "border"].map(|tone| style.cloth(&mut d.stream(tone)).srgb);
     let pattern = d.stream("pattern").bits();
@@ -284,12 +284,12 @@ pub(crate) fn rug(style: &Style, key: Key) -> Model {
     textiles::rug(d.m("width"), d.m("depth"), &weave)
 }
 
-pub(crate) fn round_rug(style: &Style, key: Key) -> Model {
+pub(crate) fn round_rug(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("round_rug", key);
     textiles::round_rug(0.5 * d.m("width"), style.terry(&mut d.stream("pile")))
 }
 
-pub(crate) fn coat_rack(style: &Style, key: Key) -> Model {
+pub(crate) fn coat_rack(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("coat_rack", key);
     let tones = [
         [60, 66, 90],

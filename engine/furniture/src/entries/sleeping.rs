@@ -7,7 +7,7 @@ use crate::models::nightstand::nightstand_with;
 use crate::models::textiles;
 use crate::models::wardrobe::Wardrobe;
 use crate::style::{Leg, Style};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 fn bed(style: &Style, d: &Draw) -> Model {
     let covered = d.chance("covered", 0.4);
@@ -25,21 +25,21 @@ fn bed(style: &Style, d: &Draw) -> Model {
     .build()
 }
 
-pub(crate) fn double_bed(style: &Style, key: Key) -> Model {
+pub(crate) fn double_bed(style: &Style, key: RandomKey) -> Model {
     bed(style, &Draw::new("double_bed", key))
 }
 
-pub(crate) fn single_bed(style: &Style, key: Key) -> Model {
+pub(crate) fn single_bed(style: &Style, key: RandomKey) -> Model {
     bed(style, &Draw::new("single_bed", key))
 }
 
-pub(crate) fn nightstand(style: &Style, key: Key) -> Model {
+pub(crate) fn nightstand(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("nightstand", key);
     let wood = style.any_wood(&mut d.stream("wood"));
     nightstand_with(d.m("width"), d.m("height"), wood, &style.doors())
 }
 
-pub(crate) fn wardrobe(style: &Style, key: Key) -> Model {
+pub(crate) fn wardrobe(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("wardrobe", key);
     let width = d.m("width");
     Wardrobe {
@@ -53,7 +53,7 @@ pub(crate) fn wardrobe(style: &Style, key: Key) -> Model {
     .build()
 }
 
-pub(crate) fn pillow(style: &Style, key: Key) -> Model {
+pub(crate) fn pillow(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("pillow", key);
     textiles::pillow(
         [d.m("width"), d.m("height"), d.m("depth")],
@@ -61,7 +61,7 @@ pub(crate) fn pillow(style: &Style, key: Key) -> Model {
     )
 }
 
-pub(crate) fn cushion(style: &Style, key: Key) -> Model {
+pub(crate) fn cushion(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("cushion", key);
     let edge = d.m("width");
     textiles::pillow(
@@ -70,7 +70,7 @@ pub(crate) fn cushion(style: &Style, key: Key) -> Model {
     )
 }
 
-pub(crate) fn folded_blanket(style: &Style, key: Key) -> Model {
+pub(crate) fn folded_blanket(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("folded_blanket", key);
     textiles::folded_blanket(
         d.m("width"),

@@ -5,9 +5,9 @@ use crate::finish::{Finish, leather, plastic, upholstery};
 use crate::model::Model;
 use crate::models::{bookshelf, decoration, gadgets, lamps, plants, radio};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
-pub(crate) fn book(_style: &Style, key: Key) -> Model {
+pub(crate) fn book(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("book", key);
     bookshelf::book(
         [d.m("width"), d.m("height"), d.m("depth")],
@@ -15,12 +15,12 @@ pub(crate) fn book(_style: &Style, key: Key) -> Model {
     )
 }
 
-pub(crate) fn book_row(_style: &Style, key: Key) -> Model {
+pub(crate) fn book_row(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("book_row", key);
     bookshelf::book_row(d.m("row"), d.m("tall"), key.child("row"))
 }
 
-pub(crate) fn magazines(style: &Style, key: Key) -> Model {
+pub(crate) fn magazines(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("magazines", key);
     let cover = |k: usize| {
         let colors = [0, 1, 2].map(|n| style.cloths[(k + n) % style.cloths.len()].srgb);
@@ -30,7 +30,7 @@ pub(crate) fn magazines(style: &Style, key: Key) -> Model {
     decoration::magazines([&cover(0), &cover(1), &cover(2)]).resized(d.m("width") / 0.24)
 }
 
-pub(crate) fn globe(style: &Style, key: Key) -> Model {
+pub(crate) fn globe(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("globe", key);
     let globe = decoration::globe().resized(d.m("height") / 0.285);
     let wood = &style.wood;
@@ -41,7 +41,7 @@ pub(crate) fn globe(style: &Style, key: Key) -> Model {
     }
 }
 
-pub(crate) fn handbag(_style: &Style, key: Key) -> Model {
+pub(crate) fn handbag(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("handbag", key);
     let hide = leather(
         "bag_leather",
@@ -61,12 +61,12 @@ pub(crate) fn handbag(_style: &Style, key: Key) -> Model {
         .repainted("cognac_leather", &hide)
 }
 
-pub(crate) fn sculpture(style: &Style, key: Key) -> Model {
+pub(crate) fn sculpture(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("sculpture", key);
     decoration::sculpture(style.glaze(&mut d.stream("stone"))).resized(d.m("height") / 0.194)
 }
 
-pub(crate) fn storage_box(style: &Style, key: Key) -> Model {
+pub(crate) fn storage_box(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("storage_box", key);
     let card = Finish::plain(
         "storage_card",
@@ -89,7 +89,7 @@ pub(crate) fn storage_box(style: &Style, key: Key) -> Model {
     decoration::open_box([d.m("width"), d.m("height"), d.m("depth")], &stuff)
 }
 
-pub(crate) fn pencil_cup(style: &Style, key: Key) -> Model {
+pub(crate) fn pencil_cup(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("pencil_cup", key);
     let cup = plastic(
         "pencil_cup_plastic",
@@ -100,7 +100,7 @@ pub(crate) fn pencil_cup(style: &Style, key: Key) -> Model {
         .repainted("blue_plastic", &cup)
 }
 
-pub(crate) fn shoes(_style: &Style, key: Key) -> Model {
+pub(crate) fn shoes(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("shoes", key);
     let hide = leather(
         "shoe_leather",
@@ -118,7 +118,7 @@ pub(crate) fn shoes(_style: &Style, key: Key) -> Model {
     decoration::shoes(&hide).resized(d.m("depth") / 0.29)
 }
 
-pub(crate) fn teddy_bear(_style: &Style, key: Key) -> Model {
+pub(crate) fn teddy_bear(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("teddy_bear", key);
     let plush = upholstery(
         "plush",
@@ -135,7 +135,7 @@ pub(crate) fn teddy_bear(_style: &Style, key: Key) -> Model {
     decoration::teddy_bear(&plush).resized(d.m("height") / 0.274)
 }
 
-pub(crate) fn toy_ball(style: &Style, key: Key) -> Model {
+pub(crate) fn toy_ball(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("toy_ball", key);
     let rubber = Finish::plain(
         "toy_rubber",
@@ -145,7 +145,7 @@ pub(crate) fn toy_ball(style: &Style, key: Key) -> Model {
     decoration::toy_ball(0.5 * d.m("width"), &rubber)
 }
 
-pub(crate) fn toy_train(_style: &Style, key: Key) -> Model {
+pub(crate) fn toy_train(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("toy_train", key);
     let tones = [
         [196, 52, 44],
@@ -165,7 +165,7 @@ pub(crate) fn toy_train(_style: &Style, key: Key) -> Model {
         )
 }
 
-pub(crate) fn toy_block(_style: &Style, key: Key) -> Model {
+pub(crate) fn toy_block(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("toy_block", key);
     let tone = d.of(
         "tone",
@@ -174,7 +174,7 @@ pub(crate) fn toy_block(_style: &Style, key: Key) -> Model {
     decoration::toy_block(d.m("width"), "block_lacquer", tone)
 }
 
-pub(crate) fn alarm_clock(style: &Style, key: Key) -> Model {
+pub(crate) fn alarm_clock(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("alarm_clock", key);
     let case = plastic("alarm_clock_case", style.glaze(&mut d.stream("tone")).srgb);
     gadgets::alarm_clock()
@@ -182,7 +182,7 @@ pub(crate) fn alarm_clock(style: &Style, key: Key) -> Model {
         .repainted("mint_plastic", &case)
 }
 
-pub(crate) fn laptop(_style: &Style, key: Key) -> Model {
+pub(crate) fn laptop(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("laptop", key);
     let case = crate::finish::device(
         "laptop_case",
@@ -201,11 +201,11 @@ pub(crate) fn laptop(_style: &Style, key: Key) -> Model {
         .repainted("grey_case", &case)
 }
 
-pub(crate) fn remote_control(_style: &Style, key: Key) -> Model {
+pub(crate) fn remote_control(_style: &Style, key: RandomKey) -> Model {
     gadgets::remote_control().resized(Draw::new("remote_control", key).m("depth") / 0.17)
 }
 
-pub(crate) fn telephone(_style: &Style, key: Key) -> Model {
+pub(crate) fn telephone(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("telephone", key);
     let case = plastic(
         "telephone_case",
@@ -219,7 +219,7 @@ pub(crate) fn telephone(_style: &Style, key: Key) -> Model {
         .repainted("red_plastic", &case)
 }
 
-pub(crate) fn candle(_style: &Style, key: Key) -> Model {
+pub(crate) fn candle(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("candle", key);
     let wax = Finish::plain(
         "candle_wax",
@@ -237,16 +237,16 @@ pub(crate) fn candle(_style: &Style, key: Key) -> Model {
     lamps::candle(d.m("height") - 0.016).repainted("wax", &wax)
 }
 
-pub(crate) fn night_light(_style: &Style, key: Key) -> Model {
+pub(crate) fn night_light(_style: &Style, key: RandomKey) -> Model {
     lamps::night_light().resized(Draw::new("night_light", key).m("height") / 0.132)
 }
 
-pub(crate) fn vase(style: &Style, key: Key) -> Model {
+pub(crate) fn vase(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("vase", key);
     plants::vase(d.m("height"), style.glaze(&mut d.stream("glaze")), None)
 }
 
-pub(crate) fn wireless(style: &Style, key: Key) -> Model {
+pub(crate) fn wireless(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("radio", key);
     let wood = &style.wood;
     let set = radio::radio(d.chance("on", 0.25)).resized(d.m("width") / 0.3);

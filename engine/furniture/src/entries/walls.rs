@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::models::textiles::Curtains;
 use crate::models::{bookshelf, decoration, gadgets, lamps, openings};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// What pictures show: recipes of textures.
 const MOTIFS: [&str; 7] = [
@@ -34,19 +34,19 @@ fn image(style: &Style, d: &Draw) -> Finish {
     Finish::picture("framed_image", "paper", recipe, colors, seed)
 }
 
-pub(crate) fn picture(style: &Style, key: Key) -> Model {
+pub(crate) fn picture(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("picture", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let wood = style.any_wood(&mut d.stream("wood"));
     decoration::picture(w, h, wood, &image(style, &d))
 }
 
-pub(crate) fn poster(style: &Style, key: Key) -> Model {
+pub(crate) fn poster(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("poster", key);
     decoration::poster(d.m("width"), d.m("height"), &image(style, &d))
 }
 
-pub(crate) fn wall_clock(style: &Style, key: Key) -> Model {
+pub(crate) fn wall_clock(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("wall_clock", key);
     let rim = Finish {
         name: "clock_rim",
@@ -56,7 +56,7 @@ pub(crate) fn wall_clock(style: &Style, key: Key) -> Model {
     gadgets::wall_clock(0.5 * d.m("width")).repainted("black_lacquer", &rim)
 }
 
-pub(crate) fn wall_shelf(style: &Style, key: Key) -> Model {
+pub(crate) fn wall_shelf(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("wall_shelf", key);
     bookshelf::wall_shelf(
         d.m("width"),
@@ -65,7 +65,7 @@ pub(crate) fn wall_shelf(style: &Style, key: Key) -> Model {
     )
 }
 
-pub(crate) fn curtains(style: &Style, key: Key) -> Model {
+pub(crate) fn curtains(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("curtains", key);
     let tone = style.cloth(&mut d.stream("cloth")).srgb;
     let substance = d.of("weight", ["light_curtain", "heavy_curtain"]);
@@ -82,25 +82,25 @@ pub(crate) fn curtains(style: &Style, key: Key) -> Model {
     .build()
 }
 
-pub(crate) fn radiator(_style: &Style, key: Key) -> Model {
+pub(crate) fn radiator(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("radiator", key);
     openings::radiator(d.m("width"), d.m("height")).switched(true)
 }
 
-pub(crate) fn light_switch(_style: &Style, key: Key) -> Model {
+pub(crate) fn light_switch(_style: &Style, key: RandomKey) -> Model {
     openings::light_switch().resized(Draw::new("light_switch", key).m("width") / 0.08)
 }
 
-pub(crate) fn ceiling_lamp(_style: &Style, key: Key) -> Model {
+pub(crate) fn ceiling_lamp(_style: &Style, key: RandomKey) -> Model {
     lamps::ceiling_dome(0.5 * Draw::new("ceiling_lamp", key).m("width"), 14.0)
 }
 
-pub(crate) fn drum_lamp(style: &Style, key: Key) -> Model {
+pub(crate) fn drum_lamp(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("drum_lamp", key);
     lamps::drum(d.m("height"), 0.5 * d.m("width"), &shade(style, &d), 14.0)
 }
 
-pub(crate) fn pendant(style: &Style, key: Key) -> Model {
+pub(crate) fn pendant(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("pendant", key);
     let tone = style.glaze(&mut d.stream("tone")).srgb;
     let lacquer = Finish::plain("pendant_lacquer", "steel", tone);
@@ -112,6 +112,6 @@ pub(crate) fn pendant(style: &Style, key: Key) -> Model {
     lamps::pendant(d.m("height"), 0.5 * d.m("width"), &metal, 12.0)
 }
 
-pub(crate) fn mirror_lamp(_style: &Style, key: Key) -> Model {
+pub(crate) fn mirror_lamp(_style: &Style, key: RandomKey) -> Model {
     lamps::mirror_lamp(Draw::new("mirror_lamp", key).m("width"))
 }

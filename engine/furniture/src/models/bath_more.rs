@@ -5,11 +5,11 @@ use crate::finish::{Finish, black, chrome, glass, plastic, sanitary};
 use crate::model::{Model, Part};
 use crate::shapes::{ball, block, cylinder, lathe, loft, oval, rod, rounded_block, tube, vessel};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 
 /// A shower in a corner: a tray, two panes of glass and a door of glass; walls behind it (-Z) and to its left (-X).
-pub fn shower_cabin(style: &Style, key: Key) -> Model {
+pub fn shower_cabin(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("shower_cabin", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -123,7 +123,7 @@ pub fn shower_cabin(style: &Style, key: Key) -> Model {
 }
 
 /// A washbasin on the wall or on a column, without a cupboard; the wall is at -Z.
-pub fn basin(_style: &Style, key: Key) -> Model {
+pub fn basin(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("basin", key);
     let (w, h, depth) = (d.m("width"), d.m("rim"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -184,7 +184,7 @@ pub fn basin(_style: &Style, key: Key) -> Model {
 }
 
 /// A plunger.
-pub fn plunger(style: &Style, key: Key) -> Model {
+pub fn plunger(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("plunger", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
@@ -214,7 +214,7 @@ pub fn plunger(style: &Style, key: Key) -> Model {
 }
 
 /// A dish with a piece of soap.
-pub fn soap_dish(style: &Style, key: Key) -> Model {
+pub fn soap_dish(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("soap_dish", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let soap = Finish::plain(
@@ -248,7 +248,7 @@ pub fn soap_dish(style: &Style, key: Key) -> Model {
 }
 
 /// A spare roll of toilet paper, standing.
-pub fn toilet_roll(_style: &Style, key: Key) -> Model {
+pub fn toilet_roll(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("toilet_roll", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let tissue = Finish::plain(
@@ -266,7 +266,7 @@ pub fn toilet_roll(_style: &Style, key: Key) -> Model {
 }
 
 /// A toilet brush in its holder.
-pub fn toilet_brush(style: &Style, key: Key) -> Model {
+pub fn toilet_brush(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("toilet_brush", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let holder = if d.chance("metal", 0.5) {
@@ -290,7 +290,7 @@ pub fn toilet_brush(style: &Style, key: Key) -> Model {
 }
 
 /// Shampoo and shower gel: two or three bottles of plastic together.
-pub fn shampoo(_style: &Style, key: Key) -> Model {
+pub fn shampoo(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("shampoo", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let tones = [

@@ -5,7 +5,7 @@ use crate::finish::{Finish, cloth};
 use crate::model::{Model, Part};
 use crate::shapes::{block, cylinder, rounded_block};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// Foam inside a cover: how much of its volume is substance of the cover's weight.
 fn foam(cover: &Finish) -> f32 {
@@ -18,7 +18,7 @@ fn foam(cover: &Finish) -> f32 {
 }
 
 /// A cot: bars all round a small mattress. The head is at -Z.
-pub fn cot(style: &Style, key: Key) -> Model {
+pub fn cot(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("cot", key);
     let (w, h, length) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * length);
@@ -102,7 +102,7 @@ pub fn cot(style: &Style, key: Key) -> Model {
 }
 
 /// Two beds, one above the other, with a ladder at the front of the foot end. The heads are at -Z, the open side is +X.
-pub fn bunk_bed(style: &Style, key: Key) -> Model {
+pub fn bunk_bed(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("bunk_bed", key);
     let (w, h, length) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * length);
@@ -207,7 +207,7 @@ pub fn bunk_bed(style: &Style, key: Key) -> Model {
 }
 
 /// A mattress without a bed.
-pub fn mattress(_style: &Style, key: Key) -> Model {
+pub fn mattress(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("mattress", key);
     let (w, h, length) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * length);

@@ -5,7 +5,7 @@ use crate::finish::{Finish, oak, pages};
 use crate::model::{Model, Part};
 use crate::shapes::{block, panel};
 use crate::textures::Srgb;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// An open bookcase.
 #[derive(Clone, Debug)]
@@ -118,7 +118,7 @@ pub fn book(size_m: [f32; 3], k: usize) -> Model {
 }
 
 /// A row of upright books, spines towards +Z, about `width_m` wide; the last ones lean or are missing, as `key` draws.
-pub fn book_row(width_m: f32, height_m: f32, key: Key) -> Model {
+pub fn book_row(width_m: f32, height_m: f32, key: RandomKey) -> Model {
     let mut random = key.stream();
     let mut body = Part::new("body");
     let mut x = -0.5 * width_m;

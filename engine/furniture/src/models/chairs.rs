@@ -6,12 +6,12 @@ use crate::finish::{Finish, painted_steel, plastic, rattan};
 use crate::model::{Model, Part};
 use crate::shapes::{block, cushion, cylinder, extrude, rod, rounded_block, tapered_leg, tube};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 const CORNERS: [(f32, f32); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
 
 /// A dining chair: slatted, upholstered or a shell on rods.
-pub fn dining_chair(style: &Style, key: Key) -> Model {
+pub fn dining_chair(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("dining_chair", key);
     match d.below("build", 3) {
         0 => slatted(style, &d),
@@ -121,7 +121,7 @@ fn shell(style: &Style, d: &Draw) -> Model {
 }
 
 /// A high stool for a counter, with a ring or bars for the feet.
-pub fn bar_stool(style: &Style, key: Key) -> Model {
+pub fn bar_stool(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("bar_stool", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (out, inner, under) = (0.5 * w - 0.014, 0.32 * w, h - 0.05);
@@ -171,7 +171,7 @@ pub fn bar_stool(style: &Style, key: Key) -> Model {
 }
 
 /// A plain bench: for a long table, a hall or the foot of a bed.
-pub fn bench(style: &Style, key: Key) -> Model {
+pub fn bench(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("bench", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -212,7 +212,7 @@ pub fn bench(style: &Style, key: Key) -> Model {
 }
 
 /// A chair for the garden or the balcony: of slats or basket work, with arms.
-pub fn garden_chair(style: &Style, key: Key) -> Model {
+pub fn garden_chair(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("garden_chair", key);
     let (w, h, depth, seat) = (d.m("width"), d.m("height"), d.m("depth"), d.m("seat"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -306,7 +306,7 @@ pub fn garden_chair(style: &Style, key: Key) -> Model {
 }
 
 /// A seat that hangs in a stand under a roof of cloth.
-pub fn garden_swing(style: &Style, key: Key) -> Model {
+pub fn garden_swing(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("garden_swing", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);

@@ -7,7 +7,7 @@ use crate::shapes::{
     block, cone, cylinder, extrude, lathe, panel, rod, rounded_block, tube, vessel,
 };
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Common colours of small machines' plastic.
@@ -38,7 +38,7 @@ fn screen(name: &'static str, d: &Draw) -> Finish {
 }
 
 /// A blender: a jug of glass on a motor.
-pub fn blender(_style: &Style, key: Key) -> Model {
+pub fn blender(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("blender", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (r, base) = (0.5 * w, 0.4 * h);
@@ -96,7 +96,7 @@ pub fn blender(_style: &Style, key: Key) -> Model {
 }
 
 /// An iron standing on its heel; the tip points up, the plate to -Z.
-pub fn iron(_style: &Style, key: Key) -> Model {
+pub fn iron(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("iron", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -148,7 +148,7 @@ pub fn iron(_style: &Style, key: Key) -> Model {
 }
 
 /// A hair dryer lying on its side, the nozzle towards +X.
-pub fn hair_dryer(_style: &Style, key: Key) -> Model {
+pub fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("hair_dryer", key);
     let (w, depth) = (d.m("width"), d.m("depth"));
     let shell = plastic("dryer_shell", d.of("case", CASES));
@@ -187,7 +187,7 @@ pub fn hair_dryer(_style: &Style, key: Key) -> Model {
 }
 
 /// A monitor with keyboard and mouse before it.
-pub fn computer(_style: &Style, key: Key) -> Model {
+pub fn computer(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("computer", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let z = 0.5 * depth;
@@ -264,7 +264,7 @@ pub fn computer(_style: &Style, key: Key) -> Model {
 }
 
 /// The tower of a computer.
-pub fn computer_tower(_style: &Style, key: Key) -> Model {
+pub fn computer_tower(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("computer_tower", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -300,16 +300,16 @@ pub fn computer_tower(_style: &Style, key: Key) -> Model {
 }
 
 /// A flat tablet computer, face up.
-pub fn tablet(_style: &Style, key: Key) -> Model {
+pub fn tablet(_style: &Style, key: RandomKey) -> Model {
     slab("tablet", "tablet", key)
 }
 
 /// A mobile phone, face up.
-pub fn cellphone(_style: &Style, key: Key) -> Model {
+pub fn cellphone(_style: &Style, key: RandomKey) -> Model {
     slab("cellphone", "cellphone", key)
 }
 
-fn slab(name: &'static str, category: &'static str, key: Key) -> Model {
+fn slab(name: &'static str, category: &'static str, key: RandomKey) -> Model {
     let d = Draw::new(name, key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -336,7 +336,7 @@ fn slab(name: &'static str, category: &'static str, key: Key) -> Model {
 }
 
 /// A camera, its lens towards +Z.
-pub fn camera(_style: &Style, key: Key) -> Model {
+pub fn camera(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("camera", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -373,7 +373,7 @@ pub fn camera(_style: &Style, key: Key) -> Model {
 }
 
 /// A games console with a pad lying on it.
-pub fn game_console(_style: &Style, key: Key) -> Model {
+pub fn game_console(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("game_console", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -429,7 +429,7 @@ pub fn game_console(_style: &Style, key: Key) -> Model {
 }
 
 /// Headphones hung over a stand.
-pub fn headphones(style: &Style, key: Key) -> Model {
+pub fn headphones(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("headphones", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let shell = plastic("headphones_shell", d.of("case", CASES));
@@ -461,7 +461,7 @@ pub fn headphones(style: &Style, key: Key) -> Model {
 }
 
 /// A stereo: an amplifier with a record player on top.
-pub fn stereo(style: &Style, key: Key) -> Model {
+pub fn stereo(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("stereo", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);

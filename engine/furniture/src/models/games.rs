@@ -6,11 +6,11 @@ use crate::finish::{Finish, glass};
 use crate::model::{Model, Part};
 use crate::shapes::{ball, block, cylinder, rounded_block, trough};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 
 /// A pool table with cushions, pockets and balls racked up.
-pub fn pool_table(style: &Style, key: Key) -> Model {
+pub fn pool_table(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("pool_table", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -145,7 +145,7 @@ pub fn pool_table(style: &Style, key: Key) -> Model {
 }
 
 /// A table with a glass tank of water and fish.
-pub fn aquarium(style: &Style, key: Key) -> Model {
+pub fn aquarium(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("aquarium", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);

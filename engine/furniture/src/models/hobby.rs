@@ -5,11 +5,11 @@ use crate::finish::{Finish, black, chrome, painted_steel, plastic};
 use crate::model::{Model, Part};
 use crate::shapes::{Solid, ball, block, cylinder, frame, lathe, ring, rod, rounded_block, tube};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// A chess board with some pieces of a game on it.
-pub fn chessboard(_style: &Style, key: Key) -> Model {
+pub fn chessboard(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("chessboard", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let thick = 0.016;
@@ -80,7 +80,7 @@ pub fn chessboard(_style: &Style, key: Key) -> Model {
 }
 
 /// A bicycle on its stand, riding towards +X.
-pub fn bicycle(_style: &Style, key: Key) -> Model {
+pub fn bicycle(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("bicycle", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let paint = painted_steel(
@@ -225,7 +225,7 @@ pub fn bicycle(_style: &Style, key: Key) -> Model {
 }
 
 /// A stepladder, opened out.
-pub fn ladder(_style: &Style, key: Key) -> Model {
+pub fn ladder(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("ladder", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -263,7 +263,7 @@ pub fn ladder(_style: &Style, key: Key) -> Model {
 }
 
 /// A tripod with its legs spread.
-pub fn tripod(_style: &Style, key: Key) -> Model {
+pub fn tripod(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("tripod", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let leg = Finish::plain(
@@ -306,7 +306,7 @@ pub fn tripod(_style: &Style, key: Key) -> Model {
 }
 
 /// An ironing board on crossed legs.
-pub fn ironing_board(style: &Style, key: Key) -> Model {
+pub fn ironing_board(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("ironing_board", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -344,7 +344,7 @@ pub fn ironing_board(style: &Style, key: Key) -> Model {
 }
 
 /// A bench to lift weights on, with a bar in its rack.
-pub fn weight_bench(_style: &Style, key: Key) -> Model {
+pub fn weight_bench(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("weight_bench", key);
     let (w, h, depth) = (d.m("width"), d.m("bar"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -437,7 +437,7 @@ pub fn weight_bench(_style: &Style, key: Key) -> Model {
 }
 
 /// A white board in a frame on the wall; y = 0 is its middle.
-pub fn whiteboard(_style: &Style, key: Key) -> Model {
+pub fn whiteboard(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("whiteboard", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (x, y) = (0.5 * w, 0.5 * h);

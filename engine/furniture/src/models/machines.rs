@@ -7,7 +7,7 @@ use crate::finish::{Finish, black, chrome, enamel, plastic, steel};
 use crate::model::{Model, Part};
 use crate::shapes::{Solid, ball, block, cylinder, lathe, ring, rod, rounded_block, tube};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -23,7 +23,7 @@ fn blade(from_m: f32, to_m: f32, width_m: f32) -> Solid {
 }
 
 /// A dishwasher under a worktop; its door folds down.
-pub fn dishwasher(style: &Style, key: Key) -> Model {
+pub fn dishwasher(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("dishwasher", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z, t) = (0.5 * w, 0.5 * depth, 0.03);
@@ -94,7 +94,7 @@ pub fn dishwasher(style: &Style, key: Key) -> Model {
 }
 
 /// A tumble dryer: as wide as a washing machine, its door larger and darker, a drawer for water above.
-pub fn dryer(style: &Style, key: Key) -> Model {
+pub fn dryer(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("dryer", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth - 0.045);
@@ -159,7 +159,7 @@ pub fn dryer(style: &Style, key: Key) -> Model {
 }
 
 /// A stand with a bottle of water upside down.
-pub fn water_dispenser(style: &Style, key: Key) -> Model {
+pub fn water_dispenser(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("water_dispenser", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -224,7 +224,7 @@ pub fn water_dispenser(style: &Style, key: Key) -> Model {
 }
 
 /// The indoor unit of an air conditioner, on the wall; y = 0 is its lower edge.
-pub fn air_conditioner(_style: &Style, key: Key) -> Model {
+pub fn air_conditioner(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("air_conditioner", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let x = 0.5 * w;
@@ -261,7 +261,7 @@ pub fn air_conditioner(_style: &Style, key: Key) -> Model {
 }
 
 /// A fan on a stand: a cage with blades on a post.
-pub fn pedestal_fan(style: &Style, key: Key) -> Model {
+pub fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("pedestal_fan", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (r, y) = (0.5 * w, h - 0.5 * w);
@@ -339,7 +339,7 @@ pub fn pedestal_fan(style: &Style, key: Key) -> Model {
 }
 
 /// A fan under the ceiling with a lamp in its middle.
-pub fn ceiling_fan(style: &Style, key: Key) -> Model {
+pub fn ceiling_fan(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("ceiling_fan", key);
     let (w, h) = (d.m("span"), d.m("height"));
     let (r, low) = (0.5 * w, -h);
@@ -386,7 +386,7 @@ pub fn ceiling_fan(style: &Style, key: Key) -> Model {
 }
 
 /// A vacuum cleaner on wheels with its hose and nozzle put away upright.
-pub fn vacuum_cleaner(_style: &Style, key: Key) -> Model {
+pub fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("vacuum_cleaner", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -460,7 +460,7 @@ pub fn vacuum_cleaner(_style: &Style, key: Key) -> Model {
 }
 
 /// A treadmill: a belt between rails, a console on two posts. One runs towards -Z.
-pub fn treadmill(_style: &Style, key: Key) -> Model {
+pub fn treadmill(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("treadmill", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);

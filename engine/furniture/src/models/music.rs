@@ -5,7 +5,7 @@ use crate::finish::{Finish, black, brass, chrome, plastic};
 use crate::model::{Model, Part};
 use crate::shapes::{Solid, ball, block, cylinder, extrude, lathe, rod, rounded_block};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 
@@ -42,7 +42,7 @@ fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, Solid); 2] {
 }
 
 /// An upright piano; the lid over its keys turns up.
-pub fn piano(style: &Style, key: Key) -> Model {
+pub fn piano(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("piano", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -126,7 +126,7 @@ pub fn piano(style: &Style, key: Key) -> Model {
 }
 
 /// An electric piano on a crossed stand.
-pub fn keyboard(_style: &Style, key: Key) -> Model {
+pub fn keyboard(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("keyboard", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -163,7 +163,7 @@ pub fn keyboard(_style: &Style, key: Key) -> Model {
 }
 
 /// A guitar on its stand, strings towards +Z.
-pub fn guitar(_style: &Style, key: Key) -> Model {
+pub fn guitar(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("guitar", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -311,7 +311,7 @@ pub fn guitar(_style: &Style, key: Key) -> Model {
 }
 
 /// A drum kit: bass drum, two toms, a floor tom, a snare, two cymbals, a stool behind.
-pub fn drum_kit(_style: &Style, key: Key) -> Model {
+pub fn drum_kit(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("drum_kit", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);

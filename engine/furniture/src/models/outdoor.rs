@@ -6,12 +6,12 @@ use crate::finish::{Finish, black, milk_glass, painted_steel, plastic, steel};
 use crate::model::{Model, Part};
 use crate::shapes::{Solid, block, cylinder, lathe, loft, rod, rounded_block, tube};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// A parasol on a heavy foot, open.
-pub fn parasol(style: &Style, key: Key) -> Model {
+pub fn parasol(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("parasol", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
@@ -53,7 +53,7 @@ pub fn parasol(style: &Style, key: Key) -> Model {
 }
 
 /// A grill: a kettle on three legs or a wagon with a hood that opens.
-pub fn grill(_style: &Style, key: Key) -> Model {
+pub fn grill(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("grill", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -200,7 +200,7 @@ const fn style_wood() -> Finish {
 }
 
 /// A lamp on a post beside a path.
-pub fn garden_lamp(_style: &Style, key: Key) -> Model {
+pub fn garden_lamp(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("garden_lamp", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
@@ -247,7 +247,7 @@ pub fn garden_lamp(_style: &Style, key: Key) -> Model {
 }
 
 /// A lawn mower with its handle bar to the back (-Z).
-pub fn lawn_mower(_style: &Style, key: Key) -> Model {
+pub fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("lawn_mower", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -321,7 +321,7 @@ pub fn lawn_mower(_style: &Style, key: Key) -> Model {
 }
 
 /// A letter box on the wall; its flap turns up. y = 0 is its lower edge.
-pub fn letter_box(_style: &Style, key: Key) -> Model {
+pub fn letter_box(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("letter_box", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let x = 0.5 * w;
@@ -368,7 +368,7 @@ pub fn letter_box(_style: &Style, key: Key) -> Model {
 }
 
 /// A table for balcony or terrace.
-pub fn garden_table(style: &Style, key: Key) -> Model {
+pub fn garden_table(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("garden_table", key);
     let teak = Finish::tiled(
         "teak",

@@ -4,7 +4,7 @@ use crate::finish::{Finish, foliage as green, soil};
 use crate::model::{Model, Part};
 use crate::shapes::{ball, cylinder, foliage, lathe, leaf, rod, turn, vessel};
 use dwell_scene::Pose;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::TAU;
 
@@ -26,7 +26,7 @@ pub struct Plant {
     /// What the leaves look like.
     pub leaf: Finish,
     /// What the shapes of the leaves are drawn by.
-    pub key: Key,
+    pub key: RandomKey,
 }
 
 /// Deep green leaves.
@@ -102,7 +102,7 @@ pub fn sansevieria(height_m: f32, pot: &Finish) -> Model {
         cylinder(0.82 * r, 0.14, 20).at(0.0, 0.008, 0.0),
         0.7,
     );
-    let mut random = Key::root(11).child("sansevieria").stream();
+    let mut random = RandomKey::root(11).child("sansevieria").stream();
     let mut crown = crate::shapes::Solid::default();
     for k in 0..11 {
         let size = (height_m - 0.15) * random.range(0.6, 1.0);
@@ -142,7 +142,7 @@ pub fn vase(height_m: f32, glaze: &Finish, bloom: Option<&Finish>) -> Model {
     let mut body = Part::new("body").with(glaze, shell);
     if let Some(bloom) = bloom {
         let stem = fresh_green();
-        let mut random = Key::root(23).child("vase").stream();
+        let mut random = RandomKey::root(23).child("vase").stream();
         for k in 0..9 {
             let (sin, cos) = dwell_scene::math::sin_cos(TAU * 0.381_966 * k as f32);
             let out = 0.42 * r * (0.4 + random.range(0.0, 1.6));

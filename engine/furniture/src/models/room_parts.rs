@@ -5,11 +5,11 @@ use crate::finish::{Finish, brass, lampshade, milk_glass, plastic};
 use crate::model::{Model, Part};
 use crate::shapes::{block, cone, cylinder, lathe, rod, rounded_block, tube};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// A fireplace on the wall with logs that glow when it burns; its back is at -Z.
-pub fn fireplace(_style: &Style, key: Key) -> Model {
+pub fn fireplace(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("fireplace", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -92,7 +92,7 @@ pub fn fireplace(_style: &Style, key: Key) -> Model {
 }
 
 /// A screen of three leaves that stands in a zigzag.
-pub fn room_divider(style: &Style, key: Key) -> Model {
+pub fn room_divider(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("room_divider", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let wood = style.any_wood(&mut d.stream("wood"));
@@ -144,7 +144,7 @@ pub fn room_divider(style: &Style, key: Key) -> Model {
 }
 
 /// A blind before a window, half let down: slats or a roll of cloth. y = 0 is its upper edge, z = 0 the wall.
-pub fn blind(style: &Style, key: Key) -> Model {
+pub fn blind(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("blind", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let x = 0.5 * w;
@@ -196,7 +196,7 @@ pub fn blind(style: &Style, key: Key) -> Model {
 }
 
 /// A lamp on the wall: a cylinder that shines up and down, a shade on an arm, or a globe. y = 0 is its plate's middle.
-pub fn wall_lamp(style: &Style, key: Key) -> Model {
+pub fn wall_lamp(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("wall_lamp", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (r, z) = (0.5 * w, depth - 0.5 * w);
@@ -236,7 +236,7 @@ pub fn wall_lamp(style: &Style, key: Key) -> Model {
 }
 
 /// A chandelier: arms with candles or bulbs around a stem, under the ceiling.
-pub fn chandelier(style: &Style, key: Key) -> Model {
+pub fn chandelier(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("chandelier", key);
     let (w, h) = (d.m("span"), d.m("height"));
     let metal = if d.chance("brass", 0.4) {

@@ -6,7 +6,7 @@ use crate::finish::{
     upholstery, walnut,
 };
 use crate::model::Model;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// The list: a new model is one line here.
 pub fn all() -> Vec<Model> {
@@ -27,7 +27,7 @@ pub fn all() -> Vec<Model> {
         stem_m: 0.1,
         pot: glaze.clone(),
         leaf: plants::fresh_green(),
-        key: Key::root(1),
+        key: RandomKey::root(1),
     };
     let curtains = textiles::Curtains {
         width_m: 2.0,
@@ -71,7 +71,7 @@ pub fn all() -> Vec<Model> {
         .build(),
         bookshelf::Bookshelf::default().build(),
         bookshelf::book([0.14, 0.03, 0.21], 0),
-        bookshelf::book_row(0.6, 0.27, Key::root(2)),
+        bookshelf::book_row(0.6, 0.27, RandomKey::root(2)),
         bookshelf::wall_shelf(0.9, 0.2, &oak()),
         chair::Chair::default().build(),
         cooker::cooker(),

@@ -6,7 +6,7 @@ use crate::finish::{black, brass, chrome, grey_board, painted_steel};
 use crate::model::{Model, Part};
 use crate::shapes::{block, cylinder, rod, rounded_block, trough};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 
@@ -16,7 +16,7 @@ const SHELVES: [&str; 6] = [
 ];
 
 /// A flat cabinet for shoes; its flaps tilt forward about their lower edges.
-pub fn shoe_cabinet(style: &Style, key: Key) -> Model {
+pub fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("shoe_cabinet", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let rows = if h > 1.25 { 3 } else { 2 };
@@ -70,7 +70,7 @@ pub fn shoe_cabinet(style: &Style, key: Key) -> Model {
 }
 
 /// A tall larder cupboard of a fitted kitchen: two doors, one above the other.
-pub fn larder(style: &Style, key: Key) -> Model {
+pub fn larder(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("larder", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let carcass = Carcass::standing(w, 0.1, h, depth - BOARD_M);
@@ -109,7 +109,7 @@ pub fn larder(style: &Style, key: Key) -> Model {
 }
 
 /// A rack of open cubes.
-pub fn cube_shelf(style: &Style, key: Key) -> Model {
+pub fn cube_shelf(style: &Style, key: RandomKey) -> Model {
     const NAMES: [[&str; 4]; 4] = [
         ["cube_1_1", "cube_1_2", "cube_1_3", "cube_1_4"],
         ["cube_2_1", "cube_2_2", "cube_2_3", "cube_2_4"],
@@ -143,7 +143,7 @@ pub fn cube_shelf(style: &Style, key: Key) -> Model {
 }
 
 /// A rack of steel posts with boards: for a pantry, a cellar, a workshop loft.
-pub fn metal_rack(style: &Style, key: Key) -> Model {
+pub fn metal_rack(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("metal_rack", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -180,7 +180,7 @@ pub fn metal_rack(style: &Style, key: Key) -> Model {
 }
 
 /// A chest to sit on; its lid turns up about the back edge.
-pub fn storage_bench(style: &Style, key: Key) -> Model {
+pub fn storage_bench(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("storage_bench", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -222,7 +222,7 @@ pub fn storage_bench(style: &Style, key: Key) -> Model {
 }
 
 /// A steel safe with a keypad and a door.
-pub fn safe(_style: &Style, key: Key) -> Model {
+pub fn safe(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("safe", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z, t) = (0.5 * w, 0.5 * depth, 0.03);
@@ -267,7 +267,7 @@ pub fn safe(_style: &Style, key: Key) -> Model {
 }
 
 /// A trolley on castors with two or three trays and a bar to push.
-pub fn cart(style: &Style, key: Key) -> Model {
+pub fn cart(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("serving_cart", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);

@@ -7,12 +7,12 @@ use crate::finish::{Finish, brass, glass, mirror};
 use crate::model::{Model, Part};
 use crate::shapes::{block, cylinder, frame, lathe, rod, rounded_block};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// A dining table: on four legs, on a column, or on trestles.
-pub fn dining_table(style: &Style, key: Key) -> Model {
+pub fn dining_table(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("dining_table", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let wood = style.any_wood(&mut d.stream("wood")).clone();
@@ -99,7 +99,7 @@ fn trestle_table(w: f32, h: f32, depth: f32, style: &Style, wood: &Finish) -> Mo
 }
 
 /// A low table before a sofa: with a shelf, round, or of glass on a frame of metal.
-pub fn coffee_table(style: &Style, key: Key) -> Model {
+pub fn coffee_table(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("coffee_table", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let wood = style.any_wood(&mut d.stream("wood")).clone();
@@ -187,7 +187,7 @@ fn glass_table(w: f32, h: f32, depth: f32, style: &Style) -> Model {
 }
 
 /// A small table beside a sofa or a chair.
-pub fn side_table(style: &Style, key: Key) -> Model {
+pub fn side_table(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("side_table", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let wood = style.any_wood(&mut d.stream("wood")).clone();
@@ -210,7 +210,7 @@ pub fn side_table(style: &Style, key: Key) -> Model {
 }
 
 /// A narrow table for a hall or behind a sofa.
-pub fn console_table(style: &Style, key: Key) -> Model {
+pub fn console_table(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("console_table", key);
     Table {
         name: "console_table",
@@ -227,7 +227,7 @@ pub fn console_table(style: &Style, key: Key) -> Model {
 }
 
 /// A table with a mirror and two drawers, to make oneself up at.
-pub fn dressing_table(style: &Style, key: Key) -> Model {
+pub fn dressing_table(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("dressing_table", key);
     let (w, h, depth, table) = (d.m("width"), d.m("height"), d.m("depth"), d.m("table"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -303,7 +303,7 @@ pub fn dressing_table(style: &Style, key: Key) -> Model {
 }
 
 /// A bar for the living room: a counter towards the guests (+Z) with a foot rail, shelves towards the host (-Z).
-pub fn home_bar(style: &Style, key: Key) -> Model {
+pub fn home_bar(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("home_bar", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);

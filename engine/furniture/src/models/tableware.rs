@@ -6,12 +6,12 @@ use crate::finish::{Finish, glass, paper, plastic, steel};
 use crate::model::{Model, Part};
 use crate::shapes::{ball, block, cylinder, lathe, rod, trough, tube, vessel};
 use crate::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::TAU;
 
 /// A teapot with spout, handle and lid.
-pub fn teapot(style: &Style, key: Key) -> Model {
+pub fn teapot(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("teapot", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let glaze = style.glaze(&mut d.stream("glaze"));
@@ -70,7 +70,7 @@ pub fn teapot(style: &Style, key: Key) -> Model {
 }
 
 /// A jug for water or milk.
-pub fn jug(style: &Style, key: Key) -> Model {
+pub fn jug(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("jug", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let clear = d.chance("glass", 0.5);
@@ -122,7 +122,7 @@ pub fn jug(style: &Style, key: Key) -> Model {
 }
 
 /// A bottle of beer.
-pub fn beer(_style: &Style, key: Key) -> Model {
+pub fn beer(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("beer", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
@@ -176,7 +176,7 @@ pub fn beer(_style: &Style, key: Key) -> Model {
 }
 
 /// A wine glass on its stem.
-pub fn wine_glass(_style: &Style, key: Key) -> Model {
+pub fn wine_glass(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("wine_glass", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
@@ -212,7 +212,7 @@ pub fn wine_glass(_style: &Style, key: Key) -> Model {
 }
 
 /// A jar for flour, tea or sweets; its lid turns up on a clip at the back.
-pub fn clip_jar(style: &Style, key: Key) -> Model {
+pub fn clip_jar(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("clip_jar", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (r, rim) = (0.5 * w, 0.86 * h);
@@ -254,7 +254,7 @@ pub fn clip_jar(style: &Style, key: Key) -> Model {
 }
 
 /// A bowl heaped with fruit.
-pub fn fruit_bowl(style: &Style, key: Key) -> Model {
+pub fn fruit_bowl(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("fruit_bowl", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
@@ -306,7 +306,7 @@ pub fn fruit_bowl(style: &Style, key: Key) -> Model {
 }
 
 /// A tray with two grips.
-pub fn tray(style: &Style, key: Key) -> Model {
+pub fn tray(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("tray", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -360,7 +360,7 @@ pub fn tray(style: &Style, key: Key) -> Model {
 }
 
 /// A cake on a stand, a slice taken out.
-pub fn cake(style: &Style, key: Key) -> Model {
+pub fn cake(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("cake", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (r, stand) = (0.5 * w, 0.35 * h);
@@ -424,7 +424,7 @@ pub fn cake(style: &Style, key: Key) -> Model {
 }
 
 /// A place laid for one: mat, plate, knife, fork, folded napkin.
-pub fn place_setting(style: &Style, key: Key) -> Model {
+pub fn place_setting(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("place_setting", key);
     let (w, depth) = (d.m("width"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);

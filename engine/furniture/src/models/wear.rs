@@ -8,7 +8,7 @@ use crate::shapes::{
 };
 use crate::style::Style;
 use dwell_scene::Pose;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -25,7 +25,7 @@ const WORN: [[u8; 3]; 8] = [
 ];
 
 /// A folded shirt or pullover.
-pub fn folded_clothes(_style: &Style, key: Key) -> Model {
+pub fn folded_clothes(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("folded_clothes", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -49,7 +49,7 @@ pub fn folded_clothes(_style: &Style, key: Key) -> Model {
 }
 
 /// A helmet for a cyclist.
-pub fn helmet(_style: &Style, key: Key) -> Model {
+pub fn helmet(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("helmet", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let shell = plastic("helmet_shell", d.of("tone", WORN));
@@ -90,7 +90,7 @@ pub fn helmet(_style: &Style, key: Key) -> Model {
 }
 
 /// A backpack standing on the floor.
-pub fn backpack(_style: &Style, key: Key) -> Model {
+pub fn backpack(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("backpack", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -135,7 +135,7 @@ pub fn backpack(_style: &Style, key: Key) -> Model {
 }
 
 /// A stand with umbrellas.
-pub fn umbrella_stand(style: &Style, key: Key) -> Model {
+pub fn umbrella_stand(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("umbrella_stand", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
@@ -179,7 +179,7 @@ pub fn umbrella_stand(style: &Style, key: Key) -> Model {
 }
 
 /// A bunch of flowers in a vase, or lying in paper where `loose`.
-pub fn flowers(style: &Style, key: Key) -> Model {
+pub fn flowers(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("flowers", key);
     let (w, h) = (d.m("span"), d.m("height"));
     let petals = [
@@ -257,7 +257,7 @@ pub fn flowers(style: &Style, key: Key) -> Model {
 }
 
 /// A few sheets of paper.
-pub fn papers(_style: &Style, key: Key) -> Model {
+pub fn papers(_style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("papers", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
@@ -282,7 +282,7 @@ pub fn papers(_style: &Style, key: Key) -> Model {
 }
 
 /// A small ornament: a bird, a snow globe, a pyramid of stone, or a box.
-pub fn trinket(style: &Style, key: Key) -> Model {
+pub fn trinket(style: &Style, key: RandomKey) -> Model {
     let d = Draw::new("trinket", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;

@@ -3,7 +3,7 @@
 use super::Solid;
 use super::cloth::thick_sheet;
 use super::solid::turn;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Collider, Pose, math};
 use glam::Vec3;
 use std::f32::consts::TAU;
@@ -37,7 +37,7 @@ pub fn leaf(length_m: f32, width_m: f32, droop: f32) -> Solid {
 }
 
 /// A crown of `count` leaves around +Y, from the origin up: lower ones larger and flatter. It collides as its hull.
-pub fn foliage(count: usize, length_m: f32, width_m: f32, height_m: f32, key: Key) -> Solid {
+pub fn foliage(count: usize, length_m: f32, width_m: f32, height_m: f32, key: RandomKey) -> Solid {
     let mut random = key.stream();
     let mut crown = Solid::default();
     for k in 0..count {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::testing::meshes::{assert_closed, collider_bounds};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 fn all() -> Vec<(&'static str, Solid)> {
     let mug = [(0.0, 0.0), (0.03, 0.0), (0.04, 0.02), (0.04, 0.09)];
@@ -59,7 +59,7 @@ fn all() -> Vec<(&'static str, Solid)> {
                 oval(0.1, 0.1, 0.5, 0.0, 16),
             ]),
         ),
-        ("foliage", foliage(12, 0.3, 0.1, 0.4, Key::root(1))),
+        ("foliage", foliage(12, 0.3, 0.1, 0.4, RandomKey::root(1))),
     ]
 }
 

@@ -7,7 +7,7 @@ use super::finish::Finish;
 use super::models::cabinet::Front;
 use super::shapes::{Solid, lathe, rod, tapered_leg};
 use super::textures::Srgb;
-use dwell_scene::random::Stream;
+use dwell_scene::random::RandomStream;
 
 /// Which houses may use a style: looks of `Val` and `Test` never occur in houses for training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -76,27 +76,27 @@ pub struct Style {
 
 impl Style {
     /// One of the cloths.
-    pub fn cloth(&self, stream: &mut Stream) -> &Finish {
+    pub fn cloth(&self, stream: &mut RandomStream) -> &Finish {
         &self.cloths[stream.below(self.cloths.len())]
     }
 
     /// One of the coverings of seats.
-    pub fn cover(&self, stream: &mut Stream) -> &Finish {
+    pub fn cover(&self, stream: &mut RandomStream) -> &Finish {
         &self.upholstery[stream.below(self.upholstery.len())]
     }
 
     /// One of the terries.
-    pub fn terry(&self, stream: &mut Stream) -> &Finish {
+    pub fn terry(&self, stream: &mut RandomStream) -> &Finish {
         &self.terries[stream.below(self.terries.len())]
     }
 
     /// One of the glazes.
-    pub fn glaze(&self, stream: &mut Stream) -> &Finish {
+    pub fn glaze(&self, stream: &mut RandomStream) -> &Finish {
         &self.glazes[stream.below(self.glazes.len())]
     }
 
     /// One of the two woods, more often the first.
-    pub fn any_wood(&self, stream: &mut Stream) -> &Finish {
+    pub fn any_wood(&self, stream: &mut RandomStream) -> &Finish {
         if stream.below(3) == 0 {
             &self.second_wood
         } else {

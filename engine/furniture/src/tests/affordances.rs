@@ -4,8 +4,8 @@ use crate::catalogue::entries;
 use crate::model::Model;
 use crate::style::STYLES;
 use crate::tables::category;
-use dwell_scene::Holding;
-use dwell_scene::random::Key;
+use dwell_scene::ReceptacleKind;
+use dwell_scene::random::RandomKey;
 use std::collections::BTreeMap;
 
 /// What the catalogue leaves out, by category: what `assets/categories.csv` says of the whole category holds for things that
@@ -54,25 +54,25 @@ const LEFT_OUT: &[(&str, &[&str])] = &[
 fn categories_keep_what_their_rows_promise() {
     let mut models: BTreeMap<&str, Vec<Model>> = BTreeMap::new();
     for entry in entries() {
-        let drawn = (0..4).map(|number| (entry.build)(&STYLES[0], Key::root(number)));
+        let drawn = (0..4).map(|number| (entry.build)(&STYLES[0], RandomKey::root(number)));
         models.entry(entry.category).or_default().extend(drawn);
     }
     let mut faults = Vec::new();
     for (name, models) in &models {
         let row = category([*name]).unwrap();
-        let holds = |holding: Holding| {
+        let holds = |holding: ReceptacleKind| {
             models
                 .iter()
                 .any(|model| model.spaces.iter().any(|space| space.holding == holding))
         };
-        let either = holds(Holding::On) || holds(Holding::In);
+        let either = holds(ReceptacleKind::On) || holds(ReceptacleKind::In);
         let claims = [
             (
                 "opens",
                 row.openable,
                 models.iter().any(|model| !model.joints.is_empty()),
             ),
-            ("contains", row.contains, holds(Holding::In)),
+            ("contains", row.contains, holds(ReceptacleKind::In)),
             ("supports", row.supports, either),
             (
                 "sounds",

@@ -5,7 +5,7 @@ use crate::catalogue::entries;
 use crate::style::STYLES;
 use crate::testing::meshes::open_edges;
 use crate::testing::overlap::{Convex, deepest};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Collider, Mobility, Pose};
 use glam::Vec3;
 use std::f32::consts::TAU;
@@ -77,7 +77,7 @@ fn models_are_light_to_draw() {
     let mut counts: Vec<usize> = entries()
         .iter()
         .map(|entry| {
-            let model = (entry.build)(&STYLES[0], Key::root(0));
+            let model = (entry.build)(&STYLES[0], RandomKey::root(0));
             model
                 .parts
                 .iter()

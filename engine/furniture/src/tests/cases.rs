@@ -6,7 +6,7 @@ use crate::style::{STYLES, Style};
 use crate::testing::meshes::collider_bounds;
 use dwell_scene::Aabb;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::sync::OnceLock;
 
 /// Draws of each entry in each style.
@@ -16,13 +16,13 @@ const KEYS: u64 = 20;
 pub(super) struct Case {
     pub entry: &'static Entry,
     pub style: &'static Style,
-    pub key: Key,
+    pub key: RandomKey,
     pub model: Model,
 }
 
 impl Case {
     fn new(entry: &'static Entry, style: &'static Style, number: u64) -> Self {
-        let key = Key::root(number);
+        let key = RandomKey::root(number);
         let model = (entry.build)(style, key);
         Self {
             entry,

@@ -5,7 +5,7 @@ use crate::catalogue::entries;
 use crate::draw::{Spread, spreads};
 use crate::style::STYLES;
 use crate::tables::category;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The spreads of a model that is no kind of its own, or of the kind.
@@ -126,7 +126,7 @@ fn other_keys_give_other_things() {
     for entry in entries() {
         let style = STYLES.iter().find(|style| entry.suits(style)).unwrap();
         let different: BTreeSet<String> = (0..20)
-            .map(|number| format!("{:?}", (entry.build)(style, Key::root(number))))
+            .map(|number| format!("{:?}", (entry.build)(style, RandomKey::root(number))))
             .collect();
         assert!(different.len() >= 3, "{}: {}", entry.kind, different.len());
     }

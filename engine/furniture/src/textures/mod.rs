@@ -13,7 +13,7 @@ mod tiles;
 
 use canvas::Canvas;
 use dwell_scene::Texture;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use noise::Noise;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -36,7 +36,7 @@ pub struct Pattern {
 struct Paint {
     colors: [[f32; 3]; 3],
     noise: Noise,
-    key: Key,
+    key: RandomKey,
 }
 
 /// How one kind of image is made.
@@ -105,7 +105,9 @@ fn recipes() -> &'static [Recipe] {
 impl Pattern {
     /// The pixels of the image.
     fn paint(&self) -> Vec<u8> {
-        let key = Key::root(self.seed).child("texture").child(self.recipe);
+        let key = RandomKey::root(self.seed)
+            .child("texture")
+            .child(self.recipe);
         let colors = self.colors.map(|color| color.map(|c| f32::from(c) / 255.0));
         let paint = Paint {
             colors,

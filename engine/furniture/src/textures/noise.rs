@@ -1,6 +1,6 @@
 //! Noise that repeats, for textures without seams.
 
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 const TABLE: usize = 256;
 
@@ -19,7 +19,7 @@ pub(super) struct Noise {
 
 impl Noise {
     /// The noise of a key.
-    pub(super) fn new(key: Key) -> Self {
+    pub(super) fn new(key: RandomKey) -> Self {
         let mut stream = key.stream();
         let mut order: [u8; TABLE] = std::array::from_fn(|k| k as u8);
         stream.shuffle(&mut order);

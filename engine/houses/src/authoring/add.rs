@@ -8,7 +8,7 @@ use dwell_furniture::model::Model;
 use dwell_furniture::stock::stock;
 use dwell_furniture::style::{STYLES, Split, Style};
 use dwell_scene::material::library;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{
     Category, Collider, House, HouseData, Id, Material, MaterialId, Mesh, Mobility, Object,
     ObjectId, Part, PartId, Pose, RoomId,
@@ -95,7 +95,10 @@ pub(super) fn style(name: Option<&str>, seed: u64) -> Result<&'static Style, Hou
         .filter(|style| style.split == Split::Train)
         .collect();
     let Some(name) = name else {
-        let drawn = Key::root(seed).child("style").stream().below(train.len());
+        let drawn = RandomKey::root(seed)
+            .child("style")
+            .stream()
+            .below(train.len());
         return Ok(train[drawn]);
     };
     let found = STYLES.iter().find(|style| style.name == name);
@@ -137,7 +140,11 @@ pub(super) fn model(
     seed: u64,
 ) -> Result<Arc<Model>, HousesError> {
     let style = style(style_name, seed)?;
-    let made = stock(kind, style, Key::root(seed).child("authored").child(kind));
+    let made = stock(
+        kind,
+        style,
+        RandomKey::root(seed).child("authored").child(kind),
+    );
     let made = made.ok_or_else(|| unknown_kind(kind))?;
     Ok(made.model.clone())
 }

@@ -1,6 +1,6 @@
 //! Where agents start.
 
-use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
+use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{AgentBody, AgentStart, Room, State};
 use glam::{Vec2, Vec3};
 
@@ -75,7 +75,7 @@ fn free_place(desk: &Desk<'_>, room: &Room) -> Result<Option<Vec3>, HousesError>
         radius_m: body.radius_m,
         height_m: body.height_m,
         step_m: body.step_height_m,
-        doors: Doors::AsTheyStand,
+        doors: DoorPolicy::AsTheyStand,
         ..NavConfig::default()
     };
     let grid = NavGrid::build(&house, &State::new(&house), &config)

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use dwell_scene::{
-    Aabb, Articulation, Category, Collider, Holding, HouseData, Id, Inertial, JointId, JointKind,
-    LevelId, Light, LightShape, MaterialId, Mesh, Mimic, Mobility, Object, ObjectId, Part, PartId,
-    Pose, Receptacle, RoomId, Servo, SoundEmitter, space,
+    Aabb, Articulation, Category, Collider, HouseData, Id, Inertial, JointId, JointKind, LevelId,
+    Light, LightShape, MaterialId, Mesh, Mimic, Mobility, Object, ObjectId, Part, PartId, Pose,
+    Receptacle, ReceptacleKind, RoomId, Servo, SoundEmitter, space,
 };
 use glam::{Affine3A, Mat3A, Vec3};
 use serde::Deserialize;
@@ -107,7 +107,7 @@ struct GivenMimic {
 struct GivenPlace {
     name: String,
     part: String,
-    holding: Holding,
+    holding: ReceptacleKind,
     space_in_part: Aabb,
 }
 

@@ -5,7 +5,7 @@ use crate::building::wall::Bands;
 use dwell_furniture::finish::Finish;
 use dwell_furniture::style::Style;
 use dwell_furniture::textures::Srgb;
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 
 /// Height of skirting boards, m.
 const SKIRTING_M: f32 = 0.08;
@@ -37,7 +37,7 @@ pub(crate) fn reveal() -> Finish {
 }
 
 /// The outside of the building.
-pub(crate) fn facade(key: Key) -> Bands {
+pub(crate) fn facade(key: RandomKey) -> Bands {
     let mut draw = key.stream();
     let bricks = [
         [[168, 92, 66], [196, 188, 176], [120, 62, 48]],
@@ -58,7 +58,7 @@ pub(crate) fn facade(key: Key) -> Bands {
     vec![(TOP_M, finish)]
 }
 
-fn tiles(name: &'static str, stream: &mut Stream) -> Finish {
+fn tiles(name: &'static str, stream: &mut RandomStream) -> Finish {
     let colors = [
         [[172, 204, 206], [236, 238, 236], [148, 186, 192]],
         [[236, 236, 232], [206, 206, 202], [226, 226, 222]],
@@ -75,7 +75,7 @@ fn tiles(name: &'static str, stream: &mut Stream) -> Finish {
     )
 }
 
-fn carpet(style: &Style, stream: &mut Stream) -> Finish {
+fn carpet(style: &Style, stream: &mut RandomStream) -> Finish {
     // Of the style's colours, but muted: floors are large.
     let wool = style
         .terry(stream)
@@ -86,7 +86,7 @@ fn carpet(style: &Style, stream: &mut Stream) -> Finish {
 }
 
 /// The coverings of a room, by what it is for.
-pub(crate) fn look(kind: RoomKind, style: &Style, key: Key) -> RoomLook {
+pub(crate) fn look(kind: RoomKind, style: &Style, key: RandomKey) -> RoomLook {
     use RoomKind::{
         Balcony, Bathroom, Bedroom, BoilerRoom, ChildRoom, Gym, Kitchen, Lobby, Office, Storage,
         Terrace, Toilet,

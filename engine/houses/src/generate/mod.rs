@@ -27,7 +27,7 @@ use crate::error::HousesError;
 use crate::formats::Opened;
 use crate::report::{At, Report};
 use dwell_furniture::style::{STYLES, Style};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Daytime, House, SceneError, Sky};
 use openings::Hole;
 use plan::{Cells, FloorPlan};
@@ -66,7 +66,7 @@ pub struct GenerateReport {
 /// The same seed and spec give the same bytes, for any number of threads.
 pub fn generate(seed: u64, spec: &HouseSpec) -> Result<Generated, HousesError> {
     spec.check()?;
-    let key = Key::root(seed).child("house");
+    let key = RandomKey::root(seed).child("house");
     let style = style(spec, key.child("style"));
     let mut best: Option<Paper> = None;
     // Where a room cannot be reached whatever is left out, another plan is drawn.
@@ -116,7 +116,7 @@ const HOUSES: u64 = 4;
 
 /// A furnished house on paper.
 struct Paper {
-    key: Key,
+    key: RandomKey,
     draft: Draft,
     furnished: Vec<Vec<furnish::Furnished>>,
     /// Rooms that nobody can enter.
@@ -124,7 +124,7 @@ struct Paper {
 }
 
 /// Furnishes a plan. Rooms that cannot be reached for furniture, and those beside them, are furnished again with less.
-fn furnished_paper(spec: &HouseSpec, style: &Style, key: Key) -> Result<Paper, HousesError> {
+fn furnished_paper(spec: &HouseSpec, style: &Style, key: RandomKey) -> Result<Paper, HousesError> {
     let draft = draft(spec, key)?;
     let furnish_key = key.child("furnish");
     let furnisher = furnish::Furnisher {
@@ -256,7 +256,7 @@ impl Draft {
 }
 
 /// The first draft in which no door stands in the way of another, or the best of a few.
-fn draft(spec: &HouseSpec, key: Key) -> Result<Draft, HousesError> {
+fn draft(spec: &HouseSpec, key: RandomKey) -> Result<Draft, HousesError> {
     let mut best: Option<Draft> = None;
     let mut last = None;
     for round in 0..PROGRAMMES {
@@ -283,7 +283,7 @@ fn draft(spec: &HouseSpec, key: Key) -> Result<Draft, HousesError> {
     best.ok_or_else(|| no_plan(spec, last.as_ref()))
 }
 
-fn style(spec: &HouseSpec, key: Key) -> &'static Style {
+fn style(spec: &HouseSpec, key: RandomKey) -> &'static Style {
     let fitting: Vec<&Style> = STYLES
         .iter()
         .filter(|style| spec.split.allows(style.split))
@@ -293,7 +293,7 @@ fn style(spec: &HouseSpec, key: Key) -> &'static Style {
 }
 
 /// The open air at the hour of the spec; north lies anywhere.
-fn sky(spec: &HouseSpec, key: Key) -> Result<Sky, SceneError> {
+fn sky(spec: &HouseSpec, key: RandomKey) -> Result<Sky, SceneError> {
     Sky::at(&Daytime {
         hour_h: spec.time_of_day,
         north_yaw_deg: key.stream().uniform_f32() * 360.0 - 180.0,

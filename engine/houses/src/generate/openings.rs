@@ -6,7 +6,7 @@
 use super::plan::{Area, Cells, FloorPlan, LinkKind, Run, Stairs, Steps, Storey, metres, steps};
 use super::reach::unreached_when_empty;
 use super::rooms::{RoomKind, Windows};
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 
 /// Thickness of walls between rooms, m.
 pub(crate) const INNER_M: f32 = 0.1;
@@ -164,7 +164,7 @@ pub(crate) fn overlap(a: &Zone, b: &Zone) -> bool {
 }
 
 /// The holes of every storey; the second is the number of doors that stand in each other's way all the same.
-pub(crate) fn openings(plan: &FloorPlan, key: Key) -> (Vec<Vec<Hole>>, usize) {
+pub(crate) fn openings(plan: &FloorPlan, key: RandomKey) -> (Vec<Vec<Hole>>, usize) {
     let mut tight = 0;
     let all = plan.storeys.iter().enumerate().map(|(k, storey)| {
         let key = key.child(k as u64);
@@ -193,7 +193,7 @@ fn doors(
     storey: &Storey,
     runs: &[Run],
     stairs: Option<Stairs>,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> (Vec<Hole>, usize) {
     let mut best: Option<(Vec<Hole>, usize)> = None;
     for _ in 0..DEALS {
@@ -216,7 +216,7 @@ fn deal(
     storey: &Storey,
     runs: &[Run],
     stairs: Option<Area>,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> (Vec<Hole>, usize) {
     let mut holes: Vec<Hole> = Vec::new();
     let mut tight = 0;
@@ -308,7 +308,7 @@ fn candidates(
     room: usize,
     behind: Option<usize>,
     kind: LinkKind,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> Vec<Hole> {
     use RoomKind::{Balcony, DiningRoom, LivingRoom, Lobby, Studio, Terrace};
     let kinds = [Some(room), behind].map(|room| room.map(|room| storey.rooms[room].kind));
@@ -371,7 +371,7 @@ fn windows(
     runs: &[Run],
     stairs: Option<Area>,
     holes: &mut Vec<Hole>,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) {
     for (room, plan) in storey.rooms.iter().enumerate() {
         let traits = plan.kind.traits();

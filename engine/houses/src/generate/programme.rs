@@ -6,7 +6,7 @@ use RoomKind::{
     Balcony, Bathroom, Bedroom, BoilerRoom, ChildRoom, DiningRoom, GuestRoom, Gym, Kitchen,
     LivingRoom, Lobby, Office, Storage, Studio, Terrace, Toilet, Wardrobe,
 };
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 
 /// A room that is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub(crate) struct Programme {
 }
 
 /// Draws what the spec leaves open.
-pub(crate) fn programme(spec: &HouseSpec, key: Key) -> Programme {
+pub(crate) fn programme(spec: &HouseSpec, key: RandomKey) -> Programme {
     let mut draw = key.stream();
     let home = home(spec, &mut draw);
     let mut outside = None;
@@ -69,7 +69,7 @@ pub(crate) fn programme(spec: &HouseSpec, key: Key) -> Programme {
     }
 }
 
-fn home(spec: &HouseSpec, draw: &mut Stream) -> HomeKind {
+fn home(spec: &HouseSpec, draw: &mut RandomStream) -> HomeKind {
     let drawn = match draw.below(20) {
         0..3 => HomeKind::Studio,
         3..11 => HomeKind::Apartment,
@@ -89,7 +89,7 @@ fn home(spec: &HouseSpec, draw: &mut Stream) -> HomeKind {
 fn usual(
     home: HomeKind,
     spec: &HouseSpec,
-    draw: &mut Stream,
+    draw: &mut RandomStream,
 ) -> (Vec<Vec<RoomKind>>, Option<RoomKind>) {
     let mut maybe = |chance: f32| draw.uniform_f32() < chance;
     // A small area leaves out what a home can do without.

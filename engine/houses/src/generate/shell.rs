@@ -17,7 +17,7 @@ use crate::building::yaw::yaw;
 use dwell_furniture::finish::Finish;
 use dwell_furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
 use dwell_furniture::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{LevelId, Pose, RoomId};
 use glam::Vec3;
 
@@ -57,7 +57,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) holes: &'a [Vec<Hole>],
     pub(crate) style: &'a Style,
     pub(crate) doors: DoorStates,
-    pub(crate) key: Key,
+    pub(crate) key: RandomKey,
 }
 
 /// Half of the thickness of what stands between a room and its neighbour, m; 0 where nothing does.
@@ -373,7 +373,7 @@ impl Builder<'_> {
         }
     }
 
-    fn openness(&self, hole: &Hole, key: Key) -> f32 {
+    fn openness(&self, hole: &Hole, key: RandomKey) -> f32 {
         let outside = hole
             .behind
             .is_none_or(|_| matches!(hole.filling, Filling::Door { entrance: true, .. }));

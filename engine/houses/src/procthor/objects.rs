@@ -8,7 +8,7 @@ use dwell_furniture::model::{Model, Part};
 use dwell_furniture::shapes::{block, turn};
 use dwell_furniture::stock::stock;
 use dwell_furniture::style::STYLES;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{Mobility, Pose};
 use glam::Vec3;
 use serde::Deserialize;
@@ -142,7 +142,7 @@ impl Reader<'_> {
             let (what, name) = (Unmapped::Category, type_name.to_owned());
             self.warn(at, Damage::Unmapped { what, name });
         }
-        let key = Key::root(0).child("procthor").child(asset);
+        let key = RandomKey::root(0).child("procthor").child(asset);
         let ours = kind
             .filter(|kind| !kind.is_empty())
             .and_then(|kind| stock(kind, style, key));
@@ -176,7 +176,7 @@ impl Reader<'_> {
     /// A ceiling lamp below the ceiling wherever the file has a point of light.
     pub(super) fn lamps(&mut self, lights: &[LightFile]) {
         let Some(style) = STYLES.first() else { return };
-        let Some(lamp) = stock("ceiling_lamp", style, Key::root(0).child("procthor")) else {
+        let Some(lamp) = stock("ceiling_lamp", style, RandomKey::root(0).child("procthor")) else {
             return;
         };
         let kind = self.assembly.kind(Arc::clone(&lamp.model));
@@ -242,7 +242,7 @@ mod tests {
             assert!(row.kind.is_empty() || known, "{}: {}", row.name, row.kind);
             let style = &STYLES[0];
             assert!(
-                row.kind.is_empty() || stock(&row.kind, style, Key::root(1)).is_some(),
+                row.kind.is_empty() || stock(&row.kind, style, RandomKey::root(1)).is_some(),
                 "{}: {} does not suit {}",
                 row.name,
                 row.kind,

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use dwell_scene::{
-    Aabb, Articulation, Bands, Category, Collider, Daytime, Holding, HouseData, JointKind, Level,
-    LevelId, Light, LightShape, Material, MaterialId, Mesh, MeshId, Mobility, Object, ObjectId,
-    Part, PartId, Pose, Receptacle, Room, RoomId, Servo, Sky, SoundEmitter, Structure,
+    Aabb, Articulation, Bands, Category, Collider, Daytime, HouseData, JointKind, Level, LevelId,
+    Light, LightShape, Material, MaterialId, Mesh, MeshId, Mobility, Object, ObjectId, Part,
+    PartId, Pose, Receptacle, ReceptacleKind, Room, RoomId, Servo, Sky, SoundEmitter, Structure,
     StructureKind, Texture, TextureId, Weather,
 };
 use glam::{Affine3A, Mat3A, Quat, Vec2, Vec3, Vec3A};
@@ -378,7 +378,11 @@ fn fixtures(n: &mut Numbers<'_>, data: &mut HouseData, object: ObjectId, part: P
     for k in 0..n.below(2) {
         let emitter = SoundEmitter::steady(object, part, n.vec3(), n.name(k), n.unit() * 100.0);
         data.emitters.push(emitter);
-        let holding = if n.flag() { Holding::On } else { Holding::In };
+        let holding = if n.flag() {
+            ReceptacleKind::On
+        } else {
+            ReceptacleKind::In
+        };
         data.receptacles.push(Receptacle {
             object,
             part,

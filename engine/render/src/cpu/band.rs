@@ -8,7 +8,7 @@ use crate::frame::{Before, FrameMut};
 use crate::light::{Exposure, Lighting};
 use dwell_scene::State;
 use dwell_scene::bvh::SceneBvh;
-use dwell_scene::interrupt::Pace;
+use dwell_scene::interrupt::PollEvery;
 use glam::Vec3;
 
 /// Packets between looks at whether the picture is still wanted.
@@ -63,7 +63,7 @@ impl<'a> Band<'a> {
         let (mut packet, mut palette) = (Packet::new(), Palette::new());
         let end = (self.size.0, self.first_row + self.rows);
         // All light of a packet takes milliseconds.
-        let mut pace = Pace::new(if self.rays.is_full() {
+        let mut pace = PollEvery::new(if self.rays.is_full() {
             1
         } else {
             PACKETS_PER_CHECK

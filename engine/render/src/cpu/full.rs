@@ -103,7 +103,7 @@ impl Tracer<'_> {
     fn light_along(&self, mut ray: Ray, path: Path, dice: &mut Dice) -> Vec3 {
         let (mut light, mut rest) = (Vec3::ZERO, 1.0);
         for layer in 1..=LAYERS {
-            let Some(hit) = self.band.scene.closest_without(&ray, SEEN, path.hidden) else {
+            let Some(hit) = self.band.scene.closest_excluding(&ray, SEEN, path.hidden) else {
                 break;
             };
             let distance = hit.distance_m;

@@ -16,7 +16,7 @@ use crate::color::Srgb;
 use crate::footprint::GRAZING;
 use crate::surfaces::{SLOW, Standing, coordinate};
 use crate::texture::{Corners, Image, level_of};
-use dwell_scene::instructions::{Kernel, Level};
+use dwell_scene::simd::{SimdKernel, SimdLevel};
 use glam::Vec3;
 
 /// Fewer pixels than this are quicker one by one.
@@ -52,7 +52,7 @@ struct Locate<'a> {
     pixel_area: (f32, f32),
 }
 
-impl Kernel for Locate<'_> {
+impl SimdKernel for Locate<'_> {
     type Output = Places;
 
     #[inline(always)]
@@ -144,7 +144,7 @@ impl Band<'_> {
             }
             let pose = renderer.surfaces.pose(instance, self.state);
             let image = renderer.textures.image(texture);
-            let places = Level::best().run(Locate {
+            let places = SimdLevel::best().run(Locate {
                 seen,
                 standing: &triangle.stand(pose),
                 image,
@@ -172,7 +172,7 @@ mod tests {
     use crate::surfaces::coordinate;
     use crate::texture::Textures;
     use dwell_scene::bvh::{InstanceSet, PacketHits, RayPacket, SceneBvh, TriangleBvh};
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
     use dwell_scene::{House, HouseData, Texture};
     use glam::Vec4;
     use std::sync::Arc;
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn all_instruction_levels_find_the_texels_that_one_pixel_finds() {
         let all = textures(&[(64, 64), (7, 3), (1, 5), (300, 17)]);
-        let mut stream = Key::root(12).stream();
+        let mut stream = RandomKey::root(12).stream();
         let wall = [[-9.0, -9.0, 0.0], [30.0, -9.0, 0.0], [-9.0, 30.0, 0.0]].map(Vec3::from_array);
         let wall = TriangleBvh::build(&wall, &[[0, 1, 2]]);
         let scene = SceneBvh {
@@ -212,7 +212,7 @@ mod tests {
             let mut hits = PacketHits::new();
             let seen = super::super::rays::SEEN;
             scene.closest_packet(&rays, seen, None, &mut hits);
-            let row = |stream: &mut dwell_scene::random::Stream| {
+            let row = |stream: &mut dwell_scene::random::RandomStream| {
                 (stream.direction() * stream.range(0.01, 9.0)).extend(stream.range(-2.0, 2.0))
             };
             let uv: [Vec4; 2] = [row(&mut stream), row(&mut stream)];
@@ -220,7 +220,7 @@ mod tests {
             let image = all.image(round % 4);
             let density = stream.range(0.0, 90_000.0);
             let (fixed, growing) = (0.0, 1.0 / 64.0_f32.powi(2));
-            let places = |level: Level| {
+            let places = |level: SimdLevel| {
                 level.run(Locate {
                     seen: Seen {
                         rays: &rays,
@@ -233,8 +233,8 @@ mod tests {
                     pixel_area: (fixed, growing),
                 })
             };
-            let found = places(Level::Portable);
-            for level in Level::available() {
+            let found = places(SimdLevel::Portable);
+            for level in SimdLevel::available() {
                 assert_eq!(found, places(level), "{level:?}");
             }
             for k in (0..LANES).filter(|k| hits.is_hit(*k)) {

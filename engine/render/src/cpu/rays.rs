@@ -203,7 +203,7 @@ impl Packet {
                 origin: beam.start[k],
                 ..self.rays.ray(k)
             };
-            beam.hits[k] = scene.closest_without(&ray, SEEN, rays.hidden.0);
+            beam.hits[k] = scene.closest_excluding(&ray, SEEN, rays.hidden.0);
         }
     }
 }

@@ -20,7 +20,7 @@ impl CpuRenderer {
     pub(super) fn passes(&self, scene: SceneBvh<'_>, ray: &Ray, hidden: i32) -> bool {
         let mut ray = *ray;
         for _ in 0..PANES {
-            let Some(hit) = scene.closest_without(&ray, SEEN, hidden) else {
+            let Some(hit) = scene.closest_excluding(&ray, SEEN, hidden) else {
                 return true;
             };
             if !self.is_glass(hit.instance, hit.triangle) {

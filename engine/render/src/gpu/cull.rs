@@ -7,7 +7,7 @@
 
 use super::occluders::{Occluder, Shadow};
 use dwell_scene::Aabb;
-use dwell_scene::bvh::flat::{NO_LINK, NODE_ROWS, Row};
+use dwell_scene::bvh::flat::{NO_LINK, NODE_ROWS, PackedRow};
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use std::ops::Range;
 
@@ -93,7 +93,12 @@ impl Sightline<'_> {
 
 impl Culler {
     /// Of the tree of static geometry, as rows, and its walls.
-    pub(super) fn new(nodes: &[Row], top: u32, bounds: Aabb, occluders: Vec<Occluder>) -> Self {
+    pub(super) fn new(
+        nodes: &[PackedRow],
+        top: u32,
+        bounds: Aabb,
+        occluders: Vec<Occluder>,
+    ) -> Self {
         let mut culler = Self {
             subtrees: Vec::new(),
             occluders,
@@ -105,7 +110,7 @@ impl Culler {
     }
 
     /// Lists a link and all below it down to chunks; the blocks of each stand together.
-    fn cut(&mut self, nodes: &[Row], link: u32, bounds: Aabb) {
+    fn cut(&mut self, nodes: &[PackedRow], link: u32, bounds: Aabb) {
         let blocks = blocks_below(nodes, link);
         let is_chunk = blocks.len() as u32 <= CHUNK_BLOCKS || link >> 31 == 1;
         let own = self.subtrees.len();
@@ -172,7 +177,7 @@ impl Culler {
 }
 
 /// The children of a node with their boxes.
-fn children(nodes: &[Row], link: u32) -> Vec<(u32, Aabb)> {
+fn children(nodes: &[PackedRow], link: u32) -> Vec<(u32, Aabb)> {
     let node = &nodes[link as usize * NODE_ROWS..][..NODE_ROWS];
     let corner = |first: usize, k: usize| {
         let coordinate = |axis: usize| f32::from_bits(node[first + axis][k]);
@@ -191,7 +196,7 @@ fn children(nodes: &[Row], link: u32) -> Vec<(u32, Aabb)> {
 }
 
 /// The blocks below a link: trees store them in the order of their leaves.
-fn blocks_below(nodes: &[Row], link: u32) -> Range<u32> {
+fn blocks_below(nodes: &[PackedRow], link: u32) -> Range<u32> {
     if link >> 31 == 1 {
         let block = link & !(1 << 31);
         return block..block + 1;
@@ -208,7 +213,7 @@ mod tests {
     use super::*;
     use dwell_scene::bvh::flat::BLOCK_ROWS;
     use dwell_scene::bvh::{Ray, RayMask};
-    use dwell_scene::random::Key;
+    use dwell_scene::random::RandomKey;
     use dwell_scene::rays::RayScene;
     use dwell_scene::{House, space};
     use std::sync::Arc;
@@ -236,7 +241,7 @@ mod tests {
     /// Against rays: nothing that a ray meets first is left out, in 2,000 views of generated houses; and most is left out.
     #[test]
     fn nothing_that_a_ray_meets_is_culled() {
-        let mut stream = Key::root(21).stream();
+        let mut stream = RandomKey::root(21).stream();
         let (mut left, mut all) = (0_u64, 0_u64);
         for seed in ["seed:1", "seed:6"] {
             let house: Arc<House> = Arc::new(dwell_houses::open(seed).unwrap().0);

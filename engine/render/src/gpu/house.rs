@@ -9,7 +9,7 @@ use crate::cpu::{CpuRenderer, SEEN};
 use crate::error::RenderError;
 use crate::semantic::Classes;
 use dwell_scene::bvh::TriangleBvh;
-use dwell_scene::bvh::flat::{BLOCK_ROWS, FlatTree, NO_LINK, Row};
+use dwell_scene::bvh::flat::{BLOCK_ROWS, FlatBvh, NO_LINK, PackedRow};
 use dwell_scene::rays::{BODY_PIECES, body_trees};
 use dwell_scene::{IdVec, MeshId};
 use glam::Vec3;
@@ -33,13 +33,13 @@ pub(super) struct HouseBuffers {
 }
 
 /// A point as the first three numbers of a row.
-pub(super) fn point(point: Vec3, last: u32) -> Row {
+pub(super) fn point(point: Vec3, last: u32) -> PackedRow {
     let [x, y, z] = point.to_array().map(f32::to_bits);
     [x, y, z, last]
 }
 
 /// Words as rows, the last one filled up with zeros.
-fn rows_of_words(words: impl Iterator<Item = u32>) -> Vec<Row> {
+fn rows_of_words(words: impl Iterator<Item = u32>) -> Vec<PackedRow> {
     let mut rows = Vec::new();
     for (k, word) in words.enumerate() {
         if k % 4 == 0 {
@@ -53,11 +53,11 @@ fn rows_of_words(words: impl Iterator<Item = u32>) -> Vec<Row> {
 }
 
 /// Tables one behind the other, after the header.
-struct Tables(Vec<Row>);
+struct Tables(Vec<PackedRow>);
 
 impl Tables {
     /// Appends a table and returns its first row.
-    fn add(&mut self, rows: impl IntoIterator<Item = Row>) -> u32 {
+    fn add(&mut self, rows: impl IntoIterator<Item = PackedRow>) -> u32 {
         let first = self.0.len() as u32;
         self.0.extend(rows);
         first
@@ -75,9 +75,9 @@ impl HouseBuffers {
         let fixed = geometry.static_bvh.flatten(SEEN, &mut nodes, &mut blocks);
         let culler = Culler::new(&nodes, fixed.top, fixed.bounds, occluders(&blocks));
         // Each mesh once, however many parts show it.
-        let mut flat: IdVec<MeshId, Option<(FlatTree, Range<u32>)>> =
+        let mut flat: IdVec<MeshId, Option<(FlatBvh, Range<u32>)>> =
             IdVec::filled(None, house.meshes.len());
-        let mut trees: Vec<FlatTree> = Vec::new();
+        let mut trees: Vec<FlatBvh> = Vec::new();
         let mut ranges: Vec<Range<u32>> = Vec::new();
         let mut add = |tree: &TriangleBvh| {
             let first = (blocks.len() / BLOCK_ROWS) as u32;
@@ -89,7 +89,7 @@ impl HouseBuffers {
             let made = flat[mesh].get_or_insert_with(|| match &geometry.mesh_bvh[mesh] {
                 Some(tree) => add(tree),
                 None => (
-                    FlatTree {
+                    FlatBvh {
                         top: NO_LINK,
                         bounds: dwell_scene::Aabb::EMPTY,
                         stack: 0,
@@ -139,7 +139,7 @@ impl HouseBuffers {
         let triangles = cpu.surfaces.flat();
         let name = &house.name;
         let mut bytes = 0;
-        let mut upload = |what: &str, rows: &[Row]| {
+        let mut upload = |what: &str, rows: &[PackedRow]| {
             let data: &[u8] = bytemuck::cast_slice(rows);
             bytes += data.len() as u64;
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;

@@ -2,7 +2,7 @@
 
 use super::cull::SLACK_M;
 use dwell_scene::Aabb;
-use dwell_scene::bvh::flat::{BLOCK_ROWS, Row};
+use dwell_scene::bvh::flat::{BLOCK_ROWS, PackedRow};
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles};
 use std::collections::BTreeMap;
 
@@ -140,7 +140,7 @@ fn edge(a: Vec3, b: Vec3) -> Edge {
 }
 
 /// The walls and other large flat pieces of geometry in rows of blocks, joined where they share whole edges.
-pub(super) fn occluders(blocks: &[Row]) -> Vec<Occluder> {
+pub(super) fn occluders(blocks: &[PackedRow]) -> Vec<Occluder> {
     let mut pieces: Vec<Option<Occluder>> = Vec::new();
     for rows in blocks.chunks_exact(BLOCK_ROWS) {
         for lane in (0..4).filter(|lane| rows[13][*lane] != u32::MAX) {
@@ -186,7 +186,7 @@ pub(super) fn occluders(blocks: &[Row]) -> Vec<Occluder> {
 mod tests {
     use super::*;
 
-    fn rows(triangles: &[[Vec3; 3]]) -> Vec<Row> {
+    fn rows(triangles: &[[Vec3; 3]]) -> Vec<PackedRow> {
         let positions: Vec<Vec3> = triangles.as_flattened().to_vec();
         let count = triangles.len() as u32;
         let indices: Vec<[u32; 3]> = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();

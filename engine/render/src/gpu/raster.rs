@@ -6,7 +6,7 @@ use super::kernels::Layouts;
 use crate::camera::Projection;
 use crate::cpu::{Job, SEEN};
 use crate::error::RenderError;
-use dwell_scene::bvh::flat::Row;
+use dwell_scene::bvh::flat::PackedRow;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::BODY_PIECES;
 use glam::{Affine3A, DAffine3, DVec3, DVec4, Vec3};
@@ -48,9 +48,9 @@ pub(super) struct Sheet {
 pub(super) struct Drawing {
     pub(super) sheets: Vec<Sheet>,
     /// Five rows each: from a mesh to the picture's clip space, then source, id and the id that is not seen.
-    pub(super) records: Vec<Row>,
+    pub(super) records: Vec<PackedRow>,
     /// First block, how many blocks, and the record.
-    pub(super) pieces: Vec<Row>,
+    pub(super) pieces: Vec<PackedRow>,
     /// Of the texture.
     pub(super) size: (u32, u32),
     /// Of each sheet.
@@ -60,8 +60,8 @@ pub(super) struct Drawing {
 /// What one picture draws: as in [`Drawing`], records counted from its own first.
 #[derive(Debug, Default)]
 struct List {
-    records: Vec<Row>,
-    pieces: Vec<Row>,
+    records: Vec<PackedRow>,
+    pieces: Vec<PackedRow>,
     /// Blocks of static geometry that may be seen.
     ranges: Vec<Range<u32>>,
     shadows: Shadows,
@@ -244,7 +244,7 @@ impl List {
         self.shadows = shadows;
     }
 
-    fn record(&mut self, clip: [DVec4; 4], facts: Row) {
+    fn record(&mut self, clip: [DVec4; 4], facts: PackedRow) {
         let rows = clip.map(|row| row.as_vec4().to_array().map(f32::to_bits));
         self.records.extend(rows);
         self.records.push(facts);
@@ -452,7 +452,7 @@ mod tests {
     fn what_lies_in_the_clip_volume_lies_within_the_planes() {
         use crate::camera::Camera;
         use crate::frame::{FrameMut, View};
-        use dwell_scene::random::Key;
+        use dwell_scene::random::RandomKey;
         use dwell_scene::rays::RayScene;
         use dwell_scene::{House, Pose, ShoeboxMaterials, State, space};
         use std::sync::Arc;
@@ -474,7 +474,7 @@ mod tests {
         let view = View::new(camera, place);
         let job = Job::new(&scene, &state, view, FrameMut::default());
         let shot = Shot::new(&job).unwrap();
-        let mut stream = Key::root(3).stream();
+        let mut stream = RandomKey::root(3).stream();
         let mut inside = 0;
         for _ in 0..20_000 {
             let point = Vec3::new(

@@ -112,7 +112,7 @@ impl GpuRenderer {
             let submitted = self.submit(jobs, threads)?;
             let frames = jobs.iter_mut().map(|job| &mut job.frame);
             // What an adapter has begun is waited for.
-            return interrupt::whole(|| self.deliver(submitted, frames, threads));
+            return interrupt::uninterruptible(|| self.deliver(submitted, frames, threads));
         }
         for (k, job) in jobs.iter().enumerate() {
             self.cpu.check(k, job)?;
@@ -145,7 +145,7 @@ impl GpuRenderer {
         while !rest.is_empty() {
             let some = self.fitting(rest).min(most);
             interrupt::check();
-            let part = interrupt::whole(|| self.submit_part(&rest[..some], threads))?;
+            let part = interrupt::uninterruptible(|| self.submit_part(&rest[..some], threads))?;
             let taken = part.slot.batch.places.len();
             // What follows is as large as a rule.
             most = if taken < some { taken } else { most };
@@ -170,7 +170,7 @@ impl GpuRenderer {
         frames: &mut [FrameMut<'_>],
         threads: Threads,
     ) -> Result<(), RenderError> {
-        interrupt::whole(|| self.deliver(submitted, frames.iter_mut(), threads))
+        interrupt::uninterruptible(|| self.deliver(submitted, frames.iter_mut(), threads))
     }
 
     /// How many of the first jobs fit into one submission as far as their images go; at least one.

@@ -9,7 +9,7 @@ use crate::cpu::{CpuRenderer, Job};
 use crate::error::RenderError;
 use crate::frame::{Before, FrameMut, Preset, each_image};
 use crate::light::Lighting;
-use dwell_scene::bvh::flat::{Row, flat_pose};
+use dwell_scene::bvh::flat::{PackedRow, flat_pose};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::BODY_PIECES;
 use dwell_scene::{Id, Pose, State};
@@ -121,7 +121,7 @@ impl LensRays {
 /// The rows of a batch, and where its images go. Its memory is used again.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<PackedRow>,
     pub(super) places: Vec<Places>,
     pub(super) lenses: LensRays,
     /// What the raster path draws.
@@ -142,7 +142,7 @@ fn is_lit(job: &Job<'_>) -> bool {
     job.view.preset == Preset::Lit && job.frame.rgb.is_some()
 }
 
-fn quaternion(rotation: Quat) -> Row {
+fn quaternion(rotation: Quat) -> PackedRow {
     Vec4::from(rotation).to_array().map(f32::to_bits)
 }
 
@@ -238,7 +238,7 @@ impl Batch {
     }
 
     /// `shown`: the preset, the first row of its light, and the exposure.
-    fn add_view(&mut self, k: usize, job: &Job<'_>, world: u32, shown: Row) {
+    fn add_view(&mut self, k: usize, job: &Job<'_>, world: u32, shown: PackedRow) {
         let (view, camera) = (&job.view, &job.view.camera);
         let rotation = view.world_from_camera.rotation.normalize();
         let (first_row, end) = job.row_range();

@@ -3,14 +3,14 @@
 use super::house::point;
 use crate::cpu::{Job, SEEN};
 use dwell_scene::Pose;
-use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, Row, flat_pose};
+use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, PackedRow, flat_pose};
 use dwell_scene::parallel::Threads;
 
 /// The worlds of a batch. Their memory is used again.
 #[derive(Debug, Default)]
 pub(super) struct Worlds {
     /// Of each world, positions counted from its own first row.
-    lists: Vec<Vec<Row>>,
+    lists: Vec<Vec<PackedRow>>,
 }
 
 /// Whether two views are of one world.
@@ -39,7 +39,7 @@ impl Worlds {
     }
 
     /// Appends the world of a run; returns its first row.
-    pub(super) fn append(&self, run: usize, rows: &mut Vec<Row>) -> u32 {
+    pub(super) fn append(&self, run: usize, rows: &mut Vec<PackedRow>) -> u32 {
         let world = rows.len();
         rows.extend_from_slice(&self.lists[run]);
         rows[world][1] += world as u32;
@@ -48,7 +48,7 @@ impl Worlds {
 }
 
 /// The tree over a world's instances, then the instances.
-fn list(job: &Job<'_>, rows: &mut Vec<Row>) {
+fn list(job: &Job<'_>, rows: &mut Vec<PackedRow>) {
     let moving = job.scene.bvh().moving;
     rows.resize(3, [0; 4]);
     let top = moving.flatten_tree(rows);

@@ -2,8 +2,8 @@
 
 use super::{Acts, Law, Scan, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::Key;
+use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::random::RandomKey;
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -12,7 +12,7 @@ pub(super) const LAW: Law = Law {
         name: "scale and bias of depth",
         equation: "z_out = (1 + scale) z + bias_m (m); pixels without a reading keep the far end",
         source: "K. Khoshelham, S. Oude Elberink, Sensors 12 (2012) 1437, section 3; row V7 of measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[
             ParamInfo {
@@ -39,7 +39,7 @@ pub(super) const LAW: Law = Law {
     acts: Acts::Depth(change),
 };
 
-fn change(values: Values<'_>, scan: &Scan<'_>, _: Key, image: &mut [f32]) {
+fn change(values: Values<'_>, scan: &Scan<'_>, _: RandomKey, image: &mut [f32]) {
     let (scale, bias) = (values.get("scale"), values.get("bias_m"));
     let far = scan.camera.far_m();
     for depth in image

@@ -2,8 +2,8 @@
 
 use super::{Acts, Law, Scan, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::Key;
+use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::random::RandomKey;
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -13,7 +13,7 @@ pub(super) const LAW: Law = Law {
         equation: "z_out = f b / (step round(f b / (z step))), f = focal_px (px), b = baseline_m (m), step = step_px (px): steps of \
                    about z^2 step / (f b); a disparity that rounds to 0 gives no reading (0)",
         source: "K. Khoshelham, S. Oude Elberink, Sensors 12 (2012) 1437, equations 2 and 9; row V9 of measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[
             ParamInfo {
@@ -49,7 +49,7 @@ pub(super) const LAW: Law = Law {
     acts: Acts::Depth(change),
 };
 
-fn change(values: Values<'_>, scan: &Scan<'_>, _: Key, image: &mut [f32]) {
+fn change(values: Values<'_>, scan: &Scan<'_>, _: RandomKey, image: &mut [f32]) {
     let step = f64::from(values.get("step_px"));
     if step == 0.0 {
         return;

@@ -2,8 +2,8 @@
 
 use super::{Acts, Law, Values};
 use crate::camera::Camera;
-use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::Key;
+use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, math};
 use glam::Vec3;
 
@@ -26,7 +26,7 @@ pub(super) const LAW: Law = Law {
         equation: "L_out = (2^stops w L)^gamma, w = red, 1, blue for the three colours; light as the picture shows it, linear, 1 for \
                    white; what is above white is white",
         source: "ISO 12232:2019 (exposure in stops); row V6 of measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[
             ParamInfo {
@@ -48,7 +48,7 @@ pub(super) const LAW: Law = Law {
     acts: Acts::Color(change),
 };
 
-fn change(values: Values<'_>, _: &Camera, _: Key, light: &mut [Vec3]) {
+fn change(values: Values<'_>, _: &Camera, _: RandomKey, light: &mut [Vec3]) {
     let gain = math::pow(2.0, values.get("stops"));
     let gain = Vec3::new(values.get("red"), 1.0, values.get("blue")) * gain;
     let gamma = values.get("gamma");

@@ -2,8 +2,8 @@
 
 use super::{Acts, Law, Scan, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::Key;
+use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::random::RandomKey;
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -15,7 +15,7 @@ pub(super) const LAW: Law = Law {
                    nearest and furthest depth there",
         source: "J. Tuley, N. Vandapel, M. Hebert, Analysis and Removal of Artifacts in 3-D LADAR Data, ICRA (2005); row V11 of \
                  measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[
             ParamInfo {
@@ -50,7 +50,7 @@ pub(super) const LAW: Law = Law {
     acts: Acts::Depth(change),
 };
 
-fn change(values: Values<'_>, scan: &Scan<'_>, key: Key, image: &mut [f32]) {
+fn change(values: Values<'_>, scan: &Scan<'_>, key: RandomKey, image: &mut [f32]) {
     let probability = values.get("probability");
     if probability == 0.0 {
         return;

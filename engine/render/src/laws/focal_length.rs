@@ -3,7 +3,7 @@
 use super::{Acts, Law, Values};
 use crate::camera::Camera;
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -13,7 +13,7 @@ pub(super) const LAW: Law = Law {
         equation: "f = f_stated (1 + relative_error), for fx and fy alike: a point at the radius r from the principal point \
                    appears at r (1 + relative_error)",
         source: "R. Hartley, A. Zisserman, Multiple View Geometry (2004), section 6.1; row V1 of measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[ParamInfo {
             name: "relative_error",

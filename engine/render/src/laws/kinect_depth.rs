@@ -1,8 +1,8 @@
 //! The noise of the first Kinect, along the ray and across it.
 
 use super::{Acts, Law, Scan, Values};
-use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::Key;
+use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, math};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_3};
@@ -29,7 +29,7 @@ pub(super) const LAW: Law = Law {
                    noise",
         source: "C. V. Nguyen, S. Izadi, D. Lovell, Modeling Kinect Sensor Noise for Improved 3D Reconstruction and Tracking, \
                  3DIMPVT (2012), equations 2 to 4; row V10 of measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[multiple("axial"), multiple("lateral")],
         rivals: &["redwood_depth", "disparity_quantization", "flying_pixels"],
@@ -57,7 +57,7 @@ fn lateral_px(angle: f32) -> f32 {
     0.8 + 0.035 * angle / (FRAC_PI_2 - angle)
 }
 
-fn change(values: Values<'_>, scan: &Scan<'_>, key: Key, image: &mut [f32]) {
+fn change(values: Values<'_>, scan: &Scan<'_>, key: RandomKey, image: &mut [f32]) {
     let (axial, lateral) = (values.get("axial"), values.get("lateral"));
     let (width, height) = scan.size();
     let far = scan.camera.far_m();
@@ -109,7 +109,7 @@ mod tests {
         let (laws, mut read) = ([spec], image.to_vec());
         let optics = Optics::of(&laws, AgentId(0));
         assert!(optics.needs_normals());
-        optics.depth(&camera(), &normals, Key::root(seed), &mut read);
+        optics.depth(&camera(), &normals, RandomKey::root(seed), &mut read);
         read
     }
 

@@ -3,7 +3,7 @@
 use super::{Acts, Law, Values};
 use crate::camera::{Camera, Projection};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 const fn coefficient(name: &'static str, plausible: f64) -> ParamInfo {
     ParamInfo {
@@ -26,7 +26,7 @@ pub(super) const LAW: Law = Law {
                    focal length and principal point. Pinholes only; on a lens that is there the coefficients add up",
         source: "D. C. Brown, Photogrammetric Engineering 37 (1971) 855; A. E. Conrady, MNRAS 79 (1919) 384; OpenCV's form; row V3 \
                  of measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[
             coefficient("k1", 0.5),

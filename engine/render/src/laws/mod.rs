@@ -22,7 +22,7 @@ mod vignetting;
 use crate::camera::Camera;
 use crate::color::Srgb;
 use crate::error::RenderError;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Id, LawInfo, LawSpec};
 use glam::Vec3;
 use std::sync::LazyLock;
@@ -40,11 +40,11 @@ enum Acts {
     /// On when pixels look.
     Shutter(fn(Values<'_>, &mut Shutter)),
     /// On depths, m. What is drawn depends on the key and the image's size alone.
-    Depth(fn(Values<'_>, &Scan<'_>, Key, &mut [f32])),
+    Depth(fn(Values<'_>, &Scan<'_>, RandomKey, &mut [f32])),
     /// As [`Acts::Depth`], and needs normals.
-    DepthByNormals(fn(Values<'_>, &Scan<'_>, Key, &mut [f32])),
+    DepthByNormals(fn(Values<'_>, &Scan<'_>, RandomKey, &mut [f32])),
     /// On light, linear, 1 for display white. Shape (height * width,).
-    Color(fn(Values<'_>, &Camera, Key, &mut [Vec3])),
+    Color(fn(Values<'_>, &Camera, RandomKey, &mut [Vec3])),
 }
 
 /// The laws of this engine.
@@ -209,7 +209,7 @@ impl<'a> Optics<'a> {
     ///
     /// # Determinism
     /// Equal keys, equal bits.
-    pub fn depth(&self, camera: &Camera, normals: &[f32], key: Key, image: &mut [f32]) {
+    pub fn depth(&self, camera: &Camera, normals: &[f32], key: RandomKey, image: &mut [f32]) {
         let scan = Scan { camera, normals };
         if image.len() != camera.pixels() {
             return;
@@ -240,7 +240,7 @@ impl<'a> Optics<'a> {
     ///
     /// # Determinism
     /// Equal keys, equal bits.
-    pub fn color(&self, camera: &Camera, key: Key, image: &mut [u8]) {
+    pub fn color(&self, camera: &Camera, key: RandomKey, image: &mut [u8]) {
         let is_color = |acts: &Acts| matches!(acts, Acts::Color(_));
         if !self.laws.iter().any(|(_, acts, _)| is_color(acts))
             || image.len() != 3 * camera.pixels()
@@ -321,8 +321,8 @@ mod tests {
             for laws in [&none[..], &[]] {
                 let optics = Optics::of(laws, AgentId(0));
                 let (mut z, mut rgb) = (depth.clone(), color.clone());
-                optics.depth(&camera, &normals, Key::root(1), &mut z);
-                optics.color(&camera, Key::root(1), &mut rgb);
+                optics.depth(&camera, &normals, RandomKey::root(1), &mut z);
+                optics.color(&camera, RandomKey::root(1), &mut rgb);
                 assert!(z == depth && rgb == color && optics.camera(camera) == camera);
                 assert!(optics.shutter().is_still() && !optics.needs_normals());
             }
@@ -337,7 +337,7 @@ mod tests {
         let depth = |agent: u32| {
             let mut image = vec![1.0; camera.pixels()];
             let laws = [spec.clone()];
-            Optics::of(&laws, AgentId(agent)).depth(&camera, &[], Key::root(0), &mut image);
+            Optics::of(&laws, AgentId(agent)).depth(&camera, &[], RandomKey::root(0), &mut image);
             image[0]
         };
         assert_eq!((depth(0), depth(1), depth(2)), (1.0, 1.5, 1.0));

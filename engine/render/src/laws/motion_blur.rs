@@ -2,7 +2,7 @@
 
 use super::{Acts, Law, Shutter, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -15,7 +15,7 @@ pub(super) const LAW: Law = Law {
                    taken",
         source: "M. Potmesil, I. Chakravarty, Modeling motion blur in computer-generated images, SIGGRAPH (1983); row V5 of \
                  measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[ParamInfo {
             name: "exposure_s",

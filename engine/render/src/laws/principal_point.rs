@@ -3,7 +3,7 @@
 use super::{Acts, Law, Values};
 use crate::camera::Camera;
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 const fn shift(name: &'static str) -> ParamInfo {
     ParamInfo {
@@ -23,7 +23,7 @@ pub(super) const LAW: Law = Law {
         name: "error of the principal point",
         equation: "cx = cx_stated + right_px, cy = cy_stated + down_px: every point appears that much (px) to the right and down",
         source: "R. Hartley, A. Zisserman, Multiple View Geometry (2004), section 6.1; row V2 of measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[shift("right_px"), shift("down_px")],
         rivals: &["camera_yaw", "camera_pitch"],

@@ -2,8 +2,8 @@
 
 use super::{Acts, Law, Scan, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::Key;
+use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::random::RandomKey;
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -16,7 +16,7 @@ pub(super) const LAW: Law = Law {
                    of errors, measured on one device, is not part of it",
         source: "S. Choi, Q.-Y. Zhou, V. Koltun, Robust Reconstruction of Indoor Scenes, CVPR (2015), supplement; J. T. Barron, J. \
                  Malik, CVPR (2013), section 6 (the step of disparity)",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[ParamInfo {
             name: "strength",
@@ -42,7 +42,7 @@ const SHUFFLE_PX: f64 = 0.25;
 /// From here on there is no reading, m.
 const FURTHEST_M: f32 = 10.0;
 
-fn change(values: Values<'_>, scan: &Scan<'_>, key: Key, image: &mut [f32]) {
+fn change(values: Values<'_>, scan: &Scan<'_>, key: RandomKey, image: &mut [f32]) {
     let strength = f64::from(values.get("strength"));
     let (width, height) = scan.size();
     let seen = image.to_vec();

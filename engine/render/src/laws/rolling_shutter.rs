@@ -2,7 +2,7 @@
 
 use super::{Acts, Law, Shutter, Values};
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
+use dwell_scene::law::{EngineKind, ParamInfo};
 
 pub(super) const LAW: Law = Law {
     info: LawInfo {
@@ -14,7 +14,7 @@ pub(super) const LAW: Law = Law {
                    a row",
         source: "M. Meingast, C. Geyer, S. Sastry, Geometric models of rolling-shutter cameras, OMNIVIS (2005); row V4 of \
                  measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[ParamInfo {
             name: "line_s",

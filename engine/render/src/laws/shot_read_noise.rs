@@ -3,8 +3,8 @@
 use super::{Acts, Law, Values};
 use crate::camera::Camera;
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::random::{RandomKey, RandomStream};
 use glam::Vec3;
 
 pub(super) const LAW: Law = Law {
@@ -16,7 +16,7 @@ pub(super) const LAW: Law = Law {
                    the picture shows it, linear, 1 for white, so that 1 / gain is the number of electrons at white: variance gain \
                    L + read^2",
         source: "EMVA Standard 1288, release 4.0 (2021), equations 1 to 9 (linear camera model)",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[
             ParamInfo {
@@ -47,7 +47,7 @@ pub(super) const LAW: Law = Law {
 /// From this mean on rejection is faster than counting.
 const COUNTED: f64 = 12.0;
 
-fn change(values: Values<'_>, camera: &Camera, key: Key, light: &mut [Vec3]) {
+fn change(values: Values<'_>, camera: &Camera, key: RandomKey, light: &mut [Vec3]) {
     let (gain, read) = (f64::from(values.get("gain")), f64::from(values.get("read")));
     for (row, light) in (0_u64..).zip(light.chunks_mut(camera.width() as usize)) {
         let mut stream = key.child(row).stream();
@@ -71,7 +71,7 @@ fn change(values: Values<'_>, camera: &Camera, key: Key, light: &mut [Vec3]) {
 /// # Source
 /// Few: D. E. Knuth, The Art of Computer Programming 2, 3.4.1. Many: W. Hörmann, Insurance: Mathematics and Economics 12 (1993)
 /// 39, algorithm PTRS.
-fn poisson(mean: f64, stream: &mut Stream) -> f64 {
+fn poisson(mean: f64, stream: &mut RandomStream) -> f64 {
     if mean <= 0.0 || !mean.is_finite() {
         return 0.0;
     }
@@ -120,7 +120,7 @@ mod tests {
         let n = 40_000;
         for seed in 0..5 {
             for mean in [0.3, 4.0, 11.9, 12.1, 60.0, 4000.0] {
-                let mut stream = Key::root(seed).stream();
+                let mut stream = RandomKey::root(seed).stream();
                 let counts: Vec<f64> = (0..n).map(|_| poisson(mean, &mut stream)).collect();
                 let (found, deviation) = moments(&counts);
                 let count = f64::from(n);
@@ -150,7 +150,7 @@ mod tests {
         for seed in 0..5 {
             for level in [0.0, 0.1, 0.4, 0.9_f32] {
                 let mut light = vec![Vec3::splat(level); camera.pixels()];
-                change(values, &camera, Key::root(seed), &mut light);
+                change(values, &camera, RandomKey::root(seed), &mut light);
                 let all: Vec<f64> = light
                     .iter()
                     .flat_map(Vec3::to_array)

@@ -2,7 +2,7 @@
 
 use super::Optics;
 use crate::camera::Camera;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, LawSpec};
 
 pub(super) fn camera() -> Camera {
@@ -27,7 +27,7 @@ pub(super) fn read_depth(spec: &LawSpec, camera: &Camera, seed: u64, image: &[f3
     Optics::of(std::slice::from_ref(spec), AgentId(0)).depth(
         camera,
         &[],
-        Key::root(seed),
+        RandomKey::root(seed),
         &mut read,
     );
     read
@@ -36,7 +36,11 @@ pub(super) fn read_depth(spec: &LawSpec, camera: &Camera, seed: u64, image: &[f3
 /// Colours under a law.
 pub(super) fn read_color(spec: &LawSpec, camera: &Camera, seed: u64, image: &[u8]) -> Vec<u8> {
     let mut read = image.to_vec();
-    Optics::of(std::slice::from_ref(spec), AgentId(0)).color(camera, Key::root(seed), &mut read);
+    Optics::of(std::slice::from_ref(spec), AgentId(0)).color(
+        camera,
+        RandomKey::root(seed),
+        &mut read,
+    );
     read
 }
 

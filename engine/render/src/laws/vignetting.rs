@@ -3,8 +3,8 @@
 use super::{Acts, Law, Values};
 use crate::camera::Camera;
 use dwell_scene::LawInfo;
-use dwell_scene::law::{Engine, ParamInfo};
-use dwell_scene::random::Key;
+use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::random::RandomKey;
 use glam::{Vec2, Vec3};
 
 pub(super) const LAW: Law = Law {
@@ -16,7 +16,7 @@ pub(super) const LAW: Law = Law {
                    law of the fourth power. Cameras with an axis only; light as the picture shows it, linear",
         source: "I. C. Gardner, Validity of the cosine-fourth-power law of illumination, J. Res. NBS 39 (1947) 213; row V6 of \
                  measured data",
-        engine: Engine::Render,
+        engine: EngineKind::Render,
         acts_on: "agent",
         params: &[ParamInfo {
             name: "strength",
@@ -33,7 +33,7 @@ pub(super) const LAW: Law = Law {
     acts: Acts::Color(change),
 };
 
-fn change(values: Values<'_>, camera: &Camera, _: Key, light: &mut [Vec3]) {
+fn change(values: Values<'_>, camera: &Camera, _: RandomKey, light: &mut [Vec3]) {
     if camera.projection().intrinsics().is_none() {
         return;
     }

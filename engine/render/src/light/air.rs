@@ -1,7 +1,7 @@
 //! The open air of a house that knows its sky.
 
 use super::tone;
-use dwell_scene::{Dome, Sky, math};
+use dwell_scene::{Sky, SkyDome, math};
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -13,7 +13,7 @@ const STEPS: [u32; 2] = [16, 32];
 /// Sun, sky and ground.
 #[derive(Debug)]
 pub(crate) struct Air {
-    pub(super) dome: Dome,
+    pub(super) dome: SkyDome,
     /// Unit length.
     pub(crate) to_sun: Vec3,
     /// Across its rays, lx.
@@ -43,7 +43,7 @@ fn basis(d: Vec3) -> [f32; 9] {
 
 impl Air {
     pub(crate) fn new(sky: &Sky) -> Self {
-        let dome = Dome::new(sky);
+        let dome = SkyDome::new(sky);
         let [rows, columns] = STEPS;
         let (up, around) = (FRAC_PI_2 / rows as f32, TAU / columns as f32);
         let mut harmonics = [Vec3::ZERO; 9];

@@ -4,15 +4,15 @@ use super::air::Air;
 use super::openings::Window;
 use super::rooms::HouseLight;
 use super::{Exposure, Lamp, Lighting};
-use dwell_scene::bvh::flat::Row;
+use dwell_scene::bvh::flat::PackedRow;
 use glam::Vec3;
 
-fn row(vector: Vec3, last: f32) -> Row {
+fn row(vector: Vec3, last: f32) -> PackedRow {
     vector.extend(last).to_array().map(f32::to_bits)
 }
 
 /// Words one behind the other, the last row filled up with zeros.
-fn words(words: impl IntoIterator<Item = u32>) -> Vec<Row> {
+fn words(words: impl IntoIterator<Item = u32>) -> Vec<PackedRow> {
     let words: Vec<u32> = words.into_iter().collect();
     let rows = words.chunks(4);
     rows.map(|chunk| std::array::from_fn(|k| chunk.get(k).copied().unwrap_or(0)))
@@ -25,7 +25,7 @@ fn split(vector: Vec3) -> (Vec3, f32) {
     (vector / length, length)
 }
 
-fn window_rows(window: &Window) -> [Row; 6] {
+fn window_rows(window: &Window) -> [PackedRow; 6] {
     let [(across, width), (along, height)] = window.half.map(split);
     let [up, down] = window.luminance_cd_m2;
     [
@@ -38,7 +38,7 @@ fn window_rows(window: &Window) -> [Row; 6] {
     ]
 }
 
-fn air_rows(air: &Air) -> Vec<Row> {
+fn air_rows(air: &Air) -> Vec<PackedRow> {
     let mut rows = vec![
         row(air.to_sun, air.per_lx),
         row(air.sun_lx, 0.0),
@@ -52,7 +52,7 @@ fn air_rows(air: &Air) -> Vec<Row> {
 impl HouseLight {
     /// All that never changes, when its first row is `first`: four rows of heads, storeys, windows, where those of each room
     /// start, the open air, and cells of storeys.
-    pub(crate) fn flat(&self, first: usize) -> Vec<Row> {
+    pub(crate) fn flat(&self, first: usize) -> Vec<PackedRow> {
         let grid = &self.grid;
         let storeys = first + 4;
         let windows = storeys + grid.storeys.len();
@@ -98,12 +98,12 @@ impl HouseLight {
 }
 
 /// A place, and a number as it is.
-fn tagged(place: Vec3, tag: u32) -> Row {
+fn tagged(place: Vec3, tag: u32) -> PackedRow {
     let [x, y, z] = place.to_array().map(f32::to_bits);
     [x, y, z, tag]
 }
 
-fn lamp_rows(lamp: &Lamp) -> [Row; 4] {
+fn lamp_rows(lamp: &Lamp) -> [PackedRow; 4] {
     let (axis, cutoff, exponent) = lamp.cone.unwrap_or((Vec3::ZERO, -2.0, 0.0));
     [
         tagged(lamp.position, lamp.entity as u32),
@@ -116,7 +116,7 @@ fn lamp_rows(lamp: &Lamp) -> [Row; 4] {
 impl Lighting {
     /// Appends the light of one state: two rows of heads (first rows of lamps, of where those of each room start, of rooms, and
     /// behind all; of what casts shadows), then these.
-    pub(crate) fn flatten(&self, rows: &mut Vec<Row>) {
+    pub(crate) fn flatten(&self, rows: &mut Vec<PackedRow>) {
         let lamps = rows.len() + 2;
         let starts = lamps + self.lamps.len() * 4;
         let start_rows = words(self.lamp_starts.iter().map(|start| *start as u32));

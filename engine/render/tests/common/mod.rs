@@ -4,7 +4,7 @@
 use dwell_render::{Camera, Channels, CpuRenderer, Frame, View};
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Stream;
+use dwell_scene::random::RandomStream;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
     Aabb, Category, House, HouseData, Level, LevelId, Material, Mesh, Mobility, Object, ObjectId,
@@ -168,7 +168,7 @@ pub(crate) fn pixel(frame: &Frame, camera: &Camera, x: usize, y: usize) -> [u8; 
 }
 
 /// A point in a cube around the origin.
-pub(crate) fn point(stream: &mut Stream, half: f32) -> Vec3 {
+pub(crate) fn point(stream: &mut RandomStream, half: f32) -> Vec3 {
     Vec3::new(
         stream.range(-half, half),
         stream.range(-half, half),

@@ -3,7 +3,7 @@
 use super::agreement::Pair;
 use super::compare::Count;
 use dwell_render::{Camera, Path, Preset, View};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{House, Pose, space};
 use glam::Vec3;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Views from places in rooms, in all directions.
 pub(crate) fn views(house: &House, camera: Camera, count: usize) -> Vec<View> {
-    let mut stream = Key::root(11).stream();
+    let mut stream = RandomKey::root(11).stream();
     let mut views = Vec::new();
     while views.len() < count {
         let room = &house.rooms[dwell_scene::RoomId(stream.below(house.rooms.len()) as u32)];

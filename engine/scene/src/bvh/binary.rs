@@ -3,7 +3,7 @@
 use super::node::WIDTH;
 use crate::bounds::Aabb;
 
-/// A node of a [`BinaryTree`].
+/// A node of a [`BinaryBvh`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BinaryNode {
     pub(super) bounds: Aabb,
@@ -23,7 +23,7 @@ impl BinaryNode {
 
 /// Node 0 is the top; no nodes when there are no boxes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct BinaryTree {
+pub(super) struct BinaryBvh {
     pub(super) nodes: Vec<BinaryNode>,
     /// Positions in the input, as leaves refer to them. Shape (boxes,).
     pub(super) order: Vec<u32>,
@@ -31,14 +31,14 @@ pub(super) struct BinaryTree {
 
 /// A balanced tree by halving at the median; its depth is the binary logarithm of the number of boxes. For the few boxes
 /// of moving things, and for input that clusters badly.
-pub(super) fn median_tree(boxes: &[Aabb]) -> BinaryTree {
-    let mut tree = BinaryTree::default();
+pub(super) fn median_tree(boxes: &[Aabb]) -> BinaryBvh {
+    let mut tree = BinaryBvh::default();
     rebuild(boxes, WIDTH, &mut tree);
     tree
 }
 
 /// As [`median_tree`] with at most `leaf` boxes in a leaf, in the memory of an earlier tree.
-pub(super) fn rebuild(boxes: &[Aabb], leaf: usize, tree: &mut BinaryTree) {
+pub(super) fn rebuild(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh) {
     tree.nodes.clear();
     tree.order.clear();
     tree.order.extend(0..boxes.len() as u32);
@@ -53,13 +53,7 @@ pub(super) fn rebuild(boxes: &[Aabb], leaf: usize, tree: &mut BinaryTree) {
 }
 
 /// Makes node `k` over `order[start..end]`, and all below it.
-fn fill(
-    boxes: &[Aabb],
-    leaf: usize,
-    tree: &mut BinaryTree,
-    k: usize,
-    (start, end): (usize, usize),
-) {
+fn fill(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh, k: usize, (start, end): (usize, usize)) {
     let order = &mut tree.order[start..end];
     let (mut all, mut centers) = (Aabb::EMPTY, Aabb::EMPTY);
     for &k in order.iter() {

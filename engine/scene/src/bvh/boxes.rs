@@ -1,6 +1,6 @@
 //! Which of many boxes are near a place.
 
-use super::binary::{BinaryTree, rebuild};
+use super::binary::{BinaryBvh, rebuild};
 use crate::bounds::Aabb;
 use glam::Vec3;
 
@@ -24,14 +24,14 @@ const ASKED_FOR_ONE: usize = 32;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct BoxTree {
-    tree: BinaryTree,
+    tree: BinaryBvh,
     boxes: Vec<Aabb>,
 }
 
 impl BoxTree {
     /// Builds the tree; boxes keep their numbers.
     pub fn new(boxes: Vec<Aabb>) -> Self {
-        let mut tree = BinaryTree::default();
+        let mut tree = BinaryBvh::default();
         rebuild(&boxes, LEAF, &mut tree);
         Self { tree, boxes }
     }
@@ -101,10 +101,10 @@ fn away2(bounds: &Aabb, point: Vec3) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Key;
+    use crate::random::RandomKey;
 
     fn cloud(count: usize, edge_m: f32) -> Vec<Aabb> {
-        let mut stream = Key::root(4).stream();
+        let mut stream = RandomKey::root(4).stream();
         let mut point = |low: f32, high: f32| {
             Vec3::new(
                 stream.range(low, high),

@@ -6,7 +6,7 @@ use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-use super::binary::{BinaryNode, BinaryTree, median_tree};
+use super::binary::{BinaryBvh, BinaryNode, median_tree};
 use super::node::WIDTH;
 use crate::bounds::Aabb;
 use glam::Vec3;
@@ -27,7 +27,7 @@ const MAX_UNMERGED: usize = 4096;
 /// # Source
 /// Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction" (2018), and
 /// "Parallel Reinsertion for Bounding Volume Hierarchy Optimization" (2018), as built by obvhs.
-pub(super) fn tree(boxes: &[Aabb]) -> BinaryTree {
+pub(super) fn tree(boxes: &[Aabb]) -> BinaryBvh {
     struct Primitive(ObvhsBox);
     impl Boundable for Primitive {
         fn aabb(&self) -> ObvhsBox {
@@ -68,7 +68,7 @@ pub(super) fn tree(boxes: &[Aabb]) -> BinaryTree {
             count: node.prim_count,
         }
     });
-    BinaryTree {
+    BinaryBvh {
         nodes: nodes.collect(),
         order: built.primitive_indices,
     }
@@ -125,7 +125,7 @@ fn morton(point: Vec3) -> u64 {
 mod tests {
     use super::*;
 
-    fn depth(tree: &BinaryTree, k: usize) -> usize {
+    fn depth(tree: &BinaryBvh, k: usize) -> usize {
         let node = &tree.nodes[k];
         if node.count > 0 {
             return 0;
@@ -166,7 +166,7 @@ mod tests {
     /// Of boxes at random places a third merges in each round.
     #[test]
     fn boxes_that_differ_are_clustered() {
-        let mut stream = crate::random::Key::root(3).stream();
+        let mut stream = crate::random::RandomKey::root(3).stream();
         let boxes: Vec<Aabb> = (0..20_000)
             .map(|_| at(100.0 * stream.uniform_f32(), 100.0 * stream.uniform_f32()))
             .collect();

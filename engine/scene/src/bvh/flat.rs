@@ -3,15 +3,15 @@
 use glam::{Vec3, Vec4};
 
 use super::instances::InstanceSet;
-use super::node::{Link, Node, WIDTH};
+use super::node::{Node, NodeLink, WIDTH};
 use super::ray::RayMask;
 use super::triangles::TriangleBvh;
-use super::wide::WideTree;
+use super::wide::WideBvh;
 use crate::bounds::Aabb;
 use crate::space::Pose;
 
 /// Four numbers as bits: `f32`, `i32` or `u32`.
-pub type Row = [u32; 4];
+pub type PackedRow = [u32; 4];
 
 /// Rows of a node: lower corners of its children's boxes along x, y and z, upper corners, and links. A link is [`NO_LINK`],
 /// the position of a node, or, with bit 31 set, of a block (an instance in the tree of an [`InstanceSet`]).
@@ -30,7 +30,7 @@ pub const NO_LINK: u32 = u32::MAX;
 
 /// A tree of which [`TriangleBvh::flatten`] has written the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlatTree {
+pub struct FlatBvh {
     /// The link to its top.
     pub top: u32,
     /// Around all triangles, m.
@@ -39,28 +39,28 @@ pub struct FlatTree {
     pub stack: usize,
 }
 
-fn bits(row: Vec4) -> Row {
+fn bits(row: Vec4) -> PackedRow {
     row.to_array().map(f32::to_bits)
 }
 
-fn corner(point: Vec3, last: u32) -> Row {
+fn corner(point: Vec3, last: u32) -> PackedRow {
     let [x, y, z] = point.to_array().map(f32::to_bits);
     [x, y, z, last]
 }
 
 /// A link in lists in which its tree starts at the given node and block.
-fn moved(link: Link, first_node: usize, first_leaf: usize) -> u32 {
-    if link == Link::NONE {
+fn moved(link: NodeLink, first_node: usize, first_leaf: usize) -> u32 {
+    if link == NodeLink::NONE {
         return NO_LINK;
     }
     let link = match link.parts() {
-        (true, leaf) => Link::leaf(first_leaf + leaf),
-        (false, node) => Link::node(first_node + node),
+        (true, leaf) => NodeLink::leaf(first_leaf + leaf),
+        (false, node) => NodeLink::node(first_node + node),
     };
     link.bits()
 }
 
-fn write_nodes(tree: &WideTree, first_node: usize, first_leaf: usize, rows: &mut Vec<Row>) {
+fn write_nodes(tree: &WideBvh, first_node: usize, first_leaf: usize, rows: &mut Vec<PackedRow>) {
     for Node {
         planes,
         links,
@@ -73,14 +73,14 @@ fn write_nodes(tree: &WideTree, first_node: usize, first_leaf: usize, rows: &mut
 }
 
 /// Most links that wait below a link.
-fn waiting(tree: &WideTree, link: Link) -> usize {
-    let (true, node) = (link != Link::NONE, link.parts()) else {
+fn waiting(tree: &WideBvh, link: NodeLink) -> usize {
+    let (true, node) = (link != NodeLink::NONE, link.parts()) else {
         return 0;
     };
     let (false, index) = node else { return 0 };
     let children = tree.nodes[index].links.iter();
     let children: Vec<usize> = children
-        .filter(|link| **link != Link::NONE)
+        .filter(|link| **link != NodeLink::NONE)
         .map(|link| waiting(tree, *link))
         .collect();
     children.len().saturating_sub(1) + children.iter().max().copied().unwrap_or(0)
@@ -88,7 +88,12 @@ fn waiting(tree: &WideTree, link: Link) -> usize {
 
 impl TriangleBvh {
     /// Appends the tree's rows to those of others. Triangles that `mask` does not meet are left out.
-    pub fn flatten(&self, mask: RayMask, nodes: &mut Vec<Row>, blocks: &mut Vec<Row>) -> FlatTree {
+    pub fn flatten(
+        &self,
+        mask: RayMask,
+        nodes: &mut Vec<PackedRow>,
+        blocks: &mut Vec<PackedRow>,
+    ) -> FlatBvh {
         let (first_node, first_block) = (nodes.len() / NODE_ROWS, blocks.len() / BLOCK_ROWS);
         write_nodes(&self.tree, first_node, first_block, nodes);
         for (block, surfaces) in self.blocks.iter().zip(self.surfaces.as_chunks::<WIDTH>().0) {
@@ -104,7 +109,7 @@ impl TriangleBvh {
                 if seen[k] { surfaces[k].index } else { u32::MAX }
             }));
         }
-        FlatTree {
+        FlatBvh {
             top: moved(self.tree.top, first_node, first_block),
             bounds: self.tree.bounds,
             stack: waiting(&self.tree, self.tree.top),
@@ -115,13 +120,17 @@ impl TriangleBvh {
 impl InstanceSet {
     /// Appends the rows of the tree over the instances; returns the link to its top. Positions in links count from the first
     /// of these rows, and from the first instance.
-    pub fn flatten_tree(&self, nodes: &mut Vec<Row>) -> u32 {
+    pub fn flatten_tree(&self, nodes: &mut Vec<PackedRow>) -> u32 {
         write_nodes(&self.tree, 0, 0, nodes);
         moved(self.tree.top, 0, 0)
     }
 
     /// The rows of an instance; one that `mask` does not meet is hidden.
-    pub fn flat_instance(&self, instance: usize, mask: RayMask) -> Option<[Row; INSTANCE_ROWS]> {
+    pub fn flat_instance(
+        &self,
+        instance: usize,
+        mask: RayMask,
+    ) -> Option<[PackedRow; INSTANCE_ROWS]> {
         let placed = self.placed.get(instance)?;
         let [x, y, z] = placed.mesh_from_world.numbers();
         let longest = if placed.mask.meets(mask) {
@@ -140,7 +149,7 @@ impl InstanceSet {
 }
 
 /// A pose as two rows: its rotation as a quaternion, and its position.
-pub fn flat_pose(pose: &Pose) -> [Row; 2] {
+pub fn flat_pose(pose: &Pose) -> [PackedRow; 2] {
     [bits(Vec4::from(pose.rotation)), corner(pose.position, 0)]
 }
 
@@ -148,12 +157,12 @@ pub fn flat_pose(pose: &Pose) -> [Row; 2] {
 mod tests {
     use super::*;
     use crate::bvh::TriangleTag;
-    use crate::random::Key;
+    use crate::random::RandomKey;
 
     /// Walking the rows from the top meets every triangle of the list once, inside the boxes on the way.
     #[test]
     fn rows_hold_every_triangle_within_its_boxes() {
-        let mut stream = Key::root(5).stream();
+        let mut stream = RandomKey::root(5).stream();
         let positions: Vec<Vec3> = (0..900)
             .map(|_| {
                 Vec3::new(
@@ -177,7 +186,7 @@ mod tests {
         let (mut nodes, mut blocks) = (Vec::new(), Vec::new());
         other.flatten(RayMask::EYE, &mut nodes, &mut blocks);
         let flat = bvh.flatten(RayMask::EYE, &mut nodes, &mut blocks);
-        let number = |row: &Row, k: usize| f32::from_bits(row[k]);
+        let number = |row: &PackedRow, k: usize| f32::from_bits(row[k]);
         let mut seen = vec![0; 300];
         let mut open = vec![(flat.top, flat.bounds)];
         let mut most = 0;

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use glam::{Affine3A, DMat3, Vec3, Vec4};
 
-use super::binary::{self, BinaryTree};
-use super::node::{Link, WIDTH};
+use super::binary::{self, BinaryBvh};
+use super::node::{NodeLink, WIDTH};
 use super::ray::RayMask;
 use super::triangles::TriangleBvh;
-use super::wide::WideTree;
+use super::wide::WideBvh;
 use crate::bounds::Aabb;
 
 /// A mesh somewhere in the world.
@@ -26,7 +26,7 @@ pub struct Instance {
 
 /// An instance, prepared for rays.
 #[derive(Clone, Debug)]
-pub(super) struct Placed {
+pub(super) struct PreparedInstance {
     pub(super) mesh: Arc<TriangleBvh>,
     pub(super) id: i32,
     pub(super) mask: RayMask,
@@ -92,12 +92,12 @@ impl MeshFromWorld {
 /// Once filled, changing poses allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct InstanceSet {
-    pub(super) placed: Vec<Placed>,
-    pub(super) tree: WideTree,
+    pub(super) placed: Vec<PreparedInstance>,
+    pub(super) tree: WideBvh,
     /// For each node, the node whose child it is, and which child.
     parents: Vec<(u32, u32)>,
     boxes: Vec<Aabb>,
-    binary: BinaryTree,
+    binary: BinaryBvh,
 }
 
 /// The place of something that is no node's child.
@@ -115,7 +115,7 @@ impl InstanceSet {
         } in instances
         {
             let mesh_from_world = MeshFromWorld::default();
-            set.placed.push(Placed {
+            set.placed.push(PreparedInstance {
                 mesh,
                 id,
                 mask,
@@ -192,7 +192,7 @@ impl InstanceSet {
         let order = &self.binary.order;
         // Halving makes no tree too deep.
         self.tree.fill(&self.binary, &mut |leaf| {
-            Link::leaf(order[leaf.start] as usize)
+            NodeLink::leaf(order[leaf.start] as usize)
         });
         self.parents.clear();
         self.parents.resize(self.tree.nodes.len(), NOBODY);
@@ -208,7 +208,7 @@ impl InstanceSet {
     }
 }
 
-impl Placed {
+impl PreparedInstance {
     /// Whether its pose or its mesh is such that no ray can meet it.
     #[inline(always)]
     pub(super) fn is_hidden(&self) -> bool {

@@ -10,9 +10,9 @@ pub(super) const WIDTH: usize = 4;
 
 /// What a node's child, or the top of a tree, is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Link(u32);
+pub(super) struct NodeLink(u32);
 
-impl Link {
+impl NodeLink {
     /// Nothing at all.
     pub(super) const NONE: Self = Self(u32::MAX);
 
@@ -46,7 +46,7 @@ impl Link {
 pub(super) struct Node {
     /// Lower corners, then upper corners, m. Shape (6, child).
     pub(super) planes: [Vec4; 6],
-    pub(super) links: [Link; WIDTH],
+    pub(super) links: [NodeLink; WIDTH],
     /// Which children there are, as bits.
     pub(super) present: u32,
 }
@@ -55,12 +55,12 @@ impl Node {
     /// Without children.
     pub(super) const EMPTY: Self = Self {
         planes: [Vec4::ZERO; 6],
-        links: [Link::NONE; WIDTH],
+        links: [NodeLink::NONE; WIDTH],
         present: 0,
     };
 
     /// Makes `link` a child.
-    pub(super) fn set(&mut self, child: usize, bounds: &Aabb, link: Link) {
+    pub(super) fn set(&mut self, child: usize, bounds: &Aabb, link: NodeLink) {
         self.set_bounds(child, bounds);
         self.links[child] = link;
         self.present |= 1 << child;
@@ -96,7 +96,7 @@ impl Node {
 /// Up to four triangles; 192 bytes. An unused place holds NaN and is never hit.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Block {
+pub(super) struct TriangleBlock {
     /// First corners, m. Shape (axis, triangle); so are the next two.
     pub(super) a: [Vec4; 3],
     pub(super) b: [Vec4; 3],
@@ -105,7 +105,7 @@ pub(super) struct Block {
     pub(super) normal: [Vec4; 3],
 }
 
-impl Block {
+impl TriangleBlock {
     pub(super) const EMPTY: Self = Self {
         a: [Vec4::NAN; 3],
         b: [Vec4::NAN; 3],
@@ -126,14 +126,14 @@ impl Block {
 
 /// Whose a triangle is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Surface {
+pub(super) struct TriangleInfo {
     pub(super) id: i32,
     /// Position in the input.
     pub(super) index: u32,
     pub(super) mask: RayMask,
 }
 
-impl Surface {
+impl TriangleInfo {
     pub(super) const NONE: Self = Self {
         id: 0,
         index: u32::MAX,
@@ -155,6 +155,6 @@ mod tests {
     fn a_node_fills_two_cache_lines_and_a_block_three() {
         assert_eq!(size_of::<Node>(), 128);
         assert_eq!(align_of::<Node>(), 64);
-        assert_eq!(size_of::<Block>(), 192);
+        assert_eq!(size_of::<TriangleBlock>(), 192);
     }
 }

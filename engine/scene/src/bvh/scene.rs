@@ -1,16 +1,16 @@
 //! Rays through everything: static geometry and what moves.
 
 use super::instances::InstanceSet;
-use super::kernels::level::{ClosestPacket, OccludedPacket};
-use super::kernels::nearest::{Claim, Nearest, Place, reach};
-use super::kernels::one::{Any, Every, Offer, OneRay};
-use super::kernels::single::Hits;
+use super::kernels::closest_hit::{ClosestHit, HitIndex, TieBreak, reach};
+use super::kernels::dispatch::{ClosestPacket, OccludedPacket};
+use super::kernels::scene_ray::{AllHitsVisitor, AnyHitVisitor, ClosestHitVisitor, SceneRayQuery};
+use super::kernels::tree_ray::HitVisitor;
 use super::kernels::triangle::{EdgePlanes, dot, height_of, weights};
-use super::kernels::{Filter, packet};
+use super::kernels::{HitFilter, tree_packet};
 use super::packet::{PacketHits, RayPacket};
 use super::ray::{Hit, Ray, RayMask};
 use super::triangles::TriangleBvh;
-use crate::instructions::Level;
+use crate::simd::SimdLevel;
 
 /// A world as rays see it; a pair of references, free to make and copy.
 ///
@@ -26,7 +26,7 @@ pub struct SceneBvh<'a> {
 }
 
 /// A ray in the space of one mesh.
-struct Local<'a> {
+struct LocalRay<'a> {
     bvh: &'a TriangleBvh,
     origin: [f32; 3],
     direction: [f32; 3],
@@ -37,32 +37,32 @@ struct Local<'a> {
 impl SceneBvh<'_> {
     /// The nearest surface on a ray that `mask` meets.
     pub fn closest(&self, ray: &Ray, mask: RayMask) -> Option<Hit> {
-        self.closest_filtered(ray, &Filter::new(mask, None))
+        self.closest_filtered(ray, &HitFilter::new(mask, None))
     }
 
     /// As [`Self::closest`], as if nothing had the id `hidden`.
-    pub fn closest_without(&self, ray: &Ray, mask: RayMask, hidden: i32) -> Option<Hit> {
-        self.closest_filtered(ray, &Filter::new(mask, Some(hidden)))
+    pub fn closest_excluding(&self, ray: &Ray, mask: RayMask, hidden: i32) -> Option<Hit> {
+        self.closest_filtered(ray, &HitFilter::new(mask, Some(hidden)))
     }
 
     /// Whether a surface that `mask` meets lies on the ray.
     pub fn occluded(&self, ray: &Ray, mask: RayMask) -> bool {
-        self.occluded_filtered(ray, &Filter::new(mask, None))
+        self.occluded_filtered(ray, &HitFilter::new(mask, None))
     }
 
     /// As [`Self::occluded`], as if nothing had the id `hidden`.
-    pub fn occluded_without(&self, ray: &Ray, mask: RayMask, hidden: i32) -> bool {
-        self.occluded_filtered(ray, &Filter::new(mask, Some(hidden)))
+    pub fn occluded_excluding(&self, ray: &Ray, mask: RayMask, hidden: i32) -> bool {
+        self.occluded_filtered(ray, &HitFilter::new(mask, Some(hidden)))
     }
 
     /// Every surface on the ray that `mask` meets, by distance, then id, instance and triangle. `hits` is cleared first.
-    pub fn every_hit(&self, ray: &Ray, mask: RayMask, hits: &mut Vec<Hit>) {
+    pub fn all_hits(&self, ray: &Ray, mask: RayMask, hits: &mut Vec<Hit>) {
         hits.clear();
         if !ray.is_usable() {
             return;
         }
-        let mut every = Every(|place, distance| hits.push(self.hit(ray, place, distance)));
-        self.offer(ray, &Filter::new(mask, None), &mut every);
+        let mut every = AllHitsVisitor(|place, distance| hits.push(self.hit(ray, place, distance)));
+        self.offer(ray, &HitFilter::new(mask, None), &mut every);
         hits.sort_by(|a, b| {
             let rest = |hit: &Hit| (hit.id, hit.instance, hit.triangle);
             a.distance_m
@@ -81,7 +81,7 @@ impl SceneBvh<'_> {
         hidden: Option<i32>,
         hits: &mut PacketHits<N>,
     ) {
-        self.closest_packet_at(Level::best(), rays, &Filter::new(mask, hidden), hits);
+        self.closest_packet_at_level(SimdLevel::best(), rays, &HitFilter::new(mask, hidden), hits);
     }
 
     /// Which rays of a packet meet anything, as bits; the same as [`Self::occluded`] for each.
@@ -91,8 +91,8 @@ impl SceneBvh<'_> {
         mask: RayMask,
         hidden: Option<i32>,
     ) -> u64 {
-        let filter = &Filter::new(mask, hidden);
-        Level::best().run(OccludedPacket {
+        let filter = &HitFilter::new(mask, hidden);
+        SimdLevel::best().run(OccludedPacket {
             scene: self,
             rays,
             filter,
@@ -106,7 +106,7 @@ impl SceneBvh<'_> {
         hits: &PacketHits<N>,
         k: usize,
     ) -> Option<Hit> {
-        let place = Place {
+        let place = HitIndex {
             source: hits.source[k],
             slot: hits.slot[k],
         };
@@ -114,14 +114,14 @@ impl SceneBvh<'_> {
             .then(|| self.hit(&rays.ray(k), place, hits.distance_m[k]))
     }
 
-    pub(super) fn closest_packet_at<const N: usize>(
+    pub(super) fn closest_packet_at_level<const N: usize>(
         &self,
-        level: Level,
+        level: SimdLevel,
         rays: &RayPacket<N>,
-        filter: &Filter,
+        filter: &HitFilter,
         hits: &mut PacketHits<N>,
     ) {
-        let mut answers = packet::Answers::new();
+        let mut answers = tree_packet::PacketClosestHits::new();
         level.run(ClosestPacket {
             scene: self,
             rays,
@@ -129,7 +129,7 @@ impl SceneBvh<'_> {
             answers: &mut answers,
         });
         for k in 0..N {
-            if answers.is_unsure(k) {
+            if answers.is_ambiguous(k) {
                 let ray = rays.ray(k);
                 let settled = self.settle(&ray, filter, &answers.lane(k, ray.far_m));
                 answers.set(k, settled.best);
@@ -140,47 +140,47 @@ impl SceneBvh<'_> {
         for k in 0..N {
             if hits.is_hit(k) {
                 let (source, slot) = (hits.source[k], hits.slot[k]);
-                (hits.id[k], hits.triangle[k]) = self.name(Place { source, slot });
+                (hits.id[k], hits.triangle[k]) = self.name(HitIndex { source, slot });
             } else {
                 (hits.id[k], hits.triangle[k]) = (0, 0);
             }
         }
     }
 
-    fn closest_filtered(&self, ray: &Ray, filter: &Filter) -> Option<Hit> {
+    fn closest_filtered(&self, ray: &Ray, filter: &HitFilter) -> Option<Hit> {
         if !ray.is_usable() {
             return None;
         }
-        let mut nearest = Nearest::new(ray.far_m);
+        let mut nearest = ClosestHit::new(ray.far_m);
         self.offer_all(ray, filter, &mut nearest);
-        if nearest.is_unsure() {
+        if nearest.is_ambiguous() {
             nearest = self.settle(ray, filter, &nearest);
         }
-        (nearest.best != Place::NONE).then(|| self.hit(ray, nearest.best, nearest.distance))
+        (nearest.best != HitIndex::NONE).then(|| self.hit(ray, nearest.best, nearest.distance))
     }
 
-    fn occluded_filtered(&self, ray: &Ray, filter: &Filter) -> bool {
-        ray.is_usable() && self.offer(ray, filter, &mut Any)
+    fn occluded_filtered(&self, ray: &Ray, filter: &HitFilter) -> bool {
+        ray.is_usable() && self.offer(ray, filter, &mut AnyHitVisitor)
     }
 
     /// The second run of a ray whose first was not sure.
     #[cold]
-    fn settle(&self, ray: &Ray, filter: &Filter, first: &Nearest) -> Nearest {
-        let mut nearest = first.again(ray.far_m);
+    fn settle(&self, ray: &Ray, filter: &HitFilter, first: &ClosestHit) -> ClosestHit {
+        let mut nearest = first.second_pass(ray.far_m);
         self.offer_all(ray, filter, &mut nearest);
         nearest
     }
 
     /// Offers all hits that may matter.
-    fn offer_all(&self, ray: &Ray, filter: &Filter, nearest: &mut Nearest) {
+    fn offer_all(&self, ray: &Ray, filter: &HitFilter, nearest: &mut ClosestHit) {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-        let claim = |place: Place| self.claim(origin, direction, place);
-        self.offer(ray, filter, &mut Offer { nearest, claim });
+        let claim = |place: HitIndex| self.claim(origin, direction, place);
+        self.offer(ray, filter, &mut ClosestHitVisitor { nearest, claim });
     }
 
     /// Hands hits to `hits`; whether one was enough.
-    fn offer(&self, ray: &Ray, filter: &Filter, hits: &mut impl Hits) -> bool {
-        Level::best().run(OneRay {
+    fn offer(&self, ray: &Ray, filter: &HitFilter, hits: &mut impl HitVisitor) -> bool {
+        SimdLevel::best().run(SceneRayQuery {
             scene: self,
             ray,
             filter,
@@ -189,9 +189,9 @@ impl SceneBvh<'_> {
     }
 
     #[inline(always)]
-    fn local(&self, origin: [f32; 3], direction: [f32; 3], source: u32) -> Local<'_> {
+    fn local(&self, origin: [f32; 3], direction: [f32; 3], source: u32) -> LocalRay<'_> {
         let Some(instance) = source.checked_sub(1) else {
-            return Local {
+            return LocalRay {
                 bvh: self.fixed,
                 origin,
                 direction,
@@ -202,7 +202,7 @@ impl SceneBvh<'_> {
         let map = &placed.mesh_from_world;
         let [x, y, z] = direction;
         let id = Some(placed.id);
-        Local {
+        LocalRay {
             bvh: &placed.mesh,
             origin: map.point(origin),
             direction: map.vector(x, y, z),
@@ -211,8 +211,8 @@ impl SceneBvh<'_> {
     }
 
     /// What decides for a hit among coincident ones.
-    pub(super) fn claim(&self, origin: [f32; 3], direction: [f32; 3], place: Place) -> Claim {
-        let Local {
+    pub(super) fn claim(&self, origin: [f32; 3], direction: [f32; 3], place: HitIndex) -> TieBreak {
+        let LocalRay {
             bvh,
             origin,
             direction: [x, y, z],
@@ -224,7 +224,7 @@ impl SceneBvh<'_> {
         let slope = dot(block.normal_of(lane), x, y, z);
         let distance = height_of(block, lane, origin) / slope;
         let cosine = slope.abs() / dot([x, y, z], x, y, z).sqrt();
-        Claim {
+        TieBreak {
             reach: reach(distance, cosine),
             id: id.unwrap_or(surface.id),
             triangle: surface.index,
@@ -233,7 +233,7 @@ impl SceneBvh<'_> {
 
     /// The id and the triangle's position in its list.
     #[inline(always)]
-    fn name(&self, place: Place) -> (i32, u32) {
+    fn name(&self, place: HitIndex) -> (i32, u32) {
         if let Some(instance) = place.source.checked_sub(1) {
             let placed = &self.moving.placed[instance as usize];
             return (placed.id, placed.mesh.surfaces[place.slot as usize].index);
@@ -242,8 +242,8 @@ impl SceneBvh<'_> {
         (surface.id, surface.index)
     }
 
-    fn hit(&self, ray: &Ray, place: Place, distance_m: f32) -> Hit {
-        let Local {
+    fn hit(&self, ray: &Ray, place: HitIndex, distance_m: f32) -> Hit {
+        let LocalRay {
             bvh,
             origin,
             direction,

@@ -2,11 +2,11 @@
 
 use glam::{DVec3, Vec3};
 
-use super::binary::{BinaryTree, median_tree};
+use super::binary::{BinaryBvh, median_tree};
 use super::build;
-use super::node::{Block, Link, Surface, WIDTH};
+use super::node::{NodeLink, TriangleBlock, TriangleInfo, WIDTH};
 use super::ray::RayMask;
-use super::wide::WideTree;
+use super::wide::WideBvh;
 use crate::bounds::Aabb;
 
 /// Coordinates beyond this are no house's, m; such triangles are left out.
@@ -34,10 +34,10 @@ impl TriangleTag {
 /// A tree of triangles, immutable once built. Triangles are seen from both sides.
 #[derive(Debug, Default)]
 pub struct TriangleBvh {
-    pub(super) tree: WideTree,
-    pub(super) blocks: Vec<Block>,
+    pub(super) tree: WideBvh,
+    pub(super) blocks: Vec<TriangleBlock>,
     /// Four for each block.
-    pub(super) surfaces: Vec<Surface>,
+    pub(super) surfaces: Vec<TriangleInfo>,
     count: usize,
     left_out: usize,
 }
@@ -61,7 +61,7 @@ impl TriangleBvh {
         triangles: &[[u32; 3]],
         tag: impl Fn(usize) -> TriangleTag,
     ) -> Self {
-        let mut list = List::default();
+        let mut list = BuildTriangles::default();
         for (index, triangle) in triangles.iter().enumerate() {
             let corner = |k: usize| positions.get(triangle[k] as usize).copied();
             if let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) {
@@ -81,16 +81,16 @@ impl TriangleBvh {
     }
 
     /// Lays the triangles out in the order of a tree's leaves; returns whether the tree is flat enough.
-    fn fill(&mut self, list: &List, binary: &BinaryTree) -> bool {
+    fn fill(&mut self, list: &BuildTriangles, binary: &BinaryBvh) -> bool {
         self.blocks.clear();
         self.surfaces.clear();
         self.blocks.reserve(self.count / 2);
         self.surfaces.reserve(self.count * 2);
         let (blocks, surfaces) = (&mut self.blocks, &mut self.surfaces);
         self.tree.fill(binary, &mut |leaf| {
-            let mut block = Block::EMPTY;
+            let mut block = TriangleBlock::EMPTY;
             let first = surfaces.len();
-            surfaces.resize(first + WIDTH, Surface::NONE);
+            surfaces.resize(first + WIDTH, TriangleInfo::NONE);
             for (lane, &k) in binary.order[leaf].iter().enumerate() {
                 let [a, b, c] = list.corners[k as usize];
                 for axis in 0..3 {
@@ -102,7 +102,7 @@ impl TriangleBvh {
                 surfaces[first + lane] = list.surfaces[k as usize];
             }
             blocks.push(block);
-            Link::leaf(blocks.len() - 1)
+            NodeLink::leaf(blocks.len() - 1)
         })
     }
 
@@ -136,14 +136,14 @@ impl TriangleBvh {
 
 /// Triangles that are fit for a tree.
 #[derive(Default)]
-struct List {
+struct BuildTriangles {
     corners: Vec<[Vec3; 3]>,
     normals: Vec<Vec3>,
     boxes: Vec<Aabb>,
-    surfaces: Vec<Surface>,
+    surfaces: Vec<TriangleInfo>,
 }
 
-impl List {
+impl BuildTriangles {
     fn push(&mut self, [a, b, c]: [Vec3; 3], index: usize, tag: impl Fn(usize) -> TriangleTag) {
         let usable = |v: Vec3| v.is_finite() && v.abs().max_element() <= FURTHEST_M;
         if !(usable(a) && usable(b) && usable(c)) {
@@ -159,7 +159,7 @@ impl List {
             max: a.max(b).max(c),
         });
         let TriangleTag { id, mask } = tag(index);
-        self.surfaces.push(Surface {
+        self.surfaces.push(TriangleInfo {
             id,
             index: index as u32,
             mask,

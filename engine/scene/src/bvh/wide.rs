@@ -1,54 +1,54 @@
 //! From two children a node to four.
 
-use super::binary::BinaryTree;
-use super::node::{Link, MAX_DEPTH, Node, WIDTH};
+use super::binary::BinaryBvh;
+use super::node::{MAX_DEPTH, Node, NodeLink, WIDTH};
 use crate::bounds::Aabb;
 
 /// A tree as the kernels walk it.
 #[derive(Clone, Debug)]
-pub(super) struct WideTree {
+pub(super) struct WideBvh {
     pub(super) nodes: Vec<Node>,
-    pub(super) top: Link,
+    pub(super) top: NodeLink,
     pub(super) bounds: Aabb,
 }
 
-impl Default for WideTree {
+impl Default for WideBvh {
     fn default() -> Self {
         Self {
             nodes: Vec::new(),
-            top: Link::NONE,
+            top: NodeLink::NONE,
             bounds: Aabb::EMPTY,
         }
     }
 }
 
-impl WideTree {
+impl WideBvh {
     /// Replaces the tree; its memory is used again. `leaf` turns the boxes of a leaf, as a range of the binary tree's order,
     /// into a link. Returns whether the tree is flat enough for the kernels; one that is not is incomplete.
     pub(super) fn fill(
         &mut self,
-        tree: &BinaryTree,
-        leaf: &mut impl FnMut(std::ops::Range<usize>) -> Link,
+        tree: &BinaryBvh,
+        leaf: &mut impl FnMut(std::ops::Range<usize>) -> NodeLink,
     ) -> bool {
         self.nodes.clear();
         self.bounds = tree.nodes.first().map_or(Aabb::EMPTY, |top| top.bounds);
         let top = if tree.nodes.is_empty() {
-            Some(Link::NONE)
+            Some(NodeLink::NONE)
         } else {
             self.below(tree, 0, 0, leaf)
         };
-        self.top = top.unwrap_or(Link::NONE);
+        self.top = top.unwrap_or(NodeLink::NONE);
         top.is_some()
     }
 
     /// The link to node `k` of the binary tree, or nothing when it leads too deep.
     fn below(
         &mut self,
-        tree: &BinaryTree,
+        tree: &BinaryBvh,
         k: usize,
         depth: usize,
-        leaf: &mut impl FnMut(std::ops::Range<usize>) -> Link,
-    ) -> Option<Link> {
+        leaf: &mut impl FnMut(std::ops::Range<usize>) -> NodeLink,
+    ) -> Option<NodeLink> {
         let node = &tree.nodes[k];
         let first = node.first as usize;
         if node.count > 0 {
@@ -77,7 +77,7 @@ impl WideTree {
             let link = self.below(tree, k, depth + 1, leaf)?;
             self.nodes[index].set(place, &tree.nodes[k].bounds, link);
         }
-        Some(Link::node(index))
+        Some(NodeLink::node(index))
     }
 }
 
@@ -88,7 +88,7 @@ mod tests {
     use glam::Vec3;
 
     /// Each node has a leaf and the next node.
-    fn chain(length: usize) -> BinaryTree {
+    fn chain(length: usize) -> BinaryBvh {
         let bounds = Aabb::new(Vec3::ZERO, Vec3::ONE);
         let mut nodes = vec![BinaryNode {
             bounds,
@@ -108,7 +108,7 @@ mod tests {
                 count: last,
             });
         }
-        BinaryTree {
+        BinaryBvh {
             nodes,
             order: vec![0],
         }
@@ -116,12 +116,12 @@ mod tests {
 
     #[test]
     fn only_trees_that_fit_the_stacks_are_taken() {
-        let mut tree = WideTree::default();
+        let mut tree = WideBvh::default();
         // Four children take three levels of a chain.
-        assert!(tree.fill(&chain(3 * MAX_DEPTH), &mut |_| Link::leaf(0)));
+        assert!(tree.fill(&chain(3 * MAX_DEPTH), &mut |_| NodeLink::leaf(0)));
         assert_eq!(tree.nodes.len(), MAX_DEPTH);
-        assert!(!tree.fill(&chain(3 * MAX_DEPTH + 1), &mut |_| Link::leaf(0)));
-        assert!(tree.fill(&chain(1), &mut |_| Link::leaf(0)));
+        assert!(!tree.fill(&chain(3 * MAX_DEPTH + 1), &mut |_| NodeLink::leaf(0)));
+        assert!(tree.fill(&chain(1), &mut |_| NodeLink::leaf(0)));
         assert_eq!(tree.nodes.len(), 1);
     }
 }

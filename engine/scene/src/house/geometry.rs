@@ -19,7 +19,7 @@ pub enum SurfaceOwner {
 
 /// One mesh that stands in the house: a structure piece or a part.
 #[derive(Clone, Debug)]
-pub struct Placed {
+pub struct PlacedMesh {
     /// What it belongs to.
     pub owner: SurfaceOwner,
     /// The sensors' id.
@@ -49,7 +49,7 @@ pub struct Geometry {
     /// Where each static triangle comes from. Shape (static triangle,).
     pub static_triangles: Vec<StaticTriangle>,
     /// Structure pieces in order, then parts in order.
-    pub placed: Vec<Placed>,
+    pub placed: Vec<PlacedMesh>,
     /// The parts that move, in order: instance `k` of a [`RayScene`](crate::rays::RayScene) is `movable[k]`.
     pub movable: Vec<PartId>,
     /// The trees of the meshes that some moving part shows.
@@ -63,7 +63,7 @@ impl Geometry {
         let structure_count = data.structure.len();
         let mut placed = Vec::with_capacity(structure_count + data.parts.len());
         for (id, piece) in data.structure.iter_ids() {
-            placed.push(Placed {
+            placed.push(PlacedMesh {
                 owner: SurfaceOwner::Structure(id),
                 entity: EntityId(1 + id.0 as i32),
                 mesh: piece.mesh,
@@ -74,7 +74,7 @@ impl Geometry {
         let mut movable = Vec::new();
         let mut mesh_bvh: IdVec<MeshId, _> = IdVec::filled(None, data.meshes.len());
         for (id, part) in data.parts.iter_ids() {
-            placed.push(Placed {
+            placed.push(PlacedMesh {
                 owner: SurfaceOwner::Part(id),
                 entity: EntityId((1 + structure_count + part.object.index()) as i32),
                 mesh: part.mesh,
@@ -131,14 +131,14 @@ impl Geometry {
     }
 
     /// The entry of [`Self::placed`] for a part.
-    pub fn placed_part(&self, part: PartId) -> &Placed {
+    pub fn placed_part(&self, part: PartId) -> &PlacedMesh {
         &self.placed[self.structure_count + part.index()]
     }
 }
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
+pub struct SurfaceHit {
     /// The sensors' id.
     pub entity: EntityId,
     /// What it belongs to.

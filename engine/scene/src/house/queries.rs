@@ -3,12 +3,12 @@
 use super::House;
 use super::data::Room;
 use crate::ids::{AgentId, Entity, EntityId, Id, JointId, ObjectId, PartId, RoomId, StructureId};
-use crate::random::Key;
+use crate::random::RandomKey;
 use crate::state::State;
 use glam::{Vec2, Vec3};
 
 impl Room {
-    /// The area of the footprint, m²; [`House::own_area_m2`] leaves out what belongs to smaller rooms.
+    /// The area of the footprint, m²; [`House::footprint_area_m2`] leaves out what belongs to smaller rooms.
     pub fn area_m2(&self) -> f32 {
         self.footprint
             .iter()
@@ -97,7 +97,10 @@ impl House {
     /// The same points for the same house and count.
     pub fn points_in_room(&self, id: RoomId, count: usize) -> Vec<Vec3> {
         let room = &self.rooms[id];
-        let mut stream = Key::root(0).child("floor").child(u64::from(id.0)).stream();
+        let mut stream = RandomKey::root(0)
+            .child("floor")
+            .child(u64::from(id.0))
+            .stream();
         let total = room.area_m2();
         let mut points = Vec::with_capacity(count);
         crate::interrupt::check();
@@ -123,7 +126,7 @@ impl House {
 
     /// The area of a room's floor that lies in no smaller room, m²: what people take for the room's size. Where rooms overlap
     /// it is estimated from 256 points.
-    pub fn own_area_m2(&self, id: RoomId) -> f32 {
+    pub fn footprint_area_m2(&self, id: RoomId) -> f32 {
         const POINTS: usize = 256;
         let share = self.points_in_room(id, POINTS).len() as f32 / POINTS as f32;
         self.rooms[id].area_m2() * share

@@ -52,16 +52,16 @@ pub struct Library {
 }
 
 #[derive(Deserialize)]
-struct File {
+struct MaterialsToml {
     band_centres_hz: Vec<f32>,
     default_material: String,
-    material: Vec<Row>,
+    material: Vec<SubstanceRow>,
     #[serde(default)]
-    pair: Vec<Pair>,
+    pair: Vec<PairRow>,
 }
 
 #[derive(Deserialize)]
-struct Row {
+struct SubstanceRow {
     name: String,
     noun: String,
     adjective: String,
@@ -87,7 +87,7 @@ struct Row {
 }
 
 #[derive(Deserialize)]
-struct Pair {
+struct PairRow {
     between: [String; 2],
     friction: f32,
     restitution: Option<f32>,
@@ -119,7 +119,7 @@ impl Library {
     /// # Errors
     /// [`SceneError`] with the row and field.
     pub fn parse(text: &str) -> Result<Self, SceneError> {
-        let file: File = toml::from_str(text).map_err(|error| SceneError::Range {
+        let file: MaterialsToml = toml::from_str(text).map_err(|error| SceneError::Range {
             at: "materials.toml".to_owned(),
             field: "table",
             found: error.to_string(),
@@ -236,7 +236,7 @@ impl Library {
     }
 
     /// The substance that a word of a foreign material's name means.
-    pub fn by_word(&self, word: &str) -> Option<&Substance> {
+    pub fn find_by_word(&self, word: &str) -> Option<&Substance> {
         self.by_word.get(word).map(|name| &self.substances[name])
     }
 

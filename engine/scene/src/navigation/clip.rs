@@ -4,12 +4,12 @@ use glam::Vec3;
 
 /// A convex polygon: a triangle cut by at most four planes has at most seven corners.
 #[derive(Clone, Copy)]
-pub(super) struct Polygon {
+pub(super) struct ClipPolygon {
     corners: [Vec3; 8],
     count: usize,
 }
 
-impl Polygon {
+impl ClipPolygon {
     pub(super) fn new(corners: &[Vec3; 3]) -> Self {
         let mut polygon = Self {
             corners: [Vec3::ZERO; 8],

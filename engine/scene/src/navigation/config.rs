@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 /// other joints (drawers, cupboards) stand as the state has them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Doors {
+pub enum DoorPolicy {
     /// As the state has them: a shut door is an obstacle, and so is the leaf of an open one.
     #[default]
     AsTheyStand,
     /// Fully open, the leaf where it then stands: where someone who opens doors can go.
     Open,
-    /// As [`Doors::Open`], but passing a door that does not stand open adds [`NavConfig::door_price_m`] to the way.
+    /// As [`DoorPolicy::Open`], but passing a door that does not stand open adds [`NavConfig::door_price_m`] to the way.
     Priced,
 }
 
@@ -32,8 +32,8 @@ pub struct NavConfig {
     /// The steepest slope it walks on, rad; 0 to 1.5, default 0.785.
     pub max_slope_rad: f32,
     /// How doors count.
-    pub doors: Doors,
-    /// What opening a door adds to a way under [`Doors::Priced`], m; 0 to 1000, default 2.
+    pub doors: DoorPolicy,
+    /// What opening a door adds to a way under [`DoorPolicy::Priced`], m; 0 to 1000, default 2.
     pub door_price_m: f32,
 }
 
@@ -45,7 +45,7 @@ impl Default for NavConfig {
             height_m: 1.5,
             step_m: 0.2,
             max_slope_rad: 0.785,
-            doors: Doors::AsTheyStand,
+            doors: DoorPolicy::AsTheyStand,
             door_price_m: 2.0,
         }
     }

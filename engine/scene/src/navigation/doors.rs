@@ -1,13 +1,13 @@
 //! Doors as edges between the islands of a grid.
 
-use super::grid::{Cell, NavGrid};
-use super::ground::{around, blocks};
+use super::grid::{NavCell, NavGrid};
 use super::obstacles::stands_open;
+use super::static_grid::{around, blocks};
 use crate::ids::JointId;
 
 /// A door in the way of walkers, as the grid has it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Door {
+pub struct NavDoor {
     /// Its joint.
     pub joint: JointId,
     /// How far it was open when the grid was last updated, 0 to 1.
@@ -15,34 +15,37 @@ pub struct Door {
     /// Whether it stands open far enough to pass (0.8 and more).
     pub is_open: bool,
     /// The walkable cells on which its leaf stands when it is shut; none while the leaf or something else blocks them.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<NavCell>,
     /// The islands beside it, in order: two, if it parts them now; one, if there is a way between its sides.
     pub islands: Vec<u32>,
 }
 
 impl NavGrid {
     /// The doors in the way of walkers, by joint.
-    pub fn doors(&self) -> Vec<Door> {
+    pub fn doors(&self) -> Vec<NavDoor> {
         (0..self.ground.passages.len())
             .map(|k| self.door(k))
             .collect()
     }
 
-    fn door(&self, passage: usize) -> Door {
+    fn door(&self, passage: usize) -> NavDoor {
         let openness = self.openness[passage];
         let mut islands: Vec<u32> = Vec::new();
         // Where a walker stands in front of the shut leaf, and a cell or two more for what the grid rounds.
         let reach = self.config.radius_m + 2.5 * self.config.cell_m;
         for (column, _) in &self.ground.passages[passage].shut {
             for (beside, _) in around(&self.ground.frame, *column as usize, reach) {
-                let cells = self.layers.cells_of(beside).map(|cell| Cell(cell as u32));
+                let cells = self
+                    .layers
+                    .cells_of(beside)
+                    .map(|cell| NavCell(cell as u32));
                 let here = cells.filter(|cell| self.is_beside(passage, *cell));
                 islands.extend(here.filter_map(|cell| self.island(cell)));
             }
         }
         islands.sort_unstable();
         islands.dedup();
-        Door {
+        NavDoor {
             joint: self.ground.passages[passage].joint,
             openness,
             is_open: stands_open(openness),
@@ -52,7 +55,7 @@ impl NavGrid {
     }
 
     /// Whether a walker on `cell` is as high as the door's leaf.
-    fn is_beside(&self, passage: usize, cell: Cell) -> bool {
+    fn is_beside(&self, passage: usize, cell: NavCell) -> bool {
         let y = self.layers.height[cell.0 as usize];
         let leaf = &self.ground.passages[passage].shut;
         leaf.iter()
@@ -60,14 +63,14 @@ impl NavGrid {
     }
 
     /// The walkable cells under the shut leaf of a door.
-    fn doorway(&self, passage: usize) -> Vec<Cell> {
+    fn doorway(&self, passage: usize) -> Vec<NavCell> {
         let mut cells = Vec::new();
         for (column, leaf) in &self.ground.passages[passage].shut {
             for cell in self.layers.cells_of(*column as usize) {
                 let y = self.layers.height[cell];
-                let walkable = self.is_walkable(Cell(cell as u32));
+                let walkable = self.is_walkable(NavCell(cell as u32));
                 if walkable && blocks(std::slice::from_ref(leaf), y, &self.config) {
-                    cells.push(Cell(cell as u32));
+                    cells.push(NavCell(cell as u32));
                 }
             }
         }
@@ -77,10 +80,10 @@ impl NavGrid {
     }
 
     /// The shut doors that straight pieces between `corners` pass, in order.
-    pub(super) fn shut_doors_on(&self, corners: &[Cell]) -> Vec<JointId> {
-        let crosses = |ends: &[Cell]| {
+    pub(super) fn shut_doors_on(&self, corners: &[NavCell]) -> Vec<JointId> {
+        let crosses = |ends: &[NavCell]| {
             let crossing = self.straight_between(ends[0], ends[1]);
-            crossing.is_some_and(|crossing| crossing.thresholds > 0)
+            crossing.is_some_and(|crossing| crossing.door_crossings > 0)
         };
         let mut passed: Vec<JointId> = Vec::new();
         for ends in corners.windows(2).filter(|ends| crosses(ends)) {
@@ -97,7 +100,7 @@ impl NavGrid {
                 let reach = self.config.cell_m;
                 let at = (0..=pieces).find(|step| {
                     let point = a.lerp(b, *step as f32 / pieces as f32);
-                    let near = |cell: &Cell| {
+                    let near = |cell: &NavCell| {
                         let apart = self.position(*cell) - point;
                         apart.x.abs().max(apart.z.abs()) <= 0.5 * reach + 1e-4
                     };

@@ -1,32 +1,32 @@
 //! The walkable grid.
 
-use super::columns::{Span, join};
-use super::config::{Doors, NavConfig, range};
-use super::ground::{Ground, MAX_CELLS, around, blocks};
+use super::config::{DoorPolicy, NavConfig, range};
+use super::heightfield::{HeightSpan, join};
 use super::layers::{DOORWAY, FREE, INDOORS, Layers, NOWHERE, ON_FLOOR, middle};
 use super::obstacles::{Obstacles, openness, stands_open};
+use super::static_grid::{MAX_CELLS, StaticGrid, around, blocks};
 use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::LevelId;
 use crate::interrupt;
-use crate::random::Key;
+use crate::random::RandomKey;
 use crate::state::State;
 use glam::Vec3;
 use std::sync::Arc;
 
 /// A place to stand: one surface of one column of the grid. Cells keep their numbers when things move elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Cell(pub u32);
+pub struct NavCell(pub u32);
 
 /// Where an agent can walk in a house, as it stands in one state: surfaces above each other in the columns of a grid over
 /// all storeys, joined by floors, steps, stairs and slopes.
 #[derive(Clone, Debug)]
 pub struct NavGrid {
     pub(super) config: NavConfig,
-    pub(super) ground: Arc<Ground>,
+    pub(super) ground: Arc<StaticGrid>,
     obstacles: Obstacles,
     /// What fills the columns in which something that moves stands; `None`: the ground alone.
-    mixed: Vec<Option<Box<[Span]>>>,
+    mixed: Vec<Option<Box<[HeightSpan]>>>,
     pub(super) layers: Layers,
     /// Shape (cell,); [`NOWHERE`] where nobody can stand.
     island: Vec<u32>,
@@ -36,13 +36,13 @@ pub struct NavGrid {
 
 /// What [`NavGrid::update`] did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rebuilt {
+pub struct NavGridUpdate {
     /// Parts that stand elsewhere than before.
     pub parts: usize,
     /// Columns in which something stands now that did not, or stood and does not.
     pub columns: usize,
     /// Columns whose room was looked at again: those within the walker's radius.
-    pub looked_at: usize,
+    pub rechecked: usize,
 }
 
 /// A storey from above.
@@ -67,7 +67,7 @@ impl NavGrid {
     /// [`SceneError::Range`] for a setting out of range, a house too large for the cell size, or another house's state.
     pub fn build(house: &House, state: &State, config: &NavConfig) -> Result<Self, SceneError> {
         config.check()?;
-        let ground = Arc::new(Ground::new(house, config)?);
+        let ground = Arc::new(StaticGrid::new(house, config)?);
         let columns = ground.frame.count();
         let mut grid = Self {
             config: *config,
@@ -90,13 +90,13 @@ impl NavGrid {
     ///
     /// # Errors
     /// [`SceneError::Range`] for another house than the grid was built for.
-    pub fn update(&mut self, house: &House, state: &State) -> Result<Rebuilt, SceneError> {
+    pub fn update(&mut self, house: &House, state: &State) -> Result<NavGridUpdate, SceneError> {
         self.check_state(house, state)?;
         let moved = self.follow(house, state);
-        let mut rebuilt = Rebuilt {
+        let mut rebuilt = NavGridUpdate {
             parts: moved.parts,
             columns: moved.columns.len(),
-            looked_at: 0,
+            rechecked: 0,
         };
         let filled: Vec<usize> = moved
             .columns
@@ -105,7 +105,7 @@ impl NavGrid {
             .collect();
         let near = self.grown(&filled, self.config.radius_m);
         let linked = self.grown(&near, self.config.cell_m);
-        rebuilt.looked_at = near.len();
+        rebuilt.rechecked = near.len();
         self.settle(house, &filled, &near, &linked)?;
         Ok(rebuilt)
     }
@@ -125,7 +125,7 @@ impl NavGrid {
     }
 
     /// Moves obstacles and doors to where the state has them.
-    fn follow(&mut self, house: &House, state: &State) -> super::obstacles::Moved {
+    fn follow(&mut self, house: &House, state: &State) -> super::obstacles::ObstacleChanges {
         for (k, open) in self.openness.iter_mut().enumerate() {
             *open = openness(house, state, &self.ground, k);
         }
@@ -184,7 +184,7 @@ impl NavGrid {
         let mut moving = self.obstacles.at(column as u32).peekable();
         self.mixed[column] = moving.peek().is_some().then(|| {
             let fixed = self.ground.fixed.at(column).iter().copied();
-            let mut spans: Vec<Span> = fixed.chain(moving).collect();
+            let mut spans: Vec<HeightSpan> = fixed.chain(moving).collect();
             join(&mut spans);
             spans.into_boxed_slice()
         });
@@ -198,7 +198,7 @@ impl NavGrid {
         }
         let y = self.layers.height[cell];
         let floors = &self.ground.floors;
-        let over = |floor: &Span| (y - floor.high).abs() <= self.config.step_m + 1e-4;
+        let over = |floor: &HeightSpan| (y - floor.high).abs() <= self.config.step_m + 1e-4;
         // A house whose file names no floors is walked on its lowest surfaces.
         let on_floor = if floors.is_empty() {
             layer == 0
@@ -212,7 +212,7 @@ impl NavGrid {
 
     /// Marks what lies under the leaves of doors that are shut, where opening them has a price.
     fn mark_doorways(&mut self) {
-        if self.config.doors != Doors::Priced {
+        if self.config.doors != DoorPolicy::Priced {
             return;
         }
         for clear in [true, false] {
@@ -246,67 +246,67 @@ impl NavGrid {
     }
 
     /// Whether someone can stand in the middle of a cell.
-    pub fn is_walkable(&self, cell: Cell) -> bool {
+    pub fn is_walkable(&self, cell: NavCell) -> bool {
         self.island(cell).is_some()
     }
 
     /// The island that a walkable cell belongs to, 0 being the one with most cells on rooms' floors.
-    pub fn island(&self, cell: Cell) -> Option<u32> {
+    pub fn island(&self, cell: NavCell) -> Option<u32> {
         let label = self.island.get(cell.0 as usize).copied();
         label.filter(|label| *label != NOWHERE)
     }
 
     /// All walkable cells, in order.
-    pub fn walkable(&self) -> impl Iterator<Item = Cell> + '_ {
+    pub fn walkable(&self) -> impl Iterator<Item = NavCell> + '_ {
         let walkable = |(_, label): &(usize, &u32)| **label != NOWHERE;
         let cells = self.island.iter().enumerate().filter(walkable);
-        cells.map(|(cell, _)| Cell(cell as u32))
+        cells.map(|(cell, _)| NavCell(cell as u32))
     }
 
     /// All cells to which a way leads from `start`, itself included, in order; none if nobody can stand there.
-    pub fn reachable(&self, start: Cell) -> impl Iterator<Item = Cell> + '_ {
+    pub fn reachable(&self, start: NavCell) -> impl Iterator<Item = NavCell> + '_ {
         let label = self.island(start);
-        let same = move |cell: &Cell| label.is_some() && self.island(*cell) == label;
+        let same = move |cell: &NavCell| label.is_some() && self.island(*cell) == label;
         self.walkable().filter(same)
     }
 
     /// A walkable cell, uniform over those for which `allowed` holds.
-    pub fn sample(&self, key: Key, allowed: impl Fn(Cell) -> bool) -> Option<Cell> {
-        let cells: Vec<Cell> = self.walkable().filter(|cell| allowed(*cell)).collect();
+    pub fn sample(&self, key: RandomKey, allowed: impl Fn(NavCell) -> bool) -> Option<NavCell> {
+        let cells: Vec<NavCell> = self.walkable().filter(|cell| allowed(*cell)).collect();
         key.stream().choose(&cells).copied()
     }
 
     /// A cell to which a way leads from `start`, uniform over all of them.
-    pub fn sample_reachable(&self, key: Key, start: Cell) -> Option<Cell> {
-        let cells: Vec<Cell> = self.reachable(start).collect();
+    pub fn sample_reachable(&self, key: RandomKey, start: NavCell) -> Option<NavCell> {
+        let cells: Vec<NavCell> = self.reachable(start).collect();
         key.stream().choose(&cells).copied()
     }
 
     /// The middle of a walkable cell on its surface, m.
-    pub fn position(&self, cell: Cell) -> Vec3 {
+    pub fn position(&self, cell: NavCell) -> Vec3 {
         let cell = cell.0 as usize;
         let column = cell % self.layers.columns;
         middle(&self.ground.frame, column, self.layers.height[cell])
     }
 
     /// The storey of a walkable cell.
-    pub fn level(&self, cell: Cell) -> Option<LevelId> {
+    pub fn level(&self, cell: NavCell) -> Option<LevelId> {
         self.island(cell)?;
         self.ground.level(self.layers.height[cell.0 as usize])
     }
 
     /// The walkable cell nearest to `point`, at most `within_m` away (heights count).
-    pub fn nearest(&self, point: Vec3, within_m: f32) -> Option<Cell> {
+    pub fn nearest(&self, point: Vec3, within_m: f32) -> Option<NavCell> {
         let frame = &self.ground.frame;
         let along = |value: f32, origin: f32, count: usize| {
             let index = |value: f32| ((value - origin) / frame.cell_m).clamp(0.0, count as f32);
             index(value - within_m).floor() as usize..index(value + within_m).ceil() as usize
         };
-        let mut best: Option<(f32, Cell)> = None;
+        let mut best: Option<(f32, NavCell)> = None;
         for z in along(point.z, frame.origin.y, frame.depth) {
             for x in along(point.x, frame.origin.x, frame.width) {
                 for cell in self.layers.cells_of(z * frame.width + x) {
-                    let cell = Cell(cell as u32);
+                    let cell = NavCell(cell as u32);
                     if !self.is_walkable(cell) {
                         continue;
                     }
@@ -348,7 +348,11 @@ impl NavGrid {
     }
 }
 
-fn spans_at<'a>(mixed: &'a [Option<Box<[Span]>>], ground: &'a Ground, column: usize) -> &'a [Span] {
+fn spans_at<'a>(
+    mixed: &'a [Option<Box<[HeightSpan]>>],
+    ground: &'a StaticGrid,
+    column: usize,
+) -> &'a [HeightSpan] {
     mixed[column]
         .as_deref()
         .unwrap_or_else(|| ground.fixed.at(column))

@@ -1,9 +1,9 @@
 //! The surfaces above each other in the columns, on which walkers stand, and how they hang together.
 
-use super::columns::{Frame, Span};
 use super::config::NavConfig;
-use super::ground::{around, standing};
-use crate::interrupt::{self, Pace};
+use super::heightfield::{GridFrame, HeightSpan};
+use super::static_grid::{around, standing};
+use crate::interrupt::{self, PollEvery};
 use glam::Vec3;
 
 /// Surfaces between looks at whether the islands are still wanted.
@@ -64,7 +64,7 @@ impl Layers {
     }
 
     /// Writes the heights at which the walker can stand upright in a column.
-    pub(super) fn stand(&mut self, column: usize, spans: &[Span], config: &NavConfig) {
+    pub(super) fn stand(&mut self, column: usize, spans: &[HeightSpan], config: &NavConfig) {
         let mut heights = standing(spans, config);
         let mut layer = 0;
         loop {
@@ -105,16 +105,16 @@ impl Layers {
     pub(super) fn has_room<'a>(
         &self,
         cell: usize,
-        frame: &Frame,
+        frame: &GridFrame,
         config: &NavConfig,
-        spans_at: impl Fn(usize) -> &'a [Span],
+        spans_at: impl Fn(usize) -> &'a [HeightSpan],
     ) -> bool {
         let (column, y) = (cell % self.columns, self.height[cell]);
         let (low, high) = (y + config.step_m, y + config.height_m);
         // The columns with something in the way, and on what one could stand above it.
         let mut above: Vec<usize> = Vec::new();
         for (beside, _) in around(frame, column, config.radius_m) {
-            let in_the_way = |span: &&Span| span.high > low && span.low < high;
+            let in_the_way = |span: &&HeightSpan| span.high > low && span.low < high;
             let Some(last) = spans_at(beside).iter().rfind(in_the_way) else {
                 continue;
             };
@@ -126,14 +126,14 @@ impl Layers {
                 None => return false,
             }
         }
-        above.is_empty() || self.climbs_all(cell, frame, config, above)
+        above.is_empty() || self.reaches_all(cell, frame, config, above)
     }
 
     /// Whether one gets from `cell` to all of `goals` by steps within the radius.
-    fn climbs_all(
+    fn reaches_all(
         &self,
         cell: usize,
-        frame: &Frame,
+        frame: &GridFrame,
         config: &NavConfig,
         mut goals: Vec<usize>,
     ) -> bool {
@@ -184,7 +184,7 @@ impl Layers {
     }
 
     /// Links the free surfaces of a column with those beside it, each with the nearest in height if that holds both ways.
-    pub(super) fn link(&mut self, column: usize, frame: &Frame, config: &NavConfig) {
+    pub(super) fn link(&mut self, column: usize, frame: &GridFrame, config: &NavConfig) {
         let cells: Vec<usize> = self.cells_of(column).collect();
         for cell in cells {
             let mut links = [NOWHERE; 4];
@@ -212,7 +212,7 @@ impl Layers {
         let mut island = vec![NOWHERE; self.height.len()];
         let mut found: Vec<(usize, usize, bool)> = Vec::new();
         let mut stack = Vec::new();
-        let mut pace = Pace::new(SURFACES_PER_CHECK);
+        let mut pace = PollEvery::new(SURFACES_PER_CHECK);
         for start in 0..self.height.len() {
             if island[start] != NOWHERE || !self.is_free(start) {
                 continue;
@@ -251,7 +251,7 @@ impl Layers {
 }
 
 /// The column beside one in a direction.
-pub(super) fn beside(frame: &Frame, column: usize, way: usize) -> Option<usize> {
+pub(super) fn beside(frame: &GridFrame, column: usize, way: usize) -> Option<usize> {
     let x = column % frame.width;
     match way {
         EAST => (x + 1 < frame.width).then(|| column + 1),
@@ -262,7 +262,7 @@ pub(super) fn beside(frame: &Frame, column: usize, way: usize) -> Option<usize> 
 }
 
 /// The middle of a surface, m.
-pub(super) fn middle(frame: &Frame, column: usize, y: f32) -> Vec3 {
+pub(super) fn middle(frame: &GridFrame, column: usize, y: f32) -> Vec3 {
     let along = |k: usize| (k as f32 + 0.5) * frame.cell_m;
     Vec3::new(
         frame.origin.x + along(column % frame.width),

@@ -6,19 +6,19 @@
 //! surfaces may lie above each other: storeys are joined where steps lead from one to the other.
 
 mod clip;
-mod columns;
 mod config;
-mod distances;
+mod distance_field;
 mod doors;
 mod grid;
-mod ground;
+mod heightfield;
 mod layers;
 mod obstacles;
 mod route;
-mod sight;
+mod static_grid;
+mod straight_path;
 
-pub use config::{Doors, NavConfig};
-pub use distances::DistanceField;
-pub use doors::Door;
-pub use grid::{Cell, NavGrid, Occupancy, Rebuilt};
+pub use config::{DoorPolicy, NavConfig};
+pub use distance_field::DistanceField;
+pub use doors::NavDoor;
+pub use grid::{NavCell, NavGrid, NavGridUpdate, Occupancy};
 pub use route::Route;

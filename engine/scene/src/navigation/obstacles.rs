@@ -1,11 +1,11 @@
 //! What moves: the parts of things, and the columns that each of them fills where it stands.
 
-use super::columns::{Frame, Span, join};
-use super::config::{Doors, NavConfig};
-use super::ground::{Ground, leaf_at};
+use super::config::{DoorPolicy, NavConfig};
+use super::heightfield::{GridFrame, HeightSpan, join};
+use super::static_grid::{StaticGrid, leaf_at};
 use crate::house::House;
 use crate::ids::PartId;
-use crate::interrupt::Pace;
+use crate::interrupt::PollEvery;
 use crate::state::State;
 use glam::{Affine3A, Vec3};
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ pub(super) struct Obstacle {
     /// Where it stands; `None` while someone holds it.
     world_from_part: Option<Affine3A>,
     /// The columns that it fills, in order.
-    columns: Vec<(u32, Span)>,
+    columns: Vec<(u32, HeightSpan)>,
 }
 
 /// All parts that move, and what they fill.
@@ -31,11 +31,11 @@ pub(super) struct Obstacle {
 pub(super) struct Obstacles {
     parts: Vec<Obstacle>,
     /// For each column with something that moves, its spans by position in `parts`.
-    filled: BTreeMap<u32, Vec<(u32, Span)>>,
+    filled: BTreeMap<u32, Vec<(u32, HeightSpan)>>,
 }
 
 /// What [`Obstacles::follow`] found.
-pub(super) struct Moved {
+pub(super) struct ObstacleChanges {
     /// How many parts stand elsewhere.
     pub(super) parts: usize,
     /// The columns they left or came to, in order, each once.
@@ -66,10 +66,10 @@ impl Obstacles {
         &mut self,
         house: &House,
         state: &State,
-        ground: &Ground,
+        ground: &StaticGrid,
         config: &NavConfig,
-    ) -> Moved {
-        let mut moved = Moved {
+    ) -> ObstacleChanges {
+        let mut moved = ObstacleChanges {
             parts: 0,
             columns: Vec::new(),
         };
@@ -106,14 +106,14 @@ impl Obstacles {
     }
 
     /// The spans of the parts in a column.
-    pub(super) fn at(&self, column: u32) -> impl Iterator<Item = Span> + '_ {
+    pub(super) fn at(&self, column: u32) -> impl Iterator<Item = HeightSpan> + '_ {
         let spans = self.filled.get(&column).map_or(&[][..], Vec::as_slice);
         spans.iter().map(|(_, span)| *span)
     }
 }
 
 /// How far a passage's door is open in `state`, 0 to 1.
-pub(super) fn openness(house: &House, state: &State, ground: &Ground, passage: usize) -> f32 {
+pub(super) fn openness(house: &House, state: &State, ground: &StaticGrid, passage: usize) -> f32 {
     let id = ground.passages[passage].joint;
     house.joints[id].openness(state.joint_position[id])
 }
@@ -127,7 +127,7 @@ pub(super) fn stands_open(openness: f32) -> bool {
 fn place_of(
     house: &House,
     state: &State,
-    ground: &Ground,
+    ground: &StaticGrid,
     config: &NavConfig,
     part: PartId,
 ) -> Option<Affine3A> {
@@ -137,9 +137,9 @@ fn place_of(
     if let Some(passage) = ground.passage_of_part[part] {
         let open = stands_open(openness(house, state, ground, passage as usize));
         let opened = match config.doors {
-            Doors::AsTheyStand => false,
-            Doors::Open => true,
-            Doors::Priced => !open,
+            DoorPolicy::AsTheyStand => false,
+            DoorPolicy::Open => true,
+            DoorPolicy::Priced => !open,
         };
         if opened {
             let joint = &house.joints[ground.passages[passage as usize].joint];
@@ -152,10 +152,10 @@ fn place_of(
 /// The columns that a part crosses where it stands, in order, with disjoint spans.
 pub(super) fn raster(
     house: &House,
-    frame: &Frame,
+    frame: &GridFrame,
     part: PartId,
     world_from_part: &Affine3A,
-) -> Vec<(u32, Span)> {
+) -> Vec<(u32, HeightSpan)> {
     let part = &house.parts[part];
     let world_from_mesh = *world_from_part * part.part_from_mesh;
     let mesh = &house.meshes[part.mesh];
@@ -164,8 +164,8 @@ pub(super) fn raster(
         .iter()
         .map(|p| world_from_mesh.transform_point3(*p))
         .collect();
-    let mut crossed: Vec<(u32, Span)> = Vec::new();
-    let mut pace = Pace::new(TRIANGLES_PER_CHECK);
+    let mut crossed: Vec<(u32, HeightSpan)> = Vec::new();
+    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     for triangle in &mesh.triangles {
         pace.turn();
         frame.cross(triangle.map(|v| points[v as usize]), |column, span| {
@@ -175,7 +175,7 @@ pub(super) fn raster(
     crossed.sort_by_key(|(column, _)| *column);
     let mut columns = Vec::new();
     for spans in crossed.chunk_by(|a, b| a.0 == b.0) {
-        let mut joined: Vec<Span> = spans.iter().map(|(_, span)| *span).collect();
+        let mut joined: Vec<HeightSpan> = spans.iter().map(|(_, span)| *span).collect();
         join(&mut joined);
         columns.extend(joined.into_iter().map(|span| (spans[0].0, span)));
     }

@@ -1,6 +1,6 @@
 //! Ways pulled tight.
 
-use super::grid::{Cell, NavGrid};
+use super::grid::{NavCell, NavGrid};
 use crate::ids::JointId;
 use glam::Vec3;
 
@@ -20,7 +20,7 @@ pub struct Route {
     /// Its length over the ground, m.
     pub length_m: f64,
     /// The doors that do not stand open and must be opened on the way, in order; only under
-    /// [`Doors::Priced`](super::Doors::Priced).
+    /// [`Doors::Priced`](super::DoorPolicy::Priced).
     pub shut_doors: Vec<JointId>,
 }
 
@@ -51,7 +51,7 @@ impl NavGrid {
 
     /// The corners of a way pulled tight: the cheapest choice of its cells such that straight ways between them are free,
     /// then each moved from cell to cell as long as that makes the way shorter.
-    pub fn corners(&self, path: &[Cell]) -> Vec<Cell> {
+    pub fn corners(&self, path: &[NavCell]) -> Vec<NavCell> {
         let mut corners = self.choose(path);
         for _ in 0..MOST_ROUNDS {
             if !self.tighten(&mut corners) {
@@ -63,7 +63,7 @@ impl NavGrid {
     }
 
     /// The cheapest way from the first to the last cell of a path by straight pieces between its cells.
-    fn choose(&self, path: &[Cell]) -> Vec<Cell> {
+    fn choose(&self, path: &[NavCell]) -> Vec<NavCell> {
         let Some(last) = path.len().checked_sub(1) else {
             return Vec::new();
         };
@@ -97,11 +97,11 @@ impl NavGrid {
     }
 
     /// Moves each inner corner to the cell beside it that shortens the way most. Returns whether one moved.
-    fn tighten(&self, corners: &mut [Cell]) -> bool {
+    fn tighten(&self, corners: &mut [NavCell]) -> bool {
         let mut moved = false;
         for k in 1..corners.len().saturating_sub(1) {
             let (before, after) = (corners[k - 1], corners[k + 1]);
-            let cost = |cell: Cell| {
+            let cost = |cell: NavCell| {
                 let to = self.straight_between(before, cell)?;
                 let on = self.straight_between(cell, after)?;
                 Some(self.cost_m(&to) + self.cost_m(&on))

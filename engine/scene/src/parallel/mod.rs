@@ -3,12 +3,12 @@
 //! A pool belongs to one process id, because threads do not survive `fork()`. Results never depend on the number of
 //! threads: work is cut into pieces of constant size, and pieces are joined in order.
 
-mod count;
 mod pool;
+mod thread_count;
 
 use crate::error::SceneError;
 use crate::interrupt;
-pub use count::{available_cores, machine_threads, variable};
+pub use thread_count::{available_cores, machine_threads, variable};
 
 /// How many threads a call may use; at least one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +21,7 @@ impl Threads {
     /// The most that are ever started.
     pub const MOST: usize = 1024;
 
-    /// Exactly `count` threads, at least one and at most [`Threads::MOST`].
+    /// Exactly `thread_count` threads, at least one and at most [`Threads::MOST`].
     pub fn exactly(count: usize) -> Self {
         Self(count.clamp(1, Self::MOST))
     }
@@ -33,15 +33,20 @@ impl Threads {
     pub fn requested(requested: Option<usize>) -> Result<Self, SceneError> {
         match requested {
             Some(count) if (1..=Self::MOST).contains(&count) => Ok(Self(count)),
-            Some(count) => Err(count::refuse("threads", count.to_string())),
-            None => Ok(Self::exactly(count::usual(variable()?))),
+            Some(count) => Err(thread_count::refuse("threads", count.to_string())),
+            None => Ok(Self::exactly(thread_count::default_thread_count(
+                variable()?
+            ))),
         }
     }
 
     /// `requested` if given, else all [`available_cores`], but no more than the variable `DWELL_THREADS` allows. A variable
     /// that makes no sense counts as none.
     pub fn resolve(requested: Option<usize>) -> Self {
-        Self::exactly(requested.unwrap_or_else(|| count::usual(variable().ok().flatten())))
+        Self::exactly(
+            requested
+                .unwrap_or_else(|| thread_count::default_thread_count(variable().ok().flatten())),
+        )
     }
 
     /// The number of threads.
@@ -66,7 +71,7 @@ impl Threads {
                     .par_iter_mut()
                     .enumerate()
                     .with_max_len(1)
-                    .for_each(|(k, item)| interrupt::piece(token.as_ref(), || work(k, item)));
+                    .for_each(|(k, item)| interrupt::run_piece(token.as_ref(), || work(k, item)));
             });
             return;
         }
@@ -87,15 +92,15 @@ impl Threads {
             let token = token.as_ref();
             return pool::install(&pool, || {
                 rayon::join(
-                    || interrupt::piece(token, first),
-                    || interrupt::piece(token, second),
+                    || interrupt::run_piece(token, first),
+                    || interrupt::run_piece(token, second),
                 )
             });
         }
         (first(), second())
     }
 
-    /// The results of `work(0)` to `work(count - 1)`, in order. Stops between them: see [`interrupt`].
+    /// The results of `work(0)` to `work(thread_count - 1)`, in order. Stops between them: see [`interrupt`].
     pub fn map<R: Send>(self, count: usize, work: impl Fn(usize) -> R + Sync) -> Vec<R> {
         use rayon::prelude::*;
         if count > 1
@@ -106,7 +111,7 @@ impl Threads {
                 (0..count)
                     .into_par_iter()
                     .with_max_len(1)
-                    .map(|k| interrupt::piece(token.as_ref(), || work(k)))
+                    .map(|k| interrupt::run_piece(token.as_ref(), || work(k)))
                     .collect()
             });
         }

@@ -39,7 +39,7 @@ pub(super) fn install<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> 
     if !interrupt::asks() {
         return pool.install(work);
     }
-    let (mut outcome, done) = (None, Flag::default());
+    let (mut outcome, done) = (None, OneShotEvent::default());
     pool.in_place_scope(|scope| {
         scope.spawn(|_| {
             // Goes on unwinding below, on the thread that waits.
@@ -59,12 +59,12 @@ pub(super) fn install<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> 
 
 /// Raised once.
 #[derive(Default)]
-struct Flag {
+struct OneShotEvent {
     raised: Mutex<bool>,
     changed: Condvar,
 }
 
-impl Flag {
+impl OneShotEvent {
     fn raise(&self) {
         *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = true;
         self.changed.notify_one();

@@ -1,11 +1,11 @@
 //! Rays through a house as it stands in one world: the one way in which eyes, ears and hands find surfaces.
 
-mod bodies;
+mod agent_meshes;
 
-pub use bodies::{BODY_PIECES, body_meshes, body_trees};
+pub use agent_meshes::{BODY_PIECES, body_meshes, body_trees};
 
 use crate::bvh::{Hit, Instance, InstanceSet, PacketHits, Ray, RayMask, RayPacket, SceneBvh};
-use crate::house::{House, Placed, Surface, SurfaceOwner, normals_map};
+use crate::house::{House, PlacedMesh, SurfaceHit, SurfaceOwner, normals_map};
 use crate::ids::{EntityId, Id, MaterialId, PartId};
 use crate::state::State;
 use glam::{Affine3A, Mat3A, Vec2, Vec3};
@@ -53,7 +53,7 @@ impl RayScene {
             .iter()
             .zip(self.world_from_mesh[parts..].chunks_exact_mut(BODY_PIECES))
         {
-            pieces.copy_from_slice(&bodies::places(agent));
+            pieces.copy_from_slice(&agent_meshes::places(agent));
         }
         let geometry = self.house.geometry();
         for (place, part) in self.world_from_mesh.iter_mut().zip(&geometry.movable) {
@@ -104,8 +104,8 @@ impl RayScene {
     }
 
     /// As [`Self::closest`], as if the thing called `hidden` were not there.
-    pub fn closest_without(&self, ray: &Ray, mask: RayMask, hidden: EntityId) -> Option<Hit> {
-        self.bvh().closest_without(ray, mask, hidden.0)
+    pub fn closest_excluding(&self, ray: &Ray, mask: RayMask, hidden: EntityId) -> Option<Hit> {
+        self.bvh().closest_excluding(ray, mask, hidden.0)
     }
 
     /// Whether anything that `mask` meets stands on the ray.
@@ -116,7 +116,7 @@ impl RayScene {
     /// As [`Self::closest`] for rays that start at one point, faster when they go nearly the same way.
     ///
     /// `directions`: unit length, one row for each of x, y, z. Shape (3, 16). A zero direction meets nothing.
-    pub fn closest_fan(
+    pub fn closest_from_origin(
         &self,
         origin: Vec3,
         directions: &[[f32; FAN]; 3],
@@ -136,7 +136,7 @@ impl RayScene {
         std::array::from_fn(|k| bvh.packet_hit(&rays, &hits, k))
     }
 
-    /// As [`Self::closest_without`] for all rays of a packet, much faster when they go nearly the same way.
+    /// As [`Self::closest_excluding`] for all rays of a packet, much faster when they go nearly the same way.
     ///
     /// `hidden`: [`EntityId::VOID`] hides nothing.
     pub fn closest_packet<const N: usize>(
@@ -149,7 +149,7 @@ impl RayScene {
         self.bvh().closest_packet(rays, mask, Some(hidden.0), hits);
     }
 
-    /// All about one ray of a packet, as [`Self::closest_without`] would give it.
+    /// All about one ray of a packet, as [`Self::closest_excluding`] would give it.
     pub fn packet_hit<const N: usize>(
         &self,
         rays: &RayPacket<N>,
@@ -168,7 +168,7 @@ impl RayScene {
         self.house.geometry().movable[instance as usize]
     }
 
-    fn placed(&self, hit: &Hit) -> (&Placed, u32, Affine3A) {
+    fn placed(&self, hit: &Hit) -> (&PlacedMesh, u32, Affine3A) {
         let geometry = self.house.geometry();
         if let Some(instance) = hit.instance {
             let place = self.world_from_mesh[instance as usize];
@@ -185,12 +185,12 @@ impl RayScene {
     }
 
     /// What the hit lies on.
-    pub fn surface(&self, hit: &Hit) -> Surface {
+    pub fn surface(&self, hit: &Hit) -> SurfaceHit {
         let (placed, triangle, world_from_mesh) = self.placed(hit);
         let mesh = &self.house.meshes[placed.mesh];
         let [a, b, c] = mesh.corners(triangle as usize);
         let normal = normals_map(&world_from_mesh) * glam::Vec3A::from((b - a).cross(c - a));
-        Surface {
+        SurfaceHit {
             entity: placed.entity,
             owner: placed.owner,
             material: self

@@ -12,16 +12,16 @@ const HORIZON: f32 = 0.02;
 
 /// A sky prepared for asking in many directions.
 #[derive(Clone, Copy, Debug)]
-pub struct Dome {
+pub struct SkyDome {
     to_sun: Vec3,
-    spread: Spread,
+    spread: SkyModel,
     /// cd/m² of what the formula calls 1.
     scale_cd_m2: f32,
 }
 
 /// Luminance and colour by direction, up to a factor.
 #[derive(Clone, Copy, Debug)]
-enum Spread {
+enum SkyModel {
     /// Coefficients A to E for Y, x and y; chromaticity overhead.
     Clear {
         perez: [[f32; 5]; 3],
@@ -30,14 +30,14 @@ enum Spread {
     Overcast,
 }
 
-impl Dome {
+impl SkyDome {
     /// Prepares a sky; its sum over the dome is [`Sky::diffuse_lx`].
     pub fn new(sky: &Sky) -> Self {
         let spread = match sky.weather {
-            Weather::Overcast => Spread::Overcast,
+            Weather::Overcast => SkyModel::Overcast,
             Weather::Clear { turbidity } => {
                 let from_zenith = math::acos(sky.to_sun.y.max(0.0));
-                Spread::Clear {
+                SkyModel::Clear {
                     perez: coefficients(turbidity),
                     zenith: zenith_chromaticity(turbidity, from_zenith),
                 }
@@ -65,8 +65,8 @@ impl Dome {
             return Vec3::ZERO;
         }
         match &self.spread {
-            Spread::Overcast => Vec3::splat((1.0 + 2.0 * direction.y) / 3.0 * self.scale_cd_m2),
-            Spread::Clear { perez, zenith } => {
+            SkyModel::Overcast => Vec3::splat((1.0 + 2.0 * direction.y) / 3.0 * self.scale_cd_m2),
+            SkyModel::Clear { perez, zenith } => {
                 let [luminance, x, y] = [0, 1, 2].map(|k| self.perez(&perez[k], direction));
                 let bright = luminance * self.scale_cd_m2;
                 srgb_from_xyy(zenith.x * x, zenith.y * y, bright)
@@ -79,8 +79,8 @@ impl Dome {
     pub fn numbers(&self) -> [[f32; 4]; 6] {
         let [x, y, z] = self.to_sun.to_array();
         let (clear, zenith, perez) = match &self.spread {
-            Spread::Clear { perez, zenith } => (1.0, *zenith, *perez),
-            Spread::Overcast => (0.0, Vec2::ZERO, [[0.0; 5]; 3]),
+            SkyModel::Clear { perez, zenith } => (1.0, *zenith, *perez),
+            SkyModel::Overcast => (0.0, Vec2::ZERO, [[0.0; 5]; 3]),
         };
         let mut numbers = [[0.0; 4]; 6];
         numbers[0] = [x, y, z, clear];
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn an_overcast_sky_sums_to_its_closed_form() {
         let sky = sky(12.0, Weather::Overcast);
-        let zenith = bright(Dome::new(&sky).luminance(Vec3::Y));
+        let zenith = bright(SkyDome::new(&sky).luminance(Vec3::Y));
         let expected = sky.diffuse_lx * 9.0 / (7.0 * PI);
         assert!(
             (zenith / expected - 1.0).abs() < 2e-3,
@@ -225,7 +225,7 @@ mod tests {
     fn a_clear_sky_gives_the_light_that_it_shall() {
         for hour in [7.0, 9.0, 12.0, 18.0, 19.5] {
             let sky = sky(hour, Weather::FINE);
-            let dome = Dome::new(&sky);
+            let dome = SkyDome::new(&sky);
             let count = 40_000_u16;
             let mut sum = 0.0_f64;
             for k in 0..count {
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn a_clear_sky_is_blue_overhead_and_brightest_at_the_sun() {
         let sky = sky(10.0, Weather::FINE);
-        let dome = Dome::new(&sky);
+        let dome = SkyDome::new(&sky);
         let zenith = dome.luminance(Vec3::Y);
         assert!(zenith.z > 1.5 * zenith.x, "{zenith}");
         // A few thousand cd/m² overhead, as measured under clear skies.
@@ -253,7 +253,7 @@ mod tests {
         assert!(bright(dome.luminance(sky.to_sun)) > 3.0 * bright(dome.luminance(away)));
         assert_eq!(dome.luminance(Vec3::NEG_Y), Vec3::ZERO);
         for hour in [0.0, 5.0, 6.0, 12.0, 19.0, 20.0, 24.0] {
-            let dome = Dome::new(&self::sky(hour, Weather::Clear { turbidity: 10.0 }));
+            let dome = SkyDome::new(&self::sky(hour, Weather::Clear { turbidity: 10.0 }));
             for k in 0..200 {
                 let turn = k as f32 * 2.4;
                 let up = k as f32 / 200.0;

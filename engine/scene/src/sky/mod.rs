@@ -3,7 +3,7 @@
 mod dome;
 mod sun;
 
-pub use dome::Dome;
+pub use dome::SkyDome;
 
 use crate::error::{SceneError, range};
 use crate::math;

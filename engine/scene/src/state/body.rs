@@ -1,7 +1,7 @@
 //! The body of an agent: fixed while nobody changes it, and every number of it can be set at run time under
 //! `agent/N/body/FIELD`. It stands in the agent's state and nowhere else.
 
-use super::numbers::{Number, number, parameters, set};
+use super::numeric_field::{NumericField, number, parameters, set};
 use super::{Locomotion, Parameter};
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
@@ -59,7 +59,7 @@ impl Default for AgentBody {
 }
 
 /// The numbers with an address `agent/N/body/FIELD`.
-const BODY: &[Number<AgentBody>] = &[
+const BODY: &[NumericField<AgentBody>] = &[
     number!(radius_m, "m", 0.05 to 1.0),
     number!(height_m, "m", 0.1 to 3.0),
     number!(eye_height_m, "m", 0.0 to 3.0),

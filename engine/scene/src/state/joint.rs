@@ -13,7 +13,7 @@ const SHORTEST_AXIS: f32 = 1e-3;
 
 /// What is in force at a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointValues {
+pub struct JointParameters {
     /// Turning or sliding.
     pub kind: JointKind,
     /// The axis in joint space, unit length.
@@ -37,7 +37,7 @@ pub struct JointValues {
     pub limits: Option<[f32; 2]>,
 }
 
-impl JointValues {
+impl JointParameters {
     /// `position` within the limits.
     pub fn clamp(&self, position: f32) -> f32 {
         // Limits are only set in order.
@@ -52,7 +52,7 @@ impl JointValues {
 }
 
 /// A field with its unit and range. `None` in the house means that the joint has no such thing.
-pub(super) struct Field {
+pub(super) struct JointField {
     pub(super) name: &'static str,
     pub(super) unit: &'static str,
     pub(super) range: [f64; 2],
@@ -60,26 +60,26 @@ pub(super) struct Field {
 }
 
 /// The fields of a joint that have an address.
-pub(super) const FIELDS: [Field; 18] = [
-    Field {
+pub(super) const FIELDS: [JointField; 18] = [
+    JointField {
         name: "friction",
         unit: "N m or N",
         range: [0.0, 1e6],
         get: |joint| Some(joint.friction),
     },
-    Field {
+    JointField {
         name: "damping",
         unit: "N m s/rad or N s/m",
         range: [0.0, 1e6],
         get: |joint| Some(joint.damping),
     },
-    Field {
+    JointField {
         name: "armature",
         unit: "kg m2 or kg",
         range: [0.0, 1e6],
         get: |joint| Some(joint.armature),
     },
-    Field {
+    JointField {
         name: "length_m",
         unit: "m",
         range: [1e-6, 100.0],
@@ -88,85 +88,85 @@ pub(super) const FIELDS: [Field; 18] = [
             (joint.parent.is_some() && length > 0.0).then_some(length)
         },
     },
-    Field {
+    JointField {
         name: "lower",
         unit: "rad or m",
         range: [-1e4, 1e4],
         get: |joint| joint.limits.map(|[low, _]| low),
     },
-    Field {
+    JointField {
         name: "upper",
         unit: "rad or m",
         range: [-1e4, 1e4],
         get: |joint| joint.limits.map(|[_, high]| high),
     },
-    Field {
+    JointField {
         name: "stiffness",
         unit: "N m/rad or N/m",
         range: [0.0, 1e9],
         get: |joint| joint.servo.map(|servo| servo.stiffness),
     },
-    Field {
+    JointField {
         name: "servo_damping",
         unit: "N m s/rad or N s/m",
         range: [0.0, 1e9],
         get: |joint| joint.servo.map(|servo| servo.damping),
     },
-    Field {
+    JointField {
         name: "velocity_gain",
         unit: "N m s/rad or N s/m",
         range: [0.0, 1e9],
         get: |joint| joint.servo.map(|servo| servo.velocity_gain),
     },
-    Field {
+    JointField {
         name: "max_effort",
         unit: "N m or N",
         range: [0.0, 1e9],
         get: |joint| joint.servo.map(|servo| servo.max_effort),
     },
-    Field {
+    JointField {
         name: "max_velocity",
         unit: "rad/s or m/s",
         range: [0.0, 1e6],
         get: |joint| joint.servo.and_then(|servo| servo.max_velocity),
     },
-    Field {
+    JointField {
         name: "gear",
         unit: "1",
         range: [1e-6, 1e6],
         get: |joint| joint.servo.map(|servo| servo.gear),
     },
-    Field {
+    JointField {
         name: "axis_x",
         unit: "1",
         range: [-2.0, 2.0],
         get: |joint| Some(joint.axis.x),
     },
-    Field {
+    JointField {
         name: "axis_y",
         unit: "1",
         range: [-2.0, 2.0],
         get: |joint| Some(joint.axis.y),
     },
-    Field {
+    JointField {
         name: "axis_z",
         unit: "1",
         range: [-2.0, 2.0],
         get: |joint| Some(joint.axis.z),
     },
-    Field {
+    JointField {
         name: "mimic_multiplier",
         unit: "rad or m per rad or m",
         range: [-1e3, 1e3],
         get: |joint| joint.mimic.map(|mimic| mimic.multiplier),
     },
-    Field {
+    JointField {
         name: "mimic_offset",
         unit: "rad or m",
         range: [-1e4, 1e4],
         get: |joint| joint.mimic.map(|mimic| mimic.offset),
     },
-    Field {
+    JointField {
         name: "feed_forward",
         unit: "1",
         range: [0.0, 2.0],
@@ -181,7 +181,7 @@ fn carried(servo: &Servo) -> f32 {
 
 impl State {
     /// The range of a joint's field: a limit stays on its side of the other one.
-    pub(super) fn joint_range(&self, house: &House, id: JointId, field: &Field) -> [f64; 2] {
+    pub(super) fn joint_range(&self, house: &House, id: JointId, field: &JointField) -> [f64; 2] {
         let [low, high] = field.range;
         match (field.name, self.joint_values(house, id).limits) {
             ("lower", Some([_, upper])) => [low, upper.into()],
@@ -191,9 +191,9 @@ impl State {
     }
 
     /// What is in force at a joint.
-    pub fn joint_values(&self, house: &House, id: JointId) -> JointValues {
+    pub fn joint_values(&self, house: &House, id: JointId) -> JointParameters {
         let joint = &house.joints[id];
-        let mut values = JointValues {
+        let mut values = JointParameters {
             kind: joint.kind,
             axis: joint.axis,
             parent_from_joint: joint.parent_from_joint,

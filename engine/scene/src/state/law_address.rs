@@ -12,7 +12,7 @@ use crate::law::{LawInfo, LawSpec, ParamInfo};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What an address names.
-struct Named<'a> {
+struct LawParameterRef<'a> {
     info: &'a LawInfo,
     param: &'a ParamInfo,
     target: Option<String>,
@@ -43,7 +43,7 @@ impl State {
         house: &House,
         known: &[&'a LawInfo],
         address: &'a Address,
-    ) -> Result<Named<'a>, SceneError> {
+    ) -> Result<LawParameterRef<'a>, SceneError> {
         let (name, param) = address.law_words()?;
         let info_of = |id: &str| {
             known
@@ -104,7 +104,7 @@ impl State {
                 info.id
             ))
         })?;
-        Ok(Named {
+        Ok(LawParameterRef {
             info,
             param,
             target,
@@ -266,7 +266,7 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::Engine;
+    use crate::law::EngineKind;
     use crate::{House, ShoeboxMaterials};
 
     const fn param(name: &'static str, default: f64) -> ParamInfo {
@@ -286,7 +286,7 @@ mod tests {
         name: "drag",
         equation: "",
         source: "",
-        engine: Engine::Physics,
+        engine: EngineKind::Physics,
         acts_on: "object",
         params: &[param("c_d", 0.0), param("density", 1.2)],
         rivals: &[],

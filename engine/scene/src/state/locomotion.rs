@@ -2,7 +2,7 @@
 //! `agent/N/base/FIELD` says what is true in a world.
 
 use super::Parameter;
-use super::numbers::{Number, number, parameters, set};
+use super::numeric_field::{NumericField, number, parameters, set};
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 pub enum Locomotion {
     /// On legs: any direction at once, up to a speed; it can crouch.
-    Walking(Gait),
+    Walking(LeggedLocomotion),
     /// On two driven wheels side by side.
     DifferentialDrive(DifferentialDrive),
     /// On a base that moves in any direction, such as one with Mecanum wheels.
@@ -20,14 +20,14 @@ pub enum Locomotion {
 
 impl Default for Locomotion {
     fn default() -> Self {
-        Self::Walking(Gait::default())
+        Self::Walking(LeggedLocomotion::default())
     }
 }
 
 /// How an agent walks, runs and crouches.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Gait {
+pub struct LeggedLocomotion {
     /// The fastest it runs, m/s; 0 to 100, default 100: as fast as it is told.
     pub max_speed_m_s: f32,
     /// The fastest it moves while it crouches, m/s; 0 to 100, default 1.
@@ -37,7 +37,7 @@ pub struct Gait {
     pub crouched_height_m: f32,
 }
 
-impl Default for Gait {
+impl Default for LeggedLocomotion {
     fn default() -> Self {
         Self {
             max_speed_m_s: 100.0,
@@ -103,13 +103,13 @@ impl Default for HolonomicBase {
     }
 }
 
-const GAIT: &[Number<Gait>] = &[
+const GAIT: &[NumericField<LeggedLocomotion>] = &[
     number!(max_speed_m_s, "m/s", 0.0 to 100.0),
     number!(max_crouched_speed_m_s, "m/s", 0.0 to 100.0),
     number!(crouched_height_m, "m", 0.1 to 3.0),
 ];
 
-const DIFFERENTIAL: &[Number<DifferentialDrive>] = &[
+const DIFFERENTIAL: &[NumericField<DifferentialDrive>] = &[
     number!(wheel_base_m, "m", 0.01 to 5.0),
     number!(left_wheel_radius_m, "m", 0.001 to 1.0),
     number!(right_wheel_radius_m, "m", 0.001 to 1.0),
@@ -117,7 +117,7 @@ const DIFFERENTIAL: &[Number<DifferentialDrive>] = &[
     number!(max_wheel_acceleration_rad_s2, "rad/s2", 0.01 to 1e6),
 ];
 
-const HOLONOMIC: &[Number<HolonomicBase>] = &[
+const HOLONOMIC: &[NumericField<HolonomicBase>] = &[
     number!(max_forward_m_s, "m/s", 0.0 to 100.0),
     number!(max_sideways_m_s, "m/s", 0.0 to 100.0),
     number!(max_yaw_rate_rad_s, "rad/s", 0.0 to 100.0),

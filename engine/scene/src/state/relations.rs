@@ -3,7 +3,7 @@
 
 use super::State;
 use crate::bounds::Aabb;
-use crate::fixtures::{Holding, Receptacle};
+use crate::fixtures::{Receptacle, ReceptacleKind};
 use crate::house::{House, HouseData};
 use crate::ids::{Id, ObjectId, PartId};
 use crate::space::Pose;
@@ -22,7 +22,7 @@ const WALLS: usize = 4;
 /// Which of two things that touch carries the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Rest {
+pub enum SupportRelation {
     /// Neither: they stand side by side.
     #[default]
     Beside,
@@ -40,7 +40,7 @@ pub struct Contact {
     /// The other part; `None`: the structure of the house.
     pub b: Option<PartId>,
     /// Which of them carries the other.
-    pub rest: Rest,
+    pub rest: SupportRelation,
 }
 
 impl State {
@@ -81,9 +81,9 @@ impl State {
         let pairs = self.contacts.iter().filter_map(move |contact| {
             let (a, b) = (owner(contact.a), contact.b.map(owner));
             match contact.rest {
-                Rest::AOnB => Some((a, b)),
-                Rest::BOnA => b.map(|b| (b, Some(a))),
-                Rest::Beside => None,
+                SupportRelation::AOnB => Some((a, b)),
+                SupportRelation::BOnA => b.map(|b| (b, Some(a))),
+                SupportRelation::Beside => None,
             }
         });
         pairs.filter(|(carried, by)| *by != Some(*carried))
@@ -155,7 +155,7 @@ fn encloses<'a, I: Iterator<Item = &'a Receptacle>>(
 ) -> bool {
     let middle = inner.center();
     let marked = |space: &Receptacle| {
-        space.holding == Holding::In && {
+        space.holding == ReceptacleKind::In && {
             let part_from_world = pose(space.part).inverse();
             space
                 .space_in_part
@@ -296,9 +296,9 @@ mod tests {
             rest,
         };
         state.contacts = vec![
-            contact(0, None, Rest::Beside),
-            contact(0, Some(1), Rest::AOnB),
-            contact(1, None, Rest::AOnB),
+            contact(0, None, SupportRelation::Beside),
+            contact(0, Some(1), SupportRelation::AOnB),
+            contact(1, None, SupportRelation::AOnB),
         ];
         assert_eq!(state.rests_on(&house, ObjectId(0)), [Some(ObjectId(1))]);
         assert_eq!(state.rests_on(&house, ObjectId(1)), [None]);

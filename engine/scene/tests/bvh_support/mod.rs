@@ -1,7 +1,7 @@
 //! Random scenes, and an oracle in double precision that shares no code with the engine.
 
 use dwell_scene::bvh::{Hit, Instance, InstanceSet, Ray, RayMask, TriangleBvh, TriangleTag};
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use glam::{Affine3A, DVec3, Quat, Vec3};
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ fn tree(corners: &[[Vec3; 3]], tag: impl Fn(usize) -> TriangleTag) -> TriangleBv
 
 impl Soup {
     /// Triangles of all sizes in a box of 4 m.
-    pub(crate) fn random(key: Key, count: usize, center: Vec3) -> Self {
+    pub(crate) fn random(key: RandomKey, count: usize, center: Vec3) -> Self {
         let mut stream = key.child("soup").stream();
         let corners = (0..count).map(|_| {
             let at = center + stream.direction() * stream.range(0.0, 2.0);
@@ -50,7 +50,7 @@ impl Soup {
     }
 
     /// Triangles in a few planes, some of them tilted: many coincide.
-    pub(crate) fn flat(key: Key, count: usize, center: Vec3) -> Self {
+    pub(crate) fn flat(key: RandomKey, count: usize, center: Vec3) -> Self {
         let mut stream = key.child("flat").stream();
         let corners = (0..count).map(|_| {
             let turn = Quat::from_rotation_z(0.3 * stream.below(3) as f32);
@@ -74,7 +74,7 @@ impl Soup {
     }
 
     /// Where the instances of [`Self::split`] stand.
-    pub(crate) fn poses(key: Key, count: usize) -> Vec<Affine3A> {
+    pub(crate) fn poses(key: RandomKey, count: usize) -> Vec<Affine3A> {
         let mut stream = key.stream();
         let pose = |_| {
             let turn = Quat::from_axis_angle(stream.direction(), stream.range(0.0, 3.0));
@@ -91,7 +91,7 @@ impl Soup {
     }
 
     /// An eighth of the triangles as static geometry, the others as instances with ids 20 to 26.
-    pub(crate) fn split(&self, key: Key) -> (TriangleBvh, InstanceSet) {
+    pub(crate) fn split(&self, key: RandomKey) -> (TriangleBvh, InstanceSet) {
         let parts = self.parts();
         let pick = |part: &[usize]| part.iter().map(|k| self.corners[*k]).collect::<Vec<_>>();
         let fixed = tree(&pick(&parts[0]), |k| tag(self.ids[parts[0][k]]));
@@ -118,7 +118,7 @@ impl Soup {
     }
 
     /// What [`Self::split`] makes, as plain triangles.
-    pub(crate) fn baked(&self, key: Key) -> Self {
+    pub(crate) fn baked(&self, key: RandomKey) -> Self {
         let poses = Self::poses(key, 7);
         let mut baked = Self {
             corners: Vec::new(),
@@ -143,7 +143,7 @@ impl Soup {
     }
 
     /// Fans of 64 rays: narrow, wide, and all around.
-    pub(crate) fn fans(&self, key: Key) -> Vec<Ray> {
+    pub(crate) fn fans(&self, key: RandomKey) -> Vec<Ray> {
         let mut stream = key.stream();
         let mut rays = Vec::new();
         for spread in [0.02, 0.3, 10.0] {
@@ -170,7 +170,7 @@ impl Soup {
 }
 
 /// The same triangles in another order, each with other first corners.
-pub(crate) fn permuted(soup: &Soup, key: Key) -> Soup {
+pub(crate) fn permuted(soup: &Soup, key: RandomKey) -> Soup {
     let mut stream = key.stream();
     let mut order: Vec<usize> = (0..soup.ids.len()).collect();
     stream.shuffle(&mut order);
@@ -182,7 +182,7 @@ pub(crate) fn permuted(soup: &Soup, key: Key) -> Soup {
 }
 
 /// Rays from outside, from inside, along axes, and from surfaces.
-pub(crate) fn rays_at(key: Key, count: usize, soup: &Soup) -> Vec<Ray> {
+pub(crate) fn rays_at(key: RandomKey, count: usize, soup: &Soup) -> Vec<Ray> {
     let mut stream = key.stream();
     let ray = |k| {
         let origin = soup.center + stream.direction() * stream.range(0.0, 6.0);
@@ -301,7 +301,7 @@ pub(crate) fn ground(corner: Vec3, size: [f32; 2], cuts: u32) -> (Vec<Vec3>, Vec
 }
 
 /// A closed box of 2 by 2 by 2 m around `center`, each side in `cuts` by `cuts` fields with shaken corners.
-pub(crate) fn room(center: Vec3, cuts: u32, key: Key) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub(crate) fn room(center: Vec3, cuts: u32, key: RandomKey) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut stream = key.child("room").stream();
     let mut positions: Vec<Vec3> = Vec::new();
     let mut places: std::collections::BTreeMap<[u32; 3], u32> = std::collections::BTreeMap::new();

@@ -3,15 +3,15 @@
 use crate::support::{
     add_movable, assert_same, grid_of, house, open_door, room_with_door, two_storeys,
 };
-use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
-use dwell_scene::random::Key;
+use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, JointId, ObjectId, PartId, Pose, State};
 use glam::{Quat, Vec3};
 
 const WEST: Vec3 = Vec3::new(1.0, 0.0, 2.0);
 const EAST: Vec3 = Vec3::new(4.2, 0.0, 2.0);
 
-fn with(doors: Doors) -> NavConfig {
+fn with(doors: DoorPolicy) -> NavConfig {
     NavConfig {
         doors,
         ..NavConfig::default()
@@ -22,7 +22,7 @@ fn with(doors: Doors) -> NavConfig {
 fn a_shut_door_parts_two_islands_and_an_open_one_joins_them() {
     let house = house(room_with_door());
     let mut state = State::new(&house);
-    let mut grid = NavGrid::build(&house, &state, &with(Doors::AsTheyStand)).unwrap();
+    let mut grid = NavGrid::build(&house, &state, &with(DoorPolicy::AsTheyStand)).unwrap();
     let [door] = grid.doors().try_into().expect("one door");
     assert_eq!((door.joint, door.is_open), (JointId(0), false));
     assert_eq!((door.cells.len(), door.islands.len()), (0, 2));
@@ -43,10 +43,10 @@ fn the_leaf_of_an_open_door_occupies_its_cells() {
     let house = house(room_with_door());
     let mut state = State::new(&house);
     let beside = Vec3::new(3.0, 0.0, 1.55);
-    let grid = NavGrid::build(&house, &state, &with(Doors::AsTheyStand)).unwrap();
+    let grid = NavGrid::build(&house, &state, &with(DoorPolicy::AsTheyStand)).unwrap();
     assert!(grid.nearest(beside, 0.08).is_some());
     open_door(&house, &mut state, 1.0);
-    let grid = NavGrid::build(&house, &state, &with(Doors::AsTheyStand)).unwrap();
+    let grid = NavGrid::build(&house, &state, &with(DoorPolicy::AsTheyStand)).unwrap();
     assert_eq!(grid.nearest(beside, 0.08), None);
 }
 
@@ -54,11 +54,11 @@ fn the_leaf_of_an_open_door_occupies_its_cells() {
 fn who_opens_doors_goes_through_and_pays_for_it() {
     let house = house(room_with_door());
     let mut state = State::new(&house);
-    let open = NavGrid::build(&house, &state, &with(Doors::Open)).unwrap();
+    let open = NavGrid::build(&house, &state, &with(DoorPolicy::Open)).unwrap();
     let free = open.geodesic_m(WEST, EAST).unwrap();
     let config = NavConfig {
         door_price_m: 3.5,
-        ..with(Doors::Priced)
+        ..with(DoorPolicy::Priced)
     };
     let mut priced = NavGrid::build(&house, &state, &config).unwrap();
     let cost = |grid: &NavGrid| {
@@ -87,11 +87,15 @@ fn following_what_moves_equals_building_anew() {
         add_movable(&mut data, [corner, corner + Vec3::new(0.5, 0.9, 0.4)]);
     }
     let house = house(data);
-    for doors in [Doors::AsTheyStand, Doors::Open, Doors::Priced] {
+    for doors in [
+        DoorPolicy::AsTheyStand,
+        DoorPolicy::Open,
+        DoorPolicy::Priced,
+    ] {
         let config = with(doors);
         let mut state = State::new(&house);
         let mut grid = NavGrid::build(&house, &state, &config).unwrap();
-        let mut stream = Key::root(17).stream();
+        let mut stream = RandomKey::root(17).stream();
         for round in 0..25 {
             if stream.below(2) == 0 {
                 open_door(&house, &mut state, stream.uniform_f32());
@@ -113,8 +117,8 @@ fn following_what_moves_equals_building_anew() {
             let rebuilt = grid.update(&house, &state).unwrap();
             let anew = NavGrid::build(&house, &state, &config).unwrap();
             assert_same(&grid, &anew);
-            assert_eq!(grid.update(&house, &state).unwrap().looked_at, 0, "{round}");
-            assert!(rebuilt.columns <= rebuilt.looked_at);
+            assert_eq!(grid.update(&house, &state).unwrap().rechecked, 0, "{round}");
+            assert!(rebuilt.columns <= rebuilt.rechecked);
         }
     }
 }
@@ -123,13 +127,13 @@ fn following_what_moves_equals_building_anew() {
 fn only_columns_near_a_door_are_looked_at_again() {
     let house = house(room_with_door());
     let mut state = State::new(&house);
-    let mut grid = NavGrid::build(&house, &state, &with(Doors::AsTheyStand)).unwrap();
+    let mut grid = NavGrid::build(&house, &state, &with(DoorPolicy::AsTheyStand)).unwrap();
     open_door(&house, &mut state, 0.5);
     let rebuilt = grid.update(&house, &state).unwrap();
     assert_eq!(rebuilt.parts, 1);
     // A leaf of 1 by 0.04 m, twice: some 12 columns shut and 20 slanting; with the radius 3 columns around each.
     assert!((15..60).contains(&rebuilt.columns), "{rebuilt:?}");
-    assert!(rebuilt.looked_at < 260, "{rebuilt:?}");
+    assert!(rebuilt.rechecked < 260, "{rebuilt:?}");
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use crate::support::{ROOM, add_mesh, clearance, furnished, grid_of, house, room, scattered};
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::navigation::{Cell, NavConfig};
-use dwell_scene::random::Key;
+use dwell_scene::navigation::{NavCell, NavConfig};
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, LevelId, Mesh, StructureKind};
 use glam::{Vec2, Vec3};
@@ -15,7 +15,7 @@ proptest! {
 
     #[test]
     fn walkable_cells_have_room_and_roomy_cells_are_walkable(seed in any::<u64>()) {
-        let boxes = scattered(Key::root(seed));
+        let boxes = scattered(RandomKey::root(seed));
         let house = furnished(&boxes);
         let config = NavConfig::default();
         let grid = grid_of(&house, &config);
@@ -157,11 +157,11 @@ fn samples_repeat_and_reach_all_cells() {
         ..NavConfig::default()
     };
     let grid = grid_of(&furnished(&[]), &config);
-    let cells: Vec<Cell> = grid.walkable().collect();
+    let cells: Vec<NavCell> = grid.walkable().collect();
     let mut seen = BTreeMap::new();
     for k in 0..4000_u64 {
-        let cell = grid.sample(Key::root(k), |_| true).unwrap();
-        assert_eq!(grid.sample(Key::root(k), |_| true), Some(cell));
+        let cell = grid.sample(RandomKey::root(k), |_| true).unwrap();
+        assert_eq!(grid.sample(RandomKey::root(k), |_| true), Some(cell));
         *seen.entry(cell).or_insert(0_u32) += 1;
     }
     assert_eq!(seen.len(), cells.len());
@@ -176,7 +176,7 @@ fn samples_repeat_and_reach_all_cells() {
         (chi - freedom).abs() < 5.0 * (2.0 * freedom).sqrt(),
         "{chi} for {freedom}"
     );
-    assert_eq!(grid.sample(Key::root(1), |_| false), None);
+    assert_eq!(grid.sample(RandomKey::root(1), |_| false), None);
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn a_wall_parts_the_room_into_islands_with_their_own_reachable_points() {
     let wall = [Vec3::new(2.4, 0.0, 0.0), Vec3::new(2.5, 2.0, 4.0)];
     let grid = grid_of(&furnished(&[wall]), &NavConfig::default());
     let west = grid.nearest(Vec3::new(1.0, 0.0, 2.0), 0.1).unwrap();
-    let reachable: Vec<Cell> = grid.reachable(west).collect();
+    let reachable: Vec<NavCell> = grid.reachable(west).collect();
     assert!(reachable.contains(&west));
     assert!(reachable.iter().all(|cell| grid.position(*cell).x < 2.2));
     let field = grid.distance_field(&[west]);
@@ -192,11 +192,14 @@ fn a_wall_parts_the_room_into_islands_with_their_own_reachable_points() {
         assert_eq!(field.at(cell).is_some(), reachable.contains(&cell));
     }
     for k in 0..50_u64 {
-        let cell = grid.sample_reachable(Key::root(k), west).unwrap();
+        let cell = grid.sample_reachable(RandomKey::root(k), west).unwrap();
         assert!(reachable.contains(&cell));
     }
-    assert_eq!(grid.reachable(Cell(0)).count(), 0);
-    assert_eq!(grid.sample_reachable(Key::root(0), Cell(u32::MAX)), None);
+    assert_eq!(grid.reachable(NavCell(0)).count(), 0);
+    assert_eq!(
+        grid.sample_reachable(RandomKey::root(0), NavCell(u32::MAX)),
+        None
+    );
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Rooms with boxes, doors and stairs.
 
-use dwell_scene::navigation::{Cell, NavConfig, NavGrid};
-use dwell_scene::random::Key;
+use dwell_scene::navigation::{NavCell, NavConfig, NavGrid};
+use dwell_scene::random::RandomKey;
 use dwell_scene::{
     Aabb, Articulation, Category, Collider, House, HouseData, JointKind, Level, LevelId,
     MaterialId, Mesh, Mobility, Object, ObjectId, Part, PartId, Pose, ShoeboxMaterials, State,
@@ -184,7 +184,7 @@ pub(crate) fn two_storeys(stairs: bool) -> Arc<House> {
 }
 
 /// Up to seven boxes on the floor, some of them in the way, some low, some hanging.
-pub(crate) fn scattered(key: Key) -> Vec<[Vec3; 2]> {
+pub(crate) fn scattered(key: RandomKey) -> Vec<[Vec3; 2]> {
     let mut stream = key.stream();
     let count = stream.below(8);
     let one = |_| {
@@ -216,15 +216,15 @@ pub(crate) fn clearance(p: Vec2, boxes: &[[Vec3; 2]]) -> f32 {
     boxes.iter().map(to_box).fold(walls, f32::min)
 }
 
-pub(crate) fn length_m(grid: &NavGrid, cells: &[Cell]) -> f64 {
-    let piece = |w: &[Cell]| f64::from(grid.position(w[0]).distance(grid.position(w[1])));
+pub(crate) fn length_m(grid: &NavGrid, cells: &[NavCell]) -> f64 {
+    let piece = |w: &[NavCell]| f64::from(grid.position(w[0]).distance(grid.position(w[1])));
     cells.windows(2).map(piece).sum()
 }
 
 /// What two grids answer to, bit for bit: places, islands, and ways from every island's first cell.
 pub(crate) fn assert_same(a: &NavGrid, b: &NavGrid) {
-    let places = |grid: &NavGrid| -> Vec<(Cell, [u32; 3], Option<u32>)> {
-        let place = |cell: Cell| {
+    let places = |grid: &NavGrid| -> Vec<(NavCell, [u32; 3], Option<u32>)> {
+        let place = |cell: NavCell| {
             let p = grid.position(cell).to_array().map(f32::to_bits);
             (cell, p, grid.island(cell))
         };
@@ -233,7 +233,7 @@ pub(crate) fn assert_same(a: &NavGrid, b: &NavGrid) {
     assert_eq!(places(a), places(b));
     assert_eq!(a.len(), b.len());
     assert_eq!(a.doors(), b.doors());
-    let mut goals: Vec<Cell> = Vec::new();
+    let mut goals: Vec<NavCell> = Vec::new();
     for cell in a.walkable() {
         if goals.iter().all(|goal| a.island(*goal) != a.island(cell)) {
             goals.push(cell);

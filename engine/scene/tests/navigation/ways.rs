@@ -2,8 +2,8 @@
 
 use crate::support::{furnished, grid_of, length_m, scattered};
 use dwell_scene::LevelId;
-use dwell_scene::navigation::{Cell, NavConfig, NavGrid, Occupancy};
-use dwell_scene::random::Key;
+use dwell_scene::navigation::{NavCell, NavConfig, NavGrid, Occupancy};
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use proptest::prelude::*;
 
@@ -81,7 +81,7 @@ fn in_32(dx: i64, dz: i64) -> bool {
             || (far == 2 && lower == 1))
 }
 
-fn column(map: &Occupancy, grid: &NavGrid, cell: Cell) -> usize {
+fn column(map: &Occupancy, grid: &NavGrid, cell: NavCell) -> usize {
     let p = grid.position(cell);
     let x = ((p.x - map.corner[0]) / map.cell_m) as usize;
     let z = ((p.z - map.corner[1]) / map.cell_m) as usize;
@@ -109,7 +109,7 @@ fn there_are_32_directions() {
 /// Against the shortest of all ways whose corners are middles of cells: every pair that sees each other, relaxed.
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 fn compare_with_the_shortest(seed: u64) -> Result<(), TestCaseError> {
-    let key = Key::root(seed);
+    let key = RandomKey::root(seed);
     let grid = grid_of(&furnished(&scattered(key)), &coarse());
     let Some(start) = grid.sample(key.child("start"), |_| true) else {
         return Ok(());
@@ -148,11 +148,11 @@ proptest! {
 
     #[test]
     fn straight_ways_are_free_exactly_when_every_touched_cell_is(seed in any::<u64>()) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let grid = grid_of(&furnished(&scattered(key)), &coarse());
         let map = grid.occupancy(LevelId(0)).unwrap();
-        let cells: Vec<Cell> = grid.walkable().collect();
-        let place = |cell: Cell| {
+        let cells: Vec<NavCell> = grid.walkable().collect();
+        let place = |cell: NavCell| {
             let column = column(&map, &grid, cell);
             [(column % map.width) as i64, (column / map.width) as i64]
         };
@@ -167,7 +167,7 @@ proptest! {
 
     #[test]
     fn distances_equal_those_of_repeated_relaxation(seed in any::<u64>()) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let grid = grid_of(&furnished(&scattered(key)), &coarse());
         let Some(start) = grid.sample(key.child("start"), |_| true) else { return Ok(()) };
         let map = grid.occupancy(LevelId(0)).unwrap();
@@ -193,7 +193,7 @@ proptest! {
 
     #[test]
     fn corners_are_joined_by_free_straight_ways(seed in any::<u64>()) {
-        let key = Key::root(seed);
+        let key = RandomKey::root(seed);
         let grid = grid_of(&furnished(&scattered(key)), &NavConfig::default());
         let ends = [0_u64, 1].map(|k| grid.sample(key.child(k), |cell| grid.island(cell) == Some(0)));
         let [Some(from), Some(to)] = ends else { return Ok(()) };
@@ -214,7 +214,7 @@ proptest! {
 fn in_the_open_a_route_is_the_straight_line() {
     let grid = grid_of(&furnished(&[]), &NavConfig::default());
     for k in 0..200_u64 {
-        let key = Key::root(k);
+        let key = RandomKey::root(k);
         let [a, b] = [0_u64, 1].map(|k| grid.sample(key.child(k), |_| true).unwrap());
         let straight = f64::from(grid.position(a).distance(grid.position(b)));
         let route = grid.route(grid.position(a), grid.position(b)).unwrap();

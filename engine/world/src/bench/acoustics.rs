@@ -8,7 +8,7 @@ use dwell_acoustics::metrics::{self, BandMetrics, Metrics};
 use dwell_acoustics::{ActiveSource, Receiver, Source, Stream, StreamConfig, signals};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Pose, State};
 use glam::Vec3;
@@ -36,7 +36,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
                     &rays,
                     &Source::at(*source),
                     &receiver,
-                    Key::root(k as u64),
+                    RandomKey::root(k as u64),
                     threads,
                 )?;
                 pairs += 1;
@@ -177,7 +177,7 @@ fn wanted(
     let (position, head) = figure.place(BLOCKS - 1);
     let scene = engines.acoustics("reference", 16_000)?;
     let source = Source::at(position);
-    let echogram = scene.echogram(rays, &source, head.position, Key::root(1), threads)?;
+    let echogram = scene.echogram(rays, &source, head.position, RandomKey::root(1), threads)?;
     Ok(metrics::of_echogram(&echogram))
 }
 
@@ -192,7 +192,7 @@ fn walk(
 ) -> Result<Walk, WorldError> {
     let scene = engines.acoustics(preset, 16_000)?;
     let config = StreamConfig::preset(preset).unwrap_or_default();
-    let mut stream = Stream::new(scene, config, Key::root(seed), Threads::ONE)?;
+    let mut stream = Stream::new(scene, config, RandomKey::root(seed), Threads::ONE)?;
     let state = State::new(engines.house());
     let mut signal = vec![0.0; BLOCK];
     signals::synthesize("radio", 16_000, 0, &mut signal)?;

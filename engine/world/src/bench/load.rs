@@ -4,7 +4,7 @@ use super::{BenchOptions, median, open, timed};
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use crate::world::World;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde_json::{Value, json};
 
 pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
@@ -17,7 +17,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
     })?;
     let engines = open(house)?;
     let mut world = World::new(engines, &WorldConfig::default())?;
-    let reset = timed(options.repeats, || world.reset(Key::root(0)))?;
+    let reset = timed(options.repeats, || world.reset(RandomKey::root(0)))?;
     Ok(
         json!({"load_ms": median(&seconds) * 1e3, "reset_ms": median(&reset) * 1e3, "triangles": triangles}),
     )

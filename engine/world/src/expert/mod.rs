@@ -6,7 +6,7 @@ use crate::action::{DiscreteAction, Stride};
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::math::wrap_angle;
-use dwell_scene::navigation::{Cell, DistanceField, NavGrid};
+use dwell_scene::navigation::{DistanceField, NavCell, NavGrid};
 use dwell_scene::space::{pitch_from_forward, yaw_from_forward};
 use dwell_scene::{AgentId, AgentState, Entity, ObjectId};
 use glam::Vec3;
@@ -39,7 +39,7 @@ pub struct Guide {
 
 impl Guide {
     /// A guide that leads `agent` to the nearest of `goals`.
-    pub fn new(agent: AgentId, grid: Arc<NavGrid>, goals: &[Cell], stride: Stride) -> Self {
+    pub fn new(agent: AgentId, grid: Arc<NavGrid>, goals: &[NavCell], stride: Stride) -> Self {
         let field = Arc::new(grid.distance_field(goals));
         Self {
             agent,
@@ -70,7 +70,7 @@ impl Guide {
     }
 
     /// Geodesic distance of a cell to the goals, m.
-    pub fn at(&self, cell: Cell) -> Option<f64> {
+    pub fn at(&self, cell: NavCell) -> Option<f64> {
         self.field.at(cell)
     }
 
@@ -95,7 +95,7 @@ impl Guide {
         &mut self,
         field: &DistanceField,
         agent: &AgentState,
-        here: Cell,
+        here: NavCell,
     ) -> Option<DiscreteAction> {
         if let Some(step) = self.escape(agent.collided) {
             return Some(step);
@@ -108,7 +108,7 @@ impl Guide {
     }
 
     /// Out of the way of a door that swings towards it, and from there opens it wholly; `None` when no door is held up.
-    fn step_aside(&mut self, world: &World, here: Cell) -> Option<DiscreteAction> {
+    fn step_aside(&mut self, world: &World, here: NavCell) -> Option<DiscreteAction> {
         let opening = self.opening.take()?;
         let open = world.state().openness(world.house(), opening.door);
         if open.is_none_or(|open| open >= PASSABLE) {
@@ -148,12 +148,12 @@ impl Guide {
     }
 
     /// The point of the way that it walks to next: the furthest one within reach of the eye.
-    fn aim(&self, field: &DistanceField, here: Cell, position: Vec3) -> Option<Vec3> {
-        let way = self.grid.descend(field, here)?;
+    fn aim(&self, field: &DistanceField, here: NavCell, position: Vec3) -> Option<Vec3> {
+        let way = self.grid.follow_gradient(field, here)?;
         let near = way
             .iter()
             .take_while(|cell| (self.grid.position(**cell) - position).length() <= AIM_AHEAD_M);
-        let ahead: Vec<Cell> = near.copied().collect();
+        let ahead: Vec<NavCell> = near.copied().collect();
         let free = ahead
             .iter()
             .rev()
@@ -166,8 +166,8 @@ impl Guide {
     }
 
     /// A jointed thing that stands in the way and is not open.
-    fn closed_door_ahead(&self, world: &World, here: Cell) -> Option<ObjectId> {
-        let way = self.grid.descend(&self.field, here)?;
+    fn closed_door_ahead(&self, world: &World, here: NavCell) -> Option<ObjectId> {
+        let way = self.grid.follow_gradient(&self.field, here)?;
         let agent = world.state().agents.get(self.agent)?;
         let mut from = agent.position;
         let mut walked = 0.0;

@@ -1,7 +1,7 @@
 //! Doors that swing towards whoever opens them: where to stand so that the leaf passes.
 
 use crate::world::World;
-use dwell_scene::navigation::{Cell, DistanceField, NavGrid};
+use dwell_scene::navigation::{DistanceField, NavCell, NavGrid};
 use dwell_scene::{AgentId, JointKind, ObjectId};
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use std::sync::Arc;
@@ -53,7 +53,7 @@ impl Opening {
 }
 
 /// Cells on the agent's side of a hinged door from which its arm reaches the leaf and which the leaf does not sweep.
-fn out_of_the_swing(world: &World, grid: &NavGrid, agent: AgentId, door: ObjectId) -> Vec<Cell> {
+fn out_of_the_swing(world: &World, grid: &NavGrid, agent: AgentId, door: ObjectId) -> Vec<NavCell> {
     let (house, state) = (world.house(), world.state());
     let hinge = house.joints_of(door).find(|joint| {
         house.joints[*joint].opens() && house.joints[*joint].kind == JointKind::Hinge
@@ -77,7 +77,7 @@ fn out_of_the_swing(world: &World, grid: &NavGrid, agent: AgentId, door: ObjectI
     let side = |at: Vec2| (at - axis).dot(across);
     let here = side(agent.position.xz());
     let eye = Vec3::Y * agent.body.eye_height_m;
-    let free = |cell: &Cell| {
+    let free = |cell: &NavCell| {
         let at = grid.position(*cell);
         let from = at + eye;
         let apart_m = (from.clamp(leaf.min, leaf.max) - from).length();

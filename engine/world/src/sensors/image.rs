@@ -8,7 +8,7 @@ use crate::requests::Requests;
 use crate::world::World;
 use dwell_render::{Camera, Channels, Classes, Frame, Optics, View};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 
 /// What tells one sensor of pictures from another.
 #[derive(Debug)]
@@ -69,7 +69,7 @@ pub(super) struct Look<'a> {
     /// The images, without noise.
     pub(super) frame: &'a Frame,
     /// For the noise.
-    pub(super) key: Key,
+    pub(super) key: RandomKey,
 }
 
 impl Look<'_> {

@@ -35,7 +35,7 @@ use crate::env::Episode;
 use crate::error::WorldError;
 use crate::requests::{Requests, Results};
 use crate::world::World;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use serde::Serialize;
 use std::fmt::Debug;
 
@@ -107,7 +107,7 @@ pub struct Seen<'a> {
     /// What the engines computed.
     pub results: &'a Results,
     /// The sensor's random stream in this step.
-    pub key: Key,
+    pub key: RandomKey,
 }
 
 /// A sensor on one agent.

@@ -9,7 +9,7 @@ use dwell_acoustics::contact::{
 use dwell_physics::{ContactEvent, ContactKind, ContactPhase, Toucher};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
     AgentId, Articulation, House, Id, JointId, JointKind, PartId, Pose, State, StructureKind,
@@ -85,7 +85,7 @@ pub(crate) struct Step<'a> {
     /// Since the world was made, s.
     pub(crate) start_s: f64,
     pub(crate) length_s: f64,
-    pub(crate) key: Key,
+    pub(crate) key: RandomKey,
 }
 
 impl Sound {

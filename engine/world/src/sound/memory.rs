@@ -9,7 +9,7 @@ use super::{FIRST_PLAYED_ID, Sound};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, State};
 use serde::{Deserialize, Serialize};
 
@@ -53,7 +53,7 @@ impl Sound {
     pub(crate) fn from_bytes(
         config: &WorldConfig,
         (engines, state): (&Engines, &State),
-        key: Key,
+        key: RandomKey,
         bytes: &[u8],
     ) -> Result<Self, WorldError> {
         let memory: Memory =

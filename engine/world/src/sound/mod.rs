@@ -26,7 +26,7 @@ use crate::error::WorldError;
 use clear::clear_of_surfaces;
 use dwell_acoustics::{AcousticConfig, HeadId, Stream, StreamConfig};
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, House, State};
 use ears::Ears;
@@ -144,7 +144,7 @@ impl Sound {
         rays: &RayScene,
         state: &State,
         agents: &[(AgentId, usize)],
-        key: Key,
+        key: RandomKey,
     ) -> Result<(), WorldError> {
         for (agent, samples) in agents {
             let length = samples.next_multiple_of(self.block).max(self.block);
@@ -168,7 +168,12 @@ impl Sound {
         Ok(())
     }
 
-    fn stream(&self, engines: &Engines, agent: AgentId, key: Key) -> Result<Stream, WorldError> {
+    fn stream(
+        &self,
+        engines: &Engines,
+        agent: AgentId,
+        key: RandomKey,
+    ) -> Result<Stream, WorldError> {
         let mut scene = engines.acoustics(&self.preset, self.rate_hz)?;
         if let Some(head) = self.head {
             scene.add_head(&engines.head(head)?);

@@ -10,7 +10,7 @@ use crate::env::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::metrics::Progress;
 use crate::world::World;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId, Pose};
 use dwell_semantics::tokens;
 use glam::Vec3;
@@ -69,7 +69,12 @@ struct Free {
 
 impl Free {
     /// Where an episode starts: the place, and where to look, rad.
-    fn start(&self, world: &World, body: &AgentBody, key: Key) -> Result<(Vec3, f32), WorldError> {
+    fn start(
+        &self,
+        world: &World,
+        body: &AgentBody,
+        key: RandomKey,
+    ) -> Result<(Vec3, f32), WorldError> {
         let unplayable = |why: String| WorldError::Unplayable {
             task: NAME,
             house: world.house().name.clone(),
@@ -100,7 +105,7 @@ impl Free {
 }
 
 impl Task for Free {
-    fn reset(&mut self, world: &mut World, key: Key) -> Result<Episode, WorldError> {
+    fn reset(&mut self, world: &mut World, key: RandomKey) -> Result<Episode, WorldError> {
         let agent = AgentId(0);
         let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
             return Err(WorldError::Usage(format!(

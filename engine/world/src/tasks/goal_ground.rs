@@ -1,7 +1,7 @@
 //! Where on a grid goals are looked for: the cells of its largest island, by place and by room.
 
-use dwell_scene::interrupt::Pace;
-use dwell_scene::navigation::{Cell, NavGrid};
+use dwell_scene::interrupt::PollEvery;
+use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{Aabb, House, RoomId};
 use glam::Vec3;
 use std::cell::OnceCell;
@@ -16,9 +16,9 @@ const CELLS_PER_CHECK: usize = 256;
 pub(super) struct GoalGround<'a> {
     pub(super) grid: &'a NavGrid,
     /// Rising.
-    cells: Vec<Cell>,
+    cells: Vec<NavCell>,
     /// By squares along x and z.
-    squares: BTreeMap<[i32; 2], Vec<Cell>>,
+    squares: BTreeMap<[i32; 2], Vec<NavCell>>,
     /// The rooms on the four sides of each cell, as soon as a room is a goal. Shape (cell,).
     sides: OnceCell<Vec<[Option<RoomId>; 4]>>,
 }
@@ -29,9 +29,9 @@ fn square_of(value: f32) -> i32 {
 
 impl<'a> GoalGround<'a> {
     pub(super) fn of(grid: &'a NavGrid) -> Self {
-        let on_island = |cell: &Cell| grid.island(*cell) == Some(0);
-        let cells: Vec<Cell> = grid.walkable().filter(on_island).collect();
-        let mut squares: BTreeMap<[i32; 2], Vec<Cell>> = BTreeMap::new();
+        let on_island = |cell: &NavCell| grid.island(*cell) == Some(0);
+        let cells: Vec<NavCell> = grid.walkable().filter(on_island).collect();
+        let mut squares: BTreeMap<[i32; 2], Vec<NavCell>> = BTreeMap::new();
         for cell in &cells {
             let at = grid.position(*cell);
             let square = squares.entry([square_of(at.x), square_of(at.z)]);
@@ -46,7 +46,7 @@ impl<'a> GoalGround<'a> {
     }
 
     /// The cells over or under a box, and some around it.
-    pub(super) fn around(&self, bounds: &Aabb) -> Vec<Cell> {
+    pub(super) fn around(&self, bounds: &Aabb) -> Vec<NavCell> {
         let (low, high) = (bounds.min, bounds.max);
         let rows = square_of(low.x)..=square_of(high.x);
         let mut found = Vec::new();
@@ -58,12 +58,12 @@ impl<'a> GoalGround<'a> {
     }
 
     /// The cells that have one of some rooms all around, so that an agent that stops anywhere on them counts; rising.
-    pub(super) fn within(&self, house: &House, rooms: &[RoomId]) -> Vec<Cell> {
-        let mut pace = Pace::new(CELLS_PER_CHECK);
+    pub(super) fn within(&self, house: &House, rooms: &[RoomId]) -> Vec<NavCell> {
+        let mut pace = PollEvery::new(CELLS_PER_CHECK);
         let sides = self.sides.get_or_init(|| {
             let edge = self.grid.config().cell_m;
             let sides = [(-edge, 0.0), (edge, 0.0), (0.0, -edge), (0.0, edge)];
-            let of = |cell: &Cell| {
+            let of = |cell: &NavCell| {
                 pace.turn();
                 let at = self.grid.position(*cell);
                 sides.map(|(dx, dz)| house.room_at(at + Vec3::new(dx, 0.1, dz)))
@@ -94,24 +94,24 @@ mod tests {
         let mut asked = 0;
         for object in house.objects.ids() {
             let bounds = house.object_bounds(&state, object).grown(1.2);
-            let over = |cell: &Cell| bounds.contains(grid.position(*cell).with_y(bounds.min.y));
+            let over = |cell: &NavCell| bounds.contains(grid.position(*cell).with_y(bounds.min.y));
             let found = ground.around(&bounds);
             asked += found.len();
-            let mut over_it: Vec<Cell> = found.into_iter().filter(over).collect();
+            let mut over_it: Vec<NavCell> = found.into_iter().filter(over).collect();
             over_it.sort_unstable();
-            assert_eq!(over_it, all().filter(over).collect::<Vec<Cell>>());
+            assert_eq!(over_it, all().filter(over).collect::<Vec<NavCell>>());
         }
         assert!(asked > 0 && asked < house.objects.len() * all().count());
         let edge = grid.config().cell_m;
         for room in house.rooms.ids() {
-            let within = |cell: &Cell| {
+            let within = |cell: &NavCell| {
                 let sides = [(-edge, 0.0), (edge, 0.0), (0.0, -edge), (0.0, edge)];
                 sides.into_iter().all(|(dx, dz)| {
                     let at = grid.position(*cell) + Vec3::new(dx, 0.1, dz);
                     house.room_at(at) == Some(room)
                 })
             };
-            let expected: Vec<Cell> = all().filter(within).collect();
+            let expected: Vec<NavCell> = all().filter(within).collect();
             assert_eq!(ground.within(&house, &[room]), expected);
         }
         assert!(ground.within(&house, &[]).is_empty());

@@ -13,9 +13,9 @@ use crate::expert::{Guide, face};
 use crate::metrics::Progress;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::interrupt::{self, Pace};
-use dwell_scene::navigation::{Cell, NavGrid};
-use dwell_scene::random::Key;
+use dwell_scene::interrupt::{self, PollEvery};
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Pose, State};
 use dwell_semantics::instruct::{self, Instruction, InstructionKind};
 use glam::{Vec2, Vec3};
@@ -103,7 +103,7 @@ fn build(value: &serde_json::Value, stride: Stride) -> Result<Box<dyn Task>, Wor
 #[derive(Clone, Debug)]
 struct Offer {
     instruction: Instruction,
-    goals: Vec<Cell>,
+    goals: Vec<NavCell>,
 }
 
 #[derive(Clone, Debug)]
@@ -113,7 +113,7 @@ struct Now {
     guide: Guide,
     /// Leads the expert, to those goals from which it has not looked in vain.
     lead: Guide,
-    goals: Vec<Cell>,
+    goals: Vec<NavCell>,
 }
 
 impl Now {
@@ -166,7 +166,7 @@ impl InstructionFollowing {
 }
 
 /// The walkable cells of the largest island in which an instruction is fulfilled by someone who looks the right way.
-fn goal_cells(world: &World, ground: &GoalGround<'_>, instruction: &Instruction) -> Vec<Cell> {
+fn goal_cells(world: &World, ground: &GoalGround<'_>, instruction: &Instruction) -> Vec<NavCell> {
     if !instruction.goal.rooms.is_empty() {
         return ground.within(world.house(), &instruction.goal.rooms);
     }
@@ -178,7 +178,7 @@ fn goal_cells(world: &World, ground: &GoalGround<'_>, instruction: &Instruction)
         .map_or(1.25, |agent| agent.body.eye_height_m);
     // A little nearer than asked, so that an agent that stops on the cell's border still counts.
     let radius_m = instruction.goal.radius_m * 0.8;
-    let mut pace = Pace::new(CELLS_PER_CHECK);
+    let mut pace = PollEvery::new(CELLS_PER_CHECK);
     let mut goals = Vec::new();
     for object in &instruction.goal.objects {
         let extent = scene.extent(*object);
@@ -207,7 +207,7 @@ fn goal_cells(world: &World, ground: &GoalGround<'_>, instruction: &Instruction)
 }
 
 impl Task for InstructionFollowing {
-    fn reset(&mut self, world: &mut World, key: Key) -> Result<Episode, WorldError> {
+    fn reset(&mut self, world: &mut World, key: RandomKey) -> Result<Episode, WorldError> {
         let agent = AgentId(0);
         let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
             return Err(WorldError::Usage(format!(
@@ -231,7 +231,7 @@ impl Task for InstructionFollowing {
             let offer = &self.offers[k];
             let guide = Guide::new(agent, grid.clone(), &offer.goals, self.stride);
             let range = self.settings.min_distance_m..=self.settings.max_distance_m;
-            let allowed = |cell: Cell| {
+            let allowed = |cell: NavCell| {
                 grid.island(cell) == Some(0)
                     && guide.at(cell).is_some_and(|d| range.contains(&d))
                     && !leaves.block(&grid, cell)

@@ -1,7 +1,7 @@
 //! Where the leaves of doors stand, which the grid of a walker has all open.
 
 use crate::world::World;
-use dwell_scene::navigation::{Cell, Door, NavGrid};
+use dwell_scene::navigation::{NavCell, NavDoor, NavGrid};
 use dwell_scene::{Aabb, Pose};
 use glam::Vec3;
 
@@ -12,7 +12,7 @@ struct Leaf {
 }
 
 impl Leaf {
-    fn of(world: &World, door: &Door) -> Self {
+    fn of(world: &World, door: &NavDoor) -> Self {
         let house = world.house();
         let child = house.joints[door.joint].child;
         let part = &house.parts[child];
@@ -47,7 +47,7 @@ impl Leaves {
     }
 
     /// Whether who stands on `cell` would stand in a leaf.
-    pub(super) fn block(&self, grid: &NavGrid, cell: Cell) -> bool {
+    pub(super) fn block(&self, grid: &NavGrid, cell: NavCell) -> bool {
         let at = grid.position(cell);
         self.leaves
             .iter()

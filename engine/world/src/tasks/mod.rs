@@ -9,7 +9,7 @@ use crate::action::{DiscreteAction, Stride};
 use crate::env::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::world::World;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::fmt::Debug;
 
 /// A task. One value plays one episode after another in one world.
@@ -21,7 +21,7 @@ pub trait Task: Debug + Send + Sync {
     ///
     /// # Errors
     /// [`WorldError::Unplayable`] when the house does not hold what the task needs.
-    fn reset(&mut self, world: &mut World, key: Key) -> Result<Episode, WorldError>;
+    fn reset(&mut self, world: &mut World, key: RandomKey) -> Result<Episode, WorldError>;
 
     /// Judges the step that has just been made with `action`.
     fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict;

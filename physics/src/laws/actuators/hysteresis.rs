@@ -4,7 +4,7 @@ use super::Hinges;
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Elastic, JointLoad, Law, Resistance, value};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
 use std::collections::BTreeMap;
 

@@ -4,7 +4,7 @@ use super::Hinges;
 use crate::error::PhysicsError;
 use crate::laws::{Acts, JointLoad, Law, Resistance, value};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State, math};
 
 const fn term(name: &'static str, unit: &'static str, high: f64, plausible: [f64; 2]) -> ParamInfo {

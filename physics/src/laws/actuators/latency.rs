@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::laws::{Acts, Law, MotorStep, value};
 use crate::model::PhysicsModel;
 use crate::motors::told;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
 use std::collections::{BTreeMap, VecDeque};
 

@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{Gain, Pull};
 use crate::laws::{Acts, JointLoad, Law, Resistance, value};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
 
 pub(in crate::laws) const LAW: Law = Law {

@@ -4,7 +4,7 @@ use super::Outputs;
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law, MotorStep, value};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawSpec, State};
 
 pub(in crate::laws) const LAW: Law = Law {

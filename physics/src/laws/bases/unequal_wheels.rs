@@ -5,7 +5,7 @@ use crate::bases::Rolling;
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawSpec, State};
 
 const fn ratio(name: &'static str, plausible: [f64; 2]) -> ParamInfo {

@@ -5,7 +5,7 @@ use crate::bases::Rolling;
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawSpec, State};
 
 pub(in crate::laws) const LAW: Law = Law {

@@ -4,7 +4,7 @@ use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Law, LinkStep, Push, Stage, value};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 
 pub(in crate::laws) const LAW: Law = Law {

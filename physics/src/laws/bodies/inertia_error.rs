@@ -5,7 +5,7 @@ use crate::inertia::Inertia;
 use crate::laws::target::moving_bodies;
 use crate::laws::{Acts, Law, value};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 use glam::{Mat3, Vec3};
 

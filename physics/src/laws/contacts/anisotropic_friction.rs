@@ -4,7 +4,7 @@ use crate::error::PhysicsError;
 use crate::laws::target::Scope;
 use crate::laws::{Acts, ContactValues, Law, Touch, value};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
 use glam::Vec3;
 

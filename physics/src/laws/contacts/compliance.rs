@@ -3,7 +3,7 @@
 use crate::error::PhysicsError;
 use crate::laws::{Acts, Compliance, Law, value};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{Engine as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 
 pub(in crate::laws) const LAW: Law = Law {

@@ -6,7 +6,7 @@ use dwell_furniture::models::openings::{
     Door as DoorModel, Window as WindowModel, clear_pane, frosted_pane,
 };
 use dwell_furniture::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{HouseData, Pose, RoomId, Sky};
 use glam::{Vec2, Vec3};
 
@@ -87,7 +87,7 @@ pub(in crate::authoring) fn raise(
             style,
             floor_m,
             top: level + 1 == building.storeys.len(),
-            key: Key::root(building.seed).child("plan"),
+            key: RandomKey::root(building.seed).child("plan"),
             level,
             outer: millimetres("outer_wall_m", outer)?,
             well_below: below,
@@ -107,7 +107,7 @@ struct Site<'a> {
     style: &'static Style,
     floor_m: f32,
     top: bool,
-    key: Key,
+    key: RandomKey,
     level: usize,
     outer: Mm,
     /// Stairs that come up here.

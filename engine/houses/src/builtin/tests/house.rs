@@ -7,7 +7,7 @@ use dwell_furniture::testing::overlap::{Convex, depth, object_pieces};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, Holding, Mobility, Room, State};
+use dwell_scene::{Aabb, Mobility, ReceptacleKind, Room, State};
 use glam::{Vec2, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -267,6 +267,9 @@ fn receptacles_have_a_floor_and_free_space() {
         };
         assert!(touches(-0.004), "{at}: nothing under its floor");
         assert!(!touches(0.004), "{at}: its floor is buried");
-        assert!(matches!(receptacle.holding, Holding::On | Holding::In));
+        assert!(matches!(
+            receptacle.holding,
+            ReceptacleKind::On | ReceptacleKind::In
+        ));
     }
 }

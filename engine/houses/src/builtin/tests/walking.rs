@@ -2,7 +2,7 @@
 
 use super::support::{apartment, building_boxes};
 use dwell_furniture::testing::overlap::{Convex, object_pieces};
-use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
+use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{Aabb, House, Object, Room, State};
 use glam::{Vec2, Vec3};
 use std::collections::BTreeSet;
@@ -137,7 +137,7 @@ fn rooms_at(house: &House, door: &Object) -> BTreeSet<String> {
 fn open_doors_join_the_rooms_and_closed_ones_part_them() {
     let house = apartment();
     let state = State::new(house);
-    let rooms_of_largest_island = |doors: Doors| -> BTreeSet<String> {
+    let rooms_of_largest_island = |doors: DoorPolicy| -> BTreeSet<String> {
         let config = NavConfig {
             doors,
             ..NavConfig::default()
@@ -148,8 +148,8 @@ fn open_doors_join_the_rooms_and_closed_ones_part_them() {
         rooms.map(|room| house.rooms[room].name.clone()).collect()
     };
     let all: BTreeSet<String> = house.rooms.iter().map(|room| room.name.clone()).collect();
-    assert_eq!(rooms_of_largest_island(Doors::Open), all);
-    let now = rooms_of_largest_island(Doors::AsTheyStand);
+    assert_eq!(rooms_of_largest_island(DoorPolicy::Open), all);
+    let now = rooms_of_largest_island(DoorPolicy::AsTheyStand);
     let (mut parted, mut joined) = (BTreeSet::new(), BTreeSet::new());
     for joint in &house.joints {
         let door = &house.objects[joint.object];

@@ -6,8 +6,8 @@ use super::space::{Piece, Space};
 use crate::building::yaw::yaw;
 use dwell_furniture::stock::{Stock, stock};
 use dwell_furniture::style::Style;
-use dwell_scene::random::{Key, Stream};
-use dwell_scene::{Aabb, Holding, Pose};
+use dwell_scene::random::{RandomKey, RandomStream};
+use dwell_scene::{Aabb, Pose, ReceptacleKind};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -19,7 +19,13 @@ const HIGHEST_M: f32 = 2.4;
 const EDGE_M: f32 = 0.01;
 
 /// Follows one rule on everything that stands in the room.
-pub(crate) fn scatter(space: &mut Space, rule: &Clutter, amount: f32, style: &Style, key: Key) {
+pub(crate) fn scatter(
+    space: &mut Space,
+    rule: &Clutter,
+    amount: f32,
+    style: &Style,
+    key: RandomKey,
+) {
     let hosts = space.pieces.len();
     for host in 0..hosts {
         let kind = space.pieces[host].stock.kind;
@@ -40,13 +46,13 @@ fn on_one(
     [host, k]: [usize; 2],
     amount: f32,
     style: &Style,
-    key: Key,
+    key: RandomKey,
 ) {
     let top = &space.pieces[host].stock.model.spaces[k];
     let wanted = if rule.inside {
-        Holding::In
+        ReceptacleKind::In
     } else {
-        Holding::On
+        ReceptacleKind::On
     };
     let named = rule.spaces.is_empty() || rule.spaces.iter().any(|name| name == top.name);
     let mut draw = key.stream();
@@ -81,7 +87,7 @@ fn place(
     k: usize,
     stock: &Arc<Stock>,
     turn_deg: f32,
-    draw: &mut Stream,
+    draw: &mut RandomStream,
 ) -> Option<Pose> {
     let top = &host.stock.model.spaces[k];
     let turn = yaw(draw.range(-turn_deg, turn_deg));

@@ -16,7 +16,7 @@ use crate::building::yaw::yaw;
 use dwell_furniture::stock::{Stock, stock};
 use dwell_furniture::style::Style;
 use dwell_scene::Pose;
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 use glam::Vec3;
 use rules::{Place, Rule, Run, rules};
 use space::Space;
@@ -44,7 +44,7 @@ pub(crate) struct Furnisher<'a> {
     pub(crate) holes: &'a [Vec<Hole>],
     pub(crate) style: &'a Style,
     pub(crate) spec: &'a HouseSpec,
-    pub(crate) key: Key,
+    pub(crate) key: RandomKey,
 }
 
 impl Furnisher<'_> {
@@ -68,7 +68,7 @@ impl Furnisher<'_> {
         cells: &Cells,
         room: usize,
         share: f32,
-        key: Key,
+        key: RandomKey,
     ) -> Furnished {
         let storey = &self.plan.storeys[level];
         let kind = storey.rooms[room].kind;
@@ -147,7 +147,7 @@ struct Furnishing<'a> {
 
 impl Furnishing<'_> {
     /// Follows a rule; false when nothing came of it that was wanted.
-    fn follow(&mut self, rule: &Rule, key: Key) -> bool {
+    fn follow(&mut self, rule: &Rule, key: RandomKey) -> bool {
         let mut draw = key.stream();
         let chance = rule.chance * (self.density / 0.8);
         if self.area_m2 < rule.from_m2 || (!rule.needed && draw.uniform_f32() >= chance) {
@@ -183,7 +183,13 @@ impl Furnishing<'_> {
     }
 
     /// Puts one thing of a rule: the first of its kinds for which there is a place.
-    fn put(&mut self, rule: &Rule, anchor: Option<usize>, look: Key, draw: &mut Stream) -> bool {
+    fn put(
+        &mut self,
+        rule: &Rule,
+        anchor: Option<usize>,
+        look: RandomKey,
+        draw: &mut RandomStream,
+    ) -> bool {
         for kind in &rule.kinds {
             let looks = if rule.differ { UNLIKE_LOOKS } else { LOOKS };
             for attempt in 0..looks {
@@ -219,7 +225,7 @@ impl Furnishing<'_> {
         motif.is_some() && pieces.any(|piece| piece.stock.motif == motif)
     }
 
-    fn at_windows(&mut self, rule: &Rule, key: Key) -> bool {
+    fn at_windows(&mut self, rule: &Rule, key: RandomKey) -> bool {
         let holes = self.space.holes.clone();
         let windows = holes
             .iter()
@@ -243,7 +249,7 @@ impl Furnishing<'_> {
     }
 
     /// Fitted units along the wall that holds the first row; false without a place.
-    fn run(&mut self, run: &Run, key: Key) -> bool {
+    fn run(&mut self, run: &Run, key: RandomKey) -> bool {
         let mut draw = key.stream();
         for row in &run.rows {
             let units: Vec<Option<Arc<Stock>>> = row

@@ -5,8 +5,8 @@ use super::space::{Piece, Space, Span};
 use crate::building::plan::CEILING_M;
 use crate::building::yaw::yaw;
 use dwell_furniture::stock::Stock;
-use dwell_scene::random::Stream;
-use dwell_scene::{Aabb, Holding, Pose};
+use dwell_scene::random::RandomStream;
+use dwell_scene::{Aabb, Pose, ReceptacleKind};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ pub(crate) fn ideas(
     space: &Space,
     stock: &Arc<Stock>,
     anchor: Option<&Piece>,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> Vec<Pose> {
     let mut ideas: Vec<Idea> = match (rule.place, anchor) {
         (Place::Wall, _) => walls(space, stock, None, false, stream),
@@ -71,7 +71,7 @@ fn walls(
     stock: &Stock,
     height_m: Option<f32>,
     corners: bool,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> Vec<Idea> {
     let (half, back) = half_and_back(stock);
     let mut ideas = Vec::new();
@@ -83,7 +83,7 @@ fn walls(
         if high < low {
             continue;
         }
-        let mut idea = |along: f32, penalty: f32, stream: &mut Stream| {
+        let mut idea = |along: f32, penalty: f32, stream: &mut RandomStream| {
             let (y, off) = match height_m {
                 Some(y) => (y, 0.0),
                 None => (REST_GAP_M, back + WALL_GAP_M),
@@ -115,7 +115,7 @@ fn near(ideas: Vec<Idea>, anchor: &Piece, reach_m: f32) -> Vec<Idea> {
     ideas.filter(|(away, _)| *away <= reach_m).collect()
 }
 
-fn centre(space: &Space, stream: &mut Stream) -> Vec<Idea> {
+fn centre(space: &Space, stream: &mut RandomStream) -> Vec<Idea> {
     let area = |z: &[f32; 4]| (z[2] - z[0]) * (z[3] - z[1]);
     let Some(largest) = space
         .floor
@@ -171,7 +171,7 @@ fn ceiling(space: &Space, anchor: Option<&Piece>) -> Vec<Idea> {
     ideas
 }
 
-fn beside(stock: &Stock, anchor: &Piece, gap_m: f32, stream: &mut Stream) -> Vec<Idea> {
+fn beside(stock: &Stock, anchor: &Piece, gap_m: f32, stream: &mut RandomStream) -> Vec<Idea> {
     let (half, back) = half_and_back(stock);
     let host = anchor.stock.felt;
     let z = host.min.z + back;
@@ -191,7 +191,7 @@ fn before(
     anchor: &Piece,
     gap_m: [f32; 2],
     turn_deg: f32,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> Vec<Idea> {
     let depth = if turn_deg == 0.0 {
         -stock.felt.min.z
@@ -242,7 +242,7 @@ fn around(stock: &Stock, anchor: &Piece) -> Vec<Idea> {
     ideas
 }
 
-fn at(stock: &Stock, anchor: &Piece, stream: &mut Stream) -> Vec<Idea> {
+fn at(stock: &Stock, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
     let mut ideas = Vec::new();
     for (k, tuck) in [0.25, 0.15, 0.05, -0.06, -0.15].into_iter().enumerate() {
         for x in [-0.2, 0.0, 0.2, -0.35] {
@@ -255,11 +255,11 @@ fn at(stock: &Stock, anchor: &Piece, stream: &mut Stream) -> Vec<Idea> {
     ideas
 }
 
-fn on(stock: &Stock, anchor: &Piece, stream: &mut Stream) -> Vec<Idea> {
+fn on(stock: &Stock, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
     let tops = anchor.stock.model.spaces.iter();
     let area = |space: &Aabb| space.size().x * space.size().z;
     let largest = tops
-        .filter(|space| space.holding == Holding::On)
+        .filter(|space| space.holding == ReceptacleKind::On)
         .max_by(|a, b| area(&a.space).total_cmp(&area(&b.space)));
     let Some(top) = largest else {
         return Vec::new();

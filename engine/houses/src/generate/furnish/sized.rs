@@ -7,7 +7,7 @@ use dwell_furniture::models::openings::radiator;
 use dwell_furniture::models::textiles::Curtains;
 use dwell_furniture::stock::{Stock, made_to_measure};
 use dwell_furniture::style::Style;
-use dwell_scene::random::Key;
+use dwell_scene::random::RandomKey;
 use std::sync::Arc;
 
 /// What is made to measure.
@@ -15,7 +15,12 @@ use std::sync::Arc;
 pub(crate) const SIZED: [&str; 2] = ["curtains", "radiator"];
 
 /// A thing for a window, and the height of its origin; `None` when it is none of these or has no place there.
-pub(crate) fn sized(kind: &str, hole: &Hole, style: &Style, key: Key) -> Option<(Arc<Stock>, f32)> {
+pub(crate) fn sized(
+    kind: &str,
+    hole: &Hole,
+    style: &Style,
+    key: RandomKey,
+) -> Option<(Arc<Stock>, f32)> {
     let mut draw = key.stream();
     let width_m = hole.to_m - hole.from_m;
     match kind {

@@ -6,7 +6,7 @@ use super::{Area, FloorPlan, PlanRoom, Stairs, Steps, Storey, metres, steps};
 use crate::generate::programme::{Programme, Wanted};
 use crate::generate::rooms::RoomKind;
 use crate::generate::spec::HomeKind;
-use dwell_scene::random::{Key, Stream};
+use dwell_scene::random::{RandomKey, RandomStream};
 
 /// Plans that are drawn before the best is taken.
 const DRAWN: u64 = 96;
@@ -17,7 +17,7 @@ const AT_MOST: u64 = 1600;
 pub(crate) fn lay_out(
     programme: &Programme,
     adjacency: &[[RoomKind; 2]],
-    key: Key,
+    key: RandomKey,
 ) -> Option<FloorPlan> {
     let mut best: Option<(f32, FloorPlan)> = None;
     for round in 0..AT_MOST {
@@ -46,7 +46,7 @@ pub(crate) fn lay_out(
 fn attempt(
     programme: &Programme,
     adjacency: &[[RoomKind; 2]],
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> Option<(f32, FloorPlan)> {
     let stairs = programme.storeys.len() > 1;
     let arrangements: Vec<Arrangement> = programme
@@ -89,7 +89,7 @@ fn arrange(
     home: HomeKind,
     stairs: bool,
     ground: bool,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> Arrangement {
     use RoomKind::{DiningRoom, Kitchen, LivingRoom, Lobby, Studio};
     let mut rest: Vec<Wanted> = rooms.to_vec();
@@ -144,10 +144,10 @@ fn frame(
     arrangements: &[Arrangement],
     home: HomeKind,
     stairs: bool,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> Option<Frame> {
     let used = |strip: usize| arrangements.iter().any(|a| !a.strips[strip].is_empty());
-    let draw = |used: bool, low: f32, high: f32, stream: &mut Stream| {
+    let draw = |used: bool, low: f32, high: f32, stream: &mut RandomStream| {
         let depth = steps(stream.range(low, high));
         if used { depth } else { 0 }
     };
@@ -247,7 +247,7 @@ fn faults(rooms: &[PlanRoom], wanted: &[Wanted]) -> Option<f32> {
 }
 
 /// A balcony or terrace at the longest outer wall of the room for all (or the largest), if there is one long enough.
-fn add_outside(plan: &mut FloorPlan, kind: Option<RoomKind>, stream: &mut Stream) {
+fn add_outside(plan: &mut FloorPlan, kind: Option<RoomKind>, stream: &mut RandomStream) {
     let (Some(kind), Some(storey)) = (kind, plan.storeys.first_mut()) else {
         return;
     };
@@ -311,7 +311,7 @@ fn add_outside(plan: &mut FloorPlan, kind: Option<RoomKind>, stream: &mut Stream
 }
 
 /// Mirrors and turns the plan in one of eight ways and moves its corner to the origin.
-fn turn(plan: &mut FloorPlan, stream: &mut Stream) {
+fn turn(plan: &mut FloorPlan, stream: &mut RandomStream) {
     let [swap, flip_x, flip_z] = [0; 3].map(|_| stream.below(2) == 1);
     let point = |x: Steps, z: Steps| {
         let (x, z) = if swap { (z, x) } else { (x, z) };

@@ -3,7 +3,7 @@
 use super::{Area, PlanRoom, Steps, metres, steps};
 use crate::generate::programme::Wanted;
 use crate::generate::rooms::RoomKind;
-use dwell_scene::random::Stream;
+use dwell_scene::random::RandomStream;
 
 /// Width of the stairs' place: two flights and a gap between them.
 pub(super) const STAIRS_WIDTH: Steps = 44;
@@ -93,7 +93,7 @@ pub(super) fn draw(
     frame: &Frame,
     arrangement: &Arrangement,
     way_in: bool,
-    stream: &mut Stream,
+    stream: &mut RandomStream,
 ) -> Option<Vec<PlanRoom>> {
     let depth = frame.depth();
     let east_width = end_width(arrangement.east_m2(), depth);

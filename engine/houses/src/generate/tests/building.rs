@@ -2,7 +2,7 @@
 
 use crate::generate::{HomeKind, HouseSpec, generate};
 use dwell_furniture::testing::meshes::assert_closed;
-use dwell_scene::navigation::{Doors, NavConfig, NavGrid};
+use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{House, State};
 use std::collections::BTreeSet;
 
@@ -40,7 +40,7 @@ fn every_seed_gives_a_house_whose_names_are_unique_and_whose_rooms_have_a_type()
 #[test]
 fn every_room_is_reached_when_doors_are_open() {
     let config = NavConfig {
-        doors: Doors::Open,
+        doors: DoorPolicy::Open,
         ..NavConfig::default()
     };
     let homes = [

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use dwell_scene::file::Draft;
+use dwell_scene::file::StagedPath;
 use dwell_scene::{Aabb, House, LevelId, Material, MaterialId, RoomId, State, TextureId, units};
 use glam::Vec3;
 
@@ -54,7 +54,7 @@ pub fn write_into(
 ) -> Result<(PathBuf, Vec<Loss>), HousesError> {
     let scene_id = plain_name(name);
     let mut losses = losses::of_house(house);
-    let draft = Draft::folder(&root.join(&scene_id)).map_err(HousesError::io(root))?;
+    let draft = StagedPath::folder(&root.join(&scene_id)).map_err(HousesError::io(root))?;
     Writer::new(house, draft.path(), scene_id.clone(), true).everything(&mut losses)?;
     // What is shared comes first and the house last: a house that is there is whole.
     for (folder, is_shared) in [

@@ -1,20 +1,20 @@
-//! How rays walk the trees. One ray: `single` and `one`; many from one point: `packet` and `everything`, by `level`. Both are compiled
-//! for several instruction levels. All compute the same distances bit for bit and judge them by the one rule of `nearest`; boxes
+//! How rays walk the trees. One ray: `tree_ray` and `scene_ray`; many from one point: `tree_packet` and `scene_packet`, by `dispatch`. Both are compiled
+//! for several instruction levels. All compute the same distances bit for bit and judge them by the one rule of `closest_hit`; boxes
 //! are only ever passed over when nothing in them could count.
 
-mod everything;
-mod fan;
-pub(super) mod level;
-pub(super) mod nearest;
-pub(super) mod one;
-pub(super) mod packet;
-pub(super) mod single;
+pub(super) mod closest_hit;
+pub(super) mod dispatch;
+mod prepared_packet;
+mod scene_packet;
+pub(super) mod scene_ray;
 pub(super) mod slab;
+pub(super) mod tree_packet;
+pub(super) mod tree_ray;
 pub(super) mod triangle;
 
 use glam::Vec4;
 
-use super::node::{Link, Node, STACK, Surface};
+use super::node::{Node, NodeLink, STACK, TriangleInfo};
 use super::ray::RayMask;
 
 /// The three results of `f`. Array methods with closures compile into calls; this does not.
@@ -25,13 +25,13 @@ fn three<T>(f: impl Fn(usize) -> T) -> [T; 3] {
 
 /// What a query sees.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Filter {
+pub(super) struct HitFilter {
     mask: RayMask,
     /// Nothing with this id; beyond the ids of anything when nothing is hidden.
     hidden: i64,
 }
 
-impl Filter {
+impl HitFilter {
     pub(super) fn new(mask: RayMask, hidden: Option<i32>) -> Self {
         Self {
             mask,
@@ -54,7 +54,7 @@ impl Filter {
     }
 
     #[inline(always)]
-    fn admits_surface(&self, surface: &Surface) -> bool {
+    fn admits_surface(&self, surface: &TriangleInfo) -> bool {
         self.admits(surface.id, surface.mask)
     }
 }
@@ -65,9 +65,9 @@ fn push_further(
     node: &Node,
     mut hits: u32,
     enter: Vec4,
-    stack: &mut [(f32, Link); STACK],
+    stack: &mut [(f32, NodeLink); STACK],
     top: &mut usize,
-) -> Link {
+) -> NodeLink {
     let enter = enter.to_array();
     let first = hits.trailing_zeros() as usize;
     hits &= hits - 1;

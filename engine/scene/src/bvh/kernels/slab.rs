@@ -44,9 +44,9 @@ pub(in super::super) fn inverse(component: f32) -> f32 {
 /// What a ray, or a packet with one origin, subtracts from every box: its origin moved outwards by the margin, for lower
 /// corners and for upper corners.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct WideOrigin(pub(super) [f32; 6]);
+pub(in super::super) struct PaddedOrigin(pub(super) [f32; 6]);
 
-impl WideOrigin {
+impl PaddedOrigin {
     #[inline(always)]
     pub(in super::super) fn new(origin: [f32; 3], margin: f32) -> Self {
         let [x, y, z] = origin;
@@ -97,7 +97,7 @@ pub(in super::super) fn crossing(min: &[f32; 3], max: &[f32; 3], inverse: [f32; 
 #[inline(always)]
 pub(in super::super) fn crossing4(
     node: &Node,
-    wide: &WideOrigin,
+    wide: &PaddedOrigin,
     inverse: &[Vec4; 3],
 ) -> (Vec4, Vec4) {
     let at = |plane: usize, axis: usize| {

@@ -9,8 +9,8 @@
 
 use glam::Vec4;
 
-use super::super::node::Block;
-use super::slab::{WideOrigin, least, most};
+use super::super::node::TriangleBlock;
+use super::slab::{PaddedOrigin, least, most};
 use super::three;
 
 /// Four triangles as seen from an origin.
@@ -63,7 +63,7 @@ fn sum_of_sizes(v: &[Vec4; 3]) -> Vec4 {
 impl EdgePlanes {
     /// `longest`: no component of a direction exceeds it.
     #[inline(always)]
-    pub(in super::super) fn new(block: &Block, origin: [f32; 3], longest: f32) -> Self {
+    pub(in super::super) fn new(block: &TriangleBlock, origin: [f32; 3], longest: f32) -> Self {
         let origin = three(|axis| Vec4::splat(origin[axis]));
         let a = minus(&block.a, &origin);
         let b = minus(&block.b, &origin);
@@ -103,7 +103,7 @@ impl EdgePlanes {
 
     /// Triangles that some ray may pass inside whose direction lies between `low` and `high`, as bits.
     #[inline(always)]
-    pub(in super::super) fn inside_some(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
+    pub(in super::super) fn inside_any(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
         let bounds = |n: &[Vec4; 3]| {
             let least = three(|k| (n[k] * low[k]).min(n[k] * high[k]));
             let most = three(|k| (n[k] * low[k]).max(n[k] * high[k]));
@@ -126,7 +126,7 @@ impl EdgePlanes {
 
 /// Four triangles as rays with one origin need them, one number after the other.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Facets {
+pub(in super::super) struct OriginTriangles {
     /// See [`EdgePlanes`]. Shape (edge, axis, triangle).
     pub(in super::super) edges: [[[f32; 4]; 3]; 3],
     /// Shape (edge, triangle).
@@ -139,13 +139,13 @@ pub(in super::super) struct Facets {
     pub(in super::super) bounds: [[f32; 4]; 6],
 }
 
-impl Facets {
+impl OriginTriangles {
     #[inline(always)]
     pub(in super::super) fn new(
-        block: &Block,
+        block: &TriangleBlock,
         planes: &EdgePlanes,
         origin: [f32; 3],
-        wide: &WideOrigin,
+        wide: &PaddedOrigin,
     ) -> Self {
         let corner = minus(&block.a, &three(|axis| Vec4::splat(origin[axis])));
         let n = &block.normal;
@@ -165,7 +165,7 @@ impl Facets {
 
 /// Distance of the plane of one triangle of a block from an origin, along its normal.
 #[inline(always)]
-pub(in super::super) fn height_of(block: &Block, lane: usize, origin: [f32; 3]) -> f32 {
+pub(in super::super) fn height_of(block: &TriangleBlock, lane: usize, origin: [f32; 3]) -> f32 {
     let [x, y, z] = three(|axis| block.a[axis][lane] - origin[axis]);
     dot(block.normal_of(lane), x, y, z)
 }
@@ -217,7 +217,7 @@ pub(in super::super) fn settled(
 
 /// The smallest box around one triangle of a block.
 #[inline(always)]
-pub(in super::super) fn bounds(block: &Block, lane: usize) -> ([f32; 3], [f32; 3]) {
+pub(in super::super) fn bounds(block: &TriangleBlock, lane: usize) -> ([f32; 3], [f32; 3]) {
     let corner = |k: usize| (block.a[k][lane], block.b[k][lane], block.c[k][lane]);
     let ((ax, bx, cx), (ay, by, cy), (az, bz, cz)) = (corner(0), corner(1), corner(2));
     (

@@ -3,22 +3,22 @@
 use super::super::instances::InstanceSet;
 use super::super::ray::Ray;
 use super::super::scene::SceneBvh;
-use super::Filter;
-use super::nearest::{Claim, Nearest, Place};
-use super::single::{Hits, Probe, Visit, meet, traverse};
+use super::HitFilter;
+use super::closest_hit::{ClosestHit, HitIndex, TieBreak};
 use super::slab::least;
+use super::tree_ray::{HitVisitor, PreparedRay, RayLeafVisitor, meet, traverse};
 use crate::bounds::Aabb;
-use crate::instructions::Kernel;
+use crate::simd::SimdKernel;
 
 /// Hands the hits of a ray to `hits`, in no particular order, until one is enough. What comes of it: whether one was.
-pub(in super::super) struct OneRay<'a, 'b, H> {
+pub(in super::super) struct SceneRayQuery<'a, 'b, H> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) ray: &'a Ray,
-    pub(in super::super) filter: &'a Filter,
+    pub(in super::super) filter: &'a HitFilter,
     pub(in super::super) hits: &'a mut H,
 }
 
-impl<H: Hits> Kernel for OneRay<'_, '_, H> {
+impl<H: HitVisitor> SimdKernel for SceneRayQuery<'_, '_, H> {
     type Output = bool;
 
     #[inline(always)]
@@ -35,7 +35,7 @@ impl<H: Hits> Kernel for OneRay<'_, '_, H> {
         let probe = &self::probe(self.ray, &set.tree.bounds);
         let limit = least(self.hits.limit(), probe.far);
         let hits = self.hits;
-        let mut moving = Moving {
+        let mut moving = InstanceLeafVisitor {
             set,
             probe,
             filter,
@@ -46,20 +46,20 @@ impl<H: Hits> Kernel for OneRay<'_, '_, H> {
 }
 
 #[inline(always)]
-fn probe(ray: &Ray, bounds: &Aabb) -> Probe {
+fn probe(ray: &Ray, bounds: &Aabb) -> PreparedRay {
     let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-    Probe::new(bounds, origin, direction, (ray.near_m, ray.far_m), 1.0)
+    PreparedRay::new(bounds, origin, direction, (ray.near_m, ray.far_m), 1.0)
 }
 
 /// What moves.
-struct Moving<'a, H> {
+struct InstanceLeafVisitor<'a, H> {
     set: &'a InstanceSet,
-    probe: &'a Probe,
-    filter: &'a Filter,
+    probe: &'a PreparedRay,
+    filter: &'a HitFilter,
     hits: &'a mut H,
 }
 
-impl<H: Hits> Visit for Moving<'_, H> {
+impl<H: HitVisitor> RayLeafVisitor for InstanceLeafVisitor<'_, H> {
     #[inline(always)]
     fn leaf(&mut self, instance: usize, limit: &mut f32) -> bool {
         let placed = &self.set.placed[instance];
@@ -73,7 +73,7 @@ impl<H: Hits> Visit for Moving<'_, H> {
         let [x, y, z] = self.probe.direction;
         let direction = map.vector(x, y, z);
         let (bounds, origin) = (&placed.mesh.tree.bounds, map.point(self.probe.origin));
-        let local = Probe::new(bounds, origin, direction, (start, end), map.longest);
+        let local = PreparedRay::new(bounds, origin, direction, (start, end), map.longest);
         if !local.is_usable() {
             return false;
         }
@@ -85,14 +85,14 @@ impl<H: Hits> Visit for Moving<'_, H> {
 }
 
 /// Offers every hit that may matter to `nearest`.
-pub(in super::super) struct Offer<'a, C> {
-    pub(in super::super) nearest: &'a mut Nearest,
+pub(in super::super) struct ClosestHitVisitor<'a, C> {
+    pub(in super::super) nearest: &'a mut ClosestHit,
     pub(in super::super) claim: C,
 }
 
-impl<C: Fn(Place) -> Claim> Hits for Offer<'_, C> {
+impl<C: Fn(HitIndex) -> TieBreak> HitVisitor for ClosestHitVisitor<'_, C> {
     #[inline(always)]
-    fn found(&mut self, place: Place, distance: f32) -> bool {
+    fn found(&mut self, place: HitIndex, distance: f32) -> bool {
         if distance <= self.nearest.limit {
             self.nearest.offer(distance, place, &self.claim);
         }
@@ -106,11 +106,11 @@ impl<C: Fn(Place) -> Claim> Hits for Offer<'_, C> {
 }
 
 /// Any hit is enough.
-pub(in super::super) struct Any;
+pub(in super::super) struct AnyHitVisitor;
 
-impl Hits for Any {
+impl HitVisitor for AnyHitVisitor {
     #[inline(always)]
-    fn found(&mut self, _: Place, _: f32) -> bool {
+    fn found(&mut self, _: HitIndex, _: f32) -> bool {
         true
     }
 
@@ -121,11 +121,11 @@ impl Hits for Any {
 }
 
 /// Calls a function for every hit.
-pub(in super::super) struct Every<F>(pub(in super::super) F);
+pub(in super::super) struct AllHitsVisitor<F>(pub(in super::super) F);
 
-impl<F: FnMut(Place, f32)> Hits for Every<F> {
+impl<F: FnMut(HitIndex, f32)> HitVisitor for AllHitsVisitor<F> {
     #[inline(always)]
-    fn found(&mut self, place: Place, distance: f32) -> bool {
+    fn found(&mut self, place: HitIndex, distance: f32) -> bool {
         (self.0)(place, distance);
         false
     }

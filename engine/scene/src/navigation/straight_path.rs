@@ -1,15 +1,15 @@
 //! Straight ways over the grid, exactly.
 
-use super::config::Doors;
-use super::grid::{Cell, NavGrid};
+use super::config::DoorPolicy;
+use super::grid::{NavCell, NavGrid};
 use super::layers::{DOORWAY, EAST, NORTH, NOWHERE, SOUTH, WEST};
 
 /// A straight way between the middles of two cells.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Crossing {
-    pub(super) to: Cell,
+pub(super) struct StraightPath {
+    pub(super) to: NavCell,
     /// How often the way comes into or goes out of the doorway of a shut door.
-    pub(super) thresholds: u32,
+    pub(super) door_crossings: u32,
     /// Whether no step on the way is higher or lower.
     pub(super) level: bool,
     /// Its length over the ground, m.
@@ -28,12 +28,12 @@ impl NavGrid {
     ///
     /// # Source
     /// The integer form of J. Amanatides and A. Woo, Eurographics 1987, 3: which border comes next is decided exactly.
-    pub(super) fn straight(&self, from: Cell, dx: isize, dz: isize) -> Option<Crossing> {
+    pub(super) fn straight(&self, from: NavCell, dx: isize, dz: isize) -> Option<StraightPath> {
         let link = |cell: u32, way: usize| {
             let there = self.layers.links[cell as usize][way];
             (there != NOWHERE).then_some(there)
         };
-        let priced = self.config.doors == Doors::Priced;
+        let priced = self.config.doors == DoorPolicy::Priced;
         let doorway = |cell: u32| priced && self.layers.flags[cell as usize] & DOORWAY != 0;
         let height = |cell: u32| self.layers.height[cell as usize];
         let along_x = if dx > 0 { EAST } else { WEST };
@@ -42,8 +42,8 @@ impl NavGrid {
         // By how much the next border across x comes before the next one across z, times both step counts, twice.
         let mut ahead = steps_x - steps_z;
         let (mut left_x, mut left_z) = (steps_x, steps_z);
-        let (mut here, mut thresholds, mut level) = (from.0, 0, true);
-        let mut ground = Profile::new(self.plan_m(dx, dz), f64::from(self.config.cell_m));
+        let (mut here, mut door_crossings, mut level) = (from.0, 0, true);
+        let mut ground = ElevationProfile::new(self.plan_m(dx, dz), f64::from(self.config.cell_m));
         while left_x > 0 || left_z > 0 {
             let there = if ahead == 0 && left_x > 0 && left_z > 0 {
                 let (a, b) = (link(here, along_x)?, link(here, along_z)?);
@@ -52,7 +52,7 @@ impl NavGrid {
                     return None;
                 }
                 let beside = !doorway(here) && !doorway(there) && (doorway(a) || doorway(b));
-                thresholds += 2 * u32::from(beside);
+                door_crossings += 2 * u32::from(beside);
                 (left_x, left_z) = (left_x - 1, left_z - 1);
                 ahead += 2 * (steps_x - steps_z);
                 there
@@ -65,7 +65,7 @@ impl NavGrid {
                 ahead += 2 * steps_x;
                 link(here, along_z)?
             };
-            thresholds += u32::from(doorway(here) != doorway(there));
+            door_crossings += u32::from(doorway(here) != doorway(there));
             level &= (height(here) - height(there)).abs() < 1e-3;
             here = there;
             if !level {
@@ -73,16 +73,16 @@ impl NavGrid {
                 ground.reach(1.0 - left, f64::from(height(here) - height(from.0)));
             }
         }
-        Some(Crossing {
-            to: Cell(here),
-            thresholds,
+        Some(StraightPath {
+            to: NavCell(here),
+            door_crossings,
             level,
             length_m: ground.length_m(level),
         })
     }
 
     /// The straight way between two cells, if it is free.
-    pub(super) fn straight_between(&self, from: Cell, to: Cell) -> Option<Crossing> {
+    pub(super) fn straight_between(&self, from: NavCell, to: NavCell) -> Option<StraightPath> {
         if !self.is_walkable(from) || !self.is_walkable(to) {
             return None;
         }
@@ -92,9 +92,9 @@ impl NavGrid {
     }
 
     /// How many columns along x and z `to` is away from `from`.
-    pub(super) fn offset(&self, from: Cell, to: Cell) -> (isize, isize) {
+    pub(super) fn offset(&self, from: NavCell, to: NavCell) -> (isize, isize) {
         let width = self.ground.frame.width;
-        let place = |cell: Cell| {
+        let place = |cell: NavCell| {
             let column = cell.0 as usize % self.layers.columns;
             ((column % width) as isize, (column / width) as isize)
         };
@@ -110,19 +110,19 @@ impl NavGrid {
 
     /// Whether the straight way between the middles of two cells stays on walkable cells without a step too high: decided
     /// exactly, for every cell that the line touches.
-    pub fn is_straight_free(&self, from: Cell, to: Cell) -> bool {
+    pub fn is_straight_free(&self, from: NavCell, to: NavCell) -> bool {
         self.straight_between(from, to).is_some()
     }
 
     /// What a straight way costs: its length over the ground, and half a door's price at each threshold, m.
-    pub(super) fn cost_m(&self, crossing: &Crossing) -> f64 {
+    pub(super) fn cost_m(&self, crossing: &StraightPath) -> f64 {
         let price = 0.5 * f64::from(self.config.door_price_m);
-        crossing.length_m + price * f64::from(crossing.thresholds)
+        crossing.length_m + price * f64::from(crossing.door_crossings)
     }
 }
 
 /// The ground along a straight way, in strides.
-struct Profile {
+struct ElevationProfile {
     plan_m: f64,
     strides: f64,
     /// How far the last stride ended, as a share of the way, and how high.
@@ -130,7 +130,7 @@ struct Profile {
     sum_m: f64,
 }
 
-impl Profile {
+impl ElevationProfile {
     fn new(plan_m: f64, cell_m: f64) -> Self {
         let stride = STRIDE_M.max(STRIDE_COLUMNS * cell_m);
         Self {

@@ -1,7 +1,7 @@
 //! What never moves: the columns of walls, floors and fixed things, and the doors that walkers pass.
 
-use super::columns::{Columns, Frame, Span};
 use super::config::{NavConfig, range};
+use super::heightfield::{GridFrame, HeightSpan, Heightfield};
 use super::obstacles::raster;
 use crate::articulation::Articulation;
 use crate::bounds::Aabb;
@@ -15,33 +15,33 @@ use glam::{Affine3A, Vec3};
 
 /// The parts of a grid that no state changes; grids of one house and one walker share them.
 #[derive(Debug)]
-pub(super) struct Ground {
-    pub(super) frame: Frame,
+pub(super) struct StaticGrid {
+    pub(super) frame: GridFrame,
     /// All triangles that never move.
-    pub(super) fixed: Columns,
+    pub(super) fixed: Heightfield,
     /// The house's own floors and the ground outside, without furniture.
-    pub(super) floors: Columns,
+    pub(super) floors: Heightfield,
     /// The height at which each storey ends, m, from the lowest; infinite for the last. Storeys with nothing on them are
     /// left out.
     tops: Vec<(LevelId, f32)>,
     /// The doors in the way of walkers, by joint.
-    pub(super) passages: Vec<Passage>,
+    pub(super) passages: Vec<DoorObstacle>,
     /// For each part, the position in `passages` of the door that moves it.
     pub(super) passage_of_part: IdVec<PartId, Option<u32>>,
 }
 
 /// A door in the way of walkers.
 #[derive(Debug)]
-pub(super) struct Passage {
+pub(super) struct DoorObstacle {
     pub(super) joint: JointId,
     /// The columns that its leaf crosses when it is shut, in order.
-    pub(super) shut: Vec<(u32, Span)>,
+    pub(super) shut: Vec<(u32, HeightSpan)>,
 }
 
 /// The largest number of cells: 32 million would be 100 by 100 m in 1.8 cm cells, or a town in 10 cm cells.
 pub(super) const MAX_CELLS: usize = 1 << 25;
 
-impl Ground {
+impl StaticGrid {
     pub(super) fn new(house: &House, config: &NavConfig) -> Result<Self, SceneError> {
         let levels: Vec<(LevelId, Aabb)> = house
             .levels
@@ -59,7 +59,7 @@ impl Ground {
         }
         let lowest = levels.iter().map(|(_, b)| b.min.y);
         let lowest = lowest.fold(f32::INFINITY, f32::min);
-        let frame = Frame::new(&bounds, [lowest - 0.5, f32::INFINITY], config);
+        let frame = GridFrame::new(&bounds, [lowest - 0.5, f32::INFINITY], config);
         let top = |k: usize| {
             let next = levels.get(k + 1).map(|(_, next)| next.min.y);
             next.map_or(f32::INFINITY, |next| next.max(levels[k].1.min.y + 1.0))
@@ -114,7 +114,7 @@ impl Ground {
             });
             if is_passage {
                 self.passage_of_part[joint.child] = Some(self.passages.len() as u32);
-                self.passages.push(Passage { joint: id, shut });
+                self.passages.push(DoorObstacle { joint: id, shut });
             }
         }
     }
@@ -127,13 +127,13 @@ impl Ground {
 }
 
 /// Whether something stands between a step and the walker's height above `y`.
-pub(super) fn blocks(spans: &[Span], y: f32, config: &NavConfig) -> bool {
+pub(super) fn blocks(spans: &[HeightSpan], y: f32, config: &NavConfig) -> bool {
     let (low, high) = (y + config.step_m, y + config.height_m);
     spans.iter().any(|span| span.high > low && span.low < high)
 }
 
 /// The heights in a column on which the walker can stand upright, from below.
-pub(super) fn standing(spans: &[Span], config: &NavConfig) -> impl Iterator<Item = f32> {
+pub(super) fn standing(spans: &[HeightSpan], config: &NavConfig) -> impl Iterator<Item = f32> {
     spans.iter().enumerate().filter_map(|(k, span)| {
         let above = spans.get(k + 1).map_or(f32::INFINITY, |next| next.low);
         // Something steep on a flat thing is a step too, as long as it is no higher than one.
@@ -144,7 +144,7 @@ pub(super) fn standing(spans: &[Span], config: &NavConfig) -> impl Iterator<Item
 
 /// The columns some point of which lies nearer than `radius_m` to the middle of `column`, with their offsets.
 pub(super) fn around(
-    frame: &Frame,
+    frame: &GridFrame,
     column: usize,
     radius_m: f32,
 ) -> impl Iterator<Item = (usize, [isize; 2])> {
@@ -178,7 +178,7 @@ pub(super) fn leaf_at(state: &State, joint: &Articulation, position: f32) -> Aff
 }
 
 /// The columns of all that never moves, and of floors alone.
-fn fixed_columns(house: &House, frame: &Frame) -> (Columns, Columns) {
+fn fixed_columns(house: &House, frame: &GridFrame) -> (Heightfield, Heightfield) {
     let (mut fixed, mut floors) = (Vec::new(), Vec::new());
     for placed in &house.geometry().placed {
         if matches!(placed.owner, SurfaceOwner::Part(part) if !house.parts[part].fixed) {
@@ -202,6 +202,6 @@ fn fixed_columns(house: &House, frame: &Frame) -> (Columns, Columns) {
             });
         }
     }
-    let columns = |raw: Vec<(u32, Span)>| Columns::new(frame.count(), &raw);
+    let columns = |raw: Vec<(u32, HeightSpan)>| Heightfield::new(frame.count(), &raw);
     (columns(fixed), columns(floors))
 }

@@ -2,22 +2,22 @@
 
 use glam::Vec4;
 
-use super::super::node::{Block, Link, Node, STACK};
+use super::super::node::{Node, NodeLink, STACK, TriangleBlock};
 use super::super::triangles::TriangleBvh;
-use super::super::wide::WideTree;
-use super::nearest::Place;
-use super::slab::{WideOrigin, crossing, crossing4, inverse, least, margin, most};
+use super::super::wide::WideBvh;
+use super::closest_hit::HitIndex;
+use super::slab::{PaddedOrigin, crossing, crossing4, inverse, least, margin, most};
 use super::triangle::{EdgePlanes, bounds, dot, height_of, settled};
-use super::{Filter, three};
+use super::{HitFilter, three};
 use crate::bounds::Aabb;
 
 /// A ray in the space of a tree, prepared. Its direction need not have unit length: distances are multiples of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Probe {
+pub(super) struct PreparedRay {
     pub(super) origin: [f32; 3],
     pub(super) direction: [f32; 3],
     inverse: [f32; 3],
-    wide: WideOrigin,
+    wide: PaddedOrigin,
     margin: f32,
     /// See [`EdgePlanes::new`].
     longest: f32,
@@ -26,7 +26,7 @@ pub(super) struct Probe {
     pub(super) far: f32,
 }
 
-impl Probe {
+impl PreparedRay {
     #[inline(always)]
     pub(super) fn new(
         all: &Aabb,
@@ -36,7 +36,7 @@ impl Probe {
         longest: f32,
     ) -> Self {
         let margin = margin(origin, all);
-        let wide = WideOrigin::new(origin, margin);
+        let wide = PaddedOrigin::new(origin, margin);
         let inverse = three(|axis| inverse(direction[axis]));
         Self {
             origin,
@@ -82,7 +82,7 @@ impl Probe {
 
     /// Where the ray meets a triangle of a block that it may pass inside, or NaN.
     #[inline(always)]
-    fn distance(&self, triangles: &Block, lane: usize) -> f32 {
+    fn distance(&self, triangles: &TriangleBlock, lane: usize) -> f32 {
         let [x, y, z] = self.direction;
         let slope = dot(triangles.normal_of(lane), x, y, z);
         let distance = height_of(triangles, lane, self.origin) / slope;
@@ -94,7 +94,7 @@ impl Probe {
 }
 
 /// What is done at the leaves of a tree.
-pub(super) trait Visit {
+pub(super) trait RayLeafVisitor {
     /// Looks into a leaf; may lower the limit beyond which nothing matters. `true`: that is enough.
     fn leaf(&mut self, index: usize, limit: &mut f32) -> bool;
 }
@@ -102,15 +102,15 @@ pub(super) trait Visit {
 /// Visits the leaves that a ray enters before `limit`, nearer ones first, until one is enough.
 #[inline(always)]
 pub(super) fn traverse(
-    tree: &WideTree,
-    probe: &Probe,
+    tree: &WideBvh,
+    probe: &PreparedRay,
     mut limit: f32,
-    visit: &mut impl Visit,
+    visit: &mut impl RayLeafVisitor,
 ) -> bool {
-    let mut stack = [(0.0_f32, Link::NONE); STACK];
+    let mut stack = [(0.0_f32, NodeLink::NONE); STACK];
     let mut top = 0;
     let mut link = tree.top;
-    if link == Link::NONE {
+    if link == NodeLink::NONE {
         return false;
     }
     loop {
@@ -141,25 +141,25 @@ pub(super) fn traverse(
 }
 
 /// What is done with hits.
-pub(in super::super) trait Hits {
+pub(in super::super) trait HitVisitor {
     /// Takes one. `true`: that is enough.
-    fn found(&mut self, place: Place, distance: f32) -> bool;
+    fn found(&mut self, place: HitIndex, distance: f32) -> bool;
 
     /// The distance beyond which none matters any more.
     fn limit(&self) -> f32;
 }
 
-/// Hands the hits with the triangles of a tree to `hits`, until one is enough; `source` as in [`Place`].
+/// Hands the hits with the triangles of a tree to `hits`, until one is enough; `source` as in [`HitIndex`].
 #[inline(always)]
-pub(super) fn meet<H: Hits>(
+pub(super) fn meet<H: HitVisitor>(
     bvh: &TriangleBvh,
-    probe: &Probe,
-    filter: &Filter,
+    probe: &PreparedRay,
+    filter: &HitFilter,
     source: u32,
     hits: &mut H,
 ) -> bool {
     let limit = least(hits.limit(), probe.far);
-    let mut triangles = Triangles {
+    let mut triangles = TriangleLeafVisitor {
         bvh,
         probe,
         filter,
@@ -170,15 +170,15 @@ pub(super) fn meet<H: Hits>(
 }
 
 /// The triangles of a tree.
-struct Triangles<'a, H> {
+struct TriangleLeafVisitor<'a, H> {
     bvh: &'a TriangleBvh,
-    probe: &'a Probe,
-    filter: &'a Filter,
+    probe: &'a PreparedRay,
+    filter: &'a HitFilter,
     source: u32,
     hits: &'a mut H,
 }
 
-impl<H: Hits> Visit for Triangles<'_, H> {
+impl<H: HitVisitor> RayLeafVisitor for TriangleLeafVisitor<'_, H> {
     #[inline(always)]
     fn leaf(&mut self, block: usize, limit: &mut f32) -> bool {
         let (probe, source) = (self.probe, self.source);
@@ -195,7 +195,7 @@ impl<H: Hits> Visit for Triangles<'_, H> {
                 continue;
             }
             let slot = slot as u32;
-            if self.hits.found(Place { source, slot }, distance) {
+            if self.hits.found(HitIndex { source, slot }, distance) {
                 return true;
             }
         }

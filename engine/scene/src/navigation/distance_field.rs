@@ -1,6 +1,6 @@
 //! Shortest ways over the grid.
 
-use super::grid::{Cell, NavGrid};
+use super::grid::{NavCell, NavGrid};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -18,7 +18,7 @@ pub struct DistanceField {
 
 impl DistanceField {
     /// The distance of a cell, m; `None` where no way leads.
-    pub fn at(&self, cell: Cell) -> Option<f64> {
+    pub fn at(&self, cell: NavCell) -> Option<f64> {
         self.distance_m
             .get(cell.0 as usize)
             .copied()
@@ -43,7 +43,7 @@ const UNEVEN: [(isize, isize); 4] = [(2, 0), (3, 0), (2, 2), (3, 3)];
 
 impl NavGrid {
     /// The cells one straight piece away, with what the piece costs, m.
-    pub(super) fn neighbours(&self, cell: Cell) -> impl Iterator<Item = (Cell, f64)> + '_ {
+    pub(super) fn neighbours(&self, cell: NavCell) -> impl Iterator<Item = (NavCell, f64)> + '_ {
         let quarter = QUARTER.into_iter().map(|piece| (piece, false));
         let pieces = quarter.chain(UNEVEN.into_iter().map(|piece| (piece, true)));
         pieces.flat_map(move |((x, z), only_uneven)| {
@@ -58,17 +58,17 @@ impl NavGrid {
     }
 
     /// Distances to the nearest of `goals` over the whole grid (Dijkstra 1959).
-    pub fn distance_field(&self, goals: &[Cell]) -> DistanceField {
+    pub fn distance_field(&self, goals: &[NavCell]) -> DistanceField {
         self.search(goals, None)
     }
 
     /// Distances to the nearest of `goals`; with a `start`, only as far as its own distance needs (Hart, Nilsson and
     /// Raphael 1968), with the same bits.
-    fn search(&self, goals: &[Cell], start: Option<Cell>) -> DistanceField {
+    fn search(&self, goals: &[NavCell], start: Option<NavCell>) -> DistanceField {
         let mut distance_m = vec![f64::INFINITY; self.len()];
         // Less than the straight line by more than rounding, so that the way found is the same.
-        let height = |cell: Cell| f64::from(self.layers.height[cell.0 as usize]);
-        let ahead = |cell: Cell| {
+        let height = |cell: NavCell| f64::from(self.layers.height[cell.0 as usize]);
+        let ahead = |cell: NavCell| {
             let Some(aim) = start else { return 0.0 };
             let (dx, dz) = self.offset(cell, aim);
             let (plan, up) = (self.plan_m(dx, dz), height(aim) - height(cell));
@@ -102,7 +102,7 @@ impl NavGrid {
 
     /// The way down a distance field from `start` to its nearest goal, both included; `None` where no way leads. From cell
     /// to cell the way is straight and free.
-    pub fn descend(&self, field: &DistanceField, start: Cell) -> Option<Vec<Cell>> {
+    pub fn follow_gradient(&self, field: &DistanceField, start: NavCell) -> Option<Vec<NavCell>> {
         let mut here = start;
         let mut left = field.at(start)?;
         let mut way = vec![start];
@@ -122,10 +122,10 @@ impl NavGrid {
     }
 
     /// A shortest way between two walkable cells in pieces of 32 directions, both included.
-    pub fn path(&self, start: Cell, goal: Cell) -> Option<Vec<Cell>> {
+    pub fn path(&self, start: NavCell, goal: NavCell) -> Option<Vec<NavCell>> {
         if self.island(start)? != self.island(goal)? {
             return None;
         }
-        self.descend(&self.search(&[goal], Some(start)), start)
+        self.follow_gradient(&self.search(&[goal], Some(start)), start)
     }
 }

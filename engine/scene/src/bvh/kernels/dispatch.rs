@@ -1,21 +1,21 @@
-//! Packets on several instruction levels; see [`crate::instructions`].
+//! Packets on several instruction levels; see [`crate::simd`].
 
 use super::super::packet::RayPacket;
 use super::super::scene::SceneBvh;
-use super::Filter;
-use super::everything::{closest, occluded};
-use super::packet::Answers;
-use crate::instructions::Kernel;
+use super::HitFilter;
+use super::scene_packet::{closest, occluded};
+use super::tree_packet::PacketClosestHits;
+use crate::simd::SimdKernel;
 
 /// Offers all hits that may matter to the answers.
 pub(in super::super) struct ClosestPacket<'a, 'b, const N: usize> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) rays: &'a RayPacket<N>,
-    pub(in super::super) filter: &'a Filter,
-    pub(in super::super) answers: &'a mut Answers<N>,
+    pub(in super::super) filter: &'a HitFilter,
+    pub(in super::super) answers: &'a mut PacketClosestHits<N>,
 }
 
-impl<const N: usize> Kernel for ClosestPacket<'_, '_, N> {
+impl<const N: usize> SimdKernel for ClosestPacket<'_, '_, N> {
     type Output = ();
 
     #[inline(always)]
@@ -28,10 +28,10 @@ impl<const N: usize> Kernel for ClosestPacket<'_, '_, N> {
 pub(in super::super) struct OccludedPacket<'a, 'b, const N: usize> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) rays: &'a RayPacket<N>,
-    pub(in super::super) filter: &'a Filter,
+    pub(in super::super) filter: &'a HitFilter,
 }
 
-impl<const N: usize> Kernel for OccludedPacket<'_, '_, N> {
+impl<const N: usize> SimdKernel for OccludedPacket<'_, '_, N> {
     type Output = u64;
 
     #[inline(always)]
@@ -42,16 +42,16 @@ impl<const N: usize> Kernel for OccludedPacket<'_, '_, N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::nearest::{Nearest, Place};
-    use super::super::one::{Any, Offer, OneRay};
+    use super::super::closest_hit::{ClosestHit, HitIndex};
+    use super::super::scene_ray::{AnyHitVisitor, ClosestHitVisitor, SceneRayQuery};
     use super::*;
     use crate::bvh::{Instance, InstanceSet, PacketHits, RayMask, TriangleBvh, TriangleTag};
-    use crate::instructions::Level;
-    use crate::random::{Key, Stream};
+    use crate::random::{RandomKey, RandomStream};
+    use crate::simd::SimdLevel;
     use glam::{Affine3A, Quat, Vec3};
     use std::sync::Arc;
 
-    fn scraps(stream: &mut Stream, count: usize, size_m: f32) -> TriangleBvh {
+    fn scraps(stream: &mut RandomStream, count: usize, size_m: f32) -> TriangleBvh {
         let mut corner = || stream.direction() * stream.uniform_f32();
         let middles: Vec<Vec3> = (0..count).map(|_| corner()).collect();
         let positions: Vec<Vec3> = middles
@@ -67,7 +67,7 @@ mod tests {
         })
     }
 
-    fn same_on_all_levels<const N: usize>(scene: &SceneBvh<'_>, key: Key) -> usize {
+    fn same_on_all_levels<const N: usize>(scene: &SceneBvh<'_>, key: RandomKey) -> usize {
         let mut stream = key.stream();
         let mut met = 0;
         for round in 0..200 {
@@ -78,10 +78,10 @@ mod tests {
                 let direction = (ahead + stream.direction() * spread).normalize_or_zero();
                 rays.set(k, direction, 0.0, stream.range(0.5, 9.0));
             }
-            let filter = Filter::new(RayMask::ALL, Some(3));
-            let answer = |level: Level| {
+            let filter = HitFilter::new(RayMask::ALL, Some(3));
+            let answer = |level: SimdLevel| {
                 let mut hits = PacketHits::<N>::new();
-                scene.closest_packet_at(level, &rays, &filter, &mut hits);
+                scene.closest_packet_at_level(level, &rays, &filter, &mut hits);
                 let blocked = level.run(OccludedPacket {
                     scene,
                     rays: &rays,
@@ -92,27 +92,27 @@ mod tests {
                     let ray = &rays.ray(k);
                     let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
                     let claim = |place| scene.claim(origin, direction, place);
-                    let mut nearest = Nearest::new(ray.far_m);
+                    let mut nearest = ClosestHit::new(ray.far_m);
                     let filter = &filter;
-                    let hits_of_one = &mut Offer {
+                    let hits_of_one = &mut ClosestHitVisitor {
                         nearest: &mut nearest,
                         claim,
                     };
-                    level.run(OneRay {
+                    level.run(SceneRayQuery {
                         scene,
                         ray,
                         filter,
                         hits: hits_of_one,
                     });
-                    let met = level.run(OneRay {
+                    let met = level.run(SceneRayQuery {
                         scene,
                         ray,
                         filter,
-                        hits: &mut Any,
+                        hits: &mut AnyHitVisitor,
                     });
                     assert_eq!(met, blocked >> k & 1 == 1);
-                    assert_eq!(nearest.best != Place::NONE, hits.is_hit(k));
-                    if hits.is_hit(k) && !nearest.is_unsure() {
+                    assert_eq!(nearest.best != HitIndex::NONE, hits.is_hit(k));
+                    if hits.is_hit(k) && !nearest.is_ambiguous() {
                         let found = (nearest.best.source, nearest.best.slot);
                         assert_eq!(found, (hits.source[k], hits.slot[k]));
                         assert_eq!(nearest.distance.to_bits(), hits.distance_m[k].to_bits());
@@ -120,9 +120,9 @@ mod tests {
                 }
                 (hits, blocked)
             };
-            let (hits, blocked) = answer(Level::Portable);
+            let (hits, blocked) = answer(SimdLevel::Portable);
             met += blocked.count_ones() as usize;
-            for level in Level::available() {
+            for level in SimdLevel::available() {
                 let other = answer(level);
                 assert_eq!(
                     hits.distance_m.map(f32::to_bits),
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn all_instruction_levels_give_the_same_bits() {
-        let key = Key::root(5);
+        let key = RandomKey::root(5);
         let mut stream = key.stream();
         let fixed = scraps(&mut stream, 2000, 0.1);
         let instances = (0..6).map(|k| Instance {
@@ -160,7 +160,7 @@ mod tests {
         assert!(same_on_all_levels::<8>(&scene, key.child("8")) > 300);
         assert!(same_on_all_levels::<16>(&scene, key.child("16")) > 600);
         assert!(same_on_all_levels::<32>(&scene, key.child("32")) > 1200);
-        for level in Level::available() {
+        for level in SimdLevel::available() {
             println!("tested on {level:?}");
         }
     }

@@ -13,7 +13,7 @@
 ///
 /// A trait, not a closure: what is not `#[inline(always)]` does not use the instructions of the function around it, and
 /// closures cannot be made so.
-pub trait Kernel {
+pub trait SimdKernel {
     /// What comes of it.
     type Output;
 
@@ -23,22 +23,22 @@ pub trait Kernel {
 
 /// An instruction level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
+pub enum SimdLevel {
     /// What every machine of the kind has; SSE2 on x86-64.
     Portable,
     /// 256 bits.
     #[cfg(target_arch = "x86_64")]
-    Avx2(Checked),
+    Avx2(CpuFeatureProof),
     /// 512 bits; F, VL, DQ and BW.
     #[cfg(target_arch = "x86_64")]
-    Avx512(Checked),
+    Avx512(CpuFeatureProof),
 }
 
 /// Proof that the machine was found to have a level's instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Checked(());
+pub struct CpuFeatureProof(());
 
-impl Level {
+impl SimdLevel {
     /// Every level that this machine has, the best last.
     #[cfg(target_arch = "x86_64")]
     pub fn available() -> impl Iterator<Item = Self> {
@@ -49,8 +49,8 @@ impl Level {
             && is_x86_feature_detected!("avx512bw");
         let levels = [
             Some(Self::Portable),
-            avx2.then_some(Self::Avx2(Checked(()))),
-            avx512.then_some(Self::Avx512(Checked(()))),
+            avx2.then_some(Self::Avx2(CpuFeatureProof(()))),
+            avx512.then_some(Self::Avx512(CpuFeatureProof(()))),
         ];
         levels.into_iter().flatten()
     }
@@ -64,19 +64,19 @@ impl Level {
     /// The best level that this machine has.
     #[inline]
     pub fn best() -> Self {
-        static BEST: std::sync::OnceLock<Level> = std::sync::OnceLock::new();
+        static BEST: std::sync::OnceLock<SimdLevel> = std::sync::OnceLock::new();
         *BEST.get_or_init(|| Self::available().last().unwrap_or(Self::Portable))
     }
 
     /// Does the work with the instructions of this level.
     #[inline]
-    pub fn run<K: Kernel>(self, work: K) -> K::Output {
+    pub fn run<K: SimdKernel>(self, work: K) -> K::Output {
         match self {
             Self::Portable => work.run(),
-            // SAFETY: `Checked` is made by `available` alone, after it found AVX2.
+            // SAFETY: `CpuFeatureProof` is made by `available` alone, after it found AVX2.
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(_) => unsafe { run_avx2(work) },
-            // SAFETY: `Checked` is made by `available` alone, after it found AVX-512 F, VL, DQ and BW.
+            // SAFETY: `CpuFeatureProof` is made by `available` alone, after it found AVX-512 F, VL, DQ and BW.
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(_) => unsafe { run_avx512(work) },
         }
@@ -85,12 +85,12 @@ impl Level {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn run_avx2<K: Kernel>(work: K) -> K::Output {
+fn run_avx2<K: SimdKernel>(work: K) -> K::Output {
     work.run()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
-fn run_avx512<K: Kernel>(work: K) -> K::Output {
+fn run_avx512<K: SimdKernel>(work: K) -> K::Output {
     work.run()
 }

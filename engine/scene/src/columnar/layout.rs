@@ -1,6 +1,6 @@
 //! How the floats of a column lie.
 
-use super::{ColumnsError, FLOAT, Layout, put, take, whole};
+use super::{ColumnsError, FLOAT, FloatLayout, push_varint, read_varint, take};
 use std::collections::HashMap;
 
 /// Columns with fewer floats than this are not looked at for rows that come back.
@@ -13,14 +13,14 @@ const UNIT: f32 = 1e-5;
 const STEPS: i32 = 15;
 
 /// Floats in the layout that packs best, as a rule.
-pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> Layout {
-    for width in Layout::WIDTHS {
+pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
+    for width in FloatLayout::WIDTHS {
         if floats.len() >= FEW && floats.len().is_multiple_of(width) {
-            let rows = Rows::of(floats, width);
+            let rows = RowDictionary::of(floats, width);
             let unit = rows.units.is_some();
             if unit || rows.count_new(width) * SELDOM < rows.back.len() {
                 rows.write(bytes);
-                return Layout::Rows { width, unit };
+                return FloatLayout::Rows { width, unit };
             }
         }
     }
@@ -29,19 +29,23 @@ pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> Layout {
     sorted.dedup();
     if sorted.len() * SELDOM < floats.len() {
         bytes.extend(floats.iter().flat_map(|bits| bits.to_le_bytes()));
-        return Layout::Whole;
+        return FloatLayout::Plain;
     }
     write_by_byte(floats, bytes);
-    Layout::ByByte
+    FloatLayout::ByteShuffled
 }
 
 /// What [`write`] wrote: so many floats.
-pub(super) fn read(layout: Layout, count: usize, bytes: &[u8]) -> Result<Vec<u32>, ColumnsError> {
+pub(super) fn read(
+    layout: FloatLayout,
+    count: usize,
+    bytes: &[u8],
+) -> Result<Vec<u32>, ColumnsError> {
     match layout {
-        Layout::Rows { width, unit } => read_rows(width, unit, count, bytes),
-        _ if count.checked_mul(FLOAT) != Some(bytes.len()) => Err(ColumnsError::Ended),
-        Layout::ByByte => Ok(read_by_byte(bytes)),
-        Layout::Whole => Ok(bytes
+        FloatLayout::Rows { width, unit } => read_rows(width, unit, count, bytes),
+        _ if count.checked_mul(FLOAT) != Some(bytes.len()) => Err(ColumnsError::UnexpectedEnd),
+        FloatLayout::ByteShuffled => Ok(read_by_byte(bytes)),
+        FloatLayout::Plain => Ok(bytes
             .as_chunks()
             .0
             .iter()
@@ -64,7 +68,7 @@ fn read_by_byte(bytes: &[u8]) -> Vec<u32> {
 }
 
 /// Rows of floats of which many come back: the turn of a thing that touches ten others, the direction of a floor.
-struct Rows {
+struct RowDictionary {
     /// Of each row: 0 for one that is new, else how many new ones ago it came first.
     back: Vec<u64>,
     /// The new ones, one after the other.
@@ -74,7 +78,7 @@ struct Rows {
     units: Option<Vec<u8>>,
 }
 
-impl Rows {
+impl RowDictionary {
     fn of(floats: &[u32], width: usize) -> Self {
         let mut met: HashMap<&[u32], u64> = HashMap::new();
         let (mut back, mut new) = (Vec::with_capacity(floats.len() / width), Vec::new());
@@ -114,7 +118,7 @@ impl Rows {
 
     fn write(&self, bytes: &mut Vec<u8>) {
         for back in &self.back {
-            put(bytes, *back);
+            push_varint(bytes, *back);
         }
         bytes.extend(self.units.iter().flatten());
         write_by_byte(&self.new, bytes);
@@ -130,11 +134,11 @@ fn read_rows(
     // Each row takes a byte at least.
     let rows = count / width;
     if !count.is_multiple_of(width) || rows > bytes.len() {
-        return Err(ColumnsError::Ended);
+        return Err(ColumnsError::UnexpectedEnd);
     }
     let mut back = Vec::with_capacity(rows);
     for _ in 0..rows {
-        back.push(whole(&mut bytes)?);
+        back.push(read_varint(&mut bytes)?);
     }
     let count_new = back.iter().filter(|back| **back == 0).count();
     let codes = if unit {
@@ -147,7 +151,7 @@ fn read_rows(
     let mut next = |wanted: usize| {
         let found = kept
             .get(kept_at..kept_at + wanted)
-            .ok_or(ColumnsError::Ended);
+            .ok_or(ColumnsError::UnexpectedEnd);
         kept_at += wanted;
         found
     };
@@ -159,7 +163,7 @@ fn read_rows(
         }
     }
     if kept_at * FLOAT != bytes.len() {
-        return Err(ColumnsError::Left(
+        return Err(ColumnsError::TrailingData(
             bytes.len().saturating_sub(kept_at * FLOAT),
         ));
     }
@@ -170,7 +174,7 @@ fn read_rows(
             _ => usize::try_from(back)
                 .ok()
                 .and_then(|back| met.checked_sub(back))
-                .ok_or(ColumnsError::Ended)?,
+                .ok_or(ColumnsError::UnexpectedEnd)?,
         };
         met += usize::from(back == 0);
         floats.extend_from_slice(&new[first * width..(first + 1) * width]);
@@ -206,7 +210,7 @@ fn unit_code(row: &[u32]) -> u8 {
 /// The row that [`unit_code`] told of.
 fn unit_row(code: u8, others: &[u32]) -> Result<impl Iterator<Item = u32>, ColumnsError> {
     let place = "the largest part of a row";
-    let refused = ColumnsError::Large {
+    let refused = ColumnsError::OutOfRange {
         found: code.into(),
         place,
     };

@@ -1,32 +1,32 @@
 //! Walking a tree with a packet of rays, and what is done at its leaves.
 
-use super::super::node::{Link, STACK};
+use super::super::node::{NodeLink, STACK};
 use super::super::triangles::TriangleBvh;
-use super::super::wide::WideTree;
-use super::Filter;
-use super::fan::Fan;
-use super::nearest::{Claim, Nearest, Place, horizon};
+use super::super::wide::WideBvh;
+use super::HitFilter;
+use super::closest_hit::{ClosestHit, HitIndex, TieBreak, horizon};
+use super::prepared_packet::PreparedPacket;
 use super::slab::least;
-use super::triangle::{EdgePlanes, Facets};
+use super::triangle::{EdgePlanes, OriginTriangles};
 
 /// What happens at the leaves of a tree. A trait, not a closure: closures cannot be made to compile inline, and what is not
 /// inline does not use the instructions of the function around it.
-pub(in super::super) trait Visit<const N: usize> {
+pub(in super::super) trait PacketLeafVisitor<const N: usize> {
     /// May lower limits; returns whether to stop.
-    fn leaf(&mut self, fan: &mut Fan<N>, index: usize) -> bool;
+    fn leaf(&mut self, fan: &mut PreparedPacket<N>, index: usize) -> bool;
 }
 
 /// Visits the leaves that some ray enters before its limit, nearer ones first, until told to stop.
 #[inline(always)]
 pub(in super::super) fn traverse<const N: usize>(
-    tree: &WideTree,
-    fan: &mut Fan<N>,
-    visit: &mut impl Visit<N>,
+    tree: &WideBvh,
+    fan: &mut PreparedPacket<N>,
+    visit: &mut impl PacketLeafVisitor<N>,
 ) {
-    let mut stack = [(0.0_f32, Link::NONE); STACK];
+    let mut stack = [(0.0_f32, NodeLink::NONE); STACK];
     let mut top = 0;
     let mut link = tree.top;
-    if link == Link::NONE || fan.is_done() {
+    if link == NodeLink::NONE || fan.is_done() {
         return;
     }
     loop {
@@ -56,41 +56,41 @@ pub(in super::super) fn traverse<const N: usize>(
     }
 }
 
-/// The answers so far of the rays of a packet; see [`Nearest`].
+/// The answers so far of the rays of a packet; see [`ClosestHit`].
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(in super::super) struct Answers<const N: usize> {
+pub(in super::super) struct PacketClosestHits<const N: usize> {
     pub(in super::super) distance: [f32; N],
     pub(in super::super) slot: [u32; N],
     pub(in super::super) source: [u32; N],
     others: [f32; N],
-    unsure_at: [f32; N],
+    ambiguous_at: [f32; N],
 }
 
-impl<const N: usize> Answers<N> {
+impl<const N: usize> PacketClosestHits<N> {
     pub(in super::super) fn new() -> Self {
         let infinite = [f32::INFINITY; N];
-        let Place { source, slot } = Place::NONE;
+        let HitIndex { source, slot } = HitIndex::NONE;
         Self {
             distance: infinite,
             slot: [slot; N],
             source: [source; N],
             others: infinite,
-            unsure_at: infinite,
+            ambiguous_at: infinite,
         }
     }
 
-    pub(in super::super) fn lane(&self, k: usize, limit: f32) -> Nearest {
-        let best = Place {
+    pub(in super::super) fn lane(&self, k: usize, limit: f32) -> ClosestHit {
+        let best = HitIndex {
             source: self.source[k],
             slot: self.slot[k],
         };
-        Nearest {
+        ClosestHit {
             distance: self.distance[k],
             limit,
             best,
             others: self.others[k],
-            unsure_at: self.unsure_at[k],
+            ambiguous_at: self.ambiguous_at[k],
         }
     }
 
@@ -101,23 +101,23 @@ impl<const N: usize> Answers<N> {
         k: usize,
         limit: &mut f32,
         distance: f32,
-        hit: Place,
-        claim: &dyn Fn(Place) -> Claim,
+        hit: HitIndex,
+        claim: &dyn Fn(HitIndex) -> TieBreak,
     ) {
         let mut nearest = self.lane(k, *limit);
         nearest.weigh(distance, hit, claim);
         *limit = nearest.limit;
         self.distance[k] = nearest.distance;
         self.others[k] = nearest.others;
-        self.unsure_at[k] = nearest.unsure_at;
+        self.ambiguous_at[k] = nearest.ambiguous_at;
         self.set(k, nearest.best);
     }
 
-    pub(in super::super) fn is_unsure(&self, k: usize) -> bool {
-        self.lane(k, f32::INFINITY).is_unsure()
+    pub(in super::super) fn is_ambiguous(&self, k: usize) -> bool {
+        self.lane(k, f32::INFINITY).is_ambiguous()
     }
 
-    pub(in super::super) fn set(&mut self, k: usize, best: Place) {
+    pub(in super::super) fn set(&mut self, k: usize, best: HitIndex) {
         (self.source[k], self.slot[k]) = (best.source, best.slot);
     }
 }
@@ -127,9 +127,9 @@ macro_rules! for_each_hit {
     ($bvh:expr, $fan:expr, $filter:expr, $block:expr, |$slot:ident, $distances:ident| $take:expr) => {
         let block = &$bvh.blocks[$block];
         let planes = EdgePlanes::new(block, $fan.origin, $fan.longest);
-        let mut candidates = planes.inside_some($fan.lowest, $fan.highest);
+        let mut candidates = planes.inside_any($fan.lowest, $fan.highest);
         if candidates != 0 {
-            let facets = Facets::new(block, &planes, $fan.origin, &$fan.wide);
+            let facets = OriginTriangles::new(block, &planes, $fan.origin, &$fan.wide);
             while candidates != 0 {
                 let lane = candidates.trailing_zeros() as usize;
                 candidates &= candidates - 1;
@@ -145,18 +145,20 @@ macro_rules! for_each_hit {
 }
 
 /// Offers every hit with a tree's triangles to the answers of the rays.
-pub(in super::super) struct Closest<'a, const N: usize, C> {
+pub(in super::super) struct ClosestLeafVisitor<'a, const N: usize, C> {
     pub(in super::super) bvh: &'a TriangleBvh,
     pub(in super::super) source: u32,
-    pub(in super::super) filter: Filter,
-    pub(in super::super) answers: &'a mut Answers<N>,
+    pub(in super::super) filter: HitFilter,
+    pub(in super::super) answers: &'a mut PacketClosestHits<N>,
     /// What decides among coincident hits, by lane.
     pub(in super::super) claim: C,
 }
 
-impl<const N: usize, C: Fn(usize, Place) -> Claim> Visit<N> for Closest<'_, N, C> {
+impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> PacketLeafVisitor<N>
+    for ClosestLeafVisitor<'_, N, C>
+{
     #[inline(always)]
-    fn leaf(&mut self, fan: &mut Fan<N>, block: usize) -> bool {
+    fn leaf(&mut self, fan: &mut PreparedPacket<N>, block: usize) -> bool {
         for_each_hit!(self.bvh, fan, &self.filter, block, |slot, distances| self
             .take(fan, slot as u32, &distances));
         false
@@ -164,14 +166,14 @@ impl<const N: usize, C: Fn(usize, Place) -> Claim> Visit<N> for Closest<'_, N, C
 }
 
 /// Takes rays out of use that hit anything.
-pub(in super::super) struct Occluded<'a> {
+pub(in super::super) struct OccludedLeafVisitor<'a> {
     pub(in super::super) bvh: &'a TriangleBvh,
-    pub(in super::super) filter: Filter,
+    pub(in super::super) filter: HitFilter,
 }
 
-impl<const N: usize> Visit<N> for Occluded<'_> {
+impl<const N: usize> PacketLeafVisitor<N> for OccludedLeafVisitor<'_> {
     #[inline(always)]
-    fn leaf(&mut self, fan: &mut Fan<N>, block: usize) -> bool {
+    fn leaf(&mut self, fan: &mut PreparedPacket<N>, block: usize) -> bool {
         for_each_hit!(self.bvh, fan, &self.filter, block, |_slot, distances| {
             for k in 0..N {
                 fan.limit[k] = if distances[k].is_nan() {
@@ -186,10 +188,10 @@ impl<const N: usize> Visit<N> for Occluded<'_> {
     }
 }
 
-impl<const N: usize, C: Fn(usize, Place) -> Claim> Closest<'_, N, C> {
+impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> ClosestLeafVisitor<'_, N, C> {
     /// Offers the hits with one triangle; no hit where the distance is NaN.
     #[inline(always)]
-    fn take(&mut self, fan: &mut Fan<N>, slot: u32, distances: &[f32; N]) {
+    fn take(&mut self, fan: &mut PreparedPacket<N>, slot: u32, distances: &[f32; N]) {
         // From copies into new arrays and without branches, so that the loop becomes vector instructions.
         let (before, slots, limits) = (self.answers.distance, self.answers.slot, fan.limit);
         let (mut new_distance, mut new_slot, mut new_limit) = ([0.0; N], [0_u32; N], [0.0; N]);
@@ -222,7 +224,7 @@ impl<const N: usize, C: Fn(usize, Place) -> Claim> Closest<'_, N, C> {
         if any_close != 0 {
             for k in 0..N {
                 if close[k] != 0 {
-                    let hit = Place {
+                    let hit = HitIndex {
                         source: self.source,
                         slot,
                     };

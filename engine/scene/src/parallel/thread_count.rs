@@ -58,6 +58,6 @@ pub(super) fn refuse(at: &'static str, found: String) -> SceneError {
 }
 
 /// Threads where nobody asks for a number: all cores, or fewer where the variable says so.
-pub(super) fn usual(variable: Option<usize>) -> usize {
+pub(super) fn default_thread_count(variable: Option<usize>) -> usize {
     variable.map_or(available_cores(), |most| most.min(available_cores()))
 }

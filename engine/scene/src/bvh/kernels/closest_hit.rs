@@ -5,7 +5,7 @@
 //! normal, taken as at least 1 / [`GRAZING`]. Of the coincident hits the lowest (id, source, triangle) is the answer.
 //! The rule speaks of the set of hits, not of an order, so every tree and every kernel must agree. What follows applies
 //! it while hits come in any order with the memory of one hit, and knows when that was too little
-//! ([`Nearest::is_unsure`]); then a second run, which starts from the known `t`, settles it.
+//! ([`ClosestHit::is_ambiguous`]); then a second run, which starts from the known `t`, settles it.
 
 /// Absolute part of the distance within which surfaces coincide, m.
 const TOLERANCE_M: f32 = 1e-5;
@@ -32,12 +32,12 @@ pub(in super::super) fn horizon(distance: f32) -> f32 {
 
 /// Where a hit is: `source` 0 for static geometry, else the instance plus 1; `slot` the triangle's place in its tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) struct Place {
+pub(in super::super) struct HitIndex {
     pub(in super::super) source: u32,
     pub(in super::super) slot: u32,
 }
 
-impl Place {
+impl HitIndex {
     pub(in super::super) const NONE: Self = Self {
         source: 0,
         slot: u32::MAX,
@@ -46,7 +46,7 @@ impl Place {
 
 /// What decides among coincident hits.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Claim {
+pub(in super::super) struct TieBreak {
     /// See [`reach`].
     pub(in super::super) reach: f32,
     pub(in super::super) id: i32,
@@ -56,43 +56,43 @@ pub(in super::super) struct Claim {
 
 /// The answer so far for one ray.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Nearest {
+pub(in super::super) struct ClosestHit {
     /// The smallest distance so far; infinite before the first hit.
     pub(in super::super) distance: f32,
     /// Boxes and hits beyond this distance cannot matter.
     pub(in super::super) limit: f32,
     /// The winner so far.
-    pub(in super::super) best: Place,
+    pub(in super::super) best: HitIndex,
     /// The smallest reach of any other hit since the last clear win; stale values lie beyond `distance`.
     pub(in super::super) others: f32,
     /// The distance at which the winner became unknown; forgotten once beyond the horizon.
-    pub(in super::super) unsure_at: f32,
+    pub(in super::super) ambiguous_at: f32,
 }
 
-impl Nearest {
+impl ClosestHit {
     #[inline(always)]
     pub(in super::super) fn new(far: f32) -> Self {
         let infinite = f32::INFINITY;
         Self {
             distance: infinite,
             limit: far,
-            best: Place::NONE,
+            best: HitIndex::NONE,
             others: infinite,
-            unsure_at: infinite,
+            ambiguous_at: infinite,
         }
     }
 
     /// Starts again, knowing the smallest distance from a first run.
-    pub(in super::super) fn again(&self, far: f32) -> Self {
+    pub(in super::super) fn second_pass(&self, far: f32) -> Self {
         let mut again = Self::new(far);
         again.shorten(self.distance);
         again
     }
 
-    /// Whether [`Self::best`] must be found by a second run from [`Self::again`], which is always sure.
+    /// Whether [`Self::best`] must be found by a second run from [`Self::second_pass`], which is always sure.
     #[inline(always)]
-    pub(in super::super) fn is_unsure(&self) -> bool {
-        self.unsure_at < f32::INFINITY && self.unsure_at <= horizon(self.distance)
+    pub(in super::super) fn is_ambiguous(&self) -> bool {
+        self.ambiguous_at < f32::INFINITY && self.ambiguous_at <= horizon(self.distance)
     }
 
     #[inline(always)]
@@ -111,8 +111,8 @@ impl Nearest {
     pub(in super::super) fn offer(
         &mut self,
         distance: f32,
-        hit: Place,
-        claim: impl Fn(Place) -> Claim,
+        hit: HitIndex,
+        claim: impl Fn(HitIndex) -> TieBreak,
     ) {
         if horizon(distance) < self.distance {
             // Clearly nearer than all before: none of them can be coincident with it.
@@ -128,8 +128,8 @@ impl Nearest {
     pub(in super::super) fn weigh(
         &mut self,
         distance: f32,
-        hit: Place,
-        claim: &dyn Fn(Place) -> Claim,
+        hit: HitIndex,
+        claim: &dyn Fn(HitIndex) -> TieBreak,
     ) {
         let new = claim(hit);
         if new.reach > self.distance {
@@ -137,7 +137,7 @@ impl Nearest {
         }
         let shorter = distance < self.distance;
         let nearest = if shorter { distance } else { self.distance };
-        if self.best == Place::NONE {
+        if self.best == HitIndex::NONE {
             self.best = hit;
         } else {
             let old = claim(self.best);
@@ -149,7 +149,7 @@ impl Nearest {
             } else {
                 // The winner fell back; a hit that lost to it may win over this one.
                 if self.others <= nearest {
-                    self.unsure_at = nearest;
+                    self.ambiguous_at = nearest;
                 }
                 self.best = hit;
             }
@@ -163,11 +163,11 @@ impl Nearest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Key;
+    use crate::random::RandomKey;
     use proptest::prelude::*;
 
     /// Distance and what decides.
-    type Hit = (f32, Claim);
+    type Hit = (f32, TieBreak);
 
     /// The rule as it is written above.
     fn plainly(hits: &[Hit]) -> Option<usize> {
@@ -176,11 +176,11 @@ mod tests {
         coincident.min_by_key(|k| (hits[*k].1.id, hits[*k].1.triangle))
     }
 
-    fn offer_all(nearest: &mut Nearest, hits: &[Hit], order: &[usize]) {
+    fn offer_all(nearest: &mut ClosestHit, hits: &[Hit], order: &[usize]) {
         for &k in order {
             // Traversal passes over what lies beyond the limit.
             if hits[k].0 <= nearest.limit {
-                let place = |slot| Place { source: 0, slot };
+                let place = |slot| HitIndex { source: 0, slot };
                 nearest.offer(hits[k].0, place(k as u32), |p| hits[p.slot as usize].1);
             }
         }
@@ -189,29 +189,29 @@ mod tests {
     proptest! {
         #[test]
         fn the_winner_does_not_depend_on_the_order(seed in any::<u64>(), count in 0_usize..9) {
-            let mut stream = Key::root(seed).stream();
+            let mut stream = RandomKey::root(seed).stream();
             let hits: Vec<Hit> = (0..count)
                 .map(|k| {
                     // Within a few tolerances of each other, seen straight on and at grazing angles.
                     let distance = 3.0 + stream.below(12) as f32 * 0.7e-5;
                     let cosine = [1.0, 0.5, 0.1, 0.001][stream.below(4)];
                     let id = stream.below(6) as i32;
-                    (distance, Claim { reach: reach(distance, cosine), id, triangle: k as u32 })
+                    (distance, TieBreak { reach: reach(distance, cosine), id, triangle: k as u32 })
                 })
                 .collect();
             let expected = plainly(&hits);
             let mut order: Vec<usize> = (0..count).collect();
             for _ in 0..20 {
                 stream.shuffle(&mut order);
-                let mut nearest = Nearest::new(f32::INFINITY);
+                let mut nearest = ClosestHit::new(f32::INFINITY);
                 offer_all(&mut nearest, &hits, &order);
-                if nearest.is_unsure() {
-                    nearest = nearest.again(f32::INFINITY);
+                if nearest.is_ambiguous() {
+                    nearest = nearest.second_pass(f32::INFINITY);
                     stream.shuffle(&mut order);
                     offer_all(&mut nearest, &hits, &order);
-                    prop_assert!(!nearest.is_unsure());
+                    prop_assert!(!nearest.is_ambiguous());
                 }
-                let found = (nearest.best != Place::NONE).then_some(nearest.best.slot as usize);
+                let found = (nearest.best != HitIndex::NONE).then_some(nearest.best.slot as usize);
                 prop_assert_eq!(found, expected);
             }
         }

@@ -15,12 +15,12 @@ const AROUND: u16 = 24;
 /// Rows of triangles from pole to pole of an end.
 const ROWS: u16 = 12;
 
-struct Shapes {
+struct AgentMeshes {
     meshes: [Mesh; BODY_PIECES],
     trees: [Arc<TriangleBvh>; BODY_PIECES],
 }
 
-static SHAPES: LazyLock<Shapes> = LazyLock::new(|| {
+static SHAPES: LazyLock<AgentMeshes> = LazyLock::new(|| {
     let ball: Vec<(f32, f32)> = (0..=ROWS)
         .map(|k| {
             let (sine, cosine) = crate::math::sin_cos(PI * f32::from(k) / f32::from(ROWS));
@@ -43,7 +43,7 @@ static SHAPES: LazyLock<Shapes> = LazyLock::new(|| {
             tag,
         ))
     });
-    Shapes { meshes, trees }
+    AgentMeshes { meshes, trees }
 });
 
 /// A surface of revolution about Y, facing outwards. `profile`: radius and height from below; `normals`: likewise.

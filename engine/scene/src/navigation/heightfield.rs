@@ -1,9 +1,9 @@
 //! Columns of space above the cells of a grid, and what fills them.
 
-use super::clip::Polygon;
+use super::clip::ClipPolygon;
 use super::config::NavConfig;
 use crate::bounds::Aabb;
-use crate::interrupt::Pace;
+use crate::interrupt::PollEvery;
 use crate::math;
 use glam::{Vec2, Vec3};
 
@@ -14,14 +14,14 @@ const COLUMNS_PER_CHECK: usize = 1 << 12;
 
 /// What fills a column between two heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
+pub(super) struct HeightSpan {
     pub(super) low: f32,
     pub(super) high: f32,
     /// The highest point of its triangles that are flat enough to walk on; minus infinity without one.
     pub(super) flat: f32,
 }
 
-impl Span {
+impl HeightSpan {
     const NONE: Self = Self {
         low: 0.0,
         high: 0.0,
@@ -31,13 +31,13 @@ impl Span {
 
 /// Sorts spans and joins those that touch. The result depends on the set of them only, and joining what was joined before
 /// changes nothing.
-pub(super) fn join(spans: &mut Vec<Span>) {
+pub(super) fn join(spans: &mut Vec<HeightSpan>) {
     let kept = join_first(spans);
     spans.truncate(kept);
 }
 
 /// As [`join`]; what is joined comes first, and so many are left.
-fn join_first(spans: &mut [Span]) -> usize {
+fn join_first(spans: &mut [HeightSpan]) -> usize {
     spans.sort_by(|a, b| a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)));
     let mut kept = 0_usize;
     for k in 0..spans.len() {
@@ -58,7 +58,7 @@ fn join_first(spans: &mut [Span]) -> usize {
 
 /// The grid seen from above.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Frame {
+pub(super) struct GridFrame {
     /// The corner of column 0 at the lowest x and z, m.
     pub(super) origin: Vec2,
     pub(super) cell_m: f32,
@@ -72,7 +72,7 @@ pub(super) struct Frame {
     flat: f32,
 }
 
-impl Frame {
+impl GridFrame {
     /// Columns over `bounds`, one cell wider on every side; none over an empty box.
     pub(super) fn new(bounds: &Aabb, heights: [f32; 2], config: &NavConfig) -> Self {
         let size = bounds.size();
@@ -109,7 +109,7 @@ impl Frame {
     }
 
     /// Calls `found` for every column that a triangle crosses, with its exact range of heights there.
-    pub(super) fn cross(&self, corners: [Vec3; 3], mut found: impl FnMut(usize, Span)) {
+    pub(super) fn cross(&self, corners: [Vec3; 3], mut found: impl FnMut(usize, HeightSpan)) {
         let bounds = Aabb::from_points(corners);
         let [low, high] = self.heights;
         if bounds.is_empty() || bounds.max.y < low || bounds.min.y > high {
@@ -122,7 +122,7 @@ impl Frame {
         }
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let is_flat = normal.y.abs() >= self.flat * normal.length();
-        let span = |[low, high]: [f32; 2]| Span {
+        let span = |[low, high]: [f32; 2]| HeightSpan {
             low,
             high,
             flat: if is_flat { high } else { f32::NEG_INFINITY },
@@ -142,7 +142,7 @@ impl Frame {
             );
             return;
         }
-        let triangle = Polygon::new(&corners);
+        let triangle = ClipPolygon::new(&corners);
         for z in zs {
             let z_low = self.origin.y + z as f32 * self.cell_m;
             let row = triangle.clipped(2, z_low, z_low + self.cell_m);
@@ -159,16 +159,16 @@ impl Frame {
 
 /// The spans of all columns, one column after the other.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Columns {
+pub(super) struct Heightfield {
     /// Where each column begins, and the end. Shape (column + 1,).
     first: Vec<u32>,
-    spans: Vec<Span>,
+    spans: Vec<HeightSpan>,
 }
 
-impl Columns {
+impl Heightfield {
     /// Joins what fills each of `count` columns; `raw`: columns and spans in any order.
-    pub(super) fn new(count: usize, raw: &[(u32, Span)]) -> Self {
-        let mut pace = Pace::new(COLUMNS_PER_CHECK);
+    pub(super) fn new(count: usize, raw: &[(u32, HeightSpan)]) -> Self {
+        let mut pace = PollEvery::new(COLUMNS_PER_CHECK);
         // Sorted by counting.
         let mut ends = vec![0_usize; count + 1];
         for (column, _) in raw {
@@ -178,7 +178,7 @@ impl Columns {
         for column in 0..count {
             ends[column + 1] += ends[column];
         }
-        let mut spans = vec![Span::NONE; raw.len()];
+        let mut spans = vec![HeightSpan::NONE; raw.len()];
         // Where the next one of each column goes: in the end, where the column ends.
         for (column, span) in raw {
             pace.turn();
@@ -203,7 +203,7 @@ impl Columns {
     }
 
     /// What fills a column, from below.
-    pub(super) fn at(&self, column: usize) -> &[Span] {
+    pub(super) fn at(&self, column: usize) -> &[HeightSpan] {
         &self.spans[self.first[column] as usize..self.first[column + 1] as usize]
     }
 
@@ -216,24 +216,25 @@ impl Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::{Key, Stream};
+    use crate::random::{RandomKey, RandomStream};
 
-    fn frame() -> Frame {
+    fn frame() -> GridFrame {
         let bounds = Aabb::new(Vec3::ZERO, Vec3::new(1.0, 2.0, 1.0));
         let config = NavConfig {
             cell_m: 0.25,
             ..NavConfig::default()
         };
-        Frame::new(&bounds, [-1.0, 3.0], &config)
+        GridFrame::new(&bounds, [-1.0, 3.0], &config)
     }
 
     /// Against dense sampling: every sampled point of random triangles lies in its column's range.
     #[test]
     fn ranges_equal_what_sampling_finds() {
-        let mut stream = Key::root(3).stream();
+        let mut stream = RandomKey::root(3).stream();
         for _ in 0..50 {
-            let corner =
-                |s: &mut Stream| Vec3::new(s.range(0.0, 1.0), s.range(0.0, 2.0), s.range(0.0, 1.0));
+            let corner = |s: &mut RandomStream| {
+                Vec3::new(s.range(0.0, 1.0), s.range(0.0, 2.0), s.range(0.0, 1.0))
+            };
             let corners = [
                 corner(&mut stream),
                 corner(&mut stream),
@@ -242,7 +243,7 @@ mod tests {
             let frame = frame();
             let mut raw = Vec::new();
             frame.cross(corners, |column, span| raw.push((column as u32, span)));
-            let columns = Columns::new(frame.count(), &raw);
+            let columns = Heightfield::new(frame.count(), &raw);
             let steps = 200;
             for i in 0..=steps {
                 for j in 0..=steps - i {
@@ -275,40 +276,40 @@ mod tests {
 
     #[test]
     fn columns_hold_what_fills_them_in_whatever_order_it_comes() {
-        let mut stream = Key::root(5).stream();
-        let span = |stream: &mut Stream| {
+        let mut stream = RandomKey::root(5).stream();
+        let span = |stream: &mut RandomStream| {
             let low = stream.range(0.0, 3.0);
             let high = low + stream.range(0.0, 0.5);
             let flat = high - stream.range(0.0, 0.1);
-            Span { low, high, flat }
+            HeightSpan { low, high, flat }
         };
         let count = 9;
         // The first and the last column stay empty.
-        let raw: Vec<(u32, Span)> = (0..60)
+        let raw: Vec<(u32, HeightSpan)> = (0..60)
             .map(|_| (1 + stream.below(count - 2) as u32, span(&mut stream)))
             .collect();
-        let columns = Columns::new(count, &raw);
+        let columns = Heightfield::new(count, &raw);
         for column in 0..count {
             let own = raw.iter().filter(|(at, _)| *at as usize == column);
-            let mut own: Vec<Span> = own.map(|(_, span)| *span).collect();
+            let mut own: Vec<HeightSpan> = own.map(|(_, span)| *span).collect();
             join(&mut own);
             assert_eq!(columns.at(column), own, "{column}");
         }
-        let backwards: Vec<(u32, Span)> = raw.into_iter().rev().collect();
-        let again = Columns::new(count, &backwards);
+        let backwards: Vec<(u32, HeightSpan)> = raw.into_iter().rev().collect();
+        let again = Heightfield::new(count, &backwards);
         assert_eq!((again.first, again.spans), (columns.first, columns.spans));
-        assert!(Columns::new(0, &[]).is_empty() && Columns::new(3, &[]).at(2).is_empty());
+        assert!(Heightfield::new(0, &[]).is_empty() && Heightfield::new(3, &[]).at(2).is_empty());
     }
 
     #[test]
     fn joining_in_parts_equals_joining_at_once() {
-        let mut stream = Key::root(8).stream();
+        let mut stream = RandomKey::root(8).stream();
         for _ in 0..200 {
-            let mut all: Vec<Span> = (0..12)
+            let mut all: Vec<HeightSpan> = (0..12)
                 .map(|_| {
                     let low = stream.range(0.0, 3.0);
                     let high = low + stream.range(0.0, 0.3);
-                    Span {
+                    HeightSpan {
                         low,
                         high,
                         flat: high - 0.1,

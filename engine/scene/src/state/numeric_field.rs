@@ -3,7 +3,7 @@
 use super::Parameter;
 
 /// One number of a `T`: name, unit, range, and where it stands.
-pub(super) struct Number<T> {
+pub(super) struct NumericField<T> {
     pub(super) name: &'static str,
     pub(super) unit: &'static str,
     pub(super) range: [f64; 2],
@@ -13,7 +13,7 @@ pub(super) struct Number<T> {
 
 macro_rules! number {
     ($name:ident, $unit:literal, $low:literal to $high:literal) => {
-        Number {
+        NumericField {
             name: stringify!($name),
             unit: $unit,
             range: [$low, $high],
@@ -25,8 +25,8 @@ macro_rules! number {
 pub(super) use number;
 
 /// All numbers of `of` by name.
-pub(super) fn parameters<T>(numbers: &[Number<T>], of: &T) -> Vec<(&'static str, Parameter)> {
-    let parameter = |number: &Number<T>| Parameter {
+pub(super) fn parameters<T>(numbers: &[NumericField<T>], of: &T) -> Vec<(&'static str, Parameter)> {
+    let parameter = |number: &NumericField<T>| Parameter {
         value: f64::from((number.get)(of)),
         unit: number.unit,
         low: number.range[0],
@@ -39,7 +39,11 @@ pub(super) fn parameters<T>(numbers: &[Number<T>], of: &T) -> Vec<(&'static str,
 }
 
 /// Sets each number for whose name `value_of` gives a value.
-pub(super) fn set<T>(numbers: &[Number<T>], of: &mut T, value_of: impl Fn(&str) -> Option<f32>) {
+pub(super) fn set<T>(
+    numbers: &[NumericField<T>],
+    of: &mut T,
+    value_of: impl Fn(&str) -> Option<f32>,
+) {
     for number in numbers {
         if let Some(value) = value_of(number.name) {
             (number.set)(of, value);

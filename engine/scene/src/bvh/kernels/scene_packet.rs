@@ -1,27 +1,29 @@
 //! A packet of rays against everything: static geometry first, then what moves.
 
-use super::super::instances::{InstanceSet, Placed};
+use super::super::instances::{InstanceSet, PreparedInstance};
 use super::super::packet::RayPacket;
 use super::super::scene::SceneBvh;
-use super::Filter;
-use super::fan::Fan;
-use super::nearest::{Claim, Place, horizon};
-use super::packet::{Answers, Closest, Occluded, Visit, traverse};
+use super::HitFilter;
+use super::closest_hit::{HitIndex, TieBreak, horizon};
+use super::prepared_packet::PreparedPacket;
 use super::slab::least;
+use super::tree_packet::{
+    ClosestLeafVisitor, OccludedLeafVisitor, PacketClosestHits, PacketLeafVisitor, traverse,
+};
 
 /// Offers all hits of a packet that may matter to its answers.
 #[inline(always)]
 pub(super) fn closest<const N: usize>(
     scene: &SceneBvh<'_>,
     rays: &RayPacket<N>,
-    filter: &Filter,
-    answers: &mut Answers<N>,
+    filter: &HitFilter,
+    answers: &mut PacketClosestHits<N>,
 ) {
     let (origin, far) = (rays.origin.to_array(), rays.usable_far());
     let claim =
-        |k: usize, place: Place| scene.claim(origin, rays.ray(k).direction.to_array(), place);
+        |k: usize, place: HitIndex| scene.claim(origin, rays.ray(k).direction.to_array(), place);
     let bvh = scene.fixed;
-    let mut fan = Fan::new(
+    let mut fan = PreparedPacket::new(
         &bvh.tree.bounds,
         origin,
         &rays.direction,
@@ -31,7 +33,7 @@ pub(super) fn closest<const N: usize>(
     traverse(
         &bvh.tree,
         &mut fan,
-        &mut Closest {
+        &mut ClosestLeafVisitor {
             bvh,
             source: 0,
             filter: *filter,
@@ -40,8 +42,8 @@ pub(super) fn closest<const N: usize>(
         },
     );
     if !scene.moving.is_empty() {
-        fan.aim(&scene.moving.tree.bounds);
-        let mut moving = ClosestMoving {
+        fan.retarget(&scene.moving.tree.bounds);
+        let mut moving = ClosestInstances {
             set: scene.moving,
             filter,
             answers,
@@ -56,11 +58,11 @@ pub(super) fn closest<const N: usize>(
 pub(super) fn occluded<const N: usize>(
     scene: &SceneBvh<'_>,
     rays: &RayPacket<N>,
-    filter: &Filter,
+    filter: &HitFilter,
 ) -> u64 {
     let (origin, far) = (rays.origin.to_array(), rays.usable_far());
     let bvh = scene.fixed;
-    let mut fan = Fan::new(
+    let mut fan = PreparedPacket::new(
         &bvh.tree.bounds,
         origin,
         &rays.direction,
@@ -70,17 +72,17 @@ pub(super) fn occluded<const N: usize>(
     traverse(
         &bvh.tree,
         &mut fan,
-        &mut Occluded {
+        &mut OccludedLeafVisitor {
             bvh,
             filter: *filter,
         },
     );
     if !scene.moving.is_empty() {
-        fan.aim(&scene.moving.tree.bounds);
+        fan.retarget(&scene.moving.tree.bounds);
         traverse(
             &scene.moving.tree,
             &mut fan,
-            &mut OccludedMoving {
+            &mut OccludedInstances {
                 set: scene.moving,
                 filter,
             },
@@ -93,7 +95,11 @@ pub(super) fn occluded<const N: usize>(
 
 /// Rays of a packet in the space of an instance, where they lie in its box; nothing when none can meet it.
 #[inline(always)]
-fn enter<const N: usize>(placed: &Placed, fan: &Fan<N>, filter: &Filter) -> Option<Fan<N>> {
+fn enter<const N: usize>(
+    placed: &PreparedInstance,
+    fan: &PreparedPacket<N>,
+    filter: &HitFilter,
+) -> Option<PreparedPacket<N>> {
     if placed.is_hidden() || !filter.admits(placed.id, placed.mask) {
         return None;
     }
@@ -108,7 +114,7 @@ fn enter<const N: usize>(placed: &Placed, fan: &Fan<N>, filter: &Filter) -> Opti
         let finite = (local[0].is_finite() & local[1].is_finite()) & local[2].is_finite();
         end[k] = if finite { end[k] } else { f32::NEG_INFINITY };
     }
-    let local = Fan::new(
+    let local = PreparedPacket::new(
         &placed.mesh.tree.bounds,
         origin,
         &direction,
@@ -119,22 +125,24 @@ fn enter<const N: usize>(placed: &Placed, fan: &Fan<N>, filter: &Filter) -> Opti
     (finite && !local.is_done()).then_some(local)
 }
 
-/// [`Closest`] over the instances of a set.
-struct ClosestMoving<'a, const N: usize, C> {
+/// [`ClosestLeafVisitor`] over the instances of a set.
+struct ClosestInstances<'a, const N: usize, C> {
     set: &'a InstanceSet,
-    filter: &'a Filter,
-    answers: &'a mut Answers<N>,
+    filter: &'a HitFilter,
+    answers: &'a mut PacketClosestHits<N>,
     claim: C,
 }
 
-impl<const N: usize, C: Fn(usize, Place) -> Claim + Copy> Visit<N> for ClosestMoving<'_, N, C> {
+impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak + Copy> PacketLeafVisitor<N>
+    for ClosestInstances<'_, N, C>
+{
     #[inline(always)]
-    fn leaf(&mut self, fan: &mut Fan<N>, instance: usize) -> bool {
+    fn leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
         let placed = &self.set.placed[instance];
         if let Some(mut local) = enter(placed, fan, self.filter) {
             let (bvh, source) = (&*placed.mesh, instance as u32 + 1);
             let (answers, claim) = (&mut *self.answers, self.claim);
-            let mut visit = Closest {
+            let mut visit = ClosestLeafVisitor {
                 bvh,
                 source,
                 filter: self.filter.within(),
@@ -151,22 +159,22 @@ impl<const N: usize, C: Fn(usize, Place) -> Claim + Copy> Visit<N> for ClosestMo
     }
 }
 
-/// [`Occluded`] over the instances of a set.
-struct OccludedMoving<'a> {
+/// [`OccludedLeafVisitor`] over the instances of a set.
+struct OccludedInstances<'a> {
     set: &'a InstanceSet,
-    filter: &'a Filter,
+    filter: &'a HitFilter,
 }
 
-impl<const N: usize> Visit<N> for OccludedMoving<'_> {
+impl<const N: usize> PacketLeafVisitor<N> for OccludedInstances<'_> {
     #[inline(always)]
-    fn leaf(&mut self, fan: &mut Fan<N>, instance: usize) -> bool {
+    fn leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
         let placed = &self.set.placed[instance];
         if let Some(mut local) = enter(placed, fan, self.filter) {
             let before = local.limit;
             traverse(
                 &placed.mesh.tree,
                 &mut local,
-                &mut Occluded {
+                &mut OccludedLeafVisitor {
                     bvh: &placed.mesh,
                     filter: self.filter.within(),
                 },

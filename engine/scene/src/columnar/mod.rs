@@ -1,7 +1,7 @@
 //! Plain data as bytes that pack well: what stands under one name stands side by side.
 //!
 //! A thousand contacts, written one after the other, mix places, forces and numbers of faces. Here every field of every type
-//! has a column of its own, in which floats lie as they pack best (`Layout`). Of 500 things that fell in a heap the packed
+//! has a column of its own, in which floats lie as they pack best (`FloatLayout`). Of 500 things that fell in a heap the packed
 //! bytes are a third of those in rows, of a house whose things lie strewn about seven eighths.
 //!
 //! Readers must know the type, as with `postcard`: nothing is named in the bytes. Columns stand in the order in which the type
@@ -21,23 +21,23 @@ use std::fmt::Display;
 const FLOAT: usize = size_of::<f32>();
 /// How the floats of a column lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Layout {
+enum FloatLayout {
     /// The first bytes of all, then the second ones: signs and exponents, which are much alike, lie apart from the last digits.
-    ByByte,
+    ByteShuffled,
     /// One after the other: what comes back, here or in another column, is found as a whole.
-    Whole,
+    Plain,
     /// Rows of so many, those that come back told by how far back they were; of unit rows the largest part told by the others.
     Rows { width: usize, unit: bool },
 }
 
-impl Layout {
+impl FloatLayout {
     /// Of vectors and quaternions.
     const WIDTHS: [usize; 2] = [3, 4];
 
     fn byte(self) -> u8 {
         match self {
-            Self::ByByte => 0,
-            Self::Whole => 1,
+            Self::ByteShuffled => 0,
+            Self::Plain => 1,
             Self::Rows { width, unit } => width as u8 * 2 + u8::from(unit),
         }
     }
@@ -45,10 +45,10 @@ impl Layout {
     fn of(byte: u8) -> Result<Self, ColumnsError> {
         let (width, unit) = (usize::from(byte / 2), byte % 2 == 1);
         match byte {
-            0 => Ok(Self::ByByte),
-            1 => Ok(Self::Whole),
+            0 => Ok(Self::ByteShuffled),
+            1 => Ok(Self::Plain),
             _ if Self::WIDTHS.contains(&width) => Ok(Self::Rows { width, unit }),
-            found => Err(ColumnsError::Large {
+            found => Err(ColumnsError::OutOfRange {
                 found: found.into(),
                 place: "a layout",
             }),
@@ -62,13 +62,13 @@ impl Layout {
 pub enum ColumnsError {
     /// A column ends too early.
     #[error("a column ends too early")]
-    Ended,
+    UnexpectedEnd,
     /// Something is left over.
     #[error("{0} bytes are left over")]
-    Left(usize),
+    TrailingData(usize),
     /// A number that is too large for its place.
     #[error("{found} is too large for {place}")]
-    Large {
+    OutOfRange {
         /// The number.
         found: u64,
         /// What it should have been.
@@ -76,39 +76,39 @@ pub enum ColumnsError {
     },
     /// Data that does not say beforehand how long it is, or is read by asking what it is.
     #[error("{0} cannot be held in columns")]
-    Shape(&'static str),
+    Unsupported(&'static str),
     /// What the type itself says.
     #[error("{0}")]
-    Said(String),
+    Custom(String),
 }
 
 impl serde::ser::Error for ColumnsError {
     fn custom<T: Display>(message: T) -> Self {
-        Self::Said(message.to_string())
+        Self::Custom(message.to_string())
     }
 }
 
 impl serde::de::Error for ColumnsError {
     fn custom<T: Display>(message: T) -> Self {
-        Self::Said(message.to_string())
+        Self::Custom(message.to_string())
     }
 }
 
 /// Which column holds the field of a type: numbered as they are met. A column for each place where the type stands would hold less
 /// of a kind and packs worse (heap of a hundred things: 6 %).
-struct Names {
+struct ColumnIndex {
     columns: HashMap<(&'static str, &'static str), usize>,
     /// Those met last, by where their names lie in memory: a place is right or looked up above.
-    recent: Vec<Option<(Place, usize)>>,
+    recent: Vec<Option<(NamePointers, usize)>>,
 }
 
 /// Where two names lie in memory.
-type Place = [(usize, usize); 2];
+type NamePointers = [(usize, usize); 2];
 
-/// Entries of [`Names::recent`], a power of two: more than there are fields.
+/// Entries of [`ColumnIndex::recent`], a power of two: more than there are fields.
 const RECENT: usize = 1024;
 
-impl Names {
+impl ColumnIndex {
     fn new() -> Self {
         Self {
             columns: HashMap::new(),
@@ -134,7 +134,7 @@ impl Names {
 }
 
 /// Seven bits a byte, the lowest first.
-fn put(bytes: &mut Vec<u8>, mut number: u64) {
+fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
     while number >= 0x80 {
         bytes.push(number as u8 | 0x80);
         number >>= 7;
@@ -142,8 +142,8 @@ fn put(bytes: &mut Vec<u8>, mut number: u64) {
     bytes.push(number as u8);
 }
 
-/// What [`put`] put.
-fn whole(bytes: &mut &[u8]) -> Result<u64, ColumnsError> {
+/// What [`push_varint`] put.
+fn read_varint(bytes: &mut &[u8]) -> Result<u64, ColumnsError> {
     let mut number = 0;
     for shift in (0..64).step_by(7) {
         let byte = byte(bytes)?;
@@ -152,7 +152,7 @@ fn whole(bytes: &mut &[u8]) -> Result<u64, ColumnsError> {
             return Ok(number);
         }
     }
-    Err(ColumnsError::Large {
+    Err(ColumnsError::OutOfRange {
         found: number,
         place: "a number of 64 bits",
     })
@@ -163,7 +163,9 @@ fn byte(bytes: &mut &[u8]) -> Result<u8, ColumnsError> {
 }
 
 fn take<'de>(bytes: &mut &'de [u8], length: usize) -> Result<&'de [u8], ColumnsError> {
-    let (taken, rest) = bytes.split_at_checked(length).ok_or(ColumnsError::Ended)?;
+    let (taken, rest) = bytes
+        .split_at_checked(length)
+        .ok_or(ColumnsError::UnexpectedEnd)?;
     *bytes = rest;
     Ok(taken)
 }
@@ -293,7 +295,7 @@ mod tests {
     /// Ten thousand things whose places are noise of one size: rows pack to 3.5 bytes a float, exponents apart to 3.1.
     #[test]
     fn columns_pack_better_than_rows() {
-        let mut stream = crate::random::Key::root(3).stream();
+        let mut stream = crate::random::RandomKey::root(3).stream();
         let mut number = 0;
         let things: Vec<Thing> = (0..10_000)
             .map(|_| {

@@ -3,22 +3,22 @@
 use glam::Vec4;
 
 use super::super::node::Node;
-use super::slab::{LARGEST_INVERSE, WideOrigin, crossing, inverse, least, margin, most};
+use super::slab::{LARGEST_INVERSE, PaddedOrigin, crossing, inverse, least, margin, most};
 use super::three;
-use super::triangle::{Facets, dot, inside, settled};
+use super::triangle::{OriginTriangles, dot, inside, settled};
 use crate::bounds::Aabb;
 
 /// Rays with one origin in the space of a tree, prepared; lanes side by side.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(in super::super) struct Fan<const N: usize> {
+pub(in super::super) struct PreparedPacket<const N: usize> {
     pub(in super::super) direction: [[f32; N]; 3],
     inverse: [[f32; N]; 3],
     pub(in super::super) near: [f32; N],
     /// Hits beyond do not matter; below everything for a lane that is out of use.
     pub(in super::super) limit: [f32; N],
     pub(in super::super) origin: [f32; 3],
-    pub(super) wide: WideOrigin,
+    pub(super) wide: PaddedOrigin,
     margin: f32,
     /// See [`EdgePlanes::new`].
     pub(super) longest: f32,
@@ -39,7 +39,7 @@ pub(in super::super) struct Fan<const N: usize> {
     mixed: bool,
 }
 
-impl<const N: usize> Fan<N> {
+impl<const N: usize> PreparedPacket<N> {
     /// A lane is out of use where its range is empty.
     #[inline(always)]
     pub(in super::super) fn new(
@@ -77,7 +77,7 @@ impl<const N: usize> Fan<N> {
             near: start,
             limit,
             origin,
-            wide: WideOrigin::new(origin, margin),
+            wide: PaddedOrigin::new(origin, margin),
             margin,
             longest,
             nearest: lowest_of(start),
@@ -113,9 +113,9 @@ impl<const N: usize> Fan<N> {
 
     /// For another tree in the same space.
     #[inline(always)]
-    pub(in super::super) fn aim(&mut self, all: &Aabb) {
+    pub(in super::super) fn retarget(&mut self, all: &Aabb) {
         self.margin = margin(self.origin, all);
-        self.wide = WideOrigin::new(self.origin, self.margin);
+        self.wide = PaddedOrigin::new(self.origin, self.margin);
     }
 
     /// Whether no ray is in use.
@@ -170,7 +170,7 @@ impl<const N: usize> Fan<N> {
         while rest != 0 {
             let k = rest.trailing_zeros() as usize;
             rest &= rest - 1;
-            if !self.some_enter(&three(|p| planes[p][k]), &three(|p| planes[p + 3][k])) {
+            if !self.any_enters(&three(|p| planes[p][k]), &three(|p| planes[p + 3][k])) {
                 bits &= !(1 << k);
             }
         }
@@ -180,7 +180,7 @@ impl<const N: usize> Fan<N> {
     /// Whether some ray enters a box before its limit. `first`, `last`: its planes as seen from the origin, in the order in
     /// which the rays meet them.
     #[inline(always)]
-    fn some_enter(&self, first: &[f32; 3], last: &[f32; 3]) -> bool {
+    fn any_enters(&self, first: &[f32; 3], last: &[f32; 3]) -> bool {
         let [ix, iy, iz] = &self.inverse;
         let mut any = 0_u32;
         if self.mixed {
@@ -206,13 +206,13 @@ impl<const N: usize> Fan<N> {
 
     /// The distances at which the rays hit one of four triangles, NaN where they do not within their range, or nothing.
     #[inline(always)]
-    pub(super) fn meet(&self, facets: &Facets, lane: usize) -> Option<[f32; N]> {
+    pub(super) fn meet(&self, facets: &OriginTriangles, lane: usize) -> Option<[f32; N]> {
         if self.mixed {
-            self.meet_by(facets, lane, |first, last, inverse| {
+            self.intersect_ordered(facets, lane, |first, last, inverse| {
                 crossing(first, last, inverse)
             })
         } else {
-            self.meet_by(facets, lane, |first, last, inverse| {
+            self.intersect_ordered(facets, lane, |first, last, inverse| {
                 (
                     most(
                         most(first[0] * inverse[0], first[1] * inverse[1]),
@@ -230,9 +230,9 @@ impl<const N: usize> Fan<N> {
     /// `cross`: where a ray enters and leaves a box, from the planes it meets first, those it meets last, and its inverse
     /// direction.
     #[inline(always)]
-    fn meet_by(
+    fn intersect_ordered(
         &self,
-        facets: &Facets,
+        facets: &OriginTriangles,
         lane: usize,
         cross: impl Fn(&[f32; 3], &[f32; 3], [f32; 3]) -> (f32, f32),
     ) -> Option<[f32; N]> {

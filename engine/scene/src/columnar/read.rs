@@ -1,6 +1,6 @@
 //! Columns to data.
 
-use super::{ColumnsError, FLOAT, Layout, Names, byte, layout, take, whole};
+use super::{ColumnIndex, ColumnsError, FLOAT, FloatLayout, byte, layout, read_varint, take};
 use serde::Deserialize;
 use serde::de::value::U32Deserializer;
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
@@ -11,15 +11,15 @@ use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 /// [`ColumnsError`] for bytes that hold something else.
 pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, ColumnsError> {
     let mut head = bytes;
-    let count = whole(&mut head)?;
+    let count = read_varint(&mut head)?;
     // Each column says four numbers.
     if count > (head.len() / 4) as u64 {
-        return Err(ColumnsError::Ended);
+        return Err(ColumnsError::UnexpectedEnd);
     }
     let mut sizes = Vec::with_capacity(count as usize);
     for _ in 0..count {
         let floats = length(&mut head)?;
-        let layout = Layout::of(byte(&mut head)?)?;
+        let layout = FloatLayout::of(byte(&mut head)?)?;
         sizes.push((floats, layout, length(&mut head)?, length(&mut head)?));
     }
     let mut columns = Vec::with_capacity(count as usize);
@@ -30,23 +30,23 @@ pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, Colum
             rest: take(&mut head, rest)?,
         });
     }
-    let mut reader = Reader {
-        names: Names::new(),
+    let mut reader = ColumnarReader {
+        names: ColumnIndex::new(),
         columns,
         at: 0,
     };
     let data = T::deserialize(&mut reader)?;
     let left = head.len() + reader.columns.iter().map(Column::left).sum::<usize>();
     if left > 0 {
-        return Err(ColumnsError::Left(left));
+        return Err(ColumnsError::TrailingData(left));
     }
     Ok(data)
 }
 
 fn length(bytes: &mut &[u8]) -> Result<usize, ColumnsError> {
-    let found = whole(bytes)?;
+    let found = read_varint(bytes)?;
     let place = "a length";
-    usize::try_from(found).map_err(|_| ColumnsError::Large { found, place })
+    usize::try_from(found).map_err(|_| ColumnsError::OutOfRange { found, place })
 }
 
 /// What stands under one name.
@@ -60,7 +60,10 @@ struct Column<'de> {
 
 impl Column<'_> {
     fn float(&mut self) -> Result<f32, ColumnsError> {
-        let bits = self.floats.get(self.read).ok_or(ColumnsError::Ended)?;
+        let bits = self
+            .floats
+            .get(self.read)
+            .ok_or(ColumnsError::UnexpectedEnd)?;
         self.read += 1;
         Ok(f32::from_bits(*bits))
     }
@@ -71,17 +74,17 @@ impl Column<'_> {
     }
 }
 
-struct Reader<'de> {
-    names: Names,
+struct ColumnarReader<'de> {
+    names: ColumnIndex,
     columns: Vec<Column<'de>>,
     /// The column of what comes next.
     at: usize,
 }
 
-impl<'de> Reader<'de> {
+impl<'de> ColumnarReader<'de> {
     fn rest(&mut self) -> Result<&mut &'de [u8], ColumnsError> {
         let column = self.columns.get_mut(self.at);
-        Ok(&mut column.ok_or(ColumnsError::Ended)?.rest)
+        Ok(&mut column.ok_or(ColumnsError::UnexpectedEnd)?.rest)
     }
 
     fn byte(&mut self) -> Result<u8, ColumnsError> {
@@ -89,7 +92,7 @@ impl<'de> Reader<'de> {
     }
 
     fn whole(&mut self) -> Result<u64, ColumnsError> {
-        whole(self.rest()?)
+        read_varint(self.rest()?)
     }
 
     fn signed(&mut self) -> Result<i64, ColumnsError> {
@@ -111,7 +114,7 @@ macro_rules! numbers {
     ($($method:ident $read:ident $type:ty, $visit:ident, $place:literal;)*) => {$(
         fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
             let found = self.$read()?;
-            let number = <$type>::try_from(found).map_err(|_| ColumnsError::Large {
+            let number = <$type>::try_from(found).map_err(|_| ColumnsError::OutOfRange {
                 found: found as u64,
                 place: $place,
             })?;
@@ -120,7 +123,7 @@ macro_rules! numbers {
     )*};
 }
 
-impl<'de> Deserializer<'de> for &mut Reader<'de> {
+impl<'de> Deserializer<'de> for &mut ColumnarReader<'de> {
     type Error = ColumnsError;
 
     fn is_human_readable(&self) -> bool {
@@ -137,7 +140,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
     }
 
     fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, ColumnsError> {
-        Err(ColumnsError::Shape(
+        Err(ColumnsError::Unsupported(
             "data that is read by asking what it is",
         ))
     }
@@ -157,7 +160,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         match self.byte()? {
             0 => visitor.visit_bool(false),
             1 => visitor.visit_bool(true),
-            found => Err(ColumnsError::Large {
+            found => Err(ColumnsError::OutOfRange {
                 found: found.into(),
                 place: "yes or no",
             }),
@@ -179,7 +182,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
 
     fn deserialize_f32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
         let column = self.columns.get_mut(self.at);
-        let column = column.ok_or(ColumnsError::Ended)?;
+        let column = column.ok_or(ColumnsError::UnexpectedEnd)?;
         visitor.visit_f32(column.float()?)
     }
 
@@ -193,7 +196,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         let found = self.whole()?;
         let letter = u32::try_from(found).ok().and_then(char::from_u32);
         let place = "a letter";
-        visitor.visit_char(letter.ok_or(ColumnsError::Large { found, place })?)
+        visitor.visit_char(letter.ok_or(ColumnsError::OutOfRange { found, place })?)
     }
 
     fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
@@ -217,7 +220,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         match self.byte()? {
             0 => visitor.visit_none(),
             1 => visitor.visit_some(self),
-            found => Err(ColumnsError::Large {
+            found => Err(ColumnsError::OutOfRange {
                 found: found.into(),
                 place: "something or nothing",
             }),
@@ -246,7 +249,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
 
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
         let length = self.length()?;
-        visitor.visit_seq(Row::new(self, length))
+        visitor.visit_seq(SequenceReader::new(self, length))
     }
 
     fn deserialize_tuple<V: Visitor<'de>>(
@@ -254,7 +257,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         length: usize,
         visitor: V,
     ) -> Result<V::Value, ColumnsError> {
-        visitor.visit_seq(Row::new(self, length))
+        visitor.visit_seq(SequenceReader::new(self, length))
     }
 
     fn deserialize_tuple_struct<V: Visitor<'de>>(
@@ -263,12 +266,12 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         length: usize,
         visitor: V,
     ) -> Result<V::Value, ColumnsError> {
-        visitor.visit_seq(Row::new(self, length))
+        visitor.visit_seq(SequenceReader::new(self, length))
     }
 
     fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
         let length = self.length()?;
-        visitor.visit_map(Row::new(self, length))
+        visitor.visit_map(SequenceReader::new(self, length))
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
@@ -277,7 +280,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, ColumnsError> {
-        visitor.visit_seq(Fields {
+        visitor.visit_seq(StructReader {
             outside: self.at,
             reader: self,
             owner: name,
@@ -291,7 +294,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, ColumnsError> {
-        visitor.visit_enum(Choice {
+        visitor.visit_enum(EnumReader {
             reader: self,
             variants,
             chosen: "",
@@ -300,13 +303,13 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
 }
 
 /// Values one after the other.
-struct Row<'a, 'de> {
-    reader: &'a mut Reader<'de>,
+struct SequenceReader<'a, 'de> {
+    reader: &'a mut ColumnarReader<'de>,
     left: usize,
 }
 
-impl<'a, 'de> Row<'a, 'de> {
-    fn new(reader: &'a mut Reader<'de>, left: usize) -> Self {
+impl<'a, 'de> SequenceReader<'a, 'de> {
+    fn new(reader: &'a mut ColumnarReader<'de>, left: usize) -> Self {
         Self { reader, left }
     }
 
@@ -316,7 +319,7 @@ impl<'a, 'de> Row<'a, 'de> {
     }
 }
 
-impl<'de> de::SeqAccess<'de> for Row<'_, 'de> {
+impl<'de> de::SeqAccess<'de> for SequenceReader<'_, 'de> {
     type Error = ColumnsError;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(
@@ -335,7 +338,7 @@ impl<'de> de::SeqAccess<'de> for Row<'_, 'de> {
     }
 }
 
-impl<'de> de::MapAccess<'de> for Row<'_, 'de> {
+impl<'de> de::MapAccess<'de> for SequenceReader<'_, 'de> {
     type Error = ColumnsError;
 
     fn next_key_seed<K: DeserializeSeed<'de>>(
@@ -358,14 +361,14 @@ impl<'de> de::MapAccess<'de> for Row<'_, 'de> {
 }
 
 /// Within a type whose fields have names.
-struct Fields<'a, 'de> {
-    reader: &'a mut Reader<'de>,
+struct StructReader<'a, 'de> {
+    reader: &'a mut ColumnarReader<'de>,
     owner: &'static str,
     left: std::slice::Iter<'static, &'static str>,
     outside: usize,
 }
 
-impl<'de> de::SeqAccess<'de> for Fields<'_, 'de> {
+impl<'de> de::SeqAccess<'de> for StructReader<'_, 'de> {
     type Error = ColumnsError;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(
@@ -387,13 +390,13 @@ impl<'de> de::SeqAccess<'de> for Fields<'_, 'de> {
 }
 
 /// Within a type of which there are several kinds.
-struct Choice<'a, 'de> {
-    reader: &'a mut Reader<'de>,
+struct EnumReader<'a, 'de> {
+    reader: &'a mut ColumnarReader<'de>,
     variants: &'static [&'static str],
     chosen: &'static str,
 }
 
-impl<'de> de::EnumAccess<'de> for Choice<'_, 'de> {
+impl<'de> de::EnumAccess<'de> for EnumReader<'_, 'de> {
     type Error = ColumnsError;
     type Variant = Self;
 
@@ -403,15 +406,15 @@ impl<'de> de::EnumAccess<'de> for Choice<'_, 'de> {
     ) -> Result<(V::Value, Self), ColumnsError> {
         let found = self.reader.whole()?;
         let place = "one of its kinds";
-        let index = u32::try_from(found).map_err(|_| ColumnsError::Large { found, place })?;
+        let index = u32::try_from(found).map_err(|_| ColumnsError::OutOfRange { found, place })?;
         let chosen = self.variants.get(index as usize);
-        self.chosen = chosen.ok_or(ColumnsError::Large { found, place })?;
+        self.chosen = chosen.ok_or(ColumnsError::OutOfRange { found, place })?;
         let index: U32Deserializer<ColumnsError> = index.into_deserializer();
         Ok((seed.deserialize(index)?, self))
     }
 }
 
-impl<'de> de::VariantAccess<'de> for Choice<'_, 'de> {
+impl<'de> de::VariantAccess<'de> for EnumReader<'_, 'de> {
     type Error = ColumnsError;
 
     fn unit_variant(self) -> Result<(), ColumnsError> {
@@ -430,7 +433,7 @@ impl<'de> de::VariantAccess<'de> for Choice<'_, 'de> {
         length: usize,
         visitor: V,
     ) -> Result<V::Value, ColumnsError> {
-        visitor.visit_seq(Row::new(self.reader, length))
+        visitor.visit_seq(SequenceReader::new(self.reader, length))
     }
 
     fn struct_variant<V: Visitor<'de>>(

@@ -1,16 +1,16 @@
 //! Data to columns.
 
-use super::{ColumnsError, Names, layout, put};
+use super::{ColumnIndex, ColumnsError, layout, push_varint};
 use serde::Serialize;
 use serde::ser::{self, Serializer};
 
 /// Data as columns.
 ///
 /// # Errors
-/// [`ColumnsError::Shape`] for sequences and maps that do not say their length.
+/// [`ColumnsError::Unsupported`] for sequences and maps that do not say their length.
 pub fn to_bytes<T: Serialize + ?Sized>(data: &T) -> Result<Vec<u8>, ColumnsError> {
-    let mut writer = Writer {
-        names: Names::new(),
+    let mut writer = ColumnarWriter {
+        names: ColumnIndex::new(),
         columns: vec![Column::default()],
         at: 0,
     };
@@ -27,26 +27,26 @@ struct Column {
     rest: Vec<u8>,
 }
 
-struct Writer {
-    names: Names,
+struct ColumnarWriter {
+    names: ColumnIndex,
     columns: Vec<Column>,
     /// The column of what comes next.
     at: usize,
 }
 
-impl Writer {
+impl ColumnarWriter {
     /// The number of columns; of each the number of its floats, their layout, the length of their bytes and of the rest; then the
     /// columns.
     fn bytes(self) -> Vec<u8> {
         let (mut head, mut body) = (Vec::new(), Vec::new());
-        put(&mut head, self.columns.len() as u64);
+        push_varint(&mut head, self.columns.len() as u64);
         for column in &self.columns {
             let start = body.len();
             let layout = layout::write(&column.floats, &mut body);
-            put(&mut head, column.floats.len() as u64);
+            push_varint(&mut head, column.floats.len() as u64);
             head.push(layout.byte());
-            put(&mut head, (body.len() - start) as u64);
-            put(&mut head, column.rest.len() as u64);
+            push_varint(&mut head, (body.len() - start) as u64);
+            push_varint(&mut head, column.rest.len() as u64);
             body.extend_from_slice(&column.rest);
         }
         head.extend(body);
@@ -59,7 +59,7 @@ impl Writer {
 
     #[expect(clippy::unnecessary_wraps, reason = "as serde's methods end")]
     fn whole(&mut self, number: u64) -> Result<(), ColumnsError> {
-        put(self.rest(), number);
+        push_varint(self.rest(), number);
         Ok(())
     }
 
@@ -69,19 +69,19 @@ impl Writer {
     }
 
     fn length(&mut self, length: Option<usize>) -> Result<(), ColumnsError> {
-        let length = length.ok_or(ColumnsError::Shape("data of unknown length"))?;
+        let length = length.ok_or(ColumnsError::Unsupported("data of unknown length"))?;
         self.whole(length as u64)
     }
 }
 
 /// Within a type whose fields have names.
-struct Fields<'a> {
-    writer: &'a mut Writer,
+struct StructWriter<'a> {
+    writer: &'a mut ColumnarWriter,
     owner: &'static str,
     outside: usize,
 }
 
-impl Fields<'_> {
+impl StructWriter<'_> {
     fn field<T: Serialize + ?Sized>(
         &mut self,
         name: &'static str,
@@ -98,7 +98,7 @@ impl Fields<'_> {
     }
 }
 
-impl<'a> Serializer for &'a mut Writer {
+impl<'a> Serializer for &'a mut ColumnarWriter {
     type Ok = ();
     type Error = ColumnsError;
     type SerializeSeq = Self;
@@ -106,8 +106,8 @@ impl<'a> Serializer for &'a mut Writer {
     type SerializeTupleStruct = Self;
     type SerializeTupleVariant = Self;
     type SerializeMap = Self;
-    type SerializeStruct = Fields<'a>;
-    type SerializeStructVariant = Fields<'a>;
+    type SerializeStruct = StructWriter<'a>;
+    type SerializeStructVariant = StructWriter<'a>;
 
     fn is_human_readable(&self) -> bool {
         false
@@ -262,8 +262,8 @@ impl<'a> Serializer for &'a mut Writer {
         self,
         name: &'static str,
         _length: usize,
-    ) -> Result<Fields<'a>, ColumnsError> {
-        Ok(Fields {
+    ) -> Result<StructWriter<'a>, ColumnsError> {
+        Ok(StructWriter {
             owner: name,
             outside: self.at,
             writer: self,
@@ -276,7 +276,7 @@ impl<'a> Serializer for &'a mut Writer {
         index: u32,
         variant: &'static str,
         length: usize,
-    ) -> Result<Fields<'a>, ColumnsError> {
+    ) -> Result<StructWriter<'a>, ColumnsError> {
         self.whole(index.into())?;
         self.serialize_struct(variant, length)
     }
@@ -284,7 +284,7 @@ impl<'a> Serializer for &'a mut Writer {
 
 macro_rules! one_after_the_other {
     ($trait:ident, $method:ident) => {
-        impl ser::$trait for &mut Writer {
+        impl ser::$trait for &mut ColumnarWriter {
             type Ok = ();
             type Error = ColumnsError;
 
@@ -304,7 +304,7 @@ one_after_the_other!(SerializeTuple, serialize_element);
 one_after_the_other!(SerializeTupleStruct, serialize_field);
 one_after_the_other!(SerializeTupleVariant, serialize_field);
 
-impl ser::SerializeMap for &mut Writer {
+impl ser::SerializeMap for &mut ColumnarWriter {
     type Ok = ();
     type Error = ColumnsError;
 
@@ -323,7 +323,7 @@ impl ser::SerializeMap for &mut Writer {
 
 macro_rules! by_field {
     ($trait:ident) => {
-        impl ser::$trait for Fields<'_> {
+        impl ser::$trait for StructWriter<'_> {
             type Ok = ();
             type Error = ColumnsError;
 
