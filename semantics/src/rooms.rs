@@ -101,7 +101,7 @@ impl RoomFacts {
             noun,
             plural,
             names,
-            area_m2: house.footprint_area_m2(id),
+            area_m2: house.exclusive_area_m2(id),
             floor_word: surfaces.floor_word(id),
             floor_color: most(&surfaces.floor_paints[id]),
             wall_color: most(&surfaces.walls[id]),

@@ -334,7 +334,7 @@ fn the_size_of_a_room_is_the_same_in_numbers_and_in_words() {
     let info = dwell::info(&engines, &serde_json::json!([]));
     let views = dwell::viewpoints(&engines).unwrap();
     for (k, room) in engines.house().rooms.ids().enumerate() {
-        let own = engines.house().footprint_area_m2(room);
+        let own = engines.house().exclusive_area_m2(room);
         assert_eq!(info["rooms"][k]["area_m2"], serde_json::json!(own));
         assert_eq!(views[k].area_m2, own);
         assert_eq!(engines.semantics().room(room).area_m2, own);

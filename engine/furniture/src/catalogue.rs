@@ -10,7 +10,7 @@ use super::style::Style;
 use dwell_scene::random::RandomKey;
 
 /// A way to make one kind of thing.
-pub struct Entry {
+pub struct CatalogueEntry {
     /// What furnishing rules ask for: `"dining_chair"`. Several entries of one kind are looks of it.
     pub kind: &'static str,
     /// A row of `assets/categories.csv`; the model's.
@@ -32,8 +32,8 @@ const fn entry(
     kind: &'static str,
     category: &'static str,
     build: fn(&Style, RandomKey) -> Model,
-) -> Entry {
-    Entry {
+) -> CatalogueEntry {
+    CatalogueEntry {
         kind,
         category,
         styles: &[],
@@ -42,7 +42,7 @@ const fn entry(
     }
 }
 
-impl Entry {
+impl CatalogueEntry {
     /// The same entry in many variants.
     const fn many(mut self) -> Self {
         self.variants = MANY;
@@ -56,15 +56,15 @@ impl Entry {
 }
 
 /// The entries of a kind that suit a style, with their places in the list.
-pub fn entries_of(kind: &str, style: &Style) -> Vec<(usize, &'static Entry)> {
+pub fn entries_of(kind: &str, style: &Style) -> Vec<(usize, &'static CatalogueEntry)> {
     let all = entries().iter().enumerate();
     all.filter(|(_, entry)| entry.kind == kind && entry.suits(style))
         .collect()
 }
 
 /// All entries.
-pub fn entries() -> &'static [Entry] {
-    static ALL: &[Entry] = &[
+pub fn entries() -> &'static [CatalogueEntry] {
+    static ALL: &[CatalogueEntry] = &[
         // Seats.
         entry("sofa", "sofa", living::sofa),
         entry("armchair", "armchair", living::armchair),

@@ -1,26 +1,26 @@
 //! Furniture and all other household things, made at run time by parametric code.
 //!
 //! - `shapes`: closed primitives with convex collision pieces,
-//! - `textures`, `finish`: procedural images, and what surfaces are made of,
+//! - `textures`, `finishes`: procedural images, and what surfaces are made of,
 //! - `model`: a thing with parts, joints, lights, sounds, and places that hold other things,
-//! - `stretch`: models in other sizes,
+//! - `resize`: models in other sizes,
 //! - `models`: the things, one file a family,
 //! - `style`: the taste of one house, which gives things that stand together colours that go together,
-//! - `draw`, `entries`: sizes and variants drawn by a key,
+//! - `sampling`, `entries`: sizes and variants drawn by a key,
 //! - `catalogue`: the list of what a generated house may hold,
-//! - `stock`: models of the catalogue, built once and shared,
+//! - `model_cache`: models of the catalogue, built once and shared,
 //! - `tables`: what the tables of `assets/` say of categories, rooms and textures by name,
 //! - `testing`: oracles for meshes and collision pieces that this crate's tests and those of houses share.
 
 pub mod catalogue;
-mod draw;
 mod entries;
-pub mod finish;
+pub mod finishes;
 pub mod model;
+pub mod model_cache;
 pub mod models;
+mod resize;
+mod sampling;
 pub mod shapes;
-pub mod stock;
-mod stretch;
 pub mod style;
 pub mod tables;
 pub mod testing;

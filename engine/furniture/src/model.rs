@@ -3,8 +3,8 @@
 //! Model space: metres, +Y up, the front towards +Z. Things that stand have the middle of their foot at the origin; things
 //! on a wall have the wall's face at z = 0; things on a ceiling hang down from y = 0.
 
-use super::finish::Finish;
-use super::shapes::Solid;
+use super::finishes::Finish;
+use super::shapes::SolidMesh;
 use dwell_scene::{Aabb, Collider, JointKind, LightShape, Mesh, Mobility, Pose, ReceptacleKind};
 use glam::Vec3;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ pub struct Model {
     /// What can be heard of it.
     pub sounds: Vec<ModelSound>,
     /// Where it can hold other things.
-    pub spaces: Vec<ModelSpace>,
+    pub spaces: Vec<ModelReceptacle>,
 }
 
 /// A rigid part; its space is the model's while all joints are at 0.
@@ -102,7 +102,7 @@ pub struct ModelSound {
 
 /// A place that holds things.
 #[derive(Clone, Debug)]
-pub struct ModelSpace {
+pub struct ModelReceptacle {
     /// Index of the part that carries it.
     pub part: usize,
     /// What the part, joint or space is called in the model.
@@ -161,7 +161,7 @@ impl Model {
 
     /// The same model with one more part.
     #[must_use]
-    pub fn part(mut self, part: Part) -> Self {
+    pub fn part(mut self, part: PartBuilder) -> Self {
         self.parts.push(part.finish());
         self
     }
@@ -204,7 +204,7 @@ impl Model {
 
     /// The same model, off; its newest joint is its switch.
     #[must_use]
-    pub fn switching(mut self) -> Self {
+    pub fn with_switch(mut self) -> Self {
         if let Some(joint) = self.joints.last_mut() {
             joint.switches = true;
         }
@@ -213,7 +213,7 @@ impl Model {
 
     /// The same model, its first joint open by `fraction` (0 to 1) at the start.
     #[must_use]
-    pub fn ajar(mut self, fraction: f32) -> Self {
+    pub fn with_initial_opening(mut self, fraction: f32) -> Self {
         if let Some(joint) = self.joints.first_mut() {
             joint.initial = joint.open * fraction;
         }
@@ -222,7 +222,7 @@ impl Model {
 
     /// The same model; its newest part shines in all directions.
     #[must_use]
-    pub fn shining(self, position: [f32; 3], power_w: f32) -> Self {
+    pub fn with_light(self, position: [f32; 3], power_w: f32) -> Self {
         self.light(position, LightShape::Point, power_w)
     }
 
@@ -241,7 +241,7 @@ impl Model {
 
     /// The same model; its newest part sounds.
     #[must_use]
-    pub fn sounding(mut self, position: [f32; 3], signal: &'static str, level_db: f32) -> Self {
+    pub fn with_sound(mut self, position: [f32; 3], signal: &'static str, level_db: f32) -> Self {
         let part = self.parts.len() - 1;
         self.sounds.push(ModelSound {
             part,
@@ -272,7 +272,7 @@ impl Model {
         max: [f32; 3],
     ) -> Self {
         let part = self.parts.len() - 1;
-        self.spaces.push(ModelSpace {
+        self.spaces.push(ModelReceptacle {
             part,
             name,
             holding,
@@ -287,11 +287,11 @@ impl Model {
     pub fn mounting(mut self, other: Self, name: &'static str, pose: &Pose) -> Self {
         let first = self.parts.len();
         for mut part in other.parts {
-            let solid = Solid {
+            let solid = SolidMesh {
                 mesh: Mesh::clone(&part.mesh),
                 colliders: part.colliders,
             };
-            let Solid { mesh, colliders } = solid.placed(pose);
+            let SolidMesh { mesh, colliders } = solid.placed(pose);
             part.mesh = Arc::new(mesh);
             part.colliders = colliders;
             self.parts.push(part);
@@ -355,7 +355,7 @@ impl Model {
 
 /// A part under construction.
 #[derive(Debug)]
-pub struct Part {
+pub struct PartBuilder {
     name: &'static str,
     mesh: Mesh,
     finishes: Vec<Finish>,
@@ -364,7 +364,7 @@ pub struct Part {
     mass_kg: f32,
 }
 
-impl Part {
+impl PartBuilder {
     /// A part without a shape.
     pub fn new(name: &'static str) -> Self {
         Self {
@@ -379,13 +379,13 @@ impl Part {
 
     /// The same part with one more shape, solid of its finish's substance.
     #[must_use]
-    pub fn with(self, finish: &Finish, solid: Solid) -> Self {
+    pub fn with(self, finish: &Finish, solid: SolidMesh) -> Self {
         self.with_filled(finish, solid, 1.0)
     }
 
     /// The same part with one more shape of which `fill` (0 to 1) is substance and the rest air.
     #[must_use]
-    pub fn with_filled(mut self, finish: &Finish, mut solid: Solid, fill: f32) -> Self {
+    pub fn with_filled(mut self, finish: &Finish, mut solid: SolidMesh, fill: f32) -> Self {
         let slot = self
             .finishes
             .iter()
@@ -409,13 +409,13 @@ impl Part {
 
     /// The same part with one more bar or plate: metal ones are tubes and sheets.
     #[must_use]
-    pub fn with_bar(self, finish: &Finish, solid: Solid) -> Self {
+    pub fn with_bar(self, finish: &Finish, solid: SolidMesh) -> Self {
         self.with_filled(finish, solid, finish.hollow())
     }
 
     /// The same part with each of `solids`, bars or plates: metal ones are tubes and sheets.
     #[must_use]
-    pub fn with_bars(self, finish: &Finish, solids: impl IntoIterator<Item = Solid>) -> Self {
+    pub fn with_bars(self, finish: &Finish, solids: impl IntoIterator<Item = SolidMesh>) -> Self {
         solids
             .into_iter()
             .fold(self, |part, solid| part.with_bar(finish, solid))
@@ -423,13 +423,13 @@ impl Part {
 
     /// The same part with one more stuffed shape under a cover.
     #[must_use]
-    pub fn with_padding(self, cover: &Finish, solid: Solid) -> Self {
+    pub fn with_padding(self, cover: &Finish, solid: SolidMesh) -> Self {
         self.with_filled(cover, solid, cover.padded())
     }
 
     /// The same part with each of `solids`.
     #[must_use]
-    pub fn with_all(self, finish: &Finish, solids: impl IntoIterator<Item = Solid>) -> Self {
+    pub fn with_all(self, finish: &Finish, solids: impl IntoIterator<Item = SolidMesh>) -> Self {
         solids
             .into_iter()
             .fold(self, |part, solid| part.with(finish, solid))

@@ -78,15 +78,15 @@ struct RoomRow {
 }
 
 #[derive(Deserialize)]
-struct PrefixRow {
+struct NamePrefixRow {
     prefix: String,
     material: String,
 }
 
-struct Tables {
+struct FurnitureTables {
     categories: BTreeMap<String, CategoryRow>,
     rooms: BTreeMap<String, String>,
-    prefixes: Vec<PrefixRow>,
+    prefixes: Vec<NamePrefixRow>,
 }
 
 fn rows<T: serde::de::DeserializeOwned>(text: &str) -> Vec<T> {
@@ -96,8 +96,8 @@ fn rows<T: serde::de::DeserializeOwned>(text: &str) -> Vec<T> {
         .expect("the tables of assets/ are checked by this file's tests")
 }
 
-fn tables() -> &'static Tables {
-    static TABLES: OnceLock<Tables> = OnceLock::new();
+fn tables() -> &'static FurnitureTables {
+    static TABLES: OnceLock<FurnitureTables> = OnceLock::new();
     TABLES.get_or_init(|| {
         let rows_of_categories: Vec<CategoryRow> =
             rows(include_str!("../../../assets/categories.csv"));
@@ -122,7 +122,7 @@ fn tables() -> &'static Tables {
                     .or_insert_with(|| kind.clone());
             }
         }
-        let mut prefixes: Vec<PrefixRow> =
+        let mut prefixes: Vec<NamePrefixRow> =
             rows(include_str!("../../../assets/texture_substances.csv"));
         prefixes.sort_by(|a, b| {
             b.prefix
@@ -130,7 +130,7 @@ fn tables() -> &'static Tables {
                 .cmp(&a.prefix.len())
                 .then_with(|| a.prefix.cmp(&b.prefix))
         });
-        Tables {
+        FurnitureTables {
             categories,
             rooms,
             prefixes,

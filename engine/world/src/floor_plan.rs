@@ -63,7 +63,7 @@ pub fn floor_plan(world: &World, level: LevelId) -> FloorPlan {
     let rooms = here().map(|(id, room)| PlanRoom {
         name: room.name.clone(),
         kinds: room.kinds.clone(),
-        area_m2: house.footprint_area_m2(id),
+        area_m2: house.exclusive_area_m2(id),
         place: place(house, id).to_array(),
     });
     let low = here()

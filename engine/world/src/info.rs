@@ -26,7 +26,7 @@ pub fn info(engines: &Engines, report: &Value) -> Value {
         .iter_ids()
         .map(|(id, room)| {
             let objects = house.objects.iter().filter(|object| object.room == Some(id)).count();
-            json!({"name": room.name, "kinds": room.kinds, "level": room.level.0, "area_m2": house.footprint_area_m2(id), "objects": objects})
+            json!({"name": room.name, "kinds": room.kinds, "level": room.level.0, "area_m2": house.exclusive_area_m2(id), "objects": objects})
         })
         .collect();
     let starts: Vec<Value> = house
@@ -134,7 +134,7 @@ fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoi
     Viewpoint {
         name: room.name.clone(),
         kinds: room.kinds.clone(),
-        area_m2: house.footprint_area_m2(id),
+        area_m2: house.exclusive_area_m2(id),
         floor_y: room.floor_y,
         eye: best.1.to_array(),
         yaw_deg: wrap_angle(best.2).to_degrees(),

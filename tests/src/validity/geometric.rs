@@ -2,7 +2,7 @@
 
 use super::Fault;
 use dwell_furniture::tables::category;
-use dwell_furniture::testing::overlap::{Convex, deepest, object_pieces, part_pieces};
+use dwell_furniture::testing::overlap::{ConvexPiece, deepest, object_pieces, part_pieces};
 use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{Aabb, House, ObjectId, State};
 use glam::Vec2;
@@ -16,7 +16,7 @@ const STATIONS: usize = 6;
 /// An object's collision pieces where they are at the start.
 struct Body {
     id: ObjectId,
-    pieces: Vec<Convex>,
+    pieces: Vec<ConvexPiece>,
     bounds: Aabb,
 }
 
@@ -43,7 +43,7 @@ pub(super) fn faults(house: &House) -> Vec<Fault> {
     faults.collect()
 }
 
-fn around(pieces: &[Convex]) -> Aabb {
+fn around(pieces: &[ConvexPiece]) -> Aabb {
     pieces
         .iter()
         .fold(Aabb::EMPTY, |bounds, piece| bounds.union(&piece.bounds))

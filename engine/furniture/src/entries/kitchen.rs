@@ -1,16 +1,16 @@
 //! Fitted kitchens, their appliances, and crockery.
 
 use super::tapped;
-use crate::draw::Draw;
-use crate::finish::{Finish, glass, painted_steel, paper, plastic, steel};
+use crate::finishes::{Finish, glass, painted_steel, paper, plastic, steel};
 use crate::model::Model;
-use crate::models::kitchen_unit::{Bay, KitchenUnit, WORKTOP_M, wall_cabinet as cabinets};
+use crate::models::kitchen_unit::{KitchenUnit, UnitKind, WORKTOP_M, wall_cabinet as cabinets};
 use crate::models::{appliances, cooker, crockery, food, fridge, taps};
+use crate::sampling::SizeSampler;
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 
 /// The casing of an appliance: the style's, or white, or steel.
-fn casing(style: &Style, d: &Draw, name: &'static str) -> Finish {
+fn casing(style: &Style, d: &SizeSampler, name: &'static str) -> Finish {
     let white = Finish {
         name,
         srgb: [238, 239, 240],
@@ -31,7 +31,7 @@ fn casing(style: &Style, d: &Draw, name: &'static str) -> Finish {
     }
 }
 
-fn run(style: &Style, bay_m: f32, bays: Vec<Bay>) -> Model {
+fn run(style: &Style, bay_m: f32, bays: Vec<UnitKind>) -> Model {
     KitchenUnit {
         bay_m,
         bays,
@@ -42,26 +42,32 @@ fn run(style: &Style, bay_m: f32, bays: Vec<Bay>) -> Model {
 }
 
 pub(crate) fn base_unit_1(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("base_unit_1", key);
+    let d = SizeSampler::new("base_unit_1", key);
     run(
         style,
         d.m("width"),
-        vec![d.of("bay", [Bay::Door, Bay::Drawers])],
+        vec![d.of("bay", [UnitKind::Door, UnitKind::Drawers])],
     )
 }
 
 pub(crate) fn base_unit_2(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("base_unit_2", key);
+    let d = SizeSampler::new("base_unit_2", key);
     let bays = d.of(
         "order",
-        [[Bay::Door, Bay::Drawers], [Bay::Drawers, Bay::Door]],
+        [
+            [UnitKind::Door, UnitKind::Drawers],
+            [UnitKind::Drawers, UnitKind::Door],
+        ],
     );
     run(style, 0.5 * d.m("width"), bays.to_vec())
 }
 
 /// A run with a sink and its tap.
-fn sink(style: &Style, d: &Draw, bay_m: f32, bays: Vec<Bay>) -> Model {
-    let place = bays.iter().position(|bay| *bay == Bay::Sink).unwrap_or(0);
+fn sink(style: &Style, d: &SizeSampler, bay_m: f32, bays: Vec<UnitKind>) -> Model {
+    let place = bays
+        .iter()
+        .position(|bay| *bay == UnitKind::Sink)
+        .unwrap_or(0);
     let middle = bay_m * (place as f32 + 0.5 - 0.5 * bays.len() as f32);
     let sizes = [d.range("tap", 0.2, 0.3), d.range("reach", 0.16, 0.19)];
     tapped(
@@ -75,24 +81,24 @@ fn sink(style: &Style, d: &Draw, bay_m: f32, bays: Vec<Bay>) -> Model {
 }
 
 pub(crate) fn sink_unit(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("sink_unit", key);
-    sink(style, &d, d.m("width"), vec![Bay::Sink])
+    let d = SizeSampler::new("sink_unit", key);
+    sink(style, &d, d.m("width"), vec![UnitKind::Sink])
 }
 
 pub(crate) fn sink_unit_2(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("sink_unit_2", key);
-    let other = d.of("other", [Bay::Door, Bay::Drawers]);
-    let bays = d.of("order", [[Bay::Sink, other], [other, Bay::Sink]]);
+    let d = SizeSampler::new("sink_unit_2", key);
+    let other = d.of("other", [UnitKind::Door, UnitKind::Drawers]);
+    let bays = d.of("order", [[UnitKind::Sink, other], [other, UnitKind::Sink]]);
     sink(style, &d, 0.5 * d.m("width"), bays.to_vec())
 }
 
 pub(crate) fn sink_unit_3(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("sink_unit_3", key);
-    let other = d.of("other", [Bay::Door, Bay::Drawers]);
+    let d = SizeSampler::new("sink_unit_3", key);
+    let other = d.of("other", [UnitKind::Door, UnitKind::Drawers]);
     let orders = [
-        [Bay::Drawers, Bay::Sink, other],
-        [other, Bay::Sink, Bay::Drawers],
-        [Bay::Sink, Bay::Door, Bay::Drawers],
+        [UnitKind::Drawers, UnitKind::Sink, other],
+        [other, UnitKind::Sink, UnitKind::Drawers],
+        [UnitKind::Sink, UnitKind::Door, UnitKind::Drawers],
     ];
     sink(
         style,
@@ -103,7 +109,7 @@ pub(crate) fn sink_unit_3(style: &Style, key: RandomKey) -> Model {
 }
 
 fn cabinet(style: &Style, name: &'static str, key: RandomKey, doors: usize) -> Model {
-    let d = Draw::new(name, key);
+    let d = SizeSampler::new(name, key);
     cabinets(
         doors,
         d.m("width") / doors as f32,
@@ -125,18 +131,18 @@ pub(crate) fn wall_cabinet_3(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn refrigerator(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("refrigerator", key);
+    let d = SizeSampler::new("refrigerator", key);
     let case = casing(style, &d, "fridge_casing");
     fridge::refrigerator(d.m("width"), d.m("height"), d.m("depth")).repainted("fridge_white", &case)
 }
 
 pub(crate) fn stove(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("cooker", key);
+    let d = SizeSampler::new("cooker", key);
     cooker::cooker().repainted("cooker_steel", &casing(style, &d, "cooker_casing"))
 }
 
 pub(crate) fn range_hood(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("range_hood", key);
+    let d = SizeSampler::new("range_hood", key);
     let shine = if d.chance("dark", 0.3) {
         painted_steel("hood_black", [44, 44, 47])
     } else {
@@ -149,19 +155,19 @@ pub(crate) fn range_hood(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn microwave(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("microwave", key);
+    let d = SizeSampler::new("microwave", key);
     appliances::microwave()
         .resized(d.m("width") / 0.48)
         .repainted("microwave_white", &casing(style, &d, "microwave_casing"))
 }
 
 pub(crate) fn washer(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("washer", key);
+    let d = SizeSampler::new("washer", key);
     appliances::washer().repainted("washer_white", &casing(style, &d, "washer_casing"))
 }
 
 pub(crate) fn kettle(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("kettle", key);
+    let d = SizeSampler::new("kettle", key);
     let tone = style.cloth(&mut d.stream("tone")).srgb;
     let body = match d.below("body", 3) {
         0 => painted_steel("kettle_enamel", tone),
@@ -177,7 +183,7 @@ pub(crate) fn kettle(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn toaster(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("toaster", key);
+    let d = SizeSampler::new("toaster", key);
     let tone = style.cloth(&mut d.stream("tone")).srgb;
     let case = plastic(
         "toaster_case",
@@ -192,7 +198,7 @@ pub(crate) fn toaster(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn coffee_machine(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("coffee_machine", key);
+    let d = SizeSampler::new("coffee_machine", key);
     let tone = style.cloth(&mut d.stream("tone")).srgb;
     let case = plastic(
         "coffee_machine_case",
@@ -204,7 +210,7 @@ pub(crate) fn coffee_machine(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn mixer_tap(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("mixer_tap", key);
+    let d = SizeSampler::new("mixer_tap", key);
     let metal = Finish {
         name: "tap_metal",
         substance: "chrome",
@@ -219,7 +225,7 @@ pub(crate) fn mixer_tap(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn bottle(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("bottle", key);
+    let d = SizeSampler::new("bottle", key);
     let body = Finish {
         srgb: d.of("glass", [[52, 92, 60], [110, 60, 40], [186, 206, 214]]),
         ..glass()
@@ -247,12 +253,12 @@ pub(crate) fn bottle(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn bowl(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("bowl", key);
+    let d = SizeSampler::new("bowl", key);
     crockery::bowl(0.5 * d.m("width"), style.glaze(&mut d.stream("glaze")))
 }
 
 pub(crate) fn jar(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("jar", key);
+    let d = SizeSampler::new("jar", key);
     let lid = if d.chance("wood", 0.5) {
         style.wood.clone()
     } else {
@@ -262,17 +268,17 @@ pub(crate) fn jar(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn mug(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("mug", key);
+    let d = SizeSampler::new("mug", key);
     crockery::mug(style.glaze(&mut d.stream("glaze"))).resized(d.m("height") / 0.095)
 }
 
 pub(crate) fn plate(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("plate", key);
+    let d = SizeSampler::new("plate", key);
     crockery::plate(0.5 * d.m("width"), style.glaze(&mut d.stream("glaze")))
 }
 
 pub(crate) fn pan(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("pan", key);
+    let d = SizeSampler::new("pan", key);
     let iron = painted_steel(
         "pan_metal",
         d.of("metal", [[40, 40, 42], [168, 171, 175], [150, 60, 40]]),
@@ -281,7 +287,7 @@ pub(crate) fn pan(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn pot(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("pot", key);
+    let d = SizeSampler::new("pot", key);
     let tone = style.cloth(&mut d.stream("tone")).srgb;
     let metal = if d.chance("enamel", 0.5) {
         painted_steel("pot_enamel", tone)
@@ -297,11 +303,11 @@ pub(crate) fn pot(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn tumbler(_style: &Style, key: RandomKey) -> Model {
-    crockery::tumbler().resized(Draw::new("tumbler", key).m("height") / 0.12)
+    crockery::tumbler().resized(SizeSampler::new("tumbler", key).m("height") / 0.12)
 }
 
 pub(crate) fn utensils(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("utensils", key);
+    let d = SizeSampler::new("utensils", key);
     let cup = Finish {
         name: "beaker",
         substance: "steel",
@@ -313,11 +319,11 @@ pub(crate) fn utensils(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn bread(_style: &Style, key: RandomKey) -> Model {
-    food::bread().resized(Draw::new("bread", key).m("width") / 0.26)
+    food::bread().resized(SizeSampler::new("bread", key).m("width") / 0.26)
 }
 
 pub(crate) fn cutting_board(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("cutting_board", key);
+    let d = SizeSampler::new("cutting_board", key);
     let wood = &style.wood;
     let board = food::cutting_board().resized(d.m("width") / 0.38);
     if wood.pattern.is_some() && wood.tile_m > 0.0 {
@@ -328,23 +334,23 @@ pub(crate) fn cutting_board(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn fruit(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("fruit", key);
+    let d = SizeSampler::new("fruit", key);
     let skins = [food::red_skin(), food::green_skin(), food::orange_skin()];
     food::fruit(0.5 * d.m("width"), &skins[d.below("skin", 3)])
 }
 
 pub(crate) fn knife_block(_style: &Style, key: RandomKey) -> Model {
-    food::knife_block().resized(Draw::new("knife_block", key).m("height") / 0.31)
+    food::knife_block().resized(SizeSampler::new("knife_block", key).m("height") / 0.31)
 }
 
 pub(crate) fn knife(_style: &Style, key: RandomKey) -> Model {
-    food::cutlery("knife").resized(Draw::new("knife", key).m("depth") / 0.21)
+    food::cutlery("knife").resized(SizeSampler::new("knife", key).m("depth") / 0.21)
 }
 
 pub(crate) fn fork(_style: &Style, key: RandomKey) -> Model {
-    food::cutlery("fork").resized(Draw::new("fork", key).m("depth") / 0.2)
+    food::cutlery("fork").resized(SizeSampler::new("fork", key).m("depth") / 0.2)
 }
 
 pub(crate) fn spoon(_style: &Style, key: RandomKey) -> Model {
-    food::cutlery("spoon").resized(Draw::new("spoon", key).m("depth") / 0.205)
+    food::cutlery("spoon").resized(SizeSampler::new("spoon", key).m("depth") / 0.205)
 }

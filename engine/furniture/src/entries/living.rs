@@ -1,33 +1,35 @@
 //! Seats, tables to work at, shelves, lamps, plants.
 
 use super::shade;
-use crate::draw::Draw;
-use crate::finish::{Finish, black};
+use crate::finishes::{Finish, black};
 use crate::model::Model;
 use crate::models::bookshelf::Bookshelf;
 use crate::models::desk::Desk;
 use crate::models::dresser::Dresser;
 use crate::models::plants::{Plant, deep_green, fresh_green};
-use crate::models::sofa::{Arm, Sofa};
+use crate::models::sofa::{ArmStyle, Sofa};
 use crate::models::table::Table;
 use crate::models::tv_stand::Lowboard;
 use crate::models::{lamps, plants, radio, seats, television, textiles};
-use crate::style::{Leg, Style};
+use crate::sampling::SizeSampler;
+use crate::style::{LegStyle, Style};
 use dwell_scene::random::RandomKey;
 
 /// Builds and proportions that seats of one family share.
-fn seat(style: &Style, d: &Draw, cover: Finish) -> Sofa {
+fn seat(style: &Style, d: &SizeSampler, cover: Finish) -> Sofa {
     let arm = match style.leg {
-        Leg::Turned => d.of("arm", [Arm::Rolled, Arm::Rolled, Arm::Block]),
-        Leg::Metal => Arm::Block,
-        Leg::Tapered | Leg::Square => d.of("arm", [Arm::Block, Arm::Block, Arm::Wood]),
+        LegStyle::Turned => d.of("arm", [ArmStyle::Rolled, ArmStyle::Rolled, ArmStyle::Block]),
+        LegStyle::Metal => ArmStyle::Block,
+        LegStyle::Tapered | LegStyle::Square => {
+            d.of("arm", [ArmStyle::Block, ArmStyle::Block, ArmStyle::Wood])
+        }
     };
     Sofa {
         arm,
         arm_m: match arm {
-            Arm::Block => d.range("arm_m", 0.09, 0.2),
-            Arm::Rolled => d.range("arm_m", 0.14, 0.19),
-            Arm::Wood => 0.06,
+            ArmStyle::Block => d.range("arm_m", 0.09, 0.2),
+            ArmStyle::Rolled => d.range("arm_m", 0.14, 0.19),
+            ArmStyle::Wood => 0.06,
         },
         arm_top_m: d.range("arm_top", 0.54, 0.65),
         leg_m: d.range("leg", 0.07, 0.18),
@@ -39,7 +41,7 @@ fn seat(style: &Style, d: &Draw, cover: Finish) -> Sofa {
 }
 
 pub(crate) fn sofa(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("sofa", key);
+    let d = SizeSampler::new("sofa", key);
     let family = seat(style, &d, style.cover(&mut d.stream("cover")).clone());
     let width = d.m("width") - 2.0 * family.arm_m;
     let seats = ((width / 0.64).round() as usize).clamp(2, 3);
@@ -52,7 +54,7 @@ pub(crate) fn sofa(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn armchair(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("armchair", key);
+    let d = SizeSampler::new("armchair", key);
     let family = seat(style, &d, style.cover(&mut d.stream("cover")).clone());
     Sofa {
         seat_width_m: d.m("width") - 2.0 * family.arm_m,
@@ -62,24 +64,24 @@ pub(crate) fn armchair(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn office_chair(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("office_chair", key);
+    let d = SizeSampler::new("office_chair", key);
     seats::office_chair(style.cover(&mut d.stream("cover"))).resized(d.m("height") / 1.08)
 }
 
 pub(crate) fn stool(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("stool", key);
+    let d = SizeSampler::new("stool", key);
     let wood = style.any_wood(&mut d.stream("wood"));
     seats::stool(d.m("height"), wood, style.leg_finish())
 }
 
 pub(crate) fn ottoman(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("ottoman", key);
+    let d = SizeSampler::new("ottoman", key);
     let cover = style.cover(&mut d.stream("cover"));
     seats::pouf(0.5 * d.m("width"), d.m("height"), cover)
 }
 
 pub(crate) fn shoe_bench(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("shoe_bench", key);
+    let d = SizeSampler::new("shoe_bench", key);
     let (wood, cloth) = (
         style.any_wood(&mut d.stream("wood")),
         style.cloth(&mut d.stream("cloth")),
@@ -88,7 +90,7 @@ pub(crate) fn shoe_bench(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn desk(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("desk", key);
+    let d = SizeSampler::new("desk", key);
     let wood = style.any_wood(&mut d.stream("wood")).clone();
     if d.chance("plain", 0.3) {
         return Table {
@@ -120,7 +122,7 @@ pub(crate) fn desk(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn bookshelf(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("bookshelf", key);
+    let d = SizeSampler::new("bookshelf", key);
     let height = d.m("height");
     Bookshelf {
         width_m: d.m("width"),
@@ -133,7 +135,7 @@ pub(crate) fn bookshelf(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn dresser(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("dresser", key);
+    let d = SizeSampler::new("dresser", key);
     let height = d.m("height");
     Dresser {
         width_m: d.m("width"),
@@ -146,7 +148,7 @@ pub(crate) fn dresser(style: &Style, key: RandomKey) -> Model {
     .build()
 }
 
-fn lowboard(style: &Style, d: &Draw, name: &'static str, category: &'static str) -> Model {
+fn lowboard(style: &Style, d: &SizeSampler, name: &'static str, category: &'static str) -> Model {
     Lowboard {
         name,
         category,
@@ -160,20 +162,25 @@ fn lowboard(style: &Style, d: &Draw, name: &'static str, category: &'static str)
 }
 
 pub(crate) fn tv_stand(style: &Style, key: RandomKey) -> Model {
-    lowboard(style, &Draw::new("tv_stand", key), "tv_stand", "tv_stand")
+    lowboard(
+        style,
+        &SizeSampler::new("tv_stand", key),
+        "tv_stand",
+        "tv_stand",
+    )
 }
 
 pub(crate) fn sideboard(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("sideboard", key);
+    let d = SizeSampler::new("sideboard", key);
     lowboard(style, &d, "sideboard", "wardrobe_cabinet")
 }
 
 pub(crate) fn television(_style: &Style, key: RandomKey) -> Model {
-    television::television(Draw::new("television", key).m("width"))
+    television::television(SizeSampler::new("television", key).m("width"))
 }
 
 pub(crate) fn loudspeaker(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("loudspeaker", key);
+    let d = SizeSampler::new("loudspeaker", key);
     let case = style.any_wood(&mut d.stream("wood"));
     let plain = Finish::plain("speaker_case", "wood", case.srgb);
     let case = if case.pattern.is_some() {
@@ -184,12 +191,12 @@ pub(crate) fn loudspeaker(style: &Style, key: RandomKey) -> Model {
     let height = d.m("height");
     radio::loudspeaker(height)
         .switched(false)
-        .sounding([0.0, 0.66 * height, 0.14], "radio", 70.0)
+        .with_sound([0.0, 0.66 * height, 0.14], "radio", 70.0)
         .repainted("walnut", &case)
 }
 
 pub(crate) fn floor_lamp(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("floor_lamp", key);
+    let d = SizeSampler::new("floor_lamp", key);
     let cloth = shade(style, &d);
     if d.chance("tripod", 0.35) {
         let legs = style.any_wood(&mut d.stream("legs"));
@@ -203,13 +210,13 @@ pub(crate) fn floor_lamp(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn table_lamp(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("table_lamp", key);
+    let d = SizeSampler::new("table_lamp", key);
     let base = style.glaze(&mut d.stream("base"));
     lamps::table_lamp(d.m("height"), base, &shade(style, &d))
 }
 
 pub(crate) fn desk_lamp(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("desk_lamp", key);
+    let d = SizeSampler::new("desk_lamp", key);
     let accent = Finish::plain(
         "lamp_lacquer",
         "steel",
@@ -224,7 +231,7 @@ pub(crate) fn desk_lamp(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn plant(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("plant", key);
+    let d = SizeSampler::new("plant", key);
     let height = d.m("height");
     let pot = style.glaze(&mut d.stream("pot")).clone();
     Plant {
@@ -245,12 +252,12 @@ pub(crate) fn plant(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn snake_plant(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("snake_plant", key);
+    let d = SizeSampler::new("snake_plant", key);
     plants::sansevieria(d.m("height"), style.glaze(&mut d.stream("pot")))
 }
 
 pub(crate) fn small_plant(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("small_plant", key);
+    let d = SizeSampler::new("small_plant", key);
     let height = d.m("height");
     Plant {
         height_m: height,
@@ -270,7 +277,7 @@ pub(crate) fn small_plant(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn rug(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("rug", key);
+    let d = SizeSampler::new("rug", key);
     let [a, b] = ["ground", "border"].map(|tone| style.cloth(&mut d.stream(tone)).srgb);
     let pattern = d.stream("pattern").bits();
     let recipe = d.of("recipe", ["rug", "rug", "stripes", "checks"]);
@@ -285,12 +292,12 @@ pub(crate) fn rug(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn round_rug(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("round_rug", key);
+    let d = SizeSampler::new("round_rug", key);
     textiles::round_rug(0.5 * d.m("width"), style.terry(&mut d.stream("pile")))
 }
 
 pub(crate) fn coat_rack(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("coat_rack", key);
+    let d = SizeSampler::new("coat_rack", key);
     let tones = [
         [60, 66, 90],
         [120, 84, 60],
@@ -298,7 +305,7 @@ pub(crate) fn coat_rack(style: &Style, key: RandomKey) -> Model {
         [44, 44, 48],
         [150, 60, 60],
     ];
-    let coat = crate::finish::cloth("coat", d.of("coat", tones));
+    let coat = crate::finishes::cloth("coat", d.of("coat", tones));
     let scarf = style.cloth(&mut d.stream("scarf"));
     textiles::coat_rack(d.m("width"), &coat, scarf)
         .repainted("oak", style.any_wood(&mut d.stream("wood")))

@@ -8,17 +8,17 @@ pub(crate) mod small;
 pub(crate) mod walls;
 
 use super::style::Style;
-use crate::draw::Draw;
-use crate::finish::{Finish, lampshade};
+use crate::finishes::{Finish, lampshade};
 use crate::model::Model;
 use crate::models::lamps::linen_shade;
 use crate::models::taps::mixer_tap;
+use crate::sampling::SizeSampler;
 use crate::shapes::turn;
 use dwell_scene::Pose;
 use glam::Vec3;
 
 /// A lit shade in a calm tone of the style.
-fn shade(style: &Style, d: &Draw) -> Finish {
+fn shade(style: &Style, d: &SizeSampler) -> Finish {
     if d.chance("linen", 0.5) {
         linen_shade()
     } else {
@@ -31,7 +31,7 @@ fn shade(style: &Style, d: &Draw) -> Finish {
 fn tapped(
     basin: Model,
     style: &Style,
-    d: &Draw,
+    d: &SizeSampler,
     sizes_m: [f32; 2],
     at: [f32; 3],
     turn_rad: f32,

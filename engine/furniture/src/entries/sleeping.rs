@@ -1,18 +1,18 @@
 //! Beds and what stands in bedrooms.
 
-use crate::draw::Draw;
 use crate::model::Model;
 use crate::models::bed::Bed;
 use crate::models::nightstand::nightstand_with;
 use crate::models::textiles;
 use crate::models::wardrobe::Wardrobe;
-use crate::style::{Leg, Style};
+use crate::sampling::SizeSampler;
+use crate::style::{LegStyle, Style};
 use dwell_scene::random::RandomKey;
 
-fn bed(style: &Style, d: &Draw) -> Model {
+fn bed(style: &Style, d: &SizeSampler) -> Model {
     let covered = d.chance("covered", 0.4);
     // Turned and heavy legs go with bars.
-    let old = matches!(style.leg, Leg::Turned | Leg::Square);
+    let old = matches!(style.leg, LegStyle::Turned | LegStyle::Square);
     Bed {
         mattress_m: [d.m("width") - 0.14, d.m("depth") - 0.13],
         head_m: d.m("height"),
@@ -26,21 +26,21 @@ fn bed(style: &Style, d: &Draw) -> Model {
 }
 
 pub(crate) fn double_bed(style: &Style, key: RandomKey) -> Model {
-    bed(style, &Draw::new("double_bed", key))
+    bed(style, &SizeSampler::new("double_bed", key))
 }
 
 pub(crate) fn single_bed(style: &Style, key: RandomKey) -> Model {
-    bed(style, &Draw::new("single_bed", key))
+    bed(style, &SizeSampler::new("single_bed", key))
 }
 
 pub(crate) fn nightstand(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("nightstand", key);
+    let d = SizeSampler::new("nightstand", key);
     let wood = style.any_wood(&mut d.stream("wood"));
     nightstand_with(d.m("width"), d.m("height"), wood, &style.doors())
 }
 
 pub(crate) fn wardrobe(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("wardrobe", key);
+    let d = SizeSampler::new("wardrobe", key);
     let width = d.m("width");
     Wardrobe {
         width_m: width,
@@ -54,7 +54,7 @@ pub(crate) fn wardrobe(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn pillow(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("pillow", key);
+    let d = SizeSampler::new("pillow", key);
     textiles::pillow(
         [d.m("width"), d.m("height"), d.m("depth")],
         &style.cloths[0],
@@ -62,7 +62,7 @@ pub(crate) fn pillow(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn cushion(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("cushion", key);
+    let d = SizeSampler::new("cushion", key);
     let edge = d.m("width");
     textiles::pillow(
         [edge, d.m("height"), edge],
@@ -71,7 +71,7 @@ pub(crate) fn cushion(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn folded_blanket(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("folded_blanket", key);
+    let d = SizeSampler::new("folded_blanket", key);
     textiles::folded_blanket(
         d.m("width"),
         d.m("depth"),

@@ -1,14 +1,14 @@
 //! Books, toys, gadgets, ornaments.
 
-use crate::draw::Draw;
-use crate::finish::{Finish, leather, plastic, upholstery};
+use crate::finishes::{Finish, leather, plastic, upholstery};
 use crate::model::Model;
 use crate::models::{bookshelf, decoration, gadgets, lamps, plants, radio};
+use crate::sampling::SizeSampler;
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 
 pub(crate) fn book(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("book", key);
+    let d = SizeSampler::new("book", key);
     bookshelf::book(
         [d.m("width"), d.m("height"), d.m("depth")],
         d.below("cover", 8),
@@ -16,12 +16,12 @@ pub(crate) fn book(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn book_row(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("book_row", key);
+    let d = SizeSampler::new("book_row", key);
     bookshelf::book_row(d.m("row"), d.m("tall"), key.child("row"))
 }
 
 pub(crate) fn magazines(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("magazines", key);
+    let d = SizeSampler::new("magazines", key);
     let cover = |k: usize| {
         let colors = [0, 1, 2].map(|n| style.cloths[(k + n) % style.cloths.len()].srgb);
         let recipe = ["cover", "shapes", "landscape"][k];
@@ -31,7 +31,7 @@ pub(crate) fn magazines(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn globe(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("globe", key);
+    let d = SizeSampler::new("globe", key);
     let globe = decoration::globe().resized(d.m("height") / 0.285);
     let wood = &style.wood;
     if wood.tile_m > 0.0 {
@@ -42,7 +42,7 @@ pub(crate) fn globe(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn handbag(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("handbag", key);
+    let d = SizeSampler::new("handbag", key);
     let hide = leather(
         "bag_leather",
         d.of(
@@ -62,12 +62,12 @@ pub(crate) fn handbag(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn sculpture(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("sculpture", key);
+    let d = SizeSampler::new("sculpture", key);
     decoration::sculpture(style.glaze(&mut d.stream("stone"))).resized(d.m("height") / 0.194)
 }
 
 pub(crate) fn storage_box(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("storage_box", key);
+    let d = SizeSampler::new("storage_box", key);
     let card = Finish::plain(
         "storage_card",
         "paper",
@@ -90,7 +90,7 @@ pub(crate) fn storage_box(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn pencil_cup(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("pencil_cup", key);
+    let d = SizeSampler::new("pencil_cup", key);
     let cup = plastic(
         "pencil_cup_plastic",
         style.cloth(&mut d.stream("tone")).srgb,
@@ -101,7 +101,7 @@ pub(crate) fn pencil_cup(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn shoes(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("shoes", key);
+    let d = SizeSampler::new("shoes", key);
     let hide = leather(
         "shoe_leather",
         d.of(
@@ -119,7 +119,7 @@ pub(crate) fn shoes(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn teddy_bear(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("teddy_bear", key);
+    let d = SizeSampler::new("teddy_bear", key);
     let plush = upholstery(
         "plush",
         d.of(
@@ -136,7 +136,7 @@ pub(crate) fn teddy_bear(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn toy_ball(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("toy_ball", key);
+    let d = SizeSampler::new("toy_ball", key);
     let rubber = Finish::plain(
         "toy_rubber",
         "rubber",
@@ -146,7 +146,7 @@ pub(crate) fn toy_ball(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn toy_train(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("toy_train", key);
+    let d = SizeSampler::new("toy_train", key);
     let tones = [
         [196, 52, 44],
         [54, 96, 168],
@@ -166,7 +166,7 @@ pub(crate) fn toy_train(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn toy_block(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("toy_block", key);
+    let d = SizeSampler::new("toy_block", key);
     let tone = d.of(
         "tone",
         [[196, 52, 44], [54, 96, 168], [236, 190, 60], [76, 150, 90]],
@@ -175,7 +175,7 @@ pub(crate) fn toy_block(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn alarm_clock(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("alarm_clock", key);
+    let d = SizeSampler::new("alarm_clock", key);
     let case = plastic("alarm_clock_case", style.glaze(&mut d.stream("tone")).srgb);
     gadgets::alarm_clock()
         .resized(d.m("height") / 0.11)
@@ -183,8 +183,8 @@ pub(crate) fn alarm_clock(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn laptop(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("laptop", key);
-    let case = crate::finish::device(
+    let d = SizeSampler::new("laptop", key);
+    let case = crate::finishes::device(
         "laptop_case",
         d.of(
             "case",
@@ -202,11 +202,11 @@ pub(crate) fn laptop(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn remote_control(_style: &Style, key: RandomKey) -> Model {
-    gadgets::remote_control().resized(Draw::new("remote_control", key).m("depth") / 0.17)
+    gadgets::remote_control().resized(SizeSampler::new("remote_control", key).m("depth") / 0.17)
 }
 
 pub(crate) fn telephone(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("telephone", key);
+    let d = SizeSampler::new("telephone", key);
     let case = plastic(
         "telephone_case",
         d.of(
@@ -220,7 +220,7 @@ pub(crate) fn telephone(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn candle(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("candle", key);
+    let d = SizeSampler::new("candle", key);
     let wax = Finish::plain(
         "candle_wax",
         "wax",
@@ -238,16 +238,16 @@ pub(crate) fn candle(_style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn night_light(_style: &Style, key: RandomKey) -> Model {
-    lamps::night_light().resized(Draw::new("night_light", key).m("height") / 0.132)
+    lamps::night_light().resized(SizeSampler::new("night_light", key).m("height") / 0.132)
 }
 
 pub(crate) fn vase(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("vase", key);
+    let d = SizeSampler::new("vase", key);
     plants::vase(d.m("height"), style.glaze(&mut d.stream("glaze")), None)
 }
 
 pub(crate) fn wireless(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("radio", key);
+    let d = SizeSampler::new("radio", key);
     let wood = &style.wood;
     let set = radio::radio(d.chance("on", 0.25)).resized(d.m("width") / 0.3);
     if wood.tile_m > 0.0 {

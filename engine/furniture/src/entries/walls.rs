@@ -1,11 +1,11 @@
 //! What hangs on walls and ceilings.
 
 use super::shade;
-use crate::draw::Draw;
-use crate::finish::{Finish, cloth};
+use crate::finishes::{Finish, cloth};
 use crate::model::Model;
 use crate::models::textiles::Curtains;
 use crate::models::{bookshelf, decoration, gadgets, lamps, openings};
+use crate::sampling::SizeSampler;
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 
@@ -21,7 +21,7 @@ const MOTIFS: [&str; 7] = [
 ];
 
 /// A printed or painted picture in tones of the style.
-fn image(style: &Style, d: &Draw) -> Finish {
+fn image(style: &Style, d: &SizeSampler) -> Finish {
     let tones = ["first", "second", "third"].map(|tone| style.cloth(&mut d.stream(tone)).srgb);
     let recipe = d.of("motif", MOTIFS);
     let seed = 1 + d.below("seed", 5) as u64;
@@ -35,19 +35,19 @@ fn image(style: &Style, d: &Draw) -> Finish {
 }
 
 pub(crate) fn picture(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("picture", key);
+    let d = SizeSampler::new("picture", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let wood = style.any_wood(&mut d.stream("wood"));
     decoration::picture(w, h, wood, &image(style, &d))
 }
 
 pub(crate) fn poster(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("poster", key);
+    let d = SizeSampler::new("poster", key);
     decoration::poster(d.m("width"), d.m("height"), &image(style, &d))
 }
 
 pub(crate) fn wall_clock(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("wall_clock", key);
+    let d = SizeSampler::new("wall_clock", key);
     let rim = Finish {
         name: "clock_rim",
         substance: "plastic",
@@ -57,7 +57,7 @@ pub(crate) fn wall_clock(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn wall_shelf(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("wall_shelf", key);
+    let d = SizeSampler::new("wall_shelf", key);
     bookshelf::wall_shelf(
         d.m("width"),
         d.m("depth"),
@@ -66,7 +66,7 @@ pub(crate) fn wall_shelf(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn curtains(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("curtains", key);
+    let d = SizeSampler::new("curtains", key);
     let tone = style.cloth(&mut d.stream("cloth")).srgb;
     let substance = d.of("weight", ["light_curtain", "heavy_curtain"]);
     // The ends of the rod stand 62 mm over.
@@ -83,25 +83,25 @@ pub(crate) fn curtains(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn radiator(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("radiator", key);
+    let d = SizeSampler::new("radiator", key);
     openings::radiator(d.m("width"), d.m("height")).switched(true)
 }
 
 pub(crate) fn light_switch(_style: &Style, key: RandomKey) -> Model {
-    openings::light_switch().resized(Draw::new("light_switch", key).m("width") / 0.08)
+    openings::light_switch().resized(SizeSampler::new("light_switch", key).m("width") / 0.08)
 }
 
 pub(crate) fn ceiling_lamp(_style: &Style, key: RandomKey) -> Model {
-    lamps::ceiling_dome(0.5 * Draw::new("ceiling_lamp", key).m("width"), 14.0)
+    lamps::ceiling_dome(0.5 * SizeSampler::new("ceiling_lamp", key).m("width"), 14.0)
 }
 
 pub(crate) fn drum_lamp(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("drum_lamp", key);
+    let d = SizeSampler::new("drum_lamp", key);
     lamps::drum(d.m("height"), 0.5 * d.m("width"), &shade(style, &d), 14.0)
 }
 
 pub(crate) fn pendant(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("pendant", key);
+    let d = SizeSampler::new("pendant", key);
     let tone = style.glaze(&mut d.stream("tone")).srgb;
     let lacquer = Finish::plain("pendant_lacquer", "steel", tone);
     let metal = if d.chance("metal", 0.5) {
@@ -113,5 +113,5 @@ pub(crate) fn pendant(style: &Style, key: RandomKey) -> Model {
 }
 
 pub(crate) fn mirror_lamp(_style: &Style, key: RandomKey) -> Model {
-    lamps::mirror_lamp(Draw::new("mirror_lamp", key).m("width"))
+    lamps::mirror_lamp(SizeSampler::new("mirror_lamp", key).m("width"))
 }

@@ -1,8 +1,10 @@
 //! Small kitchen appliances and the washing machine.
 
-use crate::finish::{Finish, black, chrome, enamel, glass, plastic, steel};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, block, cylinder, lathe, ring, rod, rounded_block, tube};
+use crate::finishes::{Finish, black, chrome, enamel, glass, plastic, steel};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{
+    SolidMesh, block, cylinder, ring, rod, rounded_block, surface_of_revolution, tube,
+};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 
@@ -20,7 +22,7 @@ pub fn kettle() -> Model {
         8,
     );
     let spout = rod([0.06, 0.15, 0.0], [0.1, 0.185, 0.0], 0.012);
-    let pot = lathe(
+    let pot = surface_of_revolution(
         &[
             (0.0, 0.02),
             (0.078, 0.02),
@@ -31,7 +33,7 @@ pub fn kettle() -> Model {
         ],
         24,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&black(), cylinder(0.082, 0.02, 24))
         .with_filled(&steel(), pot, 0.03)
         .with(&black(), grip)
@@ -40,14 +42,14 @@ pub fn kettle() -> Model {
     Model::pickable("kettle", "kettle")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.1, 0.0], "kettle", 64.0)
+        .with_sound([0.0, 0.1, 0.0], "kettle", 64.0)
 }
 
 /// A toaster for two slices.
 pub fn toaster() -> Model {
     let cream = plastic("cream_plastic", [232, 218, 186]);
-    let slot = |z: f32| block([-0.1, 0.1785, z - 0.013], [0.1, 0.1802, z + 0.013]).untouchable();
-    let body = Part::new("body")
+    let slot = |z: f32| block([-0.1, 0.1785, z - 0.013], [0.1, 0.1802, z + 0.013]).visual_only();
+    let body = PartBuilder::new("body")
         .with_filled(
             &cream,
             rounded_block([-0.14, 0.008, -0.085], [0.14, 0.18, 0.085], 0.03, 2),
@@ -59,13 +61,13 @@ pub fn toaster() -> Model {
     Model::pickable("toaster", "toaster")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.1, 0.0], "hum", 36.0)
+        .with_sound([0.0, 0.1, 0.0], "hum", 36.0)
 }
 
 /// A filter coffee machine with its jug.
 pub fn coffee_machine() -> Model {
     let case = plastic("anthracite_plastic", [54, 56, 60]);
-    let jug = lathe(
+    let jug = surface_of_revolution(
         &[
             (0.0, 0.035),
             (0.055, 0.035),
@@ -75,7 +77,7 @@ pub fn coffee_machine() -> Model {
         ],
         20,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &case,
             rounded_block([-0.1, 0.0, -0.13], [0.1, 0.034, 0.13], 0.01, 1),
@@ -95,7 +97,7 @@ pub fn coffee_machine() -> Model {
     Model::movable("coffee_machine", "coffee_machine")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.25, 0.0], "hum", 55.0)
+        .with_sound([0.0, 0.25, 0.0], "hum", 55.0)
 }
 
 /// A microwave oven; its door turns on the left.
@@ -114,7 +116,7 @@ pub fn microwave() -> Model {
         block([-x + w, low + w, -z], [panel, h - w, -z + w]),
     ];
     let knob = |y: f32| cylinder(0.02, 0.018, 14).about_x(FRAC_PI_2).at(0.195, y, z);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_all(&case, shell)
         .with(
             &black(),
@@ -122,7 +124,7 @@ pub fn microwave() -> Model {
         )
         .with_all(&case, [knob(0.1), knob(0.19)]);
     let (near, edge) = (face + 0.001, panel - 0.002);
-    let door = Part::new("door")
+    let door = PartBuilder::new("door")
         .with(&case, block([-x, low + 0.002, near], [edge, h, z - 0.006]))
         .with(
             &dark,
@@ -149,7 +151,7 @@ pub fn microwave() -> Model {
     Model::movable("microwave", "microwave")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.15, z], "hum", 56.0)
+        .with_sound([0.0, 0.15, z], "hum", 56.0)
         .inside(
             "inside",
             [-x + w, low + w, -z + w],
@@ -161,7 +163,7 @@ pub fn microwave() -> Model {
 
 /// The case of a machine with a drum behind a round door: a body about the axis, `half_m` wide to either side, between two
 /// corners in (y, z), hollow around (0, `middle_m`), with a hole in its front. The last block closes the drum behind.
-pub fn drum_case(half_m: f32, low: [f32; 2], high: [f32; 2], middle_m: f32) -> [Solid; 9] {
+pub fn drum_case(half_m: f32, low: [f32; 2], high: [f32; 2], middle_m: f32) -> [SolidMesh; 9] {
     let (x, [base, back], [top, front]) = (half_m, low, high);
     let (a, b, c, d) = (-DRUM_M, DRUM_M, middle_m - DRUM_M, middle_m + DRUM_M);
     let (plate, deep) = (front - 0.05, front - 0.05 - DRUM_DEPTH_M);
@@ -202,14 +204,14 @@ pub fn washer() -> Model {
     let (x, h, z) = (0.298, 0.85, 0.29);
     let dark = Finish::plain("washer_window", "glass", [62, 70, 78]).clear(1.0);
     let (case_low, case_high) = ([0.012, -z], [h, z]);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_all(&white, drum_case(x, case_low, case_high, 0.42))
         .with(
             &chrome(),
             ring(0.15, 0.006, 28)
                 .about_x(FRAC_PI_2)
                 .at(0.0, 0.42, z)
-                .untouchable(),
+                .visual_only(),
         )
         .with(
             &black(),
@@ -227,9 +229,9 @@ pub fn washer() -> Model {
         )
         .with(
             &dark,
-            block([0.13, h - 0.1, z + 0.004], [0.25, h - 0.05, z + 0.006]).untouchable(),
+            block([0.13, h - 0.1, z + 0.004], [0.25, h - 0.05, z + 0.006]).visual_only(),
         );
-    let door = Part::new("door")
+    let door = PartBuilder::new("door")
         .with(
             &dark,
             cylinder(0.145, 0.03, 28)
@@ -246,7 +248,7 @@ pub fn washer() -> Model {
     Model::articulated("washing_machine", "washer")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.42, z], "washing_machine", 62.0)
+        .with_sound([0.0, 0.42, z], "washing_machine", 62.0)
         .top("top", [-x, h, -z], [x, h + 0.5, z])
         .inside("drum", low, high)
         .part(door)

@@ -1,9 +1,9 @@
 //! Washbasin, bathtub, shower screen.
 
-use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, door};
-use crate::finish::{chrome, glass, lacquer, oak, sanitary};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, block, cylinder, extrude, rod, tube};
+use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, door};
+use crate::finishes::{chrome, glass, lacquer, oak, sanitary};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{SolidMesh, block, cylinder, extrude, rod, tube};
 use glam::Vec3;
 
 /// Height of a washbasin's rim, m.
@@ -13,12 +13,12 @@ pub const TUB_RIM_M: f32 = 0.57;
 
 /// A washbasin on a cabinet with two doors; its tap stands at the middle of the back.
 pub fn washbasin(width_m: f32) -> Model {
-    let look = Front::plain(oak(), lacquer("black_lacquer", [38, 38, 40]));
+    let look = FrontPanel::plain(oak(), lacquer("black_lacquer", [38, 38, 40]));
     washbasin_with(width_m, &look)
 }
 
 /// The same with a cabinet of another look.
-pub fn washbasin_with(width_m: f32, look: &Front) -> Model {
+pub fn washbasin_with(width_m: f32, look: &FrontPanel) -> Model {
     let (x, z) = (0.5 * width_m, 0.23);
     let white = sanitary();
     let (rim, low, t) = (BASIN_RIM_M, 0.74, 0.03);
@@ -34,18 +34,18 @@ pub fn washbasin_with(width_m: f32, look: &Front) -> Model {
         block([-bx, low + t, -z], [bx, rim, back]),
         block([-bx, low + t, front_z], [bx, rim, z]),
     ];
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_all(&look.board, carcass.boards(&[], &[]))
         .with_filled(
             &white,
-            basin.into_iter().fold(Solid::default(), Solid::and),
+            basin.into_iter().fold(SolidMesh::default(), SolidMesh::and),
             0.5,
         )
         .with(
             &chrome(),
             cylinder(0.022, 0.004, 16)
                 .at(0.0, low + t, 0.02)
-                .untouchable(),
+                .visual_only(),
         )
         .with(
             &chrome(),
@@ -104,10 +104,10 @@ pub fn bathtub(length_m: f32, width_m: f32, tap_left: bool) -> Model {
         wedge
     };
     let tap_side = if tap_left { -1.0 } else { 1.0 };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &white,
-            shell.into_iter().fold(Solid::default(), Solid::and),
+            shell.into_iter().fold(SolidMesh::default(), SolidMesh::and),
             0.12,
         )
         .with_filled(&white, slope(-tap_side), 0.12)
@@ -115,7 +115,7 @@ pub fn bathtub(length_m: f32, width_m: f32, tap_left: bool) -> Model {
             &chrome(),
             cylinder(0.03, 0.003, 16)
                 .at(tap_side * (ix - 0.2), floor, 0.0)
-                .untouchable(),
+                .visual_only(),
         );
     Model::fixed("bathtub", "bathtub").part(body).inside(
         "tub",
@@ -126,7 +126,7 @@ pub fn bathtub(length_m: f32, width_m: f32, tap_left: bool) -> Model {
 
 /// A pane of glass on the rim of a tub, from the wall at z = 0 outwards; y = 0 is the rim.
 pub fn shower_screen(width_m: f32, height_m: f32) -> Model {
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             &glass(),
             block([-0.004, 0.0, 0.02], [0.004, height_m, width_m]),
@@ -157,6 +157,7 @@ pub fn shower_head() -> Model {
     let hold = |y: f32| rod([0.0, y, 0.0], [0.0, y, 0.03], 0.012);
     let head = cylinder(0.1, 0.012, 24).at(0.0, 1.31, 0.2);
     let mixer = rod([-0.09, 0.08, 0.05], [0.09, 0.08, 0.05], 0.022);
-    let body = Part::new("body").with_all(&chrome(), [rail, hold(0.08), hold(1.0), head, mixer]);
+    let body =
+        PartBuilder::new("body").with_all(&chrome(), [rail, hold(0.08), hold(1.0), head, mixer]);
     Model::fixed("shower_head", "shower").part(body)
 }

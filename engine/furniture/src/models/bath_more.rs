@@ -1,16 +1,18 @@
 //! More of the bathroom: shower cabin, basin on the wall, plunger, brush, soap dish, toilet roll, robe.
 
-use crate::draw::Draw;
-use crate::finish::{Finish, black, chrome, glass, plastic, sanitary};
-use crate::model::{Model, Part};
-use crate::shapes::{ball, block, cylinder, lathe, loft, oval, rod, rounded_block, tube, vessel};
+use crate::finishes::{Finish, black, chrome, glass, plastic, sanitary};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
+use crate::shapes::{
+    ball, block, cylinder, loft, oval, rod, rounded_block, surface_of_revolution, tube, vessel,
+};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
 
 /// A shower in a corner: a tray, two panes of glass and a door of glass; walls behind it (-Z) and to its left (-X).
 pub fn shower_cabin(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("shower_cabin", key);
+    let d = SizeSampler::new("shower_cabin", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let metal = if d.chance("metal", 0.4) {
@@ -34,7 +36,7 @@ pub fn shower_cabin(style: &Style, key: RandomKey) -> Model {
         0.011,
         8,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &sanitary(),
             rounded_block([-x, 0.0, -z], [x, step, z], 0.012, 1),
@@ -42,7 +44,7 @@ pub fn shower_cabin(style: &Style, key: RandomKey) -> Model {
         )
         .with(
             &chrome(),
-            cylinder(0.045, 0.002, 16).at(0.0, step, 0.0).untouchable(),
+            cylinder(0.045, 0.002, 16).at(0.0, step, 0.0).visual_only(),
         )
         .with(
             &glass(),
@@ -85,7 +87,7 @@ pub fn shower_cabin(style: &Style, key: RandomKey) -> Model {
             cylinder(0.11, 0.012, 24).at(-0.2 * w, head - 0.024, -z + 0.3),
         );
     let (a, b) = (split + 0.006, x - 0.02 - half - 0.004);
-    let door = Part::new("door")
+    let door = PartBuilder::new("door")
         .with(
             &glass(),
             block(
@@ -103,16 +105,16 @@ pub fn shower_cabin(style: &Style, key: RandomKey) -> Model {
         )
         .with(
             &chrome(),
-            rod([a + 0.04, 1.0, face], [a + 0.04, 1.0, face + 0.03], 0.006).untouchable(),
+            rod([a + 0.04, 1.0, face], [a + 0.04, 1.0, face + 0.03], 0.006).visual_only(),
         )
         .with(
             &chrome(),
-            rod([a + 0.04, 1.15, face], [a + 0.04, 1.15, face + 0.03], 0.006).untouchable(),
+            rod([a + 0.04, 1.15, face], [a + 0.04, 1.15, face + 0.03], 0.006).visual_only(),
         );
     Model::articulated("shower_cabin", "shower")
         .switched(false)
         .part(body)
-        .sounding([-0.2 * w, head - 0.03, -z + 0.3], "tap", 66.0)
+        .with_sound([-0.2 * w, head - 0.03, -z + 0.3], "tap", 66.0)
         .inside(
             "floor",
             [-x + 0.05, step + 0.004, -z + 0.12],
@@ -124,7 +126,7 @@ pub fn shower_cabin(style: &Style, key: RandomKey) -> Model {
 
 /// A washbasin on the wall or on a column, without a cupboard; the wall is at -Z.
 pub fn basin(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("basin", key);
+    let d = SizeSampler::new("basin", key);
     let (w, h, depth) = (d.m("width"), d.m("rim"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let white = sanitary();
@@ -143,12 +145,13 @@ pub fn basin(_style: &Style, key: RandomKey) -> Model {
         [0.0, h + 0.11, ledge - 0.02],
         [0.0, h + 0.09, ledge + 0.08],
     ];
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(
             &white,
-            shell
-                .into_iter()
-                .fold(crate::shapes::Solid::default(), crate::shapes::Solid::and),
+            shell.into_iter().fold(
+                crate::shapes::SolidMesh::default(),
+                crate::shapes::SolidMesh::and,
+            ),
             0.45,
         )
         .with(
@@ -157,9 +160,9 @@ pub fn basin(_style: &Style, key: RandomKey) -> Model {
         )
         .with(
             &chrome(),
-            cylinder(0.02, 0.003, 16).at(0.0, floor, 0.03).untouchable(),
+            cylinder(0.02, 0.003, 16).at(0.0, floor, 0.03).visual_only(),
         );
-    let column = lathe(
+    let column = surface_of_revolution(
         &[
             (0.0, 0.0),
             (0.11, 0.0),
@@ -174,7 +177,7 @@ pub fn basin(_style: &Style, key: RandomKey) -> Model {
     Model::fixed("basin", "sink")
         .switched(false)
         .part(body)
-        .sounding([0.0, h, ledge + 0.06], "tap", 58.0)
+        .with_sound([0.0, h, ledge + 0.06], "tap", 58.0)
         .inside(
             "basin",
             [-x + wall, floor + 0.004, ledge],
@@ -185,7 +188,7 @@ pub fn basin(_style: &Style, key: RandomKey) -> Model {
 
 /// A plunger.
 pub fn plunger(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("plunger", key);
+    let d = SizeSampler::new("plunger", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
     let rubber = Finish::plain(
@@ -193,10 +196,10 @@ pub fn plunger(style: &Style, key: RandomKey) -> Model {
         "rubber",
         d.of("tone", [[150, 52, 40], [34, 34, 36], [60, 90, 140]]),
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &rubber,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, 0.0),
                     (r, 0.0),
@@ -215,7 +218,7 @@ pub fn plunger(style: &Style, key: RandomKey) -> Model {
 
 /// A dish with a piece of soap.
 pub fn soap_dish(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("soap_dish", key);
+    let d = SizeSampler::new("soap_dish", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let soap = Finish::plain(
         "soap",
@@ -241,7 +244,7 @@ pub fn soap_dish(style: &Style, key: RandomKey) -> Model {
         0.009,
         2,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(glaze, dish, 0.6)
         .with(&soap, piece);
     Model::pickable("soap_dish", "soap_dish").part(body)
@@ -249,7 +252,7 @@ pub fn soap_dish(style: &Style, key: RandomKey) -> Model {
 
 /// A spare roll of toilet paper, standing.
 pub fn toilet_roll(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("toilet_roll", key);
+    let d = SizeSampler::new("toilet_roll", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let tissue = Finish::plain(
         "tissue",
@@ -258,16 +261,18 @@ pub fn toilet_roll(_style: &Style, key: RandomKey) -> Model {
     );
     let core = Finish::plain("roll_core", "paper", [176, 146, 108]);
     let roll = cylinder(0.5 * w, h, 24);
-    let body = Part::new("body").with_filled(&tissue, roll, 0.22).with(
-        &core,
-        cylinder(0.021, 0.0006, 16).at(0.0, h, 0.0).untouchable(),
-    );
+    let body = PartBuilder::new("body")
+        .with_filled(&tissue, roll, 0.22)
+        .with(
+            &core,
+            cylinder(0.021, 0.0006, 16).at(0.0, h, 0.0).visual_only(),
+        );
     Model::pickable("toilet_roll", "toilet_paper").part(body)
 }
 
 /// A toilet brush in its holder.
 pub fn toilet_brush(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("toilet_brush", key);
+    let d = SizeSampler::new("toilet_brush", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let holder = if d.chance("metal", 0.5) {
         style.metal.clone()
@@ -276,13 +281,13 @@ pub fn toilet_brush(style: &Style, key: RandomKey) -> Model {
     };
     let r = 0.5 * w;
     let cup = vessel(&[(0.0, 0.0), (0.9 * r, 0.0), (r, 0.4 * h)], 0.004, 18);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&holder, cup, 0.3)
         .with(
             &plastic("bristles", [226, 226, 222]),
             cylinder(0.62 * r, 0.2 * h, 16)
                 .at(0.0, 0.02, 0.0)
-                .untouchable(),
+                .visual_only(),
         )
         .with(&holder, rod([0.0, 0.02, 0.0], [0.0, h - 0.02, 0.0], 0.007))
         .with(&black(), ball(0.012, 10).at(0.0, h - 0.012, 0.0));
@@ -291,7 +296,7 @@ pub fn toilet_brush(style: &Style, key: RandomKey) -> Model {
 
 /// Shampoo and shower gel: two or three bottles of plastic together.
 pub fn shampoo(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("shampoo", key);
+    let d = SizeSampler::new("shampoo", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let tones = [
         [60, 140, 170],
@@ -301,7 +306,7 @@ pub fn shampoo(_style: &Style, key: RandomKey) -> Model {
         [230, 170, 60],
         [90, 70, 130],
     ];
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     let first = d.below("first", tones.len());
     for (k, (at, tall)) in [(-0.27, 1.0_f32), (0.27, 0.82)].into_iter().enumerate() {
         let tone = plastic("shampoo_bottle", tones[(first + 2 * k) % tones.len()]);

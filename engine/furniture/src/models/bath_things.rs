@@ -1,8 +1,10 @@
 //! Small things of a bathroom.
 
-use crate::finish::{Finish, black, chrome, glass, mirror, plastic, rattan, terry};
-use crate::model::{Model, Part};
-use crate::shapes::{block, cylinder, frame, lathe, ring, rod, rounded_block, vessel};
+use crate::finishes::{Finish, black, chrome, glass, mirror, plastic, rattan, terry};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{
+    block, cylinder, frame, ring, rod, rounded_block, surface_of_revolution, vessel,
+};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 
@@ -12,7 +14,7 @@ const LID_RAD: f32 = 1.6;
 /// A mirror on the wall in a thin frame; y = 0 is its middle.
 pub fn wall_mirror(width_m: f32, height_m: f32, rim: &Finish) -> Model {
     let (x, y) = (0.5 * width_m - 0.02, 0.5 * height_m - 0.02);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(rim, frame(width_m, height_m, 0.02, 0.025))
         .with(&mirror(), block([-x, -y, 0.004], [x, y, 0.014]));
     Model::fixed("mirror", "mirror").part(body)
@@ -35,7 +37,7 @@ pub fn towel_rail(width_m: f32, towel: &Finish) -> Model {
             0.006,
             1,
         ));
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_all(
             &chrome(),
             [
@@ -50,7 +52,7 @@ pub fn towel_rail(width_m: f32, towel: &Finish) -> Model {
 
 /// A folded towel.
 pub fn folded_towel(cloth: &Finish) -> Model {
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             cloth,
             rounded_block([-0.17, 0.0, -0.12], [0.17, 0.035, 0.12], 0.016, 2),
@@ -67,7 +69,7 @@ pub fn folded_towel(cloth: &Finish) -> Model {
 /// A holder on the wall with a roll of paper; y = 0 is the roll's axis.
 pub fn paper_holder() -> Model {
     let roll = Finish::plain("tissue", "paper", [244, 243, 238]);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&chrome(), block([-0.085, -0.02, 0.0], [-0.07, 0.02, 0.07]))
         .with(&chrome(), rod([-0.08, 0.0, 0.06], [0.07, 0.0, 0.06], 0.007))
         .with_filled(
@@ -82,10 +84,10 @@ pub fn paper_holder() -> Model {
 
 /// A soap dispenser.
 pub fn soap_dispenser(color: &Finish) -> Model {
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             color,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, 0.0),
                     (0.032, 0.0),
@@ -112,7 +114,7 @@ pub fn toothbrushes() -> Model {
         (
             plastic(name, srgb),
             rod([0.0, 0.01, 0.0], [0.0, 0.18, 0.0], 0.004)
-                .untouchable()
+                .visual_only()
                 .about_z(tilt)
                 .at(x, 0.0, 0.0),
         )
@@ -120,7 +122,7 @@ pub fn toothbrushes() -> Model {
     let (green, a) = brush("green_plastic", [88, 168, 112], 0.012, 0.13);
     let (blue, b) = brush("blue_plastic", [66, 120, 186], -0.012, -0.13);
     let cup = vessel(&[(0.0, 0.0), (0.034, 0.0), (0.038, 0.1)], 0.003, 18);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&glass(), cup)
         .with(&green, a)
         .with(&blue, b);
@@ -131,9 +133,9 @@ pub fn toothbrushes() -> Model {
 pub fn laundry_basket() -> Model {
     let (r, h) = (0.2, 0.55);
     let woven = vessel(&[(0.0, 0.0), (0.88 * r, 0.0), (r, h)], 0.008, 24);
-    let body = Part::new("body").with_filled(&rattan(), woven, 0.6);
+    let body = PartBuilder::new("body").with_filled(&rattan(), woven, 0.6);
     let (low, high) = (h + 0.001, h + 0.02);
-    let cover = lathe(
+    let cover = surface_of_revolution(
         &[
             (0.0, low),
             (1.04 * r, low),
@@ -145,7 +147,7 @@ pub fn laundry_basket() -> Model {
     let grip = ring(0.04, 0.006, 14)
         .about_x(FRAC_PI_2)
         .at(0.0, h + 0.06, 0.0);
-    let lid = Part::new("lid")
+    let lid = PartBuilder::new("lid")
         .with_filled(&rattan(), cover, 0.3)
         .with(&rattan(), grip);
     let half = 0.58 * r;
@@ -158,7 +160,7 @@ pub fn laundry_basket() -> Model {
 
 /// A bathroom scale.
 pub fn scale() -> Model {
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&black(), block([-0.13, 0.0, -0.13], [0.13, 0.012, 0.13]))
         .with(
             &Finish::plain("green_glass", "glass", [150, 186, 180]).clear(1.0),
@@ -166,7 +168,7 @@ pub fn scale() -> Model {
         )
         .with(
             &black(),
-            block([-0.04, 0.022, -0.12], [0.04, 0.0225, -0.08]).untouchable(),
+            block([-0.04, 0.022, -0.12], [0.04, 0.0225, -0.08]).visual_only(),
         );
     Model::movable("bathroom_scale", "weight_scale").part(body)
 }
@@ -175,7 +177,7 @@ pub fn scale() -> Model {
 pub fn bath_mat(width_m: f32, depth_m: f32) -> Model {
     let (x, z) = (0.5 * width_m, 0.5 * depth_m);
     let cloth = terry("aqua_terry", [126, 172, 178]);
-    Model::movable("bath_mat", "rug").part(Part::new("body").with_filled(
+    Model::movable("bath_mat", "rug").part(PartBuilder::new("body").with_filled(
         &cloth,
         rounded_block([-x, 0.0, -z], [x, 0.014, z], 0.006, 1),
         0.5,
@@ -189,12 +191,14 @@ pub fn pedal_bin(height_m: f32, color: &Finish) -> Model {
     let (z, h) = (0.85 * r, height_m);
     let rim = 0.9 * h;
     let pail = vessel(&[(0.0, 0.0), (r, 0.0), (r, rim)], WALL_M, 26);
-    let body = Part::new("body").with_filled(color, pail, 0.35).with(
-        &black(),
-        block([-0.03, 0.01, z], [0.03, 0.02, z + 0.06]).untouchable(),
-    );
+    let body = PartBuilder::new("body")
+        .with_filled(color, pail, 0.35)
+        .with(
+            &black(),
+            block([-0.03, 0.01, z], [0.03, 0.02, z + 0.06]).visual_only(),
+        );
     let low = rim + 0.001;
-    let cover = lathe(
+    let cover = surface_of_revolution(
         &[
             (0.0, low),
             (1.02 * r, low),
@@ -208,6 +212,6 @@ pub fn pedal_bin(height_m: f32, color: &Finish) -> Model {
     Model::movable("trash_can", "trash_can")
         .part(body)
         .inside("inside", [-half, WALL_M, -half], [half, rim, half])
-        .part(Part::new("lid").with_filled(&black(), cover, 0.1))
+        .part(PartBuilder::new("lid").with_filled(&black(), cover, 0.1))
         .hinged("lid", [0.0, low, -r], Vec3::NEG_X, LID_RAD)
 }

@@ -1,8 +1,8 @@
 //! Beds.
 
-use crate::finish::{Finish, cloth, oak};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, blanket, block, rounded_block, tapered_leg};
+use crate::finishes::{Finish, cloth, oak};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{SolidMesh, blanket, block, rounded_block, tapered_leg};
 
 /// A bed with a mattress, made up with a blanket; pillows are things of their own. The head is at -Z.
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ impl Bed {
         let [width, length] = self.mattress_m;
         let (x, z) = (0.5 * width + 0.035, 0.5 * length + 0.035);
         let head = self.headboard.as_ref().unwrap_or(&self.wood);
-        let mut body = Part::new("body")
+        let mut body = PartBuilder::new("body")
             .with(&self.wood, block([-x, 0.2, -z], [x, 0.32, -z + 0.03]))
             .with(
                 &self.wood,
@@ -124,7 +124,7 @@ impl Bed {
     }
 
     /// The headboard behind the bed's end at (±`x`, -`z`).
-    fn head(&self, x: f32, z: f32) -> Vec<Solid> {
+    fn head(&self, x: f32, z: f32) -> Vec<SolidMesh> {
         if !self.barred {
             let panel = rounded_block([-x, 0.12, -z - 0.06], [x, self.head_m, -z], 0.02, 2);
             return vec![panel];

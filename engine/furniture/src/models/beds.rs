@@ -1,8 +1,8 @@
 //! Cots, bunk beds, loose mattresses.
 
-use crate::draw::Draw;
-use crate::finish::{Finish, cloth};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, cloth};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rounded_block};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
@@ -19,7 +19,7 @@ fn foam(cover: &Finish) -> f32 {
 
 /// A cot: bars all round a small mattress. The head is at -Z.
 pub fn cot(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("cot", key);
+    let d = SizeSampler::new("cot", key);
     let (w, h, length) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * length);
     let wood = style.any_wood(&mut d.stream("wood"));
@@ -59,7 +59,7 @@ pub fn cot(style: &Style, key: RandomKey) -> Model {
             // Square bars collide through the panel that stands for all of them.
             cylinder(0.008, h - base - 0.05, 6)
                 .at(sx * (x - 0.02), base - 0.02, at)
-                .untouchable()
+                .visual_only()
         })
     };
     let panel = |sx: f32| {
@@ -68,9 +68,9 @@ pub fn cot(style: &Style, key: RandomKey) -> Model {
             [a - 0.008, base - 0.02, -z + 0.04],
             [a + 0.008, h - 0.035, z - 0.04],
         )
-        .unseen()
+        .collision_only()
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_all(wood, corners.map(|(a, b)| post(a, b)))
         .with_all(wood, [-1.0, 1.0].map(|s| side_rail(s, h - 0.04)))
         .with_all(wood, [-1.0, 1.0].map(|s| side_rail(s, base - 0.055)))
@@ -103,14 +103,14 @@ pub fn cot(style: &Style, key: RandomKey) -> Model {
 
 /// Two beds, one above the other, with a ladder at the front of the foot end. The heads are at -Z, the open side is +X.
 pub fn bunk_bed(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("bunk_bed", key);
+    let d = SizeSampler::new("bunk_bed", key);
     let (w, h, length) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * length);
     let wood = style.any_wood(&mut d.stream("wood"));
     let sheet = cloth("white_linen", [238, 236, 230]);
     let cover = style.cloth(&mut d.stream("cover"));
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-    let mut body = Part::new("body").with_all(
+    let mut body = PartBuilder::new("body").with_all(
         wood,
         corners.map(|(sx, sz)| {
             let (a, b) = (sx * (x - 0.035), sz * (z - 0.035));
@@ -208,7 +208,7 @@ pub fn bunk_bed(style: &Style, key: RandomKey) -> Model {
 
 /// A mattress without a bed.
 pub fn mattress(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("mattress", key);
+    let d = SizeSampler::new("mattress", key);
     let (w, h, length) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * length);
     let cover = cloth(
@@ -219,7 +219,7 @@ pub fn mattress(_style: &Style, key: RandomKey) -> Model {
         "mattress_border",
         d.of("band", [[150, 158, 166], [190, 176, 150], [120, 130, 140]]),
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &cover,
             rounded_block([-x, 0.0, -z], [x, 0.35 * h, z], 0.03, 2),

@@ -1,8 +1,8 @@
 //! Bookshelves, wall shelves, and what stands in them.
 
 use super::cabinet::Carcass;
-use crate::finish::{Finish, oak, pages};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, oak, pages};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, panel};
 use crate::textures::Srgb;
 use dwell_scene::random::RandomKey;
@@ -45,7 +45,7 @@ impl Bookshelf {
         let carcass = Carcass::standing(self.width_m, 0.0, self.height_m, self.depth_m);
         let levels = self.levels.clamp(2, SHELVES.len());
         let shares: Vec<f32> = (1..levels).map(|k| k as f32 / levels as f32).collect();
-        let body = Part::new("body").with_all(&self.wood, carcass.boards(&shares, &[]));
+        let body = PartBuilder::new("body").with_all(&self.wood, carcass.boards(&shares, &[]));
         let mut model = Model::fixed("bookshelf", "bookshelf").part(body);
         for (k, name) in SHELVES.into_iter().take(levels).enumerate() {
             let (low, high) =
@@ -60,7 +60,7 @@ impl Bookshelf {
 /// A board on the wall.
 pub fn wall_shelf(width_m: f32, depth_m: f32, wood: &Finish) -> Model {
     let x = 0.5 * width_m;
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(wood, block([-x, -0.03, 0.0], [x, 0.0, depth_m]))
         .with_all(
             wood,
@@ -100,7 +100,7 @@ pub fn book(size_m: [f32; 3], k: usize) -> Model {
     let front = panel(w, d, board)
         .about_x(-std::f32::consts::FRAC_PI_2)
         .at(0.0, t - board, z);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&cover(k), front)
         .with(&spine(k), block([-x, 0.0, -z], [x, board, z]))
         .with(
@@ -120,7 +120,7 @@ pub fn book(size_m: [f32; 3], k: usize) -> Model {
 /// A row of upright books, spines towards +Z, about `width_m` wide; the last ones lean or are missing, as `key` draws.
 pub fn book_row(width_m: f32, height_m: f32, key: RandomKey) -> Model {
     let mut random = key.stream();
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     let mut x = -0.5 * width_m;
     loop {
         let thick = random.range(0.018, 0.046);
@@ -138,7 +138,7 @@ pub fn book_row(width_m: f32, height_m: f32, key: RandomKey) -> Model {
                     [x + 0.2 * thick, 0.68 * h, 0.1],
                     [x + 0.8 * thick, 0.8 * h, 0.1008],
                 )
-                .untouchable(),
+                .visual_only(),
             );
         x += thick + 0.0006;
     }

@@ -1,8 +1,8 @@
 //! What cupboards share: carcass, doors, drawers, handles.
 
-use crate::finish::Finish;
-use crate::model::Part;
-use crate::shapes::{Solid, block, cylinder, frame, rod};
+use crate::finishes::Finish;
+use crate::model::PartBuilder;
+use crate::shapes::{SolidMesh, block, cylinder, frame, rod};
 use std::f32::consts::FRAC_PI_2;
 
 /// Thickness of boards, m.
@@ -34,7 +34,7 @@ impl Carcass {
 
     /// Sides, bottom, top and back; shelves at `shelves` (share of the height, 0 to 1); walls between bays at `walls`
     /// (share of the width).
-    pub fn boards(&self, shelves: &[f32], walls: &[f32]) -> Vec<Solid> {
+    pub fn boards(&self, shelves: &[f32], walls: &[f32]) -> Vec<SolidMesh> {
         let ([x0, y0, z0], [x1, y1, z1]) = (self.min, self.max);
         let b = BOARD_M;
         let mut boards = vec![
@@ -92,7 +92,7 @@ impl Carcass {
 
 /// How a front is opened.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Front {
+pub struct FrontPanel {
     /// The board's finish.
     pub board: Finish,
     /// The handle's finish.
@@ -103,7 +103,7 @@ pub struct Front {
     pub panelled: bool,
 }
 
-impl Front {
+impl FrontPanel {
     /// A plain board with a bar to pull.
     pub fn plain(board: Finish, handle: Finish) -> Self {
         Self {
@@ -115,7 +115,7 @@ impl Front {
     }
 
     /// Adds the frame of a panel to a leaf between two corners whose face is at `z`.
-    fn trim(&self, leaf: Part, low: [f32; 2], high: [f32; 2], z: f32) -> Part {
+    fn trim(&self, leaf: PartBuilder, low: [f32; 2], high: [f32; 2], z: f32) -> PartBuilder {
         const BAR_M: f32 = 0.045;
         let (width, height) = (high[0] - low[0], high[1] - low[1]);
         if !self.panelled || width.min(height) < 3.2 * BAR_M {
@@ -129,7 +129,7 @@ impl Front {
         let edge = BAR_M + 0.004;
         leaf.with(
             &self.board,
-            frame(width, height, BAR_M, 0.005).at(x, y, z).untouchable(),
+            frame(width, height, BAR_M, 0.005).at(x, y, z).visual_only(),
         )
         .with(
             &shade,
@@ -137,7 +137,7 @@ impl Front {
                 [low[0] + edge, low[1] + edge, z],
                 [high[0] - edge, high[1] - edge, z + 0.0015],
             )
-            .untouchable(),
+            .visual_only(),
         )
     }
 }
@@ -150,8 +150,8 @@ pub fn door(
     high: [f32; 2],
     z: f32,
     handle_right: bool,
-    front: &Front,
-) -> Part {
+    front: &FrontPanel,
+) -> PartBuilder {
     let leaf = block([low[0], low[1], z], [high[0], high[1], z + BOARD_M]);
     let x = if handle_right {
         high[0] - 0.04
@@ -171,37 +171,42 @@ pub fn door(
         upright_handle(x, middle - half, middle + half, face)
     };
     front
-        .trim(Part::new(name).with(&front.board, leaf), low, high, face)
+        .trim(
+            PartBuilder::new(name).with(&front.board, leaf),
+            low,
+            high,
+            face,
+        )
         .with(&front.handle, pull)
 }
 
 /// A round knob on the face at `z`.
-fn knob(x: f32, y: f32, z: f32) -> Solid {
-    let stem = cylinder(0.006, 0.014, 8).untouchable();
+fn knob(x: f32, y: f32, z: f32) -> SolidMesh {
+    let stem = cylinder(0.006, 0.014, 8).visual_only();
     stem.and(cylinder(0.014, 0.014, 14).at(0.0, 0.012, 0.0))
         .about_x(FRAC_PI_2)
         .at(x, y, z)
 }
 
 /// An upright bar handle on the face at `z`.
-pub fn upright_handle(x: f32, low: f32, high: f32, z: f32) -> Solid {
+pub fn upright_handle(x: f32, low: f32, high: f32, z: f32) -> SolidMesh {
     let bar = rod(
         [x, low - 0.015, z + 0.025],
         [x, high + 0.015, z + 0.025],
         0.005,
     );
-    let foot = |y: f32| rod([x, y, z], [x, y, z + 0.022], 0.004).untouchable();
+    let foot = |y: f32| rod([x, y, z], [x, y, z + 0.022], 0.004).visual_only();
     bar.and(foot(low)).and(foot(high))
 }
 
 /// A level bar handle on the face at `z`.
-pub fn level_handle(x: f32, y: f32, z: f32, half: f32) -> Solid {
+pub fn level_handle(x: f32, y: f32, z: f32, half: f32) -> SolidMesh {
     let bar = rod(
         [x - half - 0.015, y, z + 0.025],
         [x + half + 0.015, y, z + 0.025],
         0.005,
     );
-    let foot = |x: f32| rod([x, y, z], [x, y, z + 0.022], 0.004).untouchable();
+    let foot = |x: f32| rod([x, y, z], [x, y, z + 0.022], 0.004).visual_only();
     bar.and(foot(x - half)).and(foot(x + half))
 }
 
@@ -212,8 +217,8 @@ pub fn drawer(
     high: [f32; 2],
     z: f32,
     depth_m: f32,
-    front: &Front,
-) -> Part {
+    front: &FrontPanel,
+) -> PartBuilder {
     let (x0, x1) = (low[0] + 0.025, high[0] - 0.025);
     let (y0, y1) = (low[1] + 0.02, high[1] - 0.03);
     let thin = 0.012;
@@ -229,7 +234,7 @@ pub fn drawer(
             [x1 - thin, y0 + thin, z],
         ),
     ];
-    let wood = crate::finish::pine();
+    let wood = crate::finishes::pine();
     let face = z + BOARD_M;
     let half = 0.08_f32.min(0.25 * (high[0] - low[0]));
     let (x, y) = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]));
@@ -240,7 +245,12 @@ pub fn drawer(
     };
     let leaf = block([low[0], low[1], z], [high[0], high[1], face]);
     front
-        .trim(Part::new(name).with(&front.board, leaf), low, high, face)
+        .trim(
+            PartBuilder::new(name).with(&front.board, leaf),
+            low,
+            high,
+            face,
+        )
         .with_all(&wood, walls)
         .with(&front.handle, pull)
 }

@@ -1,7 +1,7 @@
 //! A dining chair.
 
-use crate::finish::{Finish, cloth, oak};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, cloth, oak};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block, tapered_leg};
 
 /// A chair with four legs and a back of slats.
@@ -40,7 +40,7 @@ impl Chair {
     pub fn build(&self) -> Model {
         let (x, z) = (0.5 * self.width_m, 0.215);
         let board = self.seat_m - 0.015;
-        let mut body = Part::new("body").with(
+        let mut body = PartBuilder::new("body").with(
             &self.wood,
             rounded_block([-x, board - 0.025, -z], [x, board, z], 0.012, 1),
         );

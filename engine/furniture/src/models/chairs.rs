@@ -1,9 +1,9 @@
 //! Chairs of other builds than the slatted one, bar stools, benches, garden seats, a swing.
 
 use super::chair::Chair;
-use crate::draw::Draw;
-use crate::finish::{Finish, painted_steel, plastic, rattan};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, painted_steel, plastic, rattan};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::{block, cushion, cylinder, extrude, rod, rounded_block, tapered_leg, tube};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
@@ -12,7 +12,7 @@ const CORNERS: [(f32, f32); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 
 
 /// A dining chair: slatted, upholstered or a shell on rods.
 pub fn dining_chair(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("dining_chair", key);
+    let d = SizeSampler::new("dining_chair", key);
     match d.below("build", 3) {
         0 => slatted(style, &d),
         1 => upholstered(style, &d),
@@ -20,7 +20,7 @@ pub fn dining_chair(style: &Style, key: RandomKey) -> Model {
     }
 }
 
-fn slatted(style: &Style, d: &Draw) -> Model {
+fn slatted(style: &Style, d: &SizeSampler) -> Model {
     let cloth = style.cloth(&mut d.stream("pad")).clone();
     Chair {
         width_m: d.m("width"),
@@ -33,12 +33,12 @@ fn slatted(style: &Style, d: &Draw) -> Model {
     .build()
 }
 
-fn upholstered(style: &Style, d: &Draw) -> Model {
+fn upholstered(style: &Style, d: &SizeSampler) -> Model {
     let (w, h, depth, seat) = (d.m("width"), d.m("height"), d.m("depth"), d.m("seat"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let cover = style.cover(&mut d.stream("cover"));
     let under = seat - 0.09;
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_bars(
             style.leg_finish(),
             style.legs([x - 0.035, z - 0.04], under, 0.04),
@@ -65,7 +65,7 @@ fn upholstered(style: &Style, d: &Draw) -> Model {
     )
 }
 
-fn shell(style: &Style, d: &Draw) -> Model {
+fn shell(style: &Style, d: &SizeSampler) -> Model {
     let (w, h, depth, seat) = (d.m("width"), d.m("height"), d.m("depth"), d.m("seat"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let tone = d.of(
@@ -92,7 +92,7 @@ fn shell(style: &Style, d: &Draw) -> Model {
         [-half, 0.45 * rise],
     ];
     let back = extrude(&outline, 0.014).about_x(-0.17);
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with(
             &hull,
             rounded_block(
@@ -122,12 +122,12 @@ fn shell(style: &Style, d: &Draw) -> Model {
 
 /// A high stool for a counter, with a ring or bars for the feet.
 pub fn bar_stool(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("bar_stool", key);
+    let d = SizeSampler::new("bar_stool", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (out, inner, under) = (0.5 * w - 0.014, 0.32 * w, h - 0.05);
     let legs = style.leg_finish();
     let cover = style.cover(&mut d.stream("cover"));
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     for (sx, sz) in CORNERS {
         let leg = tapered_leg(
             [sx * out, 0.0, sz * out],
@@ -172,13 +172,13 @@ pub fn bar_stool(style: &Style, key: RandomKey) -> Model {
 
 /// A plain bench: for a long table, a hall or the foot of a bed.
 pub fn bench(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("bench", key);
+    let d = SizeSampler::new("bench", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let padded = d.chance("padded", 0.4);
     let board = if padded { h - 0.05 } else { h };
     let wood = style.any_wood(&mut d.stream("wood"));
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with(
             wood,
             rounded_block([-x, board - 0.035, -z], [x, board, z], 0.008, 1),
@@ -213,7 +213,7 @@ pub fn bench(style: &Style, key: RandomKey) -> Model {
 
 /// A chair for the garden or the balcony: of slats or basket work, with arms.
 pub fn garden_chair(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("garden_chair", key);
+    let d = SizeSampler::new("garden_chair", key);
     let (w, h, depth, seat) = (d.m("width"), d.m("height"), d.m("depth"), d.m("seat"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let teak = Finish::tiled(
@@ -234,7 +234,7 @@ pub fn garden_chair(style: &Style, key: RandomKey) -> Model {
         ),
         _ => (rattan(), rattan()),
     };
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     for side in [-1.0_f32, 1.0] {
         let a = side * (x - 0.02);
         body = body
@@ -307,7 +307,7 @@ pub fn garden_chair(style: &Style, key: RandomKey) -> Model {
 
 /// A seat that hangs in a stand under a roof of cloth.
 pub fn garden_swing(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("garden_swing", key);
+    let d = SizeSampler::new("garden_swing", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let steel = painted_steel(
@@ -316,7 +316,7 @@ pub fn garden_swing(style: &Style, key: RandomKey) -> Model {
     );
     let cover = style.cloth(&mut d.stream("cover"));
     let r = 0.022;
-    let mut body = Part::new("stand");
+    let mut body = PartBuilder::new("stand");
     for side in [-1.0_f32, 1.0] {
         let a = side * (x - r);
         body = body
@@ -339,7 +339,7 @@ pub fn garden_swing(style: &Style, key: RandomKey) -> Model {
         for at in [-0.22_f32, 0.22] {
             body = body.with(
                 &steel,
-                rod([chain, 0.6, at], [chain, h - 0.2, at * 0.3], 0.005).untouchable(),
+                rod([chain, 0.6, at], [chain, h - 0.2, at * 0.3], 0.005).visual_only(),
             );
         }
     }

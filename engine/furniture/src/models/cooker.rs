@@ -2,9 +2,9 @@
 
 use super::cabinet::level_handle;
 use super::kitchen_unit::{UNIT_DEPTH_M, WORKTOP_M};
-use crate::finish::{Finish, black, enamel, steel};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, block, cylinder};
+use crate::finishes::{Finish, black, enamel, steel};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{SolidMesh, block, cylinder};
 use dwell_scene::LightShape;
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
@@ -17,7 +17,7 @@ pub fn cooker() -> Model {
     let face = z - 0.03;
     let top = WORKTOP_M - 0.006;
     let w = 0.04;
-    let shell: [Solid; 6] = [
+    let shell: [SolidMesh; 6] = [
         block([-x, 0.06, -z], [-x + w, 0.78, face]),
         block([x - w, 0.06, -z], [x, 0.78, face]),
         block([-x + w, 0.06, -z], [x - w, 0.3, face]),
@@ -31,9 +31,9 @@ pub fn cooker() -> Model {
             .at(-0.2 + 0.1 * k as f32, 0.845, z)
     };
     let plate =
-        |px: f32, pz: f32, r: f32| cylinder(r, 0.0012, 24).at(px, WORKTOP_M, pz).untouchable();
+        |px: f32, pz: f32, r: f32| cylinder(r, 0.0012, 24).at(px, WORKTOP_M, pz).visual_only();
     let rings = Finish::plain("hob_ring", "glass", [58, 56, 58]).clear(1.0);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_all(&case, shell)
         .with(
             &black(),
@@ -56,7 +56,7 @@ pub fn cooker() -> Model {
         &grid,
         block([-x + w, 0.5, -z + w], [x - w, 0.508, face - 0.01]),
     );
-    let door = Part::new("oven_door")
+    let door = PartBuilder::new("oven_door")
         .with(&case, block([-x, 0.3, face + 0.002], [x, 0.36, z]))
         .with(&case, block([-x, 0.7, face + 0.002], [x, 0.78, z]))
         .with(&dark, block([-x, 0.36, face + 0.002], [x, 0.7, z]))
@@ -64,7 +64,7 @@ pub fn cooker() -> Model {
     Model::articulated("cooker", "cooker")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.54, face], "fan", 46.0)
+        .with_sound([0.0, 0.54, face], "fan", 46.0)
         .top("hob", [-x, WORKTOP_M, -z], [x, WORKTOP_M + 0.4, z])
         .inside("oven", [-x + w, 0.508, -z + w], [x - w, 0.78, face - 0.01])
         .part(door)
@@ -83,7 +83,7 @@ pub fn range_hood(width_m: f32) -> Model {
         [-0.12, 0.22],
         [-x, 0.06],
     ];
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&shine, crate::shapes::extrude(&skirt, 0.46), 0.06)
         .with_filled(&shine, block([-0.12, 0.22, 0.0], [0.12, 0.75, 0.26]), 0.06);
     let down = LightShape::Spot {
@@ -95,5 +95,5 @@ pub fn range_hood(width_m: f32) -> Model {
         .switched(false)
         .part(body)
         .light([0.0, -0.01, 0.23], down, 5.0)
-        .sounding([0.0, 0.1, 0.23], "fan", 58.0)
+        .with_sound([0.0, 0.1, 0.23], "fan", 58.0)
 }

@@ -1,8 +1,8 @@
 //! Cups, plates, bowls, glasses, bottles, pots and pans.
 
-use crate::finish::{Finish, black, glass, painted_steel, porcelain, steel};
-use crate::model::{Model, Part};
-use crate::shapes::{cylinder, lathe, rod, tube, vessel};
+use crate::finishes::{Finish, black, glass, painted_steel, porcelain, steel};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{cylinder, rod, surface_of_revolution, tube, vessel};
 
 /// A mug with a handle.
 pub fn mug(glaze: &Finish) -> Model {
@@ -23,7 +23,7 @@ pub fn mug(glaze: &Finish) -> Model {
         8,
     );
     Model::pickable("mug", "cup")
-        .part(Part::new("body").with(glaze, cup).with(glaze, grip))
+        .part(PartBuilder::new("body").with(glaze, cup).with(glaze, grip))
         .inside("inside", [-0.025, 0.005, -0.025], [0.025, 0.095, 0.025])
 }
 
@@ -39,7 +39,7 @@ pub fn plate(radius_m: f32, glaze: &Finish) -> Model {
         (0.0, 0.0055),
     ];
     Model::pickable("plate", "plate")
-        .part(Part::new("body").with(glaze, plate_pieces(&profile, r)))
+        .part(PartBuilder::new("body").with(glaze, plate_pieces(&profile, r)))
         .top(
             "top",
             [-0.45 * r, 0.0055, -0.45 * r],
@@ -48,8 +48,8 @@ pub fn plate(radius_m: f32, glaze: &Finish) -> Model {
 }
 
 /// A plate collides as a flat disc with a thin rim of wedges, so that things can lie in it.
-fn plate_pieces(profile: &[(f32, f32)], radius_m: f32) -> crate::shapes::Solid {
-    let mut solid = lathe(profile, 28);
+fn plate_pieces(profile: &[(f32, f32)], radius_m: f32) -> crate::shapes::SolidMesh {
+    let mut solid = surface_of_revolution(profile, 28);
     let disc = cylinder(0.58 * radius_m, 0.0055, 8);
     let rim = vessel(
         &[(0.0, 0.0), (0.58 * radius_m, 0.0), (radius_m, 0.021)],
@@ -75,7 +75,7 @@ pub fn bowl(radius_m: f32, glaze: &Finish) -> Model {
         26,
     );
     Model::pickable("bowl", "bowl")
-        .part(Part::new("body").with(glaze, shell))
+        .part(PartBuilder::new("body").with(glaze, shell))
         .inside(
             "inside",
             [-0.3 * r, 0.005, -0.3 * r],
@@ -87,14 +87,14 @@ pub fn bowl(radius_m: f32, glaze: &Finish) -> Model {
 pub fn tumbler() -> Model {
     let shell = vessel(&[(0.0, 0.0), (0.03, 0.0), (0.037, 0.12)], 0.003, 20);
     Model::pickable("tumbler", "drinking_glass")
-        .part(Part::new("body").with(&glass(), shell))
+        .part(PartBuilder::new("body").with(&glass(), shell))
         .inside("inside", [-0.018, 0.004, -0.018], [0.018, 0.12, 0.018])
 }
 
 /// A bottle; `cap` closes it.
 pub fn bottle(height_m: f32, body: &Finish, label: &Finish, cap: &Finish) -> Model {
     let (h, r) = (height_m, 0.13 * height_m);
-    let shape = lathe(
+    let shape = surface_of_revolution(
         &[
             (0.0, 0.0),
             (r, 0.0),
@@ -107,7 +107,7 @@ pub fn bottle(height_m: f32, body: &Finish, label: &Finish, cap: &Finish) -> Mod
         ],
         20,
     );
-    let band = lathe(
+    let band = surface_of_revolution(
         &[
             (1.03 * r, 0.2 * h),
             (1.05 * r, 0.2 * h),
@@ -117,9 +117,9 @@ pub fn bottle(height_m: f32, body: &Finish, label: &Finish, cap: &Finish) -> Mod
         ],
         20,
     );
-    let part = Part::new("body")
+    let part = PartBuilder::new("body")
         .with_filled(body, shape, 0.55)
-        .with(label, band.untouchable())
+        .with(label, band.visual_only())
         .with(cap, cylinder(0.38 * r, 0.05 * h, 14).at(0.0, 0.95 * h, 0.0));
     Model::pickable("bottle", "bottle").part(part)
 }
@@ -127,7 +127,7 @@ pub fn bottle(height_m: f32, body: &Finish, label: &Finish, cap: &Finish) -> Mod
 /// A cooking pot with two grips and a lid.
 pub fn pot(radius_m: f32, color: &Finish) -> Model {
     let (r, h) = (radius_m, radius_m * 1.15);
-    let lid = lathe(
+    let lid = surface_of_revolution(
         &[
             (0.0, h),
             (r + 0.004, h),
@@ -150,10 +150,10 @@ pub fn pot(radius_m: f32, color: &Finish) -> Model {
             8,
         )
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             color,
-            lathe(
+            surface_of_revolution(
                 &[(0.0, 0.0), (0.94 * r, 0.0), (r, 0.1 * h), (r, h), (0.0, h)],
                 26,
             ),
@@ -183,7 +183,7 @@ pub fn open_pot(radius_m: f32, color: &Finish) -> Model {
         ];
         tube(&path, 0.006, 8)
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(color, shell, 0.4)
         .with_all(&black(), [grip(-1.0), grip(1.0)]);
     let half = 0.62 * r;
@@ -199,7 +199,7 @@ pub fn pan(radius_m: f32) -> Model {
     let r = radius_m;
     let iron = painted_steel("black_steel", [40, 40, 42]);
     let shell = vessel(&[(0.0, 0.0), (0.82 * r, 0.0), (r, 0.045)], 0.004, 26);
-    let body = Part::new("body").with(&iron, shell).with(
+    let body = PartBuilder::new("body").with(&iron, shell).with(
         &black(),
         rod([r - 0.012, 0.04, 0.0], [r + 0.17, 0.06, 0.0], 0.009),
     );
@@ -209,7 +209,7 @@ pub fn pan(radius_m: f32) -> Model {
 /// A round tin or storage jar with a lid.
 pub fn jar(height_m: f32, body: &Finish, lid: &Finish) -> Model {
     let r = 0.32 * height_m;
-    let part = Part::new("body")
+    let part = PartBuilder::new("body")
         .with_filled(body, cylinder(r, 0.86 * height_m, 20), 0.2)
         .with_filled(
             lid,
@@ -226,19 +226,19 @@ pub const fn white_glaze() -> Finish {
 
 /// A steel beaker with wooden spoons.
 pub fn utensils() -> Model {
-    let wood = crate::finish::beech();
+    let wood = crate::finishes::beech();
     let spoon = |x: f32, z: f32, tilt: f32| {
         let head = crate::shapes::ball(0.022, 10)
             .at(0.0, 0.29, 0.0)
-            .untouchable();
+            .visual_only();
         rod([0.0, 0.012, 0.0], [0.0, 0.28, 0.0], 0.005)
-            .untouchable()
+            .visual_only()
             .and(head)
             .about_z(tilt)
             .at(x, 0.0, z)
     };
     let cup = vessel(&[(0.0, 0.0), (0.05, 0.0), (0.05, 0.14)], 0.003, 20);
-    let body = Part::new("body").with(&steel(), cup).with_all(
+    let body = PartBuilder::new("body").with(&steel(), cup).with_all(
         &wood,
         [
             spoon(0.0, 0.012, 0.1),

@@ -1,9 +1,10 @@
 //! Pictures and ornaments, magazines, boxes, toys, shoes, bags.
 
-use crate::finish::{Finish, black, leather, oak, paper, pine, plastic, upholstery};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, black, leather, oak, paper, pine, plastic, upholstery};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{
-    ball, block, cone, cylinder, frame, lathe, loft, oval, panel, ring, rod, rounded_block, tube,
+    ball, block, cone, cylinder, frame, loft, oval, panel, ring, rod, rounded_block,
+    surface_of_revolution, tube,
 };
 use crate::textures::Srgb;
 use std::f32::consts::FRAC_PI_2;
@@ -14,7 +15,7 @@ pub fn picture(width_m: f32, height_m: f32, wood: &Finish, image: &Finish) -> Mo
     let margin = 0.16 * width_m.min(height_m);
     let (w, h) = (width_m - 2.0 * BAR_M, height_m - 2.0 * BAR_M);
     let (iw, ih) = (w - margin, h - margin);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(wood, frame(width_m, height_m, BAR_M, 0.024))
         .with(
             &paper("mount", [240, 236, 226]),
@@ -22,14 +23,14 @@ pub fn picture(width_m: f32, height_m: f32, wood: &Finish, image: &Finish) -> Mo
         )
         .with(
             image,
-            panel(iw, ih, 0.002).at(0.0, -0.5 * ih, 0.012).untouchable(),
+            panel(iw, ih, 0.002).at(0.0, -0.5 * ih, 0.012).visual_only(),
         );
     Model::fixed("picture", "picture_frame").part(body)
 }
 
 /// A poster without a frame.
 pub fn poster(width_m: f32, height_m: f32, image: &Finish) -> Model {
-    Model::fixed("poster", "picture_frame").part(Part::new("body").with(
+    Model::fixed("poster", "picture_frame").part(PartBuilder::new("body").with(
         image,
         panel(width_m, height_m, 0.004).at(0.0, -0.5 * height_m, 0.0),
     ))
@@ -37,7 +38,7 @@ pub fn poster(width_m: f32, height_m: f32, image: &Finish) -> Model {
 
 /// A stack of magazines.
 pub fn magazines(covers: [&Finish; 3]) -> Model {
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     for (k, cover) in covers.into_iter().enumerate() {
         let y = 0.008 * k as f32;
         let sheet = panel(0.21, 0.28, 0.008)
@@ -50,7 +51,7 @@ pub fn magazines(covers: [&Finish; 3]) -> Model {
 
 /// A sculpture of two rings on a foot.
 pub fn sculpture(stone: &Finish) -> Model {
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&oak(), block([-0.06, 0.0, -0.04], [0.06, 0.03, 0.04]))
         .with(
             stone,
@@ -64,7 +65,7 @@ pub fn sculpture(stone: &Finish) -> Model {
                 .about_x(FRAC_PI_2)
                 .about_y(0.9)
                 .at(0.04, 0.083, 0.01)
-                .untouchable(),
+                .visual_only(),
         );
     Model::pickable("sculpture", "decoration").part(body)
 }
@@ -81,7 +82,7 @@ pub fn open_box(size_m: [f32; 3], material: &Finish) -> Model {
         block([-x + t, t, z - t], [x - t, h, z]),
     ];
     Model::pickable("storage_box", "box")
-        .part(Part::new("body").with_all(material, walls))
+        .part(PartBuilder::new("body").with_all(material, walls))
         .inside("inside", [-x + t, t, -z + t], [x - t, h, z - t])
 }
 
@@ -89,7 +90,7 @@ pub fn open_box(size_m: [f32; 3], material: &Finish) -> Model {
 pub fn toy_block(edge_m: f32, name: &'static str, srgb: Srgb) -> Model {
     let h = 0.5 * edge_m;
     let lacquered = Finish::plain(name, "wood", srgb);
-    Model::pickable("toy_block", "toy").part(Part::new("body").with(
+    Model::pickable("toy_block", "toy").part(PartBuilder::new("body").with(
         &lacquered,
         rounded_block([-h, 0.0, -h], [h, edge_m, h], 0.004, 1),
     ))
@@ -99,12 +100,12 @@ pub fn toy_block(edge_m: f32, name: &'static str, srgb: Srgb) -> Model {
 pub fn teddy_bear(plush: &Finish) -> Model {
     let cream = upholstery("cream_plush", [226, 206, 170]);
     let limb = |from: [f32; 3], to: [f32; 3], r: f32| {
-        rod(from, to, r).and(ball(r * 1.12, 12).at(to[0], to[1], to[2]).untouchable())
+        rod(from, to, r).and(ball(r * 1.12, 12).at(to[0], to[1], to[2]).visual_only())
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             plush,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, 0.0),
                     (0.055, 0.0),
@@ -117,9 +118,9 @@ pub fn teddy_bear(plush: &Finish) -> Model {
             ),
         )
         .with(plush, ball(0.062, 16).at(0.0, 0.2, 0.0))
-        .with(plush, ball(0.024, 10).at(-0.045, 0.25, 0.0).untouchable())
-        .with(plush, ball(0.024, 10).at(0.045, 0.25, 0.0).untouchable())
-        .with(&cream, ball(0.03, 12).at(0.0, 0.185, 0.05).untouchable())
+        .with(plush, ball(0.024, 10).at(-0.045, 0.25, 0.0).visual_only())
+        .with(plush, ball(0.024, 10).at(0.045, 0.25, 0.0).visual_only())
+        .with(&cream, ball(0.03, 12).at(0.0, 0.185, 0.05).visual_only())
         .with_all(
             plush,
             [-1.0_f32, 1.0].map(|s| limb([s * 0.05, 0.13, 0.02], [s * 0.1, 0.075, 0.07], 0.024)),
@@ -130,15 +131,15 @@ pub fn teddy_bear(plush: &Finish) -> Model {
         )
         .with_all(
             &black(),
-            [-0.022, 0.022].map(|x| ball(0.006, 8).at(x, 0.215, 0.058).untouchable()),
+            [-0.022, 0.022].map(|x| ball(0.006, 8).at(x, 0.215, 0.058).visual_only()),
         )
-        .with(&black(), ball(0.008, 8).at(0.0, 0.192, 0.078).untouchable());
+        .with(&black(), ball(0.008, 8).at(0.0, 0.192, 0.078).visual_only());
     Model::pickable("teddy_bear", "toy").part(body)
 }
 
 /// A ball to play with.
 pub fn toy_ball(radius_m: f32, rubber: &Finish) -> Model {
-    Model::pickable("ball", "ball").part(Part::new("body").with_filled(
+    Model::pickable("ball", "ball").part(PartBuilder::new("body").with_filled(
         rubber,
         ball(radius_m, 24).at(0.0, radius_m, 0.0),
         0.06,
@@ -154,7 +155,7 @@ pub fn toy_train() -> Model {
             .about_x(FRAC_PI_2)
             .at(x, 0.022, z)
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&red, block([-0.12, 0.024, -0.04], [0.12, 0.05, 0.04]))
         .with(
             &blue,
@@ -181,7 +182,7 @@ pub fn toy_train() -> Model {
 pub fn shoes(hide: &Finish) -> Model {
     let sole = plastic("sole", [60, 52, 46]);
     let inside = plastic("shoe_lining", [30, 28, 28]);
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     for x in [-0.06, 0.06] {
         let outline = |half_x: f32, half_z: f32, y: f32, z: f32| oval(half_x, half_z, y, z, 20);
         let foot = loft(&[
@@ -200,7 +201,7 @@ pub fn shoes(hide: &Finish) -> Model {
         ]);
         body = body
             .with_filled(hide, upper.at(x, 0.0, 0.0), 0.3)
-            .with(&inside, opening.at(x, 0.0, 0.0).untouchable())
+            .with(&inside, opening.at(x, 0.0, 0.0).visual_only())
             .with_filled(&sole, foot.at(x, 0.0, 0.0), 0.6);
     }
     Model::pickable("shoes", "shoes").part(body)
@@ -217,9 +218,9 @@ pub fn handbag() -> Model {
             [0.07, 0.33, z],
             [0.08, 0.24, z],
         ];
-        tube(&path, 0.006, 8).untouchable()
+        tube(&path, 0.006, 8).visual_only()
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &hide,
             rounded_block([-0.17, 0.0, -0.06], [0.17, 0.25, 0.06], 0.02, 2),
@@ -238,7 +239,7 @@ pub fn globe() -> Model {
         [[70, 130, 180], [110, 150, 80], [150, 170, 100]],
         0.5,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&oak(), cylinder(0.07, 0.02, 22))
         .with(&oak(), cylinder(0.01, 0.05, 12).at(0.0, 0.02, 0.0))
         .with_filled(&sea, ball(0.11, 24).at(0.0, 0.175, 0.0), 0.05);
@@ -251,11 +252,11 @@ pub fn pencil_cup() -> Model {
     let pencil = |k: usize| {
         let tilt = 0.05 * k as f32 - 0.1;
         rod([0.0, 0.006, 0.0], [0.0, 0.16, 0.0], 0.0035)
-            .untouchable()
+            .visual_only()
             .about_z(tilt)
             .at(0.0, 0.0, 0.012 * (k % 3) as f32 - 0.012)
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&plastic("blue_plastic", [66, 120, 186]), cup)
         .with_all(
             &Finish::plain("pencil_wood", "wood", [224, 176, 62]),

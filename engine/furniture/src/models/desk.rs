@@ -1,8 +1,8 @@
 //! A desk with drawers on one side.
 
-use super::cabinet::{Carcass, Front, GAP_M, drawer, drawer_space};
-use crate::finish::{Finish, black, oak, white_lacquer};
-use crate::model::{Model, Part};
+use super::cabinet::{Carcass, FrontPanel, GAP_M, drawer, drawer_space};
+use crate::finishes::{Finish, black, oak, white_lacquer};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block};
 use glam::Vec3;
 
@@ -20,7 +20,7 @@ pub struct Desk {
     /// What the carcass is made of.
     pub body: Finish,
     /// What doors and drawers look like.
-    pub front: Front,
+    pub front: FrontPanel,
 }
 
 impl Default for Desk {
@@ -31,7 +31,7 @@ impl Default for Desk {
             height_m: 0.74,
             top: oak(),
             body: white_lacquer(),
-            front: Front::plain(white_lacquer(), black()),
+            front: FrontPanel::plain(white_lacquer(), black()),
         }
     }
 }
@@ -49,7 +49,7 @@ impl Desk {
             min: [x - BLOCK_M - 0.02, 0.03, -z + 0.03],
             max: [x - 0.02, under, z - 0.05],
         };
-        let body = Part::new("body")
+        let body = PartBuilder::new("body")
             .with(
                 &self.top,
                 rounded_block([-x, under, -z], [x, self.height_m, z], 0.006, 1),

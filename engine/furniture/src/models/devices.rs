@@ -1,10 +1,10 @@
 //! Small machines and electronics: blender, iron, hair dryer, computer, camera, console, stereo, headphones.
 
-use crate::draw::Draw;
-use crate::finish::{Finish, black, chrome, device, glass, plastic, steel};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, black, chrome, device, glass, plastic, steel};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::{
-    block, cone, cylinder, extrude, lathe, panel, rod, rounded_block, tube, vessel,
+    block, cone, cylinder, extrude, panel, rod, rounded_block, surface_of_revolution, tube, vessel,
 };
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
@@ -21,7 +21,7 @@ const CASES: [[u8; 3]; 6] = [
 ];
 
 /// A glowing picture of a screen.
-fn screen(name: &'static str, d: &Draw) -> Finish {
+fn screen(name: &'static str, d: &SizeSampler) -> Finish {
     let ground = d.of(
         "desktop",
         [[52, 96, 150], [38, 60, 70], [110, 70, 110], [60, 120, 100]],
@@ -39,7 +39,7 @@ fn screen(name: &'static str, d: &Draw) -> Finish {
 
 /// A blender: a jug of glass on a motor.
 pub fn blender(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("blender", key);
+    let d = SizeSampler::new("blender", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (r, base) = (0.5 * w, 0.4 * h);
     let case = plastic("blender_case", d.of("case", CASES));
@@ -58,10 +58,10 @@ pub fn blender(_style: &Style, key: RandomKey) -> Model {
         0.009,
         8,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &case,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, 0.0),
                     (r, 0.0),
@@ -74,7 +74,7 @@ pub fn blender(_style: &Style, key: RandomKey) -> Model {
             0.85,
         )
         .with(&glass(), jug.at(0.0, base, 0.0))
-        .with(&glass(), grip.untouchable())
+        .with(&glass(), grip.visual_only())
         .with(
             &black(),
             cylinder(0.84 * r, 0.06 * h, 20).at(0.0, 0.9 * h, 0.0),
@@ -92,12 +92,12 @@ pub fn blender(_style: &Style, key: RandomKey) -> Model {
     Model::movable("blender", "food_processor")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.2 * h, 0.0], "noise", 80.0)
+        .with_sound([0.0, 0.2 * h, 0.0], "noise", 80.0)
 }
 
 /// An iron standing on its heel; the tip points up, the plate to -Z.
 pub fn iron(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("iron", key);
+    let d = SizeSampler::new("iron", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let shell = plastic(
@@ -118,7 +118,7 @@ pub fn iron(_style: &Style, key: RandomKey) -> Model {
             [-s * x, 0.45 * h],
         ]
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&steel(), extrude(&outline(1.0), 0.012).at(0.0, 0.0, -z))
         .with_filled(
             &shell,
@@ -144,12 +144,12 @@ pub fn iron(_style: &Style, key: RandomKey) -> Model {
     Model::pickable("iron", "iron")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.5 * h, -z], "noise", 56.0)
+        .with_sound([0.0, 0.5 * h, -z], "noise", 56.0)
 }
 
 /// A hair dryer lying on its side, the nozzle towards +X.
 pub fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("hair_dryer", key);
+    let d = SizeSampler::new("hair_dryer", key);
     let (w, depth) = (d.m("width"), d.m("depth"));
     let shell = plastic("dryer_shell", d.of("case", CASES));
     let r = 0.038;
@@ -161,7 +161,7 @@ pub fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
         0.012,
         2,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&shell, barrel.at(-0.5 * w, r, -0.5 * depth + r), 0.3)
         .with_filled(&black(), nozzle.at(0.25 * w, r, -0.5 * depth + r), 0.3)
         .with_filled(&shell, handle.at(-0.2 * w, r, -0.5 * depth + 1.4 * r), 0.5)
@@ -170,7 +170,7 @@ pub fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
             cylinder(0.03, 0.004, 16)
                 .about_z(FRAC_PI_2)
                 .at(-0.5 * w, r, -0.5 * depth + r)
-                .untouchable(),
+                .visual_only(),
         )
         // The handle is lower at its end, so that the dryer lies on barrel and grip.
         .with(
@@ -183,12 +183,12 @@ pub fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
     Model::pickable("hair_dryer", "hair_dryer")
         .switched(false)
         .part(body)
-        .sounding([0.5 * w, r, -0.5 * depth + r], "noise", 76.0)
+        .with_sound([0.5 * w, r, -0.5 * depth + r], "noise", 76.0)
 }
 
 /// A monitor with keyboard and mouse before it.
 pub fn computer(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("computer", key);
+    let d = SizeSampler::new("computer", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let z = 0.5 * depth;
     let case = if d.chance("light", 0.3) {
@@ -206,7 +206,7 @@ pub fn computer(_style: &Style, key: RandomKey) -> Model {
         1,
     );
     let (kw, kd, kz) = (0.43_f32.min(w), 0.13, z - 0.14);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &case,
             block([-0.16 * w, 0.0, -z], [0.16 * w, 0.012, -z + 0.2]),
@@ -231,7 +231,7 @@ pub fn computer(_style: &Style, key: RandomKey) -> Model {
             &screen("desktop", &d),
             panel(w - 0.02, h - low - 0.035, 0.002)
                 .at(0.0, low + 0.022, at + 0.015)
-                .untouchable(),
+                .visual_only(),
         )
         .with_filled(
             &case,
@@ -246,7 +246,7 @@ pub fn computer(_style: &Style, key: RandomKey) -> Model {
             panel(kw - 0.01, kd - 0.01, 0.004)
                 .about_x(-FRAC_PI_2)
                 .at(-0.04, 0.018, kz + kd - 0.005)
-                .untouchable(),
+                .visual_only(),
         )
         .with_filled(
             &case,
@@ -265,7 +265,7 @@ pub fn computer(_style: &Style, key: RandomKey) -> Model {
 
 /// The tower of a computer.
 pub fn computer_tower(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("computer_tower", key);
+    let d = SizeSampler::new("computer_tower", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let case = device(
@@ -273,7 +273,7 @@ pub fn computer_tower(_style: &Style, key: RandomKey) -> Model {
         d.of("tone", [[34, 34, 37], [206, 208, 210], [60, 62, 66]]),
     );
     let light = Finish::plain("power_light", "plastic", [90, 160, 240]).glowing([0.05, 0.15, 0.4]);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&case, block([-x, 0.012, -z], [x, h, z - 0.01]), 0.35)
         .with(
             &black(),
@@ -291,12 +291,12 @@ pub fn computer_tower(_style: &Style, key: RandomKey) -> Model {
             cylinder(0.012, 0.003, 14)
                 .about_x(FRAC_PI_2)
                 .at(0.0, h - 0.07, z - 0.004)
-                .untouchable(),
+                .visual_only(),
         );
     Model::movable("computer_tower", "computer")
         .switched(true)
         .part(body)
-        .sounding([0.0, 0.5 * h, -z], "fan", 34.0)
+        .with_sound([0.0, 0.5 * h, -z], "fan", 34.0)
 }
 
 /// A flat tablet computer, face up.
@@ -310,7 +310,7 @@ pub fn cellphone(_style: &Style, key: RandomKey) -> Model {
 }
 
 fn slab(name: &'static str, category: &'static str, key: RandomKey) -> Model {
-    let d = Draw::new(name, key);
+    let d = SizeSampler::new(name, key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let case = device(
@@ -329,15 +329,15 @@ fn slab(name: &'static str, category: &'static str, key: RandomKey) -> Model {
     let face = panel(w - 2.0 * rim, depth - 2.0 * rim, 0.0008)
         .about_x(-FRAC_PI_2)
         .at(0.0, h, z - rim);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&case, rounded_block([-x, 0.0, -z], [x, h, z], 0.45 * h, 1))
-        .with(&screen("slab_screen", &d), face.untouchable());
+        .with(&screen("slab_screen", &d), face.visual_only());
     Model::pickable(name, category).switched(true).part(body)
 }
 
 /// A camera, its lens towards +Z.
 pub fn camera(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("camera", key);
+    let d = SizeSampler::new("camera", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let skin = device(
@@ -349,7 +349,7 @@ pub fn camera(_style: &Style, key: RandomKey) -> Model {
             .about_x(FRAC_PI_2)
             .at(0.1 * x, 0.36 * h, from)
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             &skin,
             rounded_block([-x, 0.0, -z], [x, 0.8 * h, -z + 0.045], 0.01, 1),
@@ -374,7 +374,7 @@ pub fn camera(_style: &Style, key: RandomKey) -> Model {
 
 /// A games console with a pad lying on it.
 pub fn game_console(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("game_console", key);
+    let d = SizeSampler::new("game_console", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let (tone, other) = d.of(
@@ -398,9 +398,9 @@ pub fn game_console(_style: &Style, key: RandomKey) -> Model {
     let stick = |a: f32| {
         cylinder(0.009, 0.012, 12)
             .at(a, h - 0.004, 0.02)
-            .untouchable()
+            .visual_only()
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&case, block([-x, 0.006, -z], [x, 0.46 * top, z]), 0.6)
         .with_filled(&case, block([-x, 0.54 * top, -z], [x, top, z - 0.01]), 0.6)
         .with_filled(
@@ -425,12 +425,12 @@ pub fn game_console(_style: &Style, key: RandomKey) -> Model {
     Model::movable("game_console", "game_console")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.3 * h, -z], "fan", 36.0)
+        .with_sound([0.0, 0.3 * h, -z], "fan", 36.0)
 }
 
 /// Headphones hung over a stand.
 pub fn headphones(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("headphones", key);
+    let d = SizeSampler::new("headphones", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let shell = plastic("headphones_shell", d.of("case", CASES));
     let r = 0.5 * w - 0.016;
@@ -446,7 +446,7 @@ pub fn headphones(style: &Style, key: RandomKey) -> Model {
             .about_z(FRAC_PI_2)
             .at(side * r + 0.015, y - 0.02, 0.0)
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&style.wood, cylinder(0.36 * w, 0.016, 24))
         .with(
             &style.metal,
@@ -457,12 +457,12 @@ pub fn headphones(style: &Style, key: RandomKey) -> Model {
     Model::pickable("headphones", "headphones")
         .switched(false)
         .part(body)
-        .sounding([r, y - 0.02, 0.0], "radio", 48.0)
+        .with_sound([r, y - 0.02, 0.0], "radio", 48.0)
 }
 
 /// A stereo: an amplifier with a record player on top.
 pub fn stereo(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("stereo", key);
+    let d = SizeSampler::new("stereo", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let amp = 0.5 * h;
@@ -480,7 +480,7 @@ pub fn stereo(style: &Style, key: RandomKey) -> Model {
             .about_x(FRAC_PI_2)
             .at(a, 0.5 * amp, z - 0.02)
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &style.wood,
             rounded_block([-x, 0.012, -z], [x, amp, z - 0.025], 0.006, 1),
@@ -524,7 +524,7 @@ pub fn stereo(style: &Style, key: RandomKey) -> Model {
             &label,
             cylinder(0.05, 0.0015, 20)
                 .at(-0.06, h - 0.024, -0.012)
-                .untouchable(),
+                .visual_only(),
         )
         .with(
             &chrome(),
@@ -537,10 +537,10 @@ pub fn stereo(style: &Style, key: RandomKey) -> Model {
                 [0.06, h - 0.016, 0.07],
                 0.004,
             )
-            .untouchable(),
+            .visual_only(),
         );
     Model::movable("stereo", "stereo_set")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.5 * h, z], "radio", 66.0)
+        .with_sound([0.0, 0.5 * h, z], "radio", 66.0)
 }

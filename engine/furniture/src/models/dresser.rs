@@ -1,8 +1,8 @@
 //! A chest of drawers.
 
-use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, drawer, drawer_space};
-use crate::finish::{Finish, brass, walnut};
-use crate::model::{Model, Part};
+use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, drawer, drawer_space};
+use crate::finishes::{Finish, brass, walnut};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block, tapered_leg};
 use glam::Vec3;
 
@@ -20,7 +20,7 @@ pub struct Dresser {
     /// What the body is made of.
     pub wood: Finish,
     /// What doors and drawers look like.
-    pub front: Front,
+    pub front: FrontPanel,
 }
 
 impl Default for Dresser {
@@ -31,7 +31,7 @@ impl Default for Dresser {
             depth_m: 0.45,
             rows: 3,
             wood: walnut(),
-            front: Front::plain(walnut(), brass()),
+            front: FrontPanel::plain(walnut(), brass()),
         }
     }
 }
@@ -47,7 +47,7 @@ impl Dresser {
         let (x, top) = (0.5 * self.width_m, self.height_m - 0.022);
         let carcass = Carcass::standing(self.width_m - 0.02, LEG_M, top, self.depth_m - BOARD_M);
         let z = carcass.max[2];
-        let mut body = Part::new("body")
+        let mut body = PartBuilder::new("body")
             .with(
                 &self.wood,
                 rounded_block([-x, top, -z], [x, self.height_m, z + BOARD_M], 0.006, 1),

@@ -1,8 +1,8 @@
 //! Fruit and bread, and the boards they lie on.
 
-use crate::finish::{Finish, beech, black, steel};
-use crate::model::{Model, Part};
-use crate::shapes::{block, extrude, lathe, loft, oval, rod, rounded_block};
+use crate::finishes::{Finish, beech, black, steel};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{block, extrude, loft, oval, rod, rounded_block, surface_of_revolution};
 
 /// An apple, a pear or an orange: a round fruit with a stalk; its colours are ground, blush, freckle.
 pub fn fruit(radius_m: f32, skin: &Finish) -> Model {
@@ -19,10 +19,12 @@ pub fn fruit(radius_m: f32, skin: &Finish) -> Model {
         (0.0, 1.62 * r),
     ];
     let stalk = Finish::plain("stalk", "wood", [94, 66, 40]);
-    let body = Part::new("body").with(skin, lathe(&shape, 16)).with(
-        &stalk,
-        rod([0.0, 1.6 * r, 0.0], [0.1 * r, 2.1 * r, 0.0], 0.0018).untouchable(),
-    );
+    let body = PartBuilder::new("body")
+        .with(skin, surface_of_revolution(&shape, 16))
+        .with(
+            &stalk,
+            rod([0.0, 1.6 * r, 0.0], [0.1 * r, 2.1 * r, 0.0], 0.0018).visual_only(),
+        );
     Model::pickable("fruit", "food").part(body)
 }
 
@@ -68,7 +70,7 @@ pub fn bread() -> Model {
         [[178, 118, 62], [150, 92, 46], [214, 168, 110]],
         0.15,
     );
-    Model::pickable("bread", "bread").part(Part::new("body").with(
+    Model::pickable("bread", "bread").part(PartBuilder::new("body").with(
         &crust,
         rounded_block([-0.13, 0.0, -0.055], [0.13, 0.1, 0.055], 0.045, 3),
     ))
@@ -76,7 +78,7 @@ pub fn bread() -> Model {
 
 /// A board for cutting.
 pub fn cutting_board() -> Model {
-    let body = Part::new("body").with(
+    let body = PartBuilder::new("body").with(
         &beech(),
         rounded_block([-0.19, 0.0, -0.13], [0.19, 0.02, 0.13], 0.008, 1),
     );
@@ -93,9 +95,9 @@ pub fn knife_block() -> Model {
             -0.045 + 0.036 * (k / 2) as f32,
             -0.024 + 0.048 * (k % 2) as f32,
         );
-        rod([x, 0.2, z], [x - 0.012, 0.31, z], 0.009).untouchable()
+        rod([x, 0.2, z], [x - 0.012, 0.31, z], 0.009).visual_only()
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             &beech(),
             crate::shapes::extrude(&side, 0.1).at(0.0, 0.0, -0.05),
@@ -130,5 +132,5 @@ pub fn cutlery(name: &'static str) -> Model {
             oval(0.02, 0.03, 0.007, -0.077, 14),
         ])),
     };
-    Model::pickable(name, name).part(Part::new("body").with(&steel(), handle.and(head)))
+    Model::pickable(name, name).part(PartBuilder::new("body").with(&steel(), handle.and(head)))
 }

@@ -1,9 +1,9 @@
 //! A refrigerator with a freezer below.
 
 use super::cabinet::upright_handle;
-use crate::finish::{enamel, glass, steel};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, block, rounded_block};
+use crate::finishes::{enamel, glass, steel};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{SolidMesh, block, rounded_block};
 use glam::Vec3;
 
 /// Wall of the insulated case, m.
@@ -16,7 +16,7 @@ pub fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
     let (back, front) = (-z, z - 0.06);
     let split = height_m * 0.36;
     let w = WALL_M;
-    let case: [Solid; 6] = [
+    let case: [SolidMesh; 6] = [
         block([-x, 0.03, back], [-x + w, height_m, front]),
         block([x - w, 0.03, back], [x, height_m, front]),
         block([-x + w, 0.03, back], [x - w, 0.03 + w, front]),
@@ -35,9 +35,9 @@ pub fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
         let y = split + share * (height_m - split);
         block([-x + w, y, back + w], [x - w, y + 0.006, front - 0.06])
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_all(&white, case)
-        .with(&crate::finish::black(), feet)
+        .with(&crate::finishes::black(), feet)
         .with_all(&glass(), [shelf(0.3), shelf(0.55), shelf(0.78)]);
     let space = |low: f32, high: f32| ([-x + w, low, back + w], [x - w, high, front - 0.06]);
     let level = |share: f32| split + share * (height_m - split);
@@ -46,7 +46,7 @@ pub fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
     let (c0, c1) = space(level(0.55) + 0.006, level(0.78));
     let (d0, d1) = space(0.03 + w, split - 0.5 * w);
     let door = |name: &'static str, low: f32, high: f32, handle: [f32; 2]| {
-        Part::new(name)
+        PartBuilder::new(name)
             .with(
                 &white,
                 rounded_block([-x, low, front + 0.002], [x, high, z], 0.012, 1),
@@ -56,7 +56,7 @@ pub fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
     Model::articulated("refrigerator", "refrigerator")
         .switched(true)
         .part(body)
-        .sounding([0.0, 0.2, back + 0.05], "fridge", 38.0)
+        .with_sound([0.0, 0.2, back + 0.05], "fridge", 38.0)
         .inside("lower_shelf", a0, a1)
         .inside("middle_shelf", b0, b1)
         .inside("upper_shelf", c0, c1)

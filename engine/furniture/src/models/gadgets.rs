@@ -1,7 +1,7 @@
 //! Small devices: laptop, telephone, remote control, alarm clock, wall clock.
 
-use crate::finish::{Finish, black, device, lacquer, plastic};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, black, device, lacquer, plastic};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, cylinder, panel, ring, rounded_block};
 use std::f32::consts::FRAC_PI_2;
 
@@ -28,7 +28,7 @@ pub fn laptop() -> Model {
     let lid = panel(w - 0.02, 0.2, 0.0015).at(0.0, 0.012, 0.007);
     let shell = block([-0.5 * w, 0.0, 0.0], [0.5 * w, 0.222, 0.007]);
     let tilt = -0.32;
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             &case,
             rounded_block(
@@ -43,19 +43,19 @@ pub fn laptop() -> Model {
             panel(w - 0.02, d - 0.03, 0.001)
                 .about_x(-FRAC_PI_2)
                 .at(0.0, 0.016, 0.5 * d - 0.012)
-                .untouchable(),
+                .visual_only(),
         )
         .with(&case, shell.about_x(tilt).at(0.0, 0.016, -0.5 * d + 0.004))
         .with(
             &desktop,
             lid.about_x(tilt)
                 .at(0.0, 0.016, -0.5 * d + 0.004)
-                .untouchable(),
+                .visual_only(),
         );
     Model::pickable("laptop", "laptop")
         .switched(true)
         .part(body)
-        .sounding([0.0, 0.01, 0.0], "fan", 28.0)
+        .with_sound([0.0, 0.01, 0.0], "fan", 28.0)
 }
 
 /// A telephone with a receiver on its cradle.
@@ -79,7 +79,7 @@ pub fn telephone() -> Model {
     let face = panel(0.09, 0.09, 0.004)
         .about_x(-FRAC_PI_2 + 0.45)
         .at(0.0, 0.03, 0.082);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &red,
             rounded_block([-0.09, 0.0, -0.09], [0.09, 0.055, 0.09], 0.016, 1),
@@ -90,11 +90,11 @@ pub fn telephone() -> Model {
             &red,
             rounded_block([-0.09, 0.078, -0.018], [0.09, 0.104, 0.018], 0.01, 1),
         )
-        .with(&dial, face.untouchable());
+        .with(&dial, face.visual_only());
     Model::pickable("telephone", "telephone")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.03, 0.0], "phone", 74.0)
+        .with_sound([0.0, 0.03, 0.0], "phone", 74.0)
 }
 
 /// A remote control.
@@ -108,9 +108,9 @@ pub fn remote_control() -> Model {
             [x - 0.004, 0.018, z - 0.005],
             [x + 0.004, 0.0195, z + 0.005],
         )
-        .untouchable()
+        .visual_only()
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             &black(),
             rounded_block([-0.024, 0.0, -0.085], [0.024, 0.018, 0.085], 0.006, 1),
@@ -129,7 +129,7 @@ pub fn alarm_clock() -> Model {
         [[246, 244, 236], [40, 40, 44], [200, 60, 50]],
         1,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             &mint,
             cylinder(0.05, 0.045, 24)
@@ -138,7 +138,7 @@ pub fn alarm_clock() -> Model {
         )
         .with(
             &dial,
-            panel(0.07, 0.07, 0.001).at(0.0, 0.025, 0.023).untouchable(),
+            panel(0.07, 0.07, 0.001).at(0.0, 0.025, 0.023).visual_only(),
         )
         .with_all(
             &black(),
@@ -146,7 +146,7 @@ pub fn alarm_clock() -> Model {
         );
     Model::pickable("alarm_clock", "clock")
         .part(body)
-        .sounding([0.0, 0.06, 0.0], "clock", 32.0)
+        .with_sound([0.0, 0.06, 0.0], "clock", 32.0)
 }
 
 /// A round clock on a wall.
@@ -161,22 +161,22 @@ pub fn wall_clock(radius_m: f32) -> Model {
     );
     let edge = 2.0 * radius_m * 0.7;
     let plate = plastic("white_plastic", [246, 244, 236]);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&plate, cylinder(radius_m, 0.022, 32).about_x(FRAC_PI_2))
         .with(
             &frame,
             ring(radius_m, 0.012, 32)
                 .about_x(FRAC_PI_2)
                 .at(0.0, 0.0, 0.014)
-                .untouchable(),
+                .visual_only(),
         )
         .with(
             &dial,
             panel(edge, edge, 0.002)
                 .at(0.0, -0.5 * edge, 0.022)
-                .untouchable(),
+                .visual_only(),
         );
     Model::fixed("wall_clock", "clock")
         .part(body)
-        .sounding([0.0, 0.0, 0.03], "clock", 34.0)
+        .with_sound([0.0, 0.0, 0.03], "clock", 34.0)
 }

@@ -1,9 +1,9 @@
 //! A pool table, an aquarium on its cupboard.
 
 use super::cabinet::{BOARD_M, Carcass, GAP_M, door};
-use crate::draw::Draw;
-use crate::finish::{Finish, glass};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, glass};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::{ball, block, cylinder, rounded_block, trough};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
@@ -11,7 +11,7 @@ use glam::Vec3;
 
 /// A pool table with cushions, pockets and balls racked up.
 pub fn pool_table(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("pool_table", key);
+    let d = SizeSampler::new("pool_table", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let felt = Finish::plain(
@@ -23,7 +23,7 @@ pub fn pool_table(style: &Style, key: RandomKey) -> Model {
     let bed = h - 0.045;
     let wood = &style.wood;
     let slate = Finish::plain("slate", "stone", [80, 84, 88]);
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(
             wood,
             block(
@@ -102,7 +102,7 @@ pub fn pool_table(style: &Style, key: RandomKey) -> Model {
                 h - 0.0005,
                 sz * (z - rail + 0.015),
             );
-            body = body.with(&pocket, hole.untouchable());
+            body = body.with(&pocket, hole.visual_only());
         }
     }
     let tones = [
@@ -126,7 +126,7 @@ pub fn pool_table(style: &Style, key: RandomKey) -> Model {
             );
             body = body.with(
                 &color,
-                ball(0.0285, 10).at(a, bed + 0.0285, b).untouchable(),
+                ball(0.0285, 10).at(a, bed + 0.0285, b).visual_only(),
             );
         }
     }
@@ -135,7 +135,7 @@ pub fn pool_table(style: &Style, key: RandomKey) -> Model {
         &white,
         ball(0.0285, 12)
             .at(-0.25 * w, bed + 0.0285, 0.0)
-            .untouchable(),
+            .visual_only(),
     );
     Model::fixed("pool_table", "game_table").part(body).top(
         "bed",
@@ -146,7 +146,7 @@ pub fn pool_table(style: &Style, key: RandomKey) -> Model {
 
 /// A table with a glass tank of water and fish.
 pub fn aquarium(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("aquarium", key);
+    let d = SizeSampler::new("aquarium", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let tank = (0.42 * h).min(0.5);
@@ -164,8 +164,8 @@ pub fn aquarium(style: &Style, key: RandomKey) -> Model {
         [[200, 180, 140], [150, 130, 100], [226, 210, 180]],
         0.2,
     );
-    let weed = crate::finish::foliage("water_weed", [52, 120, 60], [110, 160, 80]);
-    let mut body = Part::new("body")
+    let weed = crate::finishes::foliage("water_weed", [52, 120, 60], [110, 160, 80]);
+    let mut body = PartBuilder::new("body")
         .with_all(wood, carcass.boards(&[], &[0.5]))
         .with(
             wood,
@@ -222,7 +222,7 @@ pub fn aquarium(style: &Style, key: RandomKey) -> Model {
                         },
                 )
                 .at(a, y, b)
-                .untouchable(),
+                .visual_only(),
         );
     }
     for _ in 0..6 {
@@ -237,14 +237,14 @@ pub fn aquarium(style: &Style, key: RandomKey) -> Model {
                 [a - 0.008, low + 0.05, b - 0.003],
                 [a + 0.008, low + 0.05 + tall, b + 0.003],
             )
-            .untouchable(),
+            .visual_only(),
         );
     }
     let front = style.doors();
     let mut model = Model::articulated("aquarium", "fish_tank")
         .switched(true)
         .part(body)
-        .sounding([0.0, h - 0.05, -z + 0.05], "hum", 34.0)
+        .with_sound([0.0, h - 0.05, -z + 0.05], "hum", 34.0)
         .light([0.0, h + 0.02, 0.0], dwell_scene::LightShape::Point, 3.0);
     for (name, a, b, left) in [
         ("left_door", -x + 0.002, -0.5 * GAP_M, true),

@@ -1,23 +1,25 @@
 //! For leisure and housework: chess, bicycle, ladder, tripod, ironing board, exercise bench, board to write on.
 
-use crate::draw::Draw;
-use crate::finish::{Finish, black, chrome, painted_steel, plastic};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, ball, block, cylinder, frame, lathe, ring, rod, rounded_block, tube};
+use crate::finishes::{Finish, black, chrome, painted_steel, plastic};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
+use crate::shapes::{
+    SolidMesh, ball, block, cylinder, frame, ring, rod, rounded_block, surface_of_revolution, tube,
+};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// A chess board with some pieces of a game on it.
 pub fn chessboard(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("chessboard", key);
+    let d = SizeSampler::new("chessboard", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let thick = 0.016;
     let x = 0.5 * w;
     let square = (w - 0.04) / 8.0;
     let maple = Finish::plain("chess_maple", "wood", [226, 196, 150]);
     let dark = Finish::plain("chess_walnut", "wood", [104, 66, 44]);
-    let mut squares = Solid::default();
+    let mut squares = SolidMesh::default();
     for k in 0..64 {
         let (a, b) = (k % 8, k / 8);
         if (a + b) % 2 == 1 {
@@ -27,14 +29,14 @@ pub fn chessboard(_style: &Style, key: RandomKey) -> Model {
                     [from_x, thick, from_z],
                     [from_x + square, thick + 0.0006, from_z + square],
                 )
-                .untouchable(),
+                .visual_only(),
             );
         }
     }
     let tall = h - thick;
     let piece = |share: f32| {
         let (t, r) = (tall * share, 0.36 * square);
-        lathe(
+        surface_of_revolution(
             &[
                 (0.0, 0.0),
                 (r, 0.0),
@@ -49,7 +51,7 @@ pub fn chessboard(_style: &Style, key: RandomKey) -> Model {
         )
     };
     let mut random = d.stream("game");
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with(&dark, block([-x, 0.0, -x], [x, thick - 0.002, x]))
         .with(
             &maple,
@@ -81,7 +83,7 @@ pub fn chessboard(_style: &Style, key: RandomKey) -> Model {
 
 /// A bicycle on its stand, riding towards +X.
 pub fn bicycle(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("bicycle", key);
+    let d = SizeSampler::new("bicycle", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let paint = painted_steel(
         "bicycle_paint",
@@ -121,11 +123,11 @@ pub fn bicycle(_style: &Style, key: RandomKey) -> Model {
             .about_x(FRAC_PI_2)
             .at(at[0], at[1], at[2])
     };
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(&rubber, wheel(rear).and(wheel(ahead)), 0.45)
         .with_filled(
             &paint,
-            tubes.into_iter().fold(Solid::default(), Solid::and),
+            tubes.into_iter().fold(SolidMesh::default(), SolidMesh::and),
             0.16,
         )
         .with_filled(
@@ -217,7 +219,7 @@ pub fn bicycle(_style: &Style, key: RandomKey) -> Model {
                     [hub[0] + a, hub[1] + b, 0.0],
                     0.0016,
                 )
-                .untouchable(),
+                .visual_only(),
             );
         }
     }
@@ -226,7 +228,7 @@ pub fn bicycle(_style: &Style, key: RandomKey) -> Model {
 
 /// A stepladder, opened out.
 pub fn ladder(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("ladder", key);
+    let d = SizeSampler::new("ladder", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let alloy = Finish::plain(
@@ -235,7 +237,7 @@ pub fn ladder(_style: &Style, key: RandomKey) -> Model {
         d.of("tone", [[196, 198, 202], [214, 160, 60], [170, 60, 50]]),
     );
     let leg = |from: [f32; 3], to: [f32; 3]| crate::shapes::tapered_leg(from, to, 0.03, 0.03);
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     for side in [-1.0_f32, 1.0] {
         let a = side * (x - 0.02);
         let b = side * (x - 0.045);
@@ -264,7 +266,7 @@ pub fn ladder(_style: &Style, key: RandomKey) -> Model {
 
 /// A tripod with its legs spread.
 pub fn tripod(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("tripod", key);
+    let d = SizeSampler::new("tripod", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let leg = Finish::plain(
         "tripod_leg",
@@ -273,7 +275,7 @@ pub fn tripod(_style: &Style, key: RandomKey) -> Model {
     );
     let r = w / 3.0_f32.sqrt() - 0.012;
     let crown = 0.72 * h;
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with(
             &black(),
             cylinder(0.045, 0.06, 16).at(0.0, crown - 0.03, 0.0),
@@ -307,7 +309,7 @@ pub fn tripod(_style: &Style, key: RandomKey) -> Model {
 
 /// An ironing board on crossed legs.
 pub fn ironing_board(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("ironing_board", key);
+    let d = SizeSampler::new("ironing_board", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let cover = style.cloth(&mut d.stream("cover"));
@@ -330,7 +332,7 @@ pub fn ironing_board(style: &Style, key: RandomKey) -> Model {
             0.014,
         )
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(cover, board.at(0.0, h - 0.03, 0.0), 0.5)
         .with_filled(&style.metal, leg(1.0, -0.03).and(leg(-1.0, 0.03)), 0.35)
         .with_filled(&style.metal, foot(-1.0, z).and(foot(1.0, z)), 0.35);
@@ -345,7 +347,7 @@ pub fn ironing_board(style: &Style, key: RandomKey) -> Model {
 
 /// A bench to lift weights on, with a bar in its rack.
 pub fn weight_bench(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("weight_bench", key);
+    let d = SizeSampler::new("weight_bench", key);
     let (w, h, depth) = (d.m("width"), d.m("bar"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let steel = painted_steel(
@@ -358,7 +360,7 @@ pub fn weight_bench(_style: &Style, key: RandomKey) -> Model {
     };
     let iron = Finish::plain("weights", "cast_iron", [52, 54, 58]);
     let seat = 0.45;
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(
             &cover,
             rounded_block([-0.14, seat - 0.06, -0.5 * z], [0.14, seat, z], 0.02, 2),
@@ -438,12 +440,12 @@ pub fn weight_bench(_style: &Style, key: RandomKey) -> Model {
 
 /// A white board in a frame on the wall; y = 0 is its middle.
 pub fn whiteboard(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("whiteboard", key);
+    let d = SizeSampler::new("whiteboard", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (x, y) = (0.5 * w, 0.5 * h);
     let alloy = Finish::plain("board_frame", "aluminium", [190, 192, 196]);
     let face = Finish::plain("board_face", "steel", [246, 247, 247]);
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with(&alloy, frame(w, h, 0.02, 0.022))
         .with_filled(
             &face,
@@ -458,7 +460,7 @@ pub fn whiteboard(_style: &Style, key: RandomKey) -> Model {
     for (k, tone) in pens.into_iter().enumerate() {
         let at = -0.1 + 0.15 * k as f32;
         let pen = rod([at, -y + 0.021, 0.05], [at + 0.12, -y + 0.021, 0.05], 0.008);
-        body = body.with(&plastic("board_pen", tone), pen.untouchable());
+        body = body.with(&plastic("board_pen", tone), pen.visual_only());
     }
     Model::fixed("whiteboard", "whiteboard").part(body)
 }

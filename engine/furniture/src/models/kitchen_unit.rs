@@ -1,9 +1,9 @@
 //! Fitted kitchens: base units with worktop and sink, and cabinets on the wall.
 
-use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, TOP, door, drawer, drawer_space};
-use crate::finish::{Finish, black, granite, lacquer, steel};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, block};
+use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, TOP, door, drawer, drawer_space};
+use crate::finishes::{Finish, black, granite, lacquer, steel};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{SolidMesh, block};
 use glam::Vec3;
 
 /// Height of worktops, m.
@@ -13,7 +13,7 @@ pub const UNIT_DEPTH_M: f32 = 0.62;
 
 /// What stands under one stretch of worktop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bay {
+pub enum UnitKind {
     /// A door with its hinge on the left.
     Door,
     /// Three drawers.
@@ -28,9 +28,9 @@ pub struct KitchenUnit {
     /// Width of one bay, m.
     pub bay_m: f32,
     /// From left to right as one stands before it, at most four.
-    pub bays: Vec<Bay>,
+    pub bays: Vec<UnitKind>,
     /// What doors and drawers look like.
-    pub front: Front,
+    pub front: FrontPanel,
     /// What the worktop is made of.
     pub worktop: Finish,
 }
@@ -40,8 +40,8 @@ impl Default for KitchenUnit {
         let front = lacquer("sage_lacquer", [150, 166, 146]);
         Self {
             bay_m: 0.6,
-            bays: vec![Bay::Drawers, Bay::Sink, Bay::Door],
-            front: Front::plain(front, steel()),
+            bays: vec![UnitKind::Drawers, UnitKind::Sink, UnitKind::Door],
+            front: FrontPanel::plain(front, steel()),
             worktop: granite(),
         }
     }
@@ -70,13 +70,13 @@ impl KitchenUnit {
         // The worktop is the lid: a board below it would go through the sink.
         let mut boards = carcass.boards(&[], &walls);
         boards.remove(TOP);
-        let mut body = Part::new("body")
+        let mut body = PartBuilder::new("body")
             .with(&black(), block([-x, 0.0, -z + 0.02], [x, 0.1, face - 0.04]))
             .with_all(&carcass_board(), boards);
         let left_of = |k: usize| -x + self.bay_m * k as f32;
         // The worktop has a hole for each sink.
         let mut start = -x;
-        for k in (0..count).filter(|k| self.bays[*k] == Bay::Sink) {
+        for k in (0..count).filter(|k| self.bays[*k] == UnitKind::Sink) {
             let middle = left_of(k) + 0.5 * self.bay_m;
             let (a, b) = (middle - 0.25, middle + 0.25);
             body = body
@@ -93,7 +93,7 @@ impl KitchenUnit {
             .bays
             .iter()
             .take(count)
-            .position(|bay| *bay == Bay::Sink);
+            .position(|bay| *bay == UnitKind::Sink);
         let (left_end, right_start) =
             sink.map_or((x, x), |k| (left_of(k) + 0.03, left_of(k + 1) - 0.03));
         if left_end > -x + 0.1 {
@@ -125,7 +125,7 @@ impl KitchenUnit {
                 [a + 0.03, 0.1 + BOARD_M, -z + 0.01],
                 [b - 0.03, under - 0.17, face - 0.01],
             );
-            if *bay == Bay::Drawers {
+            if *bay == UnitKind::Drawers {
                 let step = (under - 0.105) / 3.0;
                 for (row, name) in DRAWERS[k].into_iter().enumerate() {
                     let low = 0.105 + step * row as f32;
@@ -165,7 +165,7 @@ const fn carcass_board() -> Finish {
 }
 
 /// A basin of sheet steel, open at the worktop, about x = `middle`.
-fn basin(middle: f32) -> Vec<Solid> {
+fn basin(middle: f32) -> Vec<SolidMesh> {
     let (low, top, t) = (WORKTOP_M - 0.18, WORKTOP_M + 0.003, 0.012);
     let (x0, x1, z0, z1) = (middle - 0.25, middle + 0.25, -0.19, 0.21);
     vec![
@@ -185,7 +185,7 @@ const SHELVES: [[&str; 2]; 4] = [
 ];
 
 /// Cabinets on the wall: `doors` doors of `door_m` width; y = 0 is their lower edge.
-pub fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &Front) -> Model {
+pub fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &FrontPanel) -> Model {
     const DEPTH_M: f32 = 0.34;
     let count = doors.clamp(1, DOORS.len());
     let x = 0.5 * door_m * count as f32;
@@ -198,7 +198,7 @@ pub fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &Front) -> 
     let (low, middle) = carcass.space(0.0, 0.5);
     let (upper, high) = carcass.space(0.5, 1.0);
     let mut model = Model::articulated("wall_cabinet", "hanging_kitchen_cabinet")
-        .part(Part::new("body").with_all(&white, carcass.boards(&[0.5], &walls)));
+        .part(PartBuilder::new("body").with_all(&white, carcass.boards(&[0.5], &walls)));
     let look = front;
     for (k, [lower, above]) in SHELVES.into_iter().take(count).enumerate() {
         let (a, b) = (
@@ -214,7 +214,7 @@ pub fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &Front) -> 
         let (a, b) = (-x + door_m * k as f32, -x + door_m * (k + 1) as f32);
         let hinge_left = k % 2 == 0;
         let face = [a + 0.5 * GAP_M, 0.002];
-        let leaf = Part::new(name)
+        let leaf = PartBuilder::new(name)
             .with(
                 &look.board,
                 block(

@@ -2,17 +2,19 @@
 
 use super::appliances::{drum_case, drum_space};
 use super::cabinet::level_handle;
-use crate::draw::Draw;
-use crate::finish::{Finish, black, chrome, enamel, plastic, steel};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, ball, block, cylinder, lathe, ring, rod, rounded_block, tube};
+use crate::finishes::{Finish, black, chrome, enamel, plastic, steel};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
+use crate::shapes::{
+    SolidMesh, ball, block, cylinder, ring, rod, rounded_block, surface_of_revolution, tube,
+};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// An oval fan blade from the axis (+Y) outwards along +X, twisted.
-fn blade(from_m: f32, to_m: f32, width_m: f32) -> Solid {
+fn blade(from_m: f32, to_m: f32, width_m: f32) -> SolidMesh {
     rounded_block(
         [from_m, -0.004, -0.5 * width_m],
         [to_m, 0.004, 0.5 * width_m],
@@ -24,13 +26,13 @@ fn blade(from_m: f32, to_m: f32, width_m: f32) -> Solid {
 
 /// A dishwasher under a worktop; its door folds down.
 pub fn dishwasher(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("dishwasher", key);
+    let d = SizeSampler::new("dishwasher", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z, t) = (0.5 * w, 0.5 * depth, 0.03);
     let face = z - 0.045;
     let tub = steel();
     let (low, top) = (0.12, h - 0.03);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             &black(),
             block([-x + 0.02, 0.0, -z + 0.03], [x - 0.02, 0.1, face - 0.05]),
@@ -64,7 +66,7 @@ pub fn dishwasher(style: &Style, key: RandomKey) -> Model {
             ),
             0.1,
         );
-    let door = Part::new("door")
+    let door = PartBuilder::new("door")
         .with_filled(
             &style.appliance,
             block([-x + 0.002, 0.105, face + 0.001], [x - 0.002, h - 0.002, z]),
@@ -72,13 +74,13 @@ pub fn dishwasher(style: &Style, key: RandomKey) -> Model {
         )
         .with(
             &black(),
-            block([-x + 0.03, h - 0.07, z], [x - 0.03, h - 0.02, z + 0.002]).untouchable(),
+            block([-x + 0.03, h - 0.07, z], [x - 0.03, h - 0.02, z + 0.002]).visual_only(),
         )
         .with(&steel(), level_handle(0.0, h - 0.11, z, 0.36 * w));
     Model::articulated("dishwasher", "dishwasher")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.4, z], "washing_machine", 48.0)
+        .with_sound([0.0, 0.4, z], "washing_machine", 48.0)
         .inside(
             "lower_rack",
             [-x + t, low + 0.1, -z + t],
@@ -95,7 +97,7 @@ pub fn dishwasher(style: &Style, key: RandomKey) -> Model {
 
 /// A tumble dryer: as wide as a washing machine, its door larger and darker, a drawer for water above.
 pub fn dryer(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("dryer", key);
+    let d = SizeSampler::new("dryer", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth - 0.045);
     let dark = Finish::plain("dryer_window", "glass", [40, 44, 50]).clear(1.0);
@@ -104,7 +106,7 @@ pub fn dryer(style: &Style, key: RandomKey) -> Model {
     let case = drum_case(x, case_low, case_high, middle);
     let body = case
         .into_iter()
-        .fold(Part::new("body"), |part, wall| {
+        .fold(PartBuilder::new("body"), |part, wall| {
             part.with_filled(&style.appliance, wall, 0.9)
         })
         .with(
@@ -129,7 +131,7 @@ pub fn dryer(style: &Style, key: RandomKey) -> Model {
                 .at(0.02, h - 0.075, z + 0.004),
         );
     let (low, high) = drum_space(middle, z);
-    let door = Part::new("door")
+    let door = PartBuilder::new("door")
         .with_filled(
             &chrome(),
             cylinder(0.2, 0.028, 32)
@@ -147,7 +149,7 @@ pub fn dryer(style: &Style, key: RandomKey) -> Model {
     Model::articulated("tumble_dryer", "dryer")
         .switched(false)
         .part(body)
-        .sounding([0.0, middle, z], "washing_machine", 60.0)
+        .with_sound([0.0, middle, z], "washing_machine", 60.0)
         .top(
             "top",
             [-x + 0.02, h, -0.5 * depth + 0.02],
@@ -160,13 +162,13 @@ pub fn dryer(style: &Style, key: RandomKey) -> Model {
 
 /// A stand with a bottle of water upside down.
 pub fn water_dispenser(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("water_dispenser", key);
+    let d = SizeSampler::new("water_dispenser", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let case = h - 0.38;
     let water = Finish::plain("bottled_water", "water", [140, 186, 214]).clear(0.45);
     let r = 0.42 * w;
-    let bottle = lathe(
+    let bottle = surface_of_revolution(
         &[
             (0.0, case),
             (0.2 * r, case),
@@ -179,7 +181,7 @@ pub fn water_dispenser(style: &Style, key: RandomKey) -> Model {
         24,
     );
     let tap = |a: f32, tone: [u8; 3]| (a, plastic("tap_lever", tone));
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(
             &style.appliance,
             rounded_block([-x, 0.0, -z], [x, 0.62 * case, z], 0.015, 1),
@@ -215,7 +217,7 @@ pub fn water_dispenser(style: &Style, key: RandomKey) -> Model {
     Model::fixed("water_dispenser", "water_dispenser")
         .switched(true)
         .part(body)
-        .sounding([0.0, 0.2, -z], "hum", 36.0)
+        .with_sound([0.0, 0.2, -z], "hum", 36.0)
         .top(
             "drip_tray",
             [-x + 0.05, 0.62 * case + 0.012, z - 0.075],
@@ -225,14 +227,14 @@ pub fn water_dispenser(style: &Style, key: RandomKey) -> Model {
 
 /// The indoor unit of an air conditioner, on the wall; y = 0 is its lower edge.
 pub fn air_conditioner(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("air_conditioner", key);
+    let d = SizeSampler::new("air_conditioner", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let x = 0.5 * w;
     let white = enamel(
         "white_case",
         d.of("tone", [[240, 241, 240], [232, 230, 224], [70, 74, 78]]),
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &white,
             rounded_block([-x, 0.0, 0.0], [x, h, depth], 0.025, 2),
@@ -240,7 +242,7 @@ pub fn air_conditioner(_style: &Style, key: RandomKey) -> Model {
         )
         .with(
             &black(),
-            block([-x + 0.06, 0.02, depth], [x - 0.06, 0.045, depth + 0.001]).untouchable(),
+            block([-x + 0.06, 0.02, depth], [x - 0.06, 0.045, depth + 0.001]).visual_only(),
         )
         .with(
             &white,
@@ -248,21 +250,21 @@ pub fn air_conditioner(_style: &Style, key: RandomKey) -> Model {
                 [-x + 0.05, -0.002, depth - 0.09],
                 [x - 0.05, 0.004, depth - 0.02],
             )
-            .untouchable(),
+            .visual_only(),
         )
         .with(
             &Finish::plain("indicator", "plastic", [90, 200, 120]).glowing([0.05, 0.3, 0.1]),
-            block([x - 0.1, 0.12, depth], [x - 0.08, 0.126, depth + 0.001]).untouchable(),
+            block([x - 0.1, 0.12, depth], [x - 0.08, 0.126, depth + 0.001]).visual_only(),
         );
     Model::fixed("air_conditioner", "air_conditioner")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.02, depth], "fan", 40.0)
+        .with_sound([0.0, 0.02, depth], "fan", 40.0)
 }
 
 /// A fan on a stand: a cage with blades on a post.
 pub fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("pedestal_fan", key);
+    let d = SizeSampler::new("pedestal_fan", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (r, y) = (0.5 * w, h - 0.5 * w);
     let dark = d.chance("dark", 0.5);
@@ -276,10 +278,10 @@ pub fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
             .about_x(FRAC_PI_2)
             .at(0.0, y, from)
     };
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with(
             &case,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, 0.0),
                     (0.85 * r, 0.0),
@@ -307,7 +309,7 @@ pub fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
                 .about_x(FRAC_PI_2)
                 .about_z(spin)
                 .at(0.0, y, 0.0)
-                .untouchable(),
+                .visual_only(),
         );
     }
     for z in [-0.045_f32, 0.045] {
@@ -317,7 +319,7 @@ pub fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
                 y,
                 z * (1.0 + 0.25 * k as f32) * if k == 0 { 0.4 } else { 1.0 },
             );
-            body = body.with(&style.metal, wire.untouchable());
+            body = body.with(&style.metal, wire.visual_only());
         }
         for k in 0..8 {
             let (sin, cos) = dwell_scene::math::sin_cos(TAU * k as f32 / 8.0);
@@ -326,25 +328,25 @@ pub fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
                 [0.99 * r * sin, y + 0.99 * r * cos, 0.4 * z],
                 0.002,
             );
-            body = body.with(&style.metal, wire.untouchable());
+            body = body.with(&style.metal, wire.visual_only());
         }
     }
     // The cage is felt as a disc.
-    let cage = hub(-0.05, 0.1, r - 0.004).unseen();
+    let cage = hub(-0.05, 0.1, r - 0.004).collision_only();
     let body = body.with(&style.metal, cage);
     Model::movable("pedestal_fan", "fan")
         .switched(false)
         .part(body)
-        .sounding([0.0, y, 0.05], "fan", 50.0)
+        .with_sound([0.0, y, 0.05], "fan", 50.0)
 }
 
 /// A fan under the ceiling with a lamp in its middle.
 pub fn ceiling_fan(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("ceiling_fan", key);
+    let d = SizeSampler::new("ceiling_fan", key);
     let (w, h) = (d.m("span"), d.m("height"));
     let (r, low) = (0.5 * w, -h);
     let count = d.of("blades", [3, 4, 5]);
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(
             &style.metal,
             cylinder(0.07, 0.05, 20).at(0.0, -0.05, 0.0),
@@ -361,8 +363,8 @@ pub fn ceiling_fan(style: &Style, key: RandomKey) -> Model {
             0.3,
         )
         .with_filled(
-            &crate::finish::milk_glass(),
-            lathe(
+            &crate::finishes::milk_glass(),
+            surface_of_revolution(
                 &[
                     (0.0, low),
                     (0.06, low + 0.01),
@@ -381,13 +383,13 @@ pub fn ceiling_fan(style: &Style, key: RandomKey) -> Model {
     Model::fixed("ceiling_fan", "fan")
         .switched(true)
         .part(body)
-        .shining([0.0, low - 0.03, 0.0], 12.0)
-        .sounding([0.0, low + 0.14, 0.0], "fan", 38.0)
+        .with_light([0.0, low - 0.03, 0.0], 12.0)
+        .with_sound([0.0, low + 0.14, 0.0], "fan", 38.0)
 }
 
 /// A vacuum cleaner on wheels with its hose and nozzle put away upright.
 pub fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("vacuum_cleaner", key);
+    let d = SizeSampler::new("vacuum_cleaner", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let shell = plastic(
@@ -409,7 +411,7 @@ pub fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
             .about_z(FRAC_PI_2)
             .at(sx * (x - 0.015) + 0.015, 0.07, -z + 0.09)
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &shell,
             rounded_block([-x + 0.035, 0.02, -z], [x - 0.035, tank, z - 0.09], 0.06, 3),
@@ -450,18 +452,18 @@ pub fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
                 0.019,
                 8,
             )
-            .untouchable(),
+            .visual_only(),
             0.3,
         );
     Model::movable("vacuum_cleaner", "vacuum_cleaner")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.1, -z + 0.05], "noise", 72.0)
+        .with_sound([0.0, 0.1, -z + 0.05], "noise", 72.0)
 }
 
 /// A treadmill: a belt between rails, a console on two posts. One runs towards -Z.
 pub fn treadmill(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("treadmill", key);
+    let d = SizeSampler::new("treadmill", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let frame = Finish::plain(
@@ -478,7 +480,7 @@ pub fn treadmill(_style: &Style, key: RandomKey) -> Model {
         2,
     )
     .glowing([0.04, 0.08, 0.08]);
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(
             &frame,
             block([-x, 0.0, -z + 0.2], [-x + 0.08, 0.16, z]),
@@ -516,9 +518,9 @@ pub fn treadmill(_style: &Style, key: RandomKey) -> Model {
     let (cy, cz) = (h - 0.25, -z + 0.13);
     let body = body
         .with_filled(&black(), console.at(0.0, cy, cz), 0.3)
-        .with(&screen, shown.at(0.0, cy, cz).untouchable());
+        .with(&screen, shown.at(0.0, cy, cz).visual_only());
     Model::fixed("treadmill", "gym_equipment")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.15, -z + 0.15], "hum", 62.0)
+        .with_sound([0.0, 0.15, -z + 0.15], "hum", 62.0)
 }

@@ -1,21 +1,23 @@
 //! Musical instruments.
 
-use crate::draw::Draw;
-use crate::finish::{Finish, black, brass, chrome, plastic};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, ball, block, cylinder, extrude, lathe, rod, rounded_block};
+use crate::finishes::{Finish, black, brass, chrome, plastic};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
+use crate::shapes::{
+    SolidMesh, ball, block, cylinder, extrude, rod, rounded_block, surface_of_revolution,
+};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 
 /// Keys of a piano from -`half` to `half`: one white board with gaps painted by black keys; front at `z`.
-fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, Solid); 2] {
+fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, SolidMesh); 2] {
     let ivory = plastic("ivory_keys", [244, 242, 234]);
     let count = ((2.0 * half) / 0.0235) as usize;
     let wide = 2.0 * half / count as f32;
-    let mut white = Solid::default();
-    let mut dark = Solid::default();
+    let mut white = SolidMesh::default();
+    let mut dark = SolidMesh::default();
     for k in 0..count {
         let from = -half + wide * k as f32;
         white = white.and(
@@ -23,7 +25,7 @@ fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, Solid); 2] {
                 [from + 0.0006, y, z - depth],
                 [from + wide - 0.0006, y + 0.012, z],
             )
-            .untouchable(),
+            .visual_only(),
         );
         // Two and three black keys in turn, as on every keyboard.
         if ![2, 6].contains(&(k % 7)) && k + 1 < count {
@@ -33,7 +35,7 @@ fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, Solid); 2] {
                     [at - 0.006, y + 0.012, z - depth],
                     [at + 0.006, y + 0.022, z - 0.36 * depth],
                 )
-                .untouchable(),
+                .visual_only(),
             );
         }
     }
@@ -43,7 +45,7 @@ fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, Solid); 2] {
 
 /// An upright piano; the lid over its keys turns up.
 pub fn piano(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("piano", key);
+    let d = SizeSampler::new("piano", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let lacquer = match d.below("finish", 3) {
@@ -70,7 +72,7 @@ pub fn piano(style: &Style, key: RandomKey) -> Model {
         block([a.min(b), 0.0, front], [a.max(b), 0.06, z])
             .and(block([a.min(b), 0.06, z - 0.08], [a.max(b), bed, z - 0.02]))
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &lacquer,
             block([-x + 0.03, 0.06, -z], [x - 0.03, h - 0.03, front]),
@@ -111,7 +113,7 @@ pub fn piano(style: &Style, key: RandomKey) -> Model {
         .with(&dark.0, dark.1)
         .with_all(&brass(), [-0.12, 0.0, 0.12].map(pedal));
     let hinge = front + 0.03;
-    let lid = Part::new("lid").with(
+    let lid = PartBuilder::new("lid").with(
         &lacquer,
         block(
             [-half + 0.003, board + 0.005, hinge],
@@ -127,7 +129,7 @@ pub fn piano(style: &Style, key: RandomKey) -> Model {
 
 /// An electric piano on a crossed stand.
 pub fn keyboard(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("keyboard", key);
+    let d = SizeSampler::new("keyboard", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let case = plastic(
@@ -146,7 +148,7 @@ pub fn keyboard(_style: &Style, key: RandomKey) -> Model {
             0.015,
         )
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &case,
             rounded_block([-x, under, -z], [x, h - 0.012, z], 0.012, 1),
@@ -164,7 +166,7 @@ pub fn keyboard(_style: &Style, key: RandomKey) -> Model {
 
 /// A guitar on its stand, strings towards +Z.
 pub fn guitar(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("guitar", key);
+    let d = SizeSampler::new("guitar", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let top = Finish::tiled(
@@ -220,7 +222,7 @@ pub fn guitar(_style: &Style, key: RandomKey) -> Model {
         .collect();
     let neck = low + tall;
     let face = back + deep;
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&side, box_of, 0.09)
         .with(
             &top,
@@ -232,14 +234,14 @@ pub fn guitar(_style: &Style, key: RandomKey) -> Model {
                 0.003,
             )
             .at(0.0, low, face)
-            .untouchable(),
+            .visual_only(),
         )
         .with(
             &ebony,
             cylinder(0.05, 0.0015, 24)
                 .about_x(FRAC_PI_2)
                 .at(0.0, low + 0.66 * tall, face + 0.003)
-                .untouchable(),
+                .visual_only(),
         )
         .with(
             &ebony,
@@ -247,7 +249,7 @@ pub fn guitar(_style: &Style, key: RandomKey) -> Model {
                 [-0.08, low + 0.26 * tall, face + 0.003],
                 [0.08, low + 0.29 * tall, face + 0.012],
             )
-            .untouchable(),
+            .visual_only(),
         )
         .with(
             &side,
@@ -277,7 +279,7 @@ pub fn guitar(_style: &Style, key: RandomKey) -> Model {
                 [-0.05, h - 0.06, face - 0.008],
                 [0.05, h - 0.05, face - 0.002],
             ))
-            .untouchable(),
+            .visual_only(),
         )
         .with(&black(), ball(0.012, 8).at(-0.8 * x, 0.012, z - 0.012))
         .with(&black(), ball(0.012, 8).at(0.8 * x, 0.012, z - 0.012))
@@ -312,7 +314,7 @@ pub fn guitar(_style: &Style, key: RandomKey) -> Model {
 
 /// A drum kit: bass drum, two toms, a floor tom, a snare, two cymbals, a stool behind.
 pub fn drum_kit(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("drum_kit", key);
+    let d = SizeSampler::new("drum_kit", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let shell = Finish::plain(
@@ -332,7 +334,7 @@ pub fn drum_kit(_style: &Style, key: RandomKey) -> Model {
     let skin = plastic("drum_skin", [236, 234, 226]);
     let bass = 0.28;
     let front = z - 0.45;
-    let mut body = Part::new("kit")
+    let mut body = PartBuilder::new("kit")
         .with_filled(
             &shell,
             cylinder(bass, 0.4, 28)
@@ -345,9 +347,9 @@ pub fn drum_kit(_style: &Style, key: RandomKey) -> Model {
             cylinder(bass - 0.015, 0.003, 28)
                 .about_x(FRAC_PI_2)
                 .at(0.0, bass, front + 0.4)
-                .untouchable(),
+                .visual_only(),
         );
-    let drum = |body: Part, r: f32, tall: f32, at: [f32; 3], legs: bool| {
+    let drum = |body: PartBuilder, r: f32, tall: f32, at: [f32; 3], legs: bool| {
         let [a, y, b] = at;
         let mut body = body
             .with_filled(&shell, cylinder(r, tall, 24).at(a, y, b), 0.07)
@@ -355,7 +357,7 @@ pub fn drum_kit(_style: &Style, key: RandomKey) -> Model {
                 &skin,
                 cylinder(r - 0.008, 0.003, 24)
                     .at(a, y + tall, b)
-                    .untouchable(),
+                    .visual_only(),
             );
         if legs {
             for k in 0..3 {
@@ -373,7 +375,7 @@ pub fn drum_kit(_style: &Style, key: RandomKey) -> Model {
         } else {
             body = body.with_filled(
                 &chrome(),
-                rod([0.4 * a, 2.0 * bass - 0.02, b], [a, y + 0.05, b], 0.012).untouchable(),
+                rod([0.4 * a, 2.0 * bass - 0.02, b], [a, y + 0.05, b], 0.012).visual_only(),
                 0.4,
             );
         }
@@ -384,7 +386,7 @@ pub fn drum_kit(_style: &Style, key: RandomKey) -> Model {
     body = drum(body, 0.2, 0.4, [0.62 * x, 0.2, front - 0.3], true);
     body = drum(body, 0.18, 0.14, [-0.5 * x, 0.48, front - 0.28], true);
     let cymbal = |r: f32, a: f32, y: f32, b: f32| {
-        let plate = lathe(
+        let plate = surface_of_revolution(
             &[
                 (0.0, 0.0),
                 (r, -0.015),

@@ -1,7 +1,7 @@
 //! What fills holes in walls: doors and windows, and the radiators below them.
 
-use crate::finish::{Finish, chrome, glass, plastic, white_lacquer};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, chrome, glass, plastic, white_lacquer};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, cylinder, frame, rod};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
@@ -59,7 +59,7 @@ impl Door {
         [[-half, SILL_M], [half, self.height_m - JAMB_M - GAP_M]]
     }
 
-    fn frame(&self) -> Part {
+    fn frame(&self) -> PartBuilder {
         const TRIM_M: f32 = 0.012;
         let (x, h, z) = (0.5 * self.width_m, self.height_m, 0.5 * self.wall_m);
         let jambs = [
@@ -74,14 +74,14 @@ impl Door {
             block([-outer, 0.0, back], [-inner, top, face])
                 .and(block([inner, 0.0, back], [outer, top, face]))
                 .and(block([-inner, h - 0.01, back], [inner, top, face]))
-                .untouchable()
+                .visual_only()
         });
-        Part::new("frame")
+        PartBuilder::new("frame")
             .with_all(&self.frame, jambs)
             .with_all(&self.frame, trims)
     }
 
-    fn panels(&self, leaf: Part) -> Part {
+    fn panels(&self, leaf: PartBuilder) -> PartBuilder {
         let [[left, bottom], [right, top]] = self.leaf_corners();
         let face = 0.5 * self.wall_m;
         let back = face - LEAF_M;
@@ -93,11 +93,11 @@ impl Door {
         };
         for (low, high) in [(0.16, 0.86), (1.0, top - 0.14)] {
             let (width, height) = (right - left - 0.26, high - low);
-            let moulding = frame(width, height, 0.018, 0.006).untouchable();
+            let moulding = frame(width, height, 0.018, 0.006).visual_only();
             let middle = low + 0.5 * height;
             let (x, y) = (0.5 * width - 0.018, 0.5 * height - 0.018);
             let plate =
-                |z: f32| block([-x, middle - y, z], [x, middle + y, z + 0.002]).untouchable();
+                |z: f32| block([-x, middle - y, z], [x, middle + y, z + 0.002]).visual_only();
             leaf = leaf
                 .with(&self.leaf, moulding.clone().at(0.0, middle, face))
                 .with(&self.leaf, moulding.at(0.0, middle, back - 0.006))
@@ -107,7 +107,7 @@ impl Door {
         leaf
     }
 
-    fn pane(&self, leaf: Part) -> Part {
+    fn pane(&self, leaf: PartBuilder) -> PartBuilder {
         let [[left, bottom], [right, top]] = self.leaf_corners();
         let face = 0.5 * self.wall_m;
         let (back, middle) = (face - LEAF_M, face - 0.5 * LEAF_M);
@@ -123,7 +123,7 @@ impl Door {
     }
 
     /// A lever on either side.
-    fn handles(&self, mut leaf: Part) -> Part {
+    fn handles(&self, mut leaf: PartBuilder) -> PartBuilder {
         const HEIGHT_M: f32 = 1.02;
         let [[left, _], [right, _]] = self.leaf_corners();
         let (grip, inward) = if self.hinge_right {
@@ -141,7 +141,7 @@ impl Door {
                 [
                     rod(point(0.0, at), point(0.0, out), 0.009),
                     rod(point(-0.008, out), point(0.115, out), 0.009),
-                    plate.at(grip, HEIGHT_M, at).untouchable(),
+                    plate.at(grip, HEIGHT_M, at).visual_only(),
                 ],
             );
         }
@@ -150,7 +150,7 @@ impl Door {
 
     /// The model of these sizes and finishes.
     pub fn build(&self) -> Model {
-        let leaf = Part::new("leaf");
+        let leaf = PartBuilder::new("leaf");
         let leaf = if self.glazed {
             self.pane(leaf)
         } else {
@@ -203,7 +203,7 @@ impl Window {
         let (w, h, z) = (self.width_m, self.height_m, 0.5 * self.wall_m);
         let white = plastic("window_white", [240, 240, 238]);
         let (depth, back) = (0.07, -0.035);
-        let mut body = Part::new("frame")
+        let mut body = PartBuilder::new("frame")
             .with(&white, frame(w, h, 0.05, depth).at(0.0, 0.0, back))
             .with(
                 &white,
@@ -219,7 +219,7 @@ impl Window {
                     [0.5 * w, -0.5 * h + 0.02, back],
                 ),
             );
-        let mut panes = Part::new("glass");
+        let mut panes = PartBuilder::new("glass");
         let (iw, ih) = (w - 0.1, h - 0.1);
         let step = iw / self.lights as f32;
         for k in 0..self.lights {
@@ -236,7 +236,7 @@ impl Window {
             let lever = x + (0.5 * step - 0.025) * if k % 2 == 0 { 1.0 } else { -1.0 };
             body = body.with(
                 &chrome(),
-                block([lever - 0.008, -0.06, 0.03], [lever + 0.008, 0.06, 0.05]).untouchable(),
+                block([lever - 0.008, -0.06, 0.03], [lever + 0.008, 0.06, 0.05]).visual_only(),
             );
         }
         Model::fixed("window", "window").part(body).part(panes)
@@ -249,9 +249,9 @@ pub fn radiator(width_m: f32, height_m: f32) -> Model {
     let x = 0.5 * width_m;
     let rib = |k: usize| {
         let a = -x + 0.012 + 0.04 * k as f32;
-        block([a, 0.03, 0.09], [a + 0.022, height_m - 0.03, 0.098]).untouchable()
+        block([a, 0.03, 0.09], [a + 0.022, height_m - 0.03, 0.098]).visual_only()
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&white, block([-x, 0.0, 0.04], [x, height_m, 0.09]), 0.12)
         .with_all(&white, (0..(width_m / 0.04 - 0.5) as usize).map(rib))
         .with_all(
@@ -268,7 +268,7 @@ pub fn radiator(width_m: f32, height_m: f32) -> Model {
 /// A light switch on the wall; y = 0 is its middle.
 pub fn light_switch() -> Model {
     let white = plastic("white_plastic", [240, 240, 236]);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&white, block([-0.04, -0.04, 0.0], [0.04, 0.04, 0.008]))
         .with(
             &white,

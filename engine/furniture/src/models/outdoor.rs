@@ -1,10 +1,12 @@
 //! For balcony and garden: parasol, grill, lamp, mower, letter box, table.
 
 use super::table::Table;
-use crate::draw::Draw;
-use crate::finish::{Finish, black, milk_glass, painted_steel, plastic, steel};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, block, cylinder, lathe, loft, rod, rounded_block, tube};
+use crate::finishes::{Finish, black, milk_glass, painted_steel, plastic, steel};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
+use crate::shapes::{
+    SolidMesh, block, cylinder, loft, rod, rounded_block, surface_of_revolution, tube,
+};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
@@ -12,7 +14,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// A parasol on a heavy foot, open.
 pub fn parasol(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("parasol", key);
+    let d = SizeSampler::new("parasol", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
     let cover = style.cloth(&mut d.stream("cover"));
@@ -32,10 +34,10 @@ pub fn parasol(style: &Style, key: RandomKey) -> Model {
     } else {
         style.metal.clone()
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &stone,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, 0.0),
                     (0.24, 0.0),
@@ -54,7 +56,7 @@ pub fn parasol(style: &Style, key: RandomKey) -> Model {
 
 /// A grill: a kettle on three legs or a wagon with a hood that opens.
 pub fn grill(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("grill", key);
+    let d = SizeSampler::new("grill", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let enamel = painted_steel(
@@ -66,7 +68,7 @@ pub fn grill(_style: &Style, key: RandomKey) -> Model {
     );
     let bowl = 0.42 * w.min(depth * 1.2);
     let rim = h - 0.26;
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(
             &enamel,
             block([-bowl, rim - 0.16, -0.8 * z], [bowl, rim, 0.8 * z]),
@@ -148,7 +150,7 @@ pub fn grill(_style: &Style, key: RandomKey) -> Model {
     )
     .about_y(FRAC_PI_2)
     .at(-bowl, rim + 0.01, 0.0);
-    let lid = Part::new("lid")
+    let lid = PartBuilder::new("lid")
         .with_filled(&enamel, hood, 0.05)
         .with(
             &steel(),
@@ -165,7 +167,7 @@ pub fn grill(_style: &Style, key: RandomKey) -> Model {
                 [-0.5 * bowl, rim + 0.09, 0.8 * z + 0.03],
                 0.007,
             )
-            .untouchable(),
+            .visual_only(),
         )
         .with(
             &steel(),
@@ -174,7 +176,7 @@ pub fn grill(_style: &Style, key: RandomKey) -> Model {
                 [0.5 * bowl, rim + 0.09, 0.8 * z + 0.03],
                 0.007,
             )
-            .untouchable(),
+            .visual_only(),
         );
     Model::articulated("grill", "grill")
         .switched(false)
@@ -201,7 +203,7 @@ const fn style_wood() -> Finish {
 
 /// A lamp on a post beside a path.
 pub fn garden_lamp(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("garden_lamp", key);
+    let d = SizeSampler::new("garden_lamp", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
     let iron = painted_steel(
@@ -209,10 +211,10 @@ pub fn garden_lamp(_style: &Style, key: RandomKey) -> Model {
         d.of("tone", [[36, 38, 38], [70, 80, 76], [150, 150, 152]]),
     );
     let head = h - 1.9 * r;
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &iron,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, 0.0),
                     (0.9 * r, 0.0),
@@ -233,7 +235,7 @@ pub fn garden_lamp(_style: &Style, key: RandomKey) -> Model {
         )
         .with_filled(
             &iron,
-            lathe(
+            surface_of_revolution(
                 &[(0.0, 0.0), (r, 0.0), (0.35 * r, 0.45 * r), (0.0, 0.6 * r)],
                 18,
             )
@@ -243,12 +245,12 @@ pub fn garden_lamp(_style: &Style, key: RandomKey) -> Model {
     Model::fixed("garden_lamp", "outdoor_lamp")
         .switched(true)
         .part(body)
-        .shining([0.0, h + 0.05, 0.0], 8.0)
+        .with_light([0.0, h + 0.05, 0.0], 8.0)
 }
 
 /// A lawn mower with its handle bar to the back (-Z).
 pub fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("lawn_mower", key);
+    let d = SizeSampler::new("lawn_mower", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let deck = painted_steel(
@@ -265,7 +267,7 @@ pub fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
     };
     let (front, rear) = (z - 0.11, z - 0.62);
     let bag = Finish::plain("grass_bag", "textile", [60, 62, 64]);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &deck,
             rounded_block(
@@ -317,12 +319,12 @@ pub fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
     Model::movable("lawn_mower", "lawn_mower")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.3, front], "noise", 88.0)
+        .with_sound([0.0, 0.3, front], "noise", 88.0)
 }
 
 /// A letter box on the wall; its flap turns up. y = 0 is its lower edge.
 pub fn letter_box(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("letter_box", key);
+    let d = SizeSampler::new("letter_box", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let x = 0.5 * w;
     let paint = painted_steel(
@@ -348,18 +350,21 @@ pub fn letter_box(_style: &Style, key: RandomKey) -> Model {
         block([-x + t, t, face - t], [x - t, 0.72 * h, face]),
     ];
     let plate = Finish::plain("name_plate", "paper", [236, 234, 226]);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &paint,
-            shell.into_iter().fold(Solid::default(), Solid::and),
+            shell.into_iter().fold(SolidMesh::default(), SolidMesh::and),
             0.15,
         )
         .with(
             &plate,
-            block([-0.2 * w, 0.3 * h, face], [0.2 * w, 0.4 * h, face + 0.002]).untouchable(),
+            block([-0.2 * w, 0.3 * h, face], [0.2 * w, 0.4 * h, face + 0.002]).visual_only(),
         );
-    let flap =
-        Part::new("flap").with_filled(&paint, block([-x, h - 0.018, 0.004], [x, h, depth]), 0.3);
+    let flap = PartBuilder::new("flap").with_filled(
+        &paint,
+        block([-x, h - 0.018, 0.004], [x, h, depth]),
+        0.3,
+    );
     Model::articulated("letter_box", "mailbox")
         .part(body)
         .inside("inside", [-x + t, t, t], [x - t, 0.72 * h, face - t])
@@ -369,7 +374,7 @@ pub fn letter_box(_style: &Style, key: RandomKey) -> Model {
 
 /// A table for balcony or terrace.
 pub fn garden_table(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("garden_table", key);
+    let d = SizeSampler::new("garden_table", key);
     let teak = Finish::tiled(
         "teak",
         "wood",

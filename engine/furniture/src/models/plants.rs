@@ -1,8 +1,8 @@
 //! Plants in pots, vases with flowers.
 
-use crate::finish::{Finish, foliage as green, soil};
-use crate::model::{Model, Part};
-use crate::shapes::{ball, cylinder, foliage, lathe, leaf, rod, turn, vessel};
+use crate::finishes::{Finish, foliage as green, soil};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{ball, cylinder, foliage, leaf, rod, surface_of_revolution, turn, vessel};
 use dwell_scene::Pose;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
@@ -64,11 +64,11 @@ impl Plant {
             self.key,
         );
         let bark = Finish::plain("stem", "wood", [96, 84, 52]);
-        let body = Part::new("body")
+        let body = PartBuilder::new("body")
             .with(&self.pot, shell)
             .with_filled(
                 &soil(),
-                lathe(
+                surface_of_revolution(
                     &[(0.0, 0.01), (0.7 * r, 0.01), (0.9 * r, level), (0.0, level)],
                     20,
                 ),
@@ -81,7 +81,7 @@ impl Plant {
                     [0.0, top + 0.3 * (self.height_m - top), 0.0],
                     0.008,
                 )
-                .untouchable(),
+                .visual_only(),
             )
             .with(&self.leaf, crown.at(0.0, top, 0.0));
         let model = if r < 0.09 {
@@ -97,13 +97,13 @@ impl Plant {
 pub fn sansevieria(height_m: f32, pot: &Finish) -> Model {
     let r = 0.11;
     let shell = vessel(&[(0.0, 0.0), (0.8 * r, 0.0), (r, 0.17)], 0.007, 24);
-    let mut body = Part::new("body").with(pot, shell).with_filled(
+    let mut body = PartBuilder::new("body").with(pot, shell).with_filled(
         &soil(),
         cylinder(0.82 * r, 0.14, 20).at(0.0, 0.008, 0.0),
         0.7,
     );
     let mut random = RandomKey::root(11).child("sansevieria").stream();
-    let mut crown = crate::shapes::Solid::default();
+    let mut crown = crate::shapes::SolidMesh::default();
     for k in 0..11 {
         let size = (height_m - 0.15) * random.range(0.6, 1.0);
         let spin = turn(Vec3::Y, TAU * 0.381_966 * k as f32);
@@ -139,7 +139,7 @@ pub fn vase(height_m: f32, glaze: &Finish, bloom: Option<&Finish>) -> Model {
         0.005,
         24,
     );
-    let mut body = Part::new("body").with(glaze, shell);
+    let mut body = PartBuilder::new("body").with(glaze, shell);
     if let Some(bloom) = bloom {
         let stem = fresh_green();
         let mut random = RandomKey::root(23).child("vase").stream();
@@ -154,11 +154,11 @@ pub fn vase(height_m: f32, glaze: &Finish, bloom: Option<&Finish>) -> Model {
             body = body
                 .with(
                     &stem,
-                    rod([0.1 * r * sin, 0.2 * h, 0.1 * r * cos], top, 0.0022).untouchable(),
+                    rod([0.1 * r * sin, 0.2 * h, 0.1 * r * cos], top, 0.0022).visual_only(),
                 )
                 .with_filled(
                     bloom,
-                    ball(0.026, 10).at(top[0], top[1], top[2]).untouchable(),
+                    ball(0.026, 10).at(top[0], top[1], top[2]).visual_only(),
                     0.1,
                 );
             let low = Vec3::new(0.3 * r * sin, 0.95 * h, 0.3 * r * cos);

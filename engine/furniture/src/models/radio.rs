@@ -1,7 +1,7 @@
 //! Radios and loudspeakers.
 
-use crate::finish::{Finish, black, chrome, device, walnut};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, black, chrome, device, walnut};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, cylinder, rod, rounded_block};
 use std::f32::consts::FRAC_PI_2;
 
@@ -31,7 +31,7 @@ pub fn radio(on: bool) -> Model {
             .about_x(FRAC_PI_2)
             .at(at, 0.055, z)
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &walnut(),
             rounded_block([-x, 0.006, -z], [x, h, z], 0.018, 2),
@@ -49,12 +49,12 @@ pub fn radio(on: bool) -> Model {
         .with_all(&chrome(), [knob(0.045), knob(0.105)])
         .with(
             &chrome(),
-            rod([0.13, h - 0.01, -0.03], [0.13, h + 0.2, -0.05], 0.0025).untouchable(),
+            rod([0.13, h - 0.01, -0.03], [0.13, h + 0.2, -0.05], 0.0025).visual_only(),
         );
     Model::pickable("radio", "radio")
         .switched(on)
         .part(body)
-        .sounding([-0.06, 0.09, z + 0.01], "radio", 63.0)
+        .with_sound([-0.06, 0.09, z + 0.01], "radio", 63.0)
 }
 
 /// A loudspeaker on the floor.
@@ -64,9 +64,9 @@ pub fn loudspeaker(height_m: f32) -> Model {
         cylinder(r, 0.006, 20)
             .about_x(FRAC_PI_2)
             .at(0.0, y, 0.125)
-            .untouchable()
+            .visual_only()
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &walnut(),
             rounded_block([-0.1, 0.0, -0.125], [0.1, height_m, 0.125], 0.008, 1),

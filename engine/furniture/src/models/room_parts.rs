@@ -1,20 +1,20 @@
 //! What furnishes walls and divides rooms: fireplace, screen, blind, wall lamp, chandelier, kitchen rail.
 
-use crate::draw::Draw;
-use crate::finish::{Finish, brass, lampshade, milk_glass, plastic};
-use crate::model::{Model, Part};
-use crate::shapes::{block, cone, cylinder, lathe, rod, rounded_block, tube};
+use crate::finishes::{Finish, brass, lampshade, milk_glass, plastic};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
+use crate::shapes::{block, cone, cylinder, rod, rounded_block, surface_of_revolution, tube};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// A fireplace on the wall with logs that glow when it burns; its back is at -Z.
 pub fn fireplace(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("fireplace", key);
+    let d = SizeSampler::new("fireplace", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let stone = match d.below("stone", 3) {
-        0 => crate::finish::marble(),
+        0 => crate::finishes::marble(),
         1 => Finish::tiled(
             "fire_brick",
             "brick",
@@ -31,7 +31,7 @@ pub fn fireplace(_style: &Style, key: RandomKey) -> Model {
     let (inner, top) = (x - leg, deck - beam);
     let hearth = 0.06;
     let face = z - 0.04;
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &stone,
             block([-x + 0.04, hearth, -z], [-inner, deck, face]),
@@ -77,13 +77,13 @@ pub fn fireplace(_style: &Style, key: RandomKey) -> Model {
                 [-0.3 * long, hearth, -0.2 * z],
                 [0.3 * long, hearth + 0.02, 0.15 * z],
             )
-            .untouchable(),
+            .visual_only(),
         );
     Model::fixed("fireplace", "fireplace")
         .switched(false)
         .part(body)
-        .shining([0.0, hearth + 0.3, 0.1 * z], 20.0)
-        .sounding([0.0, hearth + 0.1, 0.0], "noise", 40.0)
+        .with_light([0.0, hearth + 0.3, 0.1 * z], 20.0)
+        .with_sound([0.0, hearth + 0.1, 0.0], "noise", 40.0)
         .top(
             "mantelpiece",
             [-x + 0.03, h, -z + 0.01],
@@ -93,11 +93,11 @@ pub fn fireplace(_style: &Style, key: RandomKey) -> Model {
 
 /// A screen of three leaves that stands in a zigzag.
 pub fn room_divider(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("room_divider", key);
+    let d = SizeSampler::new("room_divider", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let wood = style.any_wood(&mut d.stream("wood"));
     let cloth = if d.chance("paper", 0.4) {
-        crate::finish::paper("rice_paper", [240, 234, 218])
+        crate::finishes::paper("rice_paper", [240, 234, 218])
     } else {
         style.cloth(&mut d.stream("cloth")).clone()
     };
@@ -106,12 +106,12 @@ pub fn room_divider(style: &Style, key: RandomKey) -> Model {
     let rise = depth - t;
     let leaf_m = (run * run + rise * rise).sqrt();
     let angle = dwell_scene::math::atan2(rise, run);
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     for k in 0..3 {
         let spin = if k % 2 == 0 { angle } else { -angle };
         let middle = -0.5 * w + 0.5 * t + run * (k as f32 + 0.5);
         let half = 0.5 * leaf_m - 0.5 * t * 0.6;
-        let place = |solid: crate::shapes::Solid| solid.about_y(spin).at(middle, 0.0, 0.0);
+        let place = |solid: crate::shapes::SolidMesh| solid.about_y(spin).at(middle, 0.0, 0.0);
         let (a, bar) = (half, 0.035);
         let rails = [
             block([-a, 0.0, -0.5 * t], [-a + bar, h, 0.5 * t]),
@@ -145,12 +145,12 @@ pub fn room_divider(style: &Style, key: RandomKey) -> Model {
 
 /// A blind before a window, half let down: slats or a roll of cloth. y = 0 is its upper edge, z = 0 the wall.
 pub fn blind(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("blind", key);
+    let d = SizeSampler::new("blind", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let x = 0.5 * w;
     let white = plastic("blind_white", [238, 238, 234]);
     let mut body =
-        Part::new("body").with_filled(&white, block([-x, -0.05, 0.0], [x, 0.0, 0.06]), 0.3);
+        PartBuilder::new("body").with_filled(&white, block([-x, -0.05, 0.0], [x, 0.0, 0.06]), 0.3);
     if d.chance("slats", 0.5) {
         let slat = if d.chance("wood", 0.4) {
             style.wood.clone()
@@ -166,16 +166,16 @@ pub fn blind(style: &Style, key: RandomKey) -> Model {
             let one = block([-x + 0.01, -0.0015, -0.022], [x - 0.01, 0.0015, 0.022])
                 .about_x(0.5)
                 .at(0.0, y, 0.03);
-            body = body.with(&slat, one.untouchable());
+            body = body.with(&slat, one.visual_only());
         }
         for a in [-0.7 * x, 0.7 * x] {
             body = body.with(
                 &white,
-                rod([a, -h + 0.02, 0.03], [a, -0.05, 0.03], 0.001).untouchable(),
+                rod([a, -h + 0.02, 0.03], [a, -0.05, 0.03], 0.001).visual_only(),
             );
         }
         // The slats are felt as one board.
-        let board = block([-x + 0.01, -h + 0.02, 0.014], [x - 0.01, -0.05, 0.046]).unseen();
+        let board = block([-x + 0.01, -h + 0.02, 0.014], [x - 0.01, -0.05, 0.046]).collision_only();
         body = body.with(&slat, board).with(
             &white,
             block([-x + 0.01, -h, 0.012], [x - 0.01, -h + 0.02, 0.048]),
@@ -197,12 +197,12 @@ pub fn blind(style: &Style, key: RandomKey) -> Model {
 
 /// A lamp on the wall: a cylinder that shines up and down, a shade on an arm, or a globe. y = 0 is its plate's middle.
 pub fn wall_lamp(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("wall_lamp", key);
+    let d = SizeSampler::new("wall_lamp", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (r, z) = (0.5 * w, depth - 0.5 * w);
     let plate = cylinder(0.045, 0.015, 20).about_x(FRAC_PI_2);
     let arm = rod([0.0, 0.0, 0.015], [0.0, 0.0, z], 0.008);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&style.metal, plate)
         .with(&style.metal, arm);
     let body = match d.below("build", 3) {
@@ -232,12 +232,12 @@ pub fn wall_lamp(style: &Style, key: RandomKey) -> Model {
     Model::fixed("wall_lamp", "wall_lamp")
         .switched(true)
         .part(body)
-        .shining([0.0, 0.5 * h + 0.04, z], 6.0)
+        .with_light([0.0, 0.5 * h + 0.04, z], 6.0)
 }
 
 /// A chandelier: arms with candles or bulbs around a stem, under the ceiling.
 pub fn chandelier(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("chandelier", key);
+    let d = SizeSampler::new("chandelier", key);
     let (w, h) = (d.m("span"), d.m("height"));
     let metal = if d.chance("brass", 0.4) {
         brass()
@@ -246,7 +246,7 @@ pub fn chandelier(style: &Style, key: RandomKey) -> Model {
     };
     let count = d.of("arms", [5, 6, 8]);
     let (r, low) = (0.5 * w - 0.03, -h);
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(&metal, cylinder(0.06, 0.03, 20).at(0.0, -0.03, 0.0), 0.4)
         .with(
             &metal,
@@ -254,7 +254,7 @@ pub fn chandelier(style: &Style, key: RandomKey) -> Model {
         )
         .with_filled(
             &metal,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, low),
                     (0.03, low + 0.02),
@@ -294,16 +294,16 @@ pub fn chandelier(style: &Style, key: RandomKey) -> Model {
             )
             .with(
                 &milk_glass(),
-                lathe(
+                surface_of_revolution(
                     &[(0.0, 0.0), (0.012, 0.008), (0.014, 0.02), (0.0, 0.05)],
                     10,
                 )
                 .at(r * sin, low + 0.178, r * cos)
-                .untouchable(),
+                .visual_only(),
             );
     }
     Model::fixed("chandelier", "chandelier")
         .switched(true)
         .part(body)
-        .shining([0.0, low - 0.05, 0.0], 24.0)
+        .with_light([0.0, low - 0.05, 0.0], 24.0)
 }

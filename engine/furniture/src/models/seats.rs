@@ -1,14 +1,15 @@
 //! Office chairs, stools, ottomans, benches.
 
-use crate::finish::{Finish, black, chrome};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, black, chrome};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{ball, block, cushion, cylinder, rod, rounded_block, tapered_leg};
 use std::f32::consts::TAU;
 
 /// A swivel chair on five castors.
 pub fn office_chair(cloth: &Finish) -> Model {
     let dark = black();
-    let mut body = Part::new("body").with(&chrome(), cylinder(0.025, 0.34, 14).at(0.0, 0.09, 0.0));
+    let mut body =
+        PartBuilder::new("body").with(&chrome(), cylinder(0.025, 0.34, 14).at(0.0, 0.09, 0.0));
     for k in 0..5 {
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * k as f32 / 5.0);
         let (x, z) = (0.28 * sin, 0.28 * cos);
@@ -64,7 +65,8 @@ pub fn office_chair(cloth: &Finish) -> Model {
 /// A round stool on four legs.
 pub fn stool(height_m: f32, wood: &Finish, legs: &Finish) -> Model {
     let under = height_m - 0.035;
-    let mut body = Part::new("body").with(wood, cylinder(0.17, 0.035, 26).at(0.0, under, 0.0));
+    let mut body =
+        PartBuilder::new("body").with(wood, cylinder(0.17, 0.035, 26).at(0.0, under, 0.0));
     for (x, z) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         body = body.with_bar(
             legs,
@@ -106,7 +108,8 @@ pub fn pouf(radius_m: f32, height_m: f32, cloth: &Finish) -> Model {
         (0.86 * r, h),
         (0.0, h),
     ];
-    let body = Part::new("body").with_padding(cloth, crate::shapes::lathe(&shape, 28));
+    let body = PartBuilder::new("body")
+        .with_padding(cloth, crate::shapes::surface_of_revolution(&shape, 28));
     let half = 0.5 * r;
     Model::movable("pouf", "ottoman").part(body).top(
         "top",
@@ -122,7 +125,7 @@ pub fn shoe_bench(width_m: f32, wood: &Finish, cloth: &Finish) -> Model {
         let a = -z + 0.02 + 0.08 * k as f32;
         block([-x + 0.025, 0.14, a], [x - 0.025, 0.158, a + 0.055])
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(wood, block([-x, 0.0, -z], [-x + 0.025, h, z]))
         .with(wood, block([x - 0.025, 0.0, -z], [x, h, z]))
         .with(wood, block([-x + 0.025, h - 0.025, -z], [x - 0.025, h, z]))

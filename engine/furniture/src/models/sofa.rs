@@ -1,12 +1,12 @@
 //! Sofas and armchairs: the same build with more or fewer seats.
 
-use crate::finish::{Finish, oak, upholstery};
-use crate::model::{Model, Part};
-use crate::shapes::{Solid, block, cushion, cylinder, rounded_block, tapered_leg};
+use crate::finishes::{Finish, oak, upholstery};
+use crate::model::{Model, PartBuilder};
+use crate::shapes::{SolidMesh, block, cushion, cylinder, rounded_block, tapered_leg};
 
 /// How the arms of a seat are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Arm {
+pub enum ArmStyle {
     /// An upholstered block.
     Block,
     /// An upholstered panel under a roll.
@@ -27,7 +27,7 @@ pub struct Sofa {
     /// Height of the back, m.
     pub back_m: f32,
     /// The shape of the arm rests.
-    pub arm: Arm,
+    pub arm: ArmStyle,
     /// Width of an arm, m.
     pub arm_m: f32,
     /// Height of the arms, m.
@@ -48,7 +48,7 @@ impl Default for Sofa {
             seat_width_m: 0.62,
             depth_m: 0.92,
             back_m: 0.82,
-            arm: Arm::Block,
+            arm: ArmStyle::Block,
             arm_m: 0.15,
             arm_top_m: 0.6,
             leg_m: 0.12,
@@ -75,7 +75,7 @@ impl Sofa {
     pub fn build(&self) -> Model {
         let inner = 0.5 * self.seat_width_m * self.seats as f32;
         let (x, z) = (inner + self.arm_m, 0.5 * self.depth_m);
-        let mut body = Part::new("body")
+        let mut body = PartBuilder::new("body")
             .with_padding(
                 &self.cover,
                 rounded_block([-x, self.leg_m, -z], [x, 0.28, z - 0.03], 0.03, 1),
@@ -120,15 +120,15 @@ impl Sofa {
     }
 
     /// The arm between its outer face at x = `outer` and the seat at x = `inner`.
-    fn add_arm(&self, body: Part, outer: f32, inner: f32, z: f32) -> Part {
+    fn add_arm(&self, body: PartBuilder, outer: f32, inner: f32, z: f32) -> PartBuilder {
         let (left, right) = (outer.min(inner), outer.max(inner));
         let (back, front, top) = (-z + 0.16, z - 0.02, self.arm_top_m);
         let padded = |low: f32, high: f32, radius: f32| {
             rounded_block([left, low, back], [right, high, front], radius, 2)
         };
         match self.arm {
-            Arm::Block => body.with_padding(&self.cover, padded(0.28, top, 0.06)),
-            Arm::Rolled => {
+            ArmStyle::Block => body.with_padding(&self.cover, padded(0.28, top, 0.06)),
+            ArmStyle::Rolled => {
                 let radius = 0.5 * self.arm_m;
                 let roll = cylinder(radius, front - back, 18)
                     .about_x(std::f32::consts::FRAC_PI_2)
@@ -140,7 +140,7 @@ impl Sofa {
                 body.with_padding(&self.cover, block(panel[0], panel[1]))
                     .with_padding(&self.cover, roll)
             }
-            Arm::Wood => {
+            ArmStyle::Wood => {
                 let (low, middle) = (0.28, 0.5 * (left + right));
                 let post = |at: f32| {
                     block(
@@ -156,7 +156,7 @@ impl Sofa {
                 );
                 [post(front - 0.06), post(back + 0.06)]
                     .into_iter()
-                    .fold(body, |body: Part, solid: Solid| {
+                    .fold(body, |body: PartBuilder, solid: SolidMesh| {
                         body.with(&self.wood, solid)
                     })
                     .with(&self.wood, rest)

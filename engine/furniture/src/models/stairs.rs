@@ -1,7 +1,7 @@
 //! Stairs of two flights beside each other with a landing, and railings.
 
-use crate::finish::{Finish, steel};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, steel};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::block;
 
 /// Thickness of a step, m.
@@ -56,7 +56,7 @@ impl Stairs {
         let spine = 0.5 * SPINE_M;
         let way = if self.mirrored { -1.0 } else { 1.0 };
         let landing = riser * (first + 1) as f32;
-        let mut body = Part::new("body");
+        let mut body = PartBuilder::new("body");
         let step = |side: f32, k: usize, top: f32| {
             let (a, b) = if side * way < 0.0 {
                 (-x, -spine)
@@ -118,7 +118,7 @@ pub fn railing(length_m: f32, metal: &Finish) -> Model {
             [at + 0.008, RAIL_M + 0.06, 0.008],
         )
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(metal, block([-x, RAIL_M + 0.06, -z], [x, RAIL_M + 0.1, z]))
         .with(metal, block([-x, 0.05, -z], [x, 0.08, z]))
         .with_all(

@@ -1,9 +1,9 @@
 //! Cupboards for shoes, provisions and valuables, racks, chests with lids.
 
 use super::cabinet::{BOARD_M, Carcass, GAP_M, door, level_handle};
-use crate::draw::Draw;
-use crate::finish::{black, brass, chrome, grey_board, painted_steel};
-use crate::model::{Model, Part};
+use crate::finishes::{black, brass, chrome, grey_board, painted_steel};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rod, rounded_block, trough};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
@@ -17,13 +17,13 @@ const SHELVES: [&str; 6] = [
 
 /// A flat cabinet for shoes; its flaps tilt forward about their lower edges.
 pub fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("shoe_cabinet", key);
+    let d = SizeSampler::new("shoe_cabinet", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let rows = if h > 1.25 { 3 } else { 2 };
     let (x, top) = (0.5 * w, h - 0.02);
     let carcass = Carcass::standing(w - 0.01, 0.05, top, depth - BOARD_M - 0.01);
     let z = carcass.max[2];
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             &style.wood,
             rounded_block([-x, top, carcass.min[2]], [x, h, z + BOARD_M], 0.004, 1),
@@ -43,7 +43,7 @@ pub fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
     for (k, name) in FLAPS.into_iter().take(rows).enumerate() {
         let (low, high) = (0.055 + step * k as f32, 0.05 + step * (k + 1) as f32);
         let half = carcass.max[0] - 0.5 * GAP_M;
-        let flap = Part::new(name)
+        let flap = PartBuilder::new(name)
             .with(
                 &style.front,
                 block([-half, low, z], [half, high, z + BOARD_M]),
@@ -71,12 +71,12 @@ pub fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
 
 /// A tall larder cupboard of a fitted kitchen: two doors, one above the other.
 pub fn larder(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("larder", key);
+    let d = SizeSampler::new("larder", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let carcass = Carcass::standing(w, 0.1, h, depth - BOARD_M);
     let (x, z) = (0.5 * w, carcass.max[2]);
     let split = 0.6;
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(
             &black(),
             block([-x, 0.0, carcass.min[2] + 0.02], [x, 0.1, z - 0.04]),
@@ -116,7 +116,7 @@ pub fn cube_shelf(style: &Style, key: RandomKey) -> Model {
         ["cube_3_1", "cube_3_2", "cube_3_3", "cube_3_4"],
         ["cube_4_1", "cube_4_2", "cube_4_3", "cube_4_4"],
     ];
-    let d = Draw::new("cube_shelf", key);
+    let d = SizeSampler::new("cube_shelf", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let count = |length: f32| ((length / 0.37).round() as usize).clamp(1, 4);
     let (columns, rows) = (count(w), count(h));
@@ -125,7 +125,7 @@ pub fn cube_shelf(style: &Style, key: RandomKey) -> Model {
     let levels: Vec<f32> = (1..rows).map(|k| share(k, rows)).collect();
     let walls: Vec<f32> = (1..columns).map(|k| share(k, columns)).collect();
     let wood = style.any_wood(&mut d.stream("wood"));
-    let body = Part::new("body").with_all(wood, carcass.boards(&levels, &walls));
+    let body = PartBuilder::new("body").with_all(wood, carcass.boards(&levels, &walls));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let mut model =
         Model::fixed("cube_shelf", "shelving")
@@ -144,7 +144,7 @@ pub fn cube_shelf(style: &Style, key: RandomKey) -> Model {
 
 /// A rack of steel posts with boards: for a pantry, a cellar, a workshop loft.
 pub fn metal_rack(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("metal_rack", key);
+    let d = SizeSampler::new("metal_rack", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let steel = painted_steel("black_steel", [46, 46, 48]);
@@ -153,7 +153,7 @@ pub fn metal_rack(style: &Style, key: RandomKey) -> Model {
     } else {
         grey_board()
     };
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         let (a, b) = (sx * (x - 0.015), sz * (z - 0.015));
         let post = block([a - 0.015, 0.0, b - 0.015], [a + 0.015, h, b + 0.015]);
@@ -181,7 +181,7 @@ pub fn metal_rack(style: &Style, key: RandomKey) -> Model {
 
 /// A chest to sit on; its lid turns up about the back edge.
 pub fn storage_bench(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("storage_bench", key);
+    let d = SizeSampler::new("storage_bench", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let (cushion, lid) = (0.05, 0.02);
@@ -189,11 +189,11 @@ pub fn storage_bench(style: &Style, key: RandomKey) -> Model {
     let wood = style.any_wood(&mut d.stream("wood"));
     let feet = style.legs([x - 0.06, z - 0.06], 0.06, 0.045);
     let low = 0.06;
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(wood, trough([-x, low, -z], [x, under, z], 0.02))
         .with_bars(style.leg_finish(), feet);
     let cover = style.cover(&mut d.stream("cover"));
-    let top = Part::new("lid")
+    let top = PartBuilder::new("lid")
         .with(wood, block([-x, under + 0.001, -z], [x, under + lid, z]))
         .with_filled(
             cover,
@@ -223,7 +223,7 @@ pub fn storage_bench(style: &Style, key: RandomKey) -> Model {
 
 /// A steel safe with a keypad and a door.
 pub fn safe(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("safe", key);
+    let d = SizeSampler::new("safe", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z, t) = (0.5 * w, 0.5 * depth, 0.03);
     let paint = d.of(
@@ -239,15 +239,17 @@ pub fn safe(_style: &Style, key: RandomKey) -> Model {
         block([x - t, t, back], [x, h - t, face]),
         block([-x + t, t, back], [x - t, h - t, back + t]),
     ];
-    let body = walls.into_iter().fold(Part::new("body"), |part, wall| {
-        part.with_filled(&steel, wall, 0.3)
-    });
+    let body = walls
+        .into_iter()
+        .fold(PartBuilder::new("body"), |part, wall| {
+            part.with_filled(&steel, wall, 0.3)
+        });
     let knob = cylinder(0.12 * w, 0.02, 20).about_x(FRAC_PI_2);
     let leaf = block(
         [-x + 0.004, 0.004, face + 0.001],
         [x - 0.004, h - 0.004, z - 0.008],
     );
-    let door = Part::new("door")
+    let door = PartBuilder::new("door")
         .with_filled(&steel, leaf, 0.4)
         .with_filled(&chrome(), knob.at(0.2 * w, 0.5 * h, z - 0.012), 0.5)
         .with(
@@ -268,7 +270,7 @@ pub fn safe(_style: &Style, key: RandomKey) -> Model {
 
 /// A trolley on castors with two or three trays and a bar to push.
 pub fn cart(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("serving_cart", key);
+    let d = SizeSampler::new("serving_cart", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let levels = d.of("levels", [2, 3]);
@@ -278,7 +280,7 @@ pub fn cart(style: &Style, key: RandomKey) -> Model {
     } else {
         style.metal.clone()
     };
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         let (a, b) = (sx * (x - 0.02), sz * (z - 0.02));
         let wheel = cylinder(0.03, 0.02, 16).about_z(FRAC_PI_2);

@@ -1,7 +1,7 @@
 //! Tables with four legs: dining, side and coffee tables.
 
-use crate::finish::{Finish, oak};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, oak};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, cylinder, rounded_block, tapered_leg};
 
 /// A rectangular table.
@@ -64,7 +64,7 @@ impl Table {
         let (x, z) = (0.5 * self.size_m[0], 0.5 * self.size_m[1]);
         let under = self.height_m - self.top_m;
         let inset = 0.5 * self.leg_m + 0.015;
-        let mut body = Part::new("body").with(
+        let mut body = PartBuilder::new("body").with(
             &self.top,
             rounded_block([-x, under, -z], [x, self.height_m, z], 0.008, 1),
         );
@@ -113,7 +113,8 @@ impl Table {
 /// A round side table on three legs.
 pub fn side_table(radius_m: f32, height_m: f32, wood: &Finish) -> Model {
     let under = height_m - 0.022;
-    let mut body = Part::new("body").with(wood, cylinder(radius_m, 0.022, 28).at(0.0, under, 0.0));
+    let mut body =
+        PartBuilder::new("body").with(wood, cylinder(radius_m, 0.022, 28).at(0.0, under, 0.0));
     for k in 0..3 {
         let (sin, cos) = dwell_scene::math::sin_cos(std::f32::consts::TAU * k as f32 / 3.0);
         let (r0, r1) = (radius_m * 0.85, radius_m * 0.55);

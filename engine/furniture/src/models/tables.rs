@@ -2,10 +2,10 @@
 
 use super::cabinet::{BOARD_M, Carcass, GAP_M, drawer, drawer_space};
 use super::table::Table;
-use crate::draw::Draw;
-use crate::finish::{Finish, brass, glass, mirror};
-use crate::model::{Model, Part};
-use crate::shapes::{block, cylinder, frame, lathe, rod, rounded_block};
+use crate::finishes::{Finish, brass, glass, mirror};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
+use crate::shapes::{block, cylinder, frame, rod, rounded_block, surface_of_revolution};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
@@ -13,14 +13,14 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// A dining table: on four legs, on a column, or on trestles.
 pub fn dining_table(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("dining_table", key);
+    let d = SizeSampler::new("dining_table", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let wood = style.any_wood(&mut d.stream("wood")).clone();
     match d.below("build", 4) {
         0 => column_table(
             "round_dining_table",
             "dining_table",
-            Draw::new("round_dining_table", key).m("width"),
+            SizeSampler::new("round_dining_table", key).m("width"),
             h,
             style,
             &wood,
@@ -57,8 +57,8 @@ fn column_table(
         (0.16 * r, h - 0.03),
         (0.0, h - 0.03),
     ];
-    let body = Part::new("body")
-        .with_bar(style.leg_finish(), lathe(&foot, 24))
+    let body = PartBuilder::new("body")
+        .with_bar(style.leg_finish(), surface_of_revolution(&foot, 24))
         .with(wood, cylinder(r, 0.03, 36).at(0.0, h - 0.03, 0.0));
     let half = 0.68 * r;
     Model::movable(name, category)
@@ -69,7 +69,8 @@ fn column_table(
 fn trestle_table(w: f32, h: f32, depth: f32, style: &Style, wood: &Finish) -> Model {
     let (x, z, under) = (0.5 * w, 0.5 * depth, h - 0.04);
     let legs = style.leg_finish();
-    let mut body = Part::new("body").with(wood, rounded_block([-x, under, -z], [x, h, z], 0.01, 1));
+    let mut body =
+        PartBuilder::new("body").with(wood, rounded_block([-x, under, -z], [x, h, z], 0.01, 1));
     for side in [-1.0_f32, 1.0] {
         let a = side * (x - 0.28);
         body = body
@@ -100,7 +101,7 @@ fn trestle_table(w: f32, h: f32, depth: f32, style: &Style, wood: &Finish) -> Mo
 
 /// A low table before a sofa: with a shelf, round, or of glass on a frame of metal.
 pub fn coffee_table(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("coffee_table", key);
+    let d = SizeSampler::new("coffee_table", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let wood = style.any_wood(&mut d.stream("wood")).clone();
     match d.below("build", 3) {
@@ -114,7 +115,7 @@ pub fn coffee_table(style: &Style, key: RandomKey) -> Model {
         }
         .build(),
         1 => drum_table(
-            Draw::new("round_coffee_table", key).m("width"),
+            SizeSampler::new("round_coffee_table", key).m("width"),
             h,
             style,
             &wood,
@@ -126,7 +127,7 @@ pub fn coffee_table(style: &Style, key: RandomKey) -> Model {
 /// A round top on four splayed legs.
 fn drum_table(width_m: f32, height_m: f32, style: &Style, wood: &Finish) -> Model {
     let (r, under) = (0.5 * width_m, height_m - 0.03);
-    let mut body = Part::new("body").with(wood, cylinder(r, 0.03, 36).at(0.0, under, 0.0));
+    let mut body = PartBuilder::new("body").with(wood, cylinder(r, 0.03, 36).at(0.0, under, 0.0));
     for k in 0..4 {
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * (k as f32 + 0.5) / 4.0);
         let leg = crate::shapes::tapered_leg(
@@ -150,7 +151,7 @@ fn drum_table(width_m: f32, height_m: f32, style: &Style, wood: &Finish) -> Mode
 fn glass_table(w: f32, h: f32, depth: f32, style: &Style) -> Model {
     let (x, z, t) = (0.5 * w, 0.5 * depth, 0.014);
     let top = h - 0.01;
-    let mut body = Part::new("body").with(&glass(), block([-x, top, -z], [x, h, z]));
+    let mut body = PartBuilder::new("body").with(&glass(), block([-x, top, -z], [x, h, z]));
     for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         let (a, b) = (sx * (x - 0.04), sz * (z - 0.04));
         body = body.with_filled(
@@ -188,7 +189,7 @@ fn glass_table(w: f32, h: f32, depth: f32, style: &Style) -> Model {
 
 /// A small table beside a sofa or a chair.
 pub fn side_table(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("side_table", key);
+    let d = SizeSampler::new("side_table", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let wood = style.any_wood(&mut d.stream("wood")).clone();
     match d.below("build", 3) {
@@ -211,7 +212,7 @@ pub fn side_table(style: &Style, key: RandomKey) -> Model {
 
 /// A narrow table for a hall or behind a sofa.
 pub fn console_table(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("console_table", key);
+    let d = SizeSampler::new("console_table", key);
     Table {
         name: "console_table",
         category: "table",
@@ -228,7 +229,7 @@ pub fn console_table(style: &Style, key: RandomKey) -> Model {
 
 /// A table with a mirror and two drawers, to make oneself up at.
 pub fn dressing_table(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("dressing_table", key);
+    let d = SizeSampler::new("dressing_table", key);
     let (w, h, depth, table) = (d.m("width"), d.m("height"), d.m("depth"), d.m("table"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let wood = style.any_wood(&mut d.stream("wood"));
@@ -237,7 +238,7 @@ pub fn dressing_table(style: &Style, key: RandomKey) -> Model {
         max: [x - 0.005, table - 0.02, z - BOARD_M],
     };
     let face = carcass.max[2];
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with(
             wood,
             rounded_block([-x, table - 0.02, -z], [x, table, z], 0.006, 1),
@@ -304,7 +305,7 @@ pub fn dressing_table(style: &Style, key: RandomKey) -> Model {
 
 /// A bar for the living room: a counter towards the guests (+Z) with a foot rail, shelves towards the host (-Z).
 pub fn home_bar(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("home_bar", key);
+    let d = SizeSampler::new("home_bar", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let wood = style.any_wood(&mut d.stream("wood"));
@@ -321,7 +322,7 @@ pub fn home_bar(style: &Style, key: RandomKey) -> Model {
         )
     };
     let rail = |a: f32| rod([a, 0.18, face + 0.02], [a, 0.18, z - 0.02], 0.008);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(wood, block([-half, 0.0, face], [half, under, face + 0.02]))
         .with(wood, block([-half, 0.0, back], [-half + 0.02, under, face]))
         .with(wood, block([half - 0.02, 0.0, back], [half, under, face]))

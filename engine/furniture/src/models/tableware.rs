@@ -1,10 +1,10 @@
 //! What stands on a laid table: teapot, jug, beer, wine glass, bowl of fruit, tray, cake, place setting.
 
 use super::food::{green_skin, orange_skin, red_skin};
-use crate::draw::Draw;
-use crate::finish::{Finish, glass, paper, plastic, steel};
-use crate::model::{Model, Part};
-use crate::shapes::{ball, block, cylinder, lathe, rod, trough, tube, vessel};
+use crate::finishes::{Finish, glass, paper, plastic, steel};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
+use crate::shapes::{ball, block, cylinder, rod, surface_of_revolution, trough, tube, vessel};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
@@ -12,11 +12,11 @@ use std::f32::consts::TAU;
 
 /// A teapot with spout, handle and lid.
 pub fn teapot(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("teapot", key);
+    let d = SizeSampler::new("teapot", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let glaze = style.glaze(&mut d.stream("glaze"));
     let (r, top) = (0.31 * w, 0.82 * h);
-    let pot = lathe(
+    let pot = surface_of_revolution(
         &[
             (0.0, 0.0),
             (0.62 * r, 0.0),
@@ -48,13 +48,13 @@ pub fn teapot(style: &Style, key: RandomKey) -> Model {
         0.006,
         8,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(glaze, pot, 0.25)
         .with(glaze, spout)
         .with(glaze, grip)
         .with_filled(
             glaze,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, top),
                     (0.52 * r, top),
@@ -71,7 +71,7 @@ pub fn teapot(style: &Style, key: RandomKey) -> Model {
 
 /// A jug for water or milk.
 pub fn jug(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("jug", key);
+    let d = SizeSampler::new("jug", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let clear = d.chance("glass", 0.5);
     let stuff = if clear {
@@ -101,12 +101,12 @@ pub fn jug(style: &Style, key: RandomKey) -> Model {
         0.006,
         8,
     );
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with(&stuff, shell)
         .with(&stuff, grip.at(-0.03 * w, 0.0, 0.0));
     if clear {
         let water = Finish::plain("drinking_water", "water", [170, 206, 222]).clear(0.35);
-        let fill = lathe(
+        let fill = surface_of_revolution(
             &[
                 (0.0, 0.005),
                 (0.76 * r, 0.005),
@@ -116,14 +116,14 @@ pub fn jug(style: &Style, key: RandomKey) -> Model {
             ],
             20,
         );
-        body = body.with_filled(&water, fill.untouchable(), 0.3);
+        body = body.with_filled(&water, fill.visual_only(), 0.3);
     }
     Model::pickable("jug", "jug").part(body)
 }
 
 /// A bottle of beer.
 pub fn beer(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("beer", key);
+    let d = SizeSampler::new("beer", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
     let brown = Finish {
@@ -143,7 +143,7 @@ pub fn beer(_style: &Style, key: RandomKey) -> Model {
             ],
         ),
     );
-    let shape = lathe(
+    let shape = surface_of_revolution(
         &[
             (0.0, 0.0),
             (r, 0.0),
@@ -155,7 +155,7 @@ pub fn beer(_style: &Style, key: RandomKey) -> Model {
         ],
         18,
     );
-    let band = lathe(
+    let band = surface_of_revolution(
         &[
             (1.005 * r, 0.15 * h),
             (1.02 * r, 0.15 * h),
@@ -165,9 +165,9 @@ pub fn beer(_style: &Style, key: RandomKey) -> Model {
         ],
         18,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&brown, shape, 0.55)
-        .with(&label, band.untouchable())
+        .with(&label, band.visual_only())
         .with(
             &steel(),
             cylinder(0.45 * r, 0.04 * h, 12).at(0.0, 0.96 * h, 0.0),
@@ -177,10 +177,10 @@ pub fn beer(_style: &Style, key: RandomKey) -> Model {
 
 /// A wine glass on its stem.
 pub fn wine_glass(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("wine_glass", key);
+    let d = SizeSampler::new("wine_glass", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
-    let foot = lathe(
+    let foot = surface_of_revolution(
         &[
             (0.0, 0.0),
             (0.86 * r, 0.0),
@@ -202,7 +202,7 @@ pub fn wine_glass(_style: &Style, key: RandomKey) -> Model {
         0.002,
         20,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&glass(), foot)
         .with(&glass(), cup.at(0.0, 0.45 * h, 0.0));
     let half = 0.3 * r;
@@ -213,7 +213,7 @@ pub fn wine_glass(_style: &Style, key: RandomKey) -> Model {
 
 /// A jar for flour, tea or sweets; its lid turns up on a clip at the back.
 pub fn clip_jar(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("clip_jar", key);
+    let d = SizeSampler::new("clip_jar", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (r, rim) = (0.5 * w, 0.86 * h);
     let stuff = if d.chance("glass", 0.5) {
@@ -238,8 +238,10 @@ pub fn clip_jar(style: &Style, key: RandomKey) -> Model {
         22,
     );
     let clip = block([-0.012, 0.9 * rim, -r - 0.006], [0.012, rim, -r]);
-    let body = Part::new("body").with(&stuff, shell).with(&steel(), clip);
-    let lid = Part::new("lid")
+    let body = PartBuilder::new("body")
+        .with(&stuff, shell)
+        .with(&steel(), clip);
+    let lid = PartBuilder::new("lid")
         .with(&cover, cylinder(r, 0.09 * h, 22).at(0.0, rim + 0.001, 0.0))
         .with(
             &cover,
@@ -255,7 +257,7 @@ pub fn clip_jar(style: &Style, key: RandomKey) -> Model {
 
 /// A bowl heaped with fruit.
 pub fn fruit_bowl(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("fruit_bowl", key);
+    let d = SizeSampler::new("fruit_bowl", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
     let rim = 0.6 * h;
@@ -273,7 +275,7 @@ pub fn fruit_bowl(style: &Style, key: RandomKey) -> Model {
     };
     let size = 0.036;
     let mut random = d.stream("fruit");
-    let mut body = Part::new("body").with(glaze, shell);
+    let mut body = PartBuilder::new("body").with(glaze, shell);
     for k in 0..6 {
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * k as f32 / 6.0);
         let out = 0.52 * r;
@@ -299,7 +301,7 @@ pub fn fruit_bowl(style: &Style, key: RandomKey) -> Model {
                 0.015,
                 8,
             );
-            body = body.with_filled(&banana, long.untouchable(), 0.9);
+            body = body.with_filled(&banana, long.visual_only(), 0.9);
         }
     }
     Model::movable("fruit_bowl", "fruit_bowl").part(body)
@@ -307,7 +309,7 @@ pub fn fruit_bowl(style: &Style, key: RandomKey) -> Model {
 
 /// A tray with two grips.
 pub fn tray(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("tray", key);
+    let d = SizeSampler::new("tray", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let stuff = match d.below("build", 3) {
@@ -336,7 +338,7 @@ pub fn tray(style: &Style, key: RandomKey) -> Model {
             0.006,
         )
         .and([-0.055_f32, 0.055].into_iter().fold(
-            crate::shapes::Solid::default(),
+            crate::shapes::SolidMesh::default(),
             |all, b| {
                 all.and(
                     rod(
@@ -344,12 +346,12 @@ pub fn tray(style: &Style, key: RandomKey) -> Model {
                         [s * (x - 0.014), h + 0.014, b],
                         0.005,
                     )
-                    .untouchable(),
+                    .visual_only(),
                 )
             },
         ))
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&stuff, trough([-x, 0.0, -z], [x, h, z], 0.008))
         .with_all(&style.metal, [grip(-1.0), grip(1.0)]);
     Model::pickable("tray", "food_tray").part(body).top(
@@ -361,7 +363,7 @@ pub fn tray(style: &Style, key: RandomKey) -> Model {
 
 /// A cake on a stand, a slice taken out.
 pub fn cake(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("cake", key);
+    let d = SizeSampler::new("cake", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let (r, stand) = (0.5 * w, 0.35 * h);
     let (icing, crumb) = d.of(
@@ -392,10 +394,10 @@ pub fn cake(style: &Style, key: RandomKey) -> Model {
     };
     let (lower, upper) = (0.6 * (h - low - 0.02), 0.4 * (h - low - 0.02));
     let glaze = style.glaze(&mut d.stream("glaze"));
-    let mut body = Part::new("body")
+    let mut body = PartBuilder::new("body")
         .with_filled(
             glaze,
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, 0.0),
                     (0.5 * r, 0.0),
@@ -417,7 +419,7 @@ pub fn cake(style: &Style, key: RandomKey) -> Model {
             &cherry,
             ball(0.011, 8)
                 .at(0.75 * cr * cos, h - 0.012, -0.75 * cr * sin)
-                .untouchable(),
+                .visual_only(),
         );
     }
     Model::movable("cake", "cake").part(body)
@@ -425,14 +427,14 @@ pub fn cake(style: &Style, key: RandomKey) -> Model {
 
 /// A place laid for one: mat, plate, knife, fork, folded napkin.
 pub fn place_setting(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("place_setting", key);
+    let d = SizeSampler::new("place_setting", key);
     let (w, depth) = (d.m("width"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let mat = style.cloth(&mut d.stream("mat"));
     let napkin = &style.cloths[d.below("napkin", style.cloths.len())];
     let glaze = style.glaze(&mut d.stream("glaze"));
     let r = 0.3 * w;
-    let dish = lathe(
+    let dish = surface_of_revolution(
         &[
             (0.0, 0.003),
             (0.58 * r, 0.003),
@@ -447,7 +449,7 @@ pub fn place_setting(style: &Style, key: RandomKey) -> Model {
         block([a - 0.006, 0.003, -0.02], [a + 0.006, 0.0065, 0.1])
             .and(block([a - wide, 0.003, -0.1], [a + wide, 0.006, -0.02]))
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(mat, block([-x, 0.0, -z], [x, 0.003, z]))
         .with(glaze, dish)
         .with(&steel(), tool(0.82 * x, 0.009))

@@ -1,7 +1,7 @@
 //! Taps: a spout with a lever that turns the water on.
 
-use crate::finish::chrome;
-use crate::model::{Model, Part};
+use crate::finishes::chrome;
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{cylinder, rod, tube};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
@@ -24,19 +24,19 @@ pub fn mixer_tap(height_m: f32, reach_m: f32) -> Model {
     let hub = cylinder(0.012, 0.036, 12)
         .about_z(-FRAC_PI_2)
         .at(0.0, level, 0.0);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&chrome(), cylinder(0.025, 0.03, 16), 0.5)
         .with_filled(&chrome(), tube(&spout, 0.012, 10), 0.4)
         .with_filled(&chrome(), hub, 0.5);
     let x = 0.042;
-    let lever = Part::new("lever").with(
+    let lever = PartBuilder::new("lever").with(
         &chrome(),
         rod([x, level - 0.008, 0.0], [x, level + 0.07, 0.0], 0.005),
     );
     Model::articulated("mixer_tap", "tap")
         .part(body)
-        .sounding([0.0, 0.72 * h - 0.01, reach], "tap", 58.0)
+        .with_sound([0.0, 0.72 * h - 0.01, reach], "tap", 58.0)
         .part(lever)
         .hinged("lever", [x, level, 0.0], Vec3::X, TURN_RAD)
-        .switching()
+        .with_switch()
 }

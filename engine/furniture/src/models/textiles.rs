@@ -1,10 +1,10 @@
 //! Rugs, curtains, pillows, blankets.
 
-use crate::finish::{Finish, black, oak};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, black, oak};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{
-    Solid, ball, block, curtain as folds, loft, oval, panel, pillow as cushion, rod, rounded_block,
-    tube,
+    SolidMesh, ball, block, curtain as folds, loft, oval, panel, pillow as cushion, rod,
+    rounded_block, tube,
 };
 use std::f32::consts::FRAC_PI_2;
 
@@ -13,13 +13,13 @@ pub fn rug(width_m: f32, depth_m: f32, weave: &Finish) -> Model {
     let flat = panel(width_m, depth_m, 0.009)
         .about_x(-FRAC_PI_2)
         .at(0.0, 0.0, 0.5 * depth_m);
-    Model::movable("rug", "rug").part(Part::new("body").with(weave, flat))
+    Model::movable("rug", "rug").part(PartBuilder::new("body").with(weave, flat))
 }
 
 /// A round or square rug of one colour, pile up.
 pub fn round_rug(radius_m: f32, pile: &Finish) -> Model {
     let disc = crate::shapes::cylinder(radius_m, 0.012, 40);
-    Model::movable("round_rug", "rug").part(Part::new("body").with(pile, disc))
+    Model::movable("round_rug", "rug").part(PartBuilder::new("body").with(pile, disc))
 }
 
 /// A pair of curtains on a rod, drawn to the sides; x = 0 is the window's middle, y = 0 the rod, z = 0 the wall.
@@ -52,8 +52,8 @@ impl Curtains {
         };
         let hold = |at: f32| rod([at, 0.0, 0.0], [at, 0.0, OFF_M], 0.008);
         let end = |at: f32| ball(0.022, 12).at(at, 0.0, OFF_M);
-        let pole: Solid = rod([-x - 0.03, 0.0, OFF_M], [x + 0.03, 0.0, OFF_M], 0.012);
-        let body = Part::new("rod")
+        let pole: SolidMesh = rod([-x - 0.03, 0.0, OFF_M], [x + 0.03, 0.0, OFF_M], 0.012);
+        let body = PartBuilder::new("rod")
             .with(&black(), pole)
             .with_all(
                 &black(),
@@ -71,7 +71,7 @@ impl Curtains {
 
 /// A pillow or cushion: width, thickness, depth in m.
 pub fn pillow(size_m: [f32; 3], cloth: &Finish) -> Model {
-    Model::pickable("pillow", "pillow").part(Part::new("body").with_filled(
+    Model::pickable("pillow", "pillow").part(PartBuilder::new("body").with_filled(
         cloth,
         cushion(size_m),
         0.12,
@@ -87,9 +87,11 @@ pub fn folded_blanket(width_m: f32, depth_m: f32, cloth: &Finish) -> Model {
         rounded_block([-x + slack, y, -z], [x, y + 0.028, z - slack], 0.012, 1)
     };
     Model::pickable("folded_blanket", "blanket").part(
-        (0..3).map(layer).fold(Part::new("body"), |part, fold| {
-            part.with_filled(cloth, fold, 0.4)
-        }),
+        (0..3)
+            .map(layer)
+            .fold(PartBuilder::new("body"), |part, fold| {
+                part.with_filled(cloth, fold, 0.4)
+            }),
     )
 }
 
@@ -122,8 +124,8 @@ pub fn coat_rack(width_m: f32, coat: &Finish, scarf: &Finish) -> Model {
         )
     };
     let garment = garment
-        .and(sleeve(-1.0).untouchable())
-        .and(sleeve(1.0).untouchable())
+        .and(sleeve(-1.0).visual_only())
+        .and(sleeve(1.0).visual_only())
         .at(at, 0.0, 0.0);
     let wrap = -x + 0.1 + (width_m - 0.2) * 0.75;
     let shawl = rounded_block(
@@ -138,7 +140,7 @@ pub fn coat_rack(width_m: f32, coat: &Finish, scarf: &Finish) -> Model {
         0.012,
         1,
     ));
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&oak(), block([-x, -0.05, 0.0], [x, 0.05, 0.02]))
         .with_all(&black(), (0..5).map(hook))
         .with_filled(coat, garment, 0.15)

@@ -1,7 +1,7 @@
 //! A toilet with a lid that opens.
 
-use crate::finish::{chrome, plastic, sanitary};
-use crate::model::{Model, Part};
+use crate::finishes::{chrome, plastic, sanitary};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, cylinder, loft, rounded_block};
 use dwell_scene::math;
 use glam::Vec3;
@@ -41,7 +41,7 @@ pub fn toilet() -> Model {
     ]);
     let plate =
         |low: f32, high: f32| loft(&[outline(0.187, back, z, low), outline(0.187, back, z, high)]);
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&white, pedestal, 0.25)
         .with_filled(&white, block([-0.11, 0.0, -z], [0.11, 0.39, back]), 0.25)
         .with_filled(
@@ -60,11 +60,11 @@ pub fn toilet() -> Model {
         .with(&seat, plate(0.4, 0.415));
     // The lid ends a little behind its hinge, so that it turns clear of the seat.
     let cover = [0.417, 0.435].map(|y| outline(0.187, back + 0.024, z, y));
-    let lid = Part::new("lid").with_filled(&seat, loft(&cover), 0.5);
+    let lid = PartBuilder::new("lid").with_filled(&seat, loft(&cover), 0.5);
     Model::articulated("toilet", "toilet")
         .switched(false)
         .part(body)
-        .sounding([0.0, 0.5, -z + 0.1], "toilet_flush", 70.0)
+        .with_sound([0.0, 0.5, -z + 0.1], "toilet_flush", 70.0)
         .part(lid)
         // Beyond upright, against the cistern, so that it stays up.
         .hinged("lid", [0.0, 0.426, back + 0.03], Vec3::NEG_X, 1.6)

@@ -1,8 +1,8 @@
 //! A low cabinet for a television.
 
-use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, door};
-use crate::finish::{Finish, black, oak, white_lacquer};
-use crate::model::{Model, Part};
+use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, door};
+use crate::finishes::{Finish, black, oak, white_lacquer};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block};
 use glam::Vec3;
 
@@ -22,7 +22,7 @@ pub struct Lowboard {
     /// What the body is made of.
     pub wood: Finish,
     /// What doors and drawers look like.
-    pub front: Front,
+    pub front: FrontPanel,
 }
 
 impl Default for Lowboard {
@@ -34,7 +34,7 @@ impl Default for Lowboard {
             height_m: 0.46,
             depth_m: 0.42,
             wood: oak(),
-            front: Front::plain(white_lacquer(), black()),
+            front: FrontPanel::plain(white_lacquer(), black()),
         }
     }
 }
@@ -45,7 +45,7 @@ impl Lowboard {
         let (x, top) = (0.5 * self.width_m, self.height_m - 0.02);
         let carcass = Carcass::standing(self.width_m - 0.01, 0.07, top, self.depth_m - BOARD_M);
         let z = carcass.max[2];
-        let body = Part::new("body")
+        let body = PartBuilder::new("body")
             .with(
                 &self.wood,
                 rounded_block([-x, top, -z], [x, self.height_m, z + BOARD_M], 0.006, 1),

@@ -1,8 +1,8 @@
 //! A wardrobe with hinged doors.
 
-use super::cabinet::{BOARD_M, Carcass, Front, GAP_M, door};
-use crate::finish::{Finish, black, chrome, oak, white_lacquer};
-use crate::model::{Model, Part};
+use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, door};
+use crate::finishes::{Finish, black, chrome, oak, white_lacquer};
+use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rod};
 use glam::Vec3;
 
@@ -20,7 +20,7 @@ pub struct Wardrobe {
     /// What the carcass is made of.
     pub body: Finish,
     /// What doors and drawers look like.
-    pub front: Front,
+    pub front: FrontPanel,
 }
 
 impl Default for Wardrobe {
@@ -31,7 +31,7 @@ impl Default for Wardrobe {
             depth_m: 0.58,
             doors: 3,
             body: white_lacquer(),
-            front: Front::plain(oak(), black()),
+            front: FrontPanel::plain(oak(), black()),
         }
     }
 }
@@ -44,7 +44,7 @@ impl Wardrobe {
         let carcass = Carcass::standing(self.width_m, 0.06, self.height_m, self.depth_m - BOARD_M);
         let (x, z) = (0.5 * self.width_m, carcass.max[2]);
         let rail = self.height_m - 0.42;
-        let body = Part::new("body")
+        let body = PartBuilder::new("body")
             .with(&self.body, block([-x, 0.0, -z], [x, 0.06, z - 0.03]))
             .with_all(&self.body, carcass.boards(&[0.84], &[]))
             .with(

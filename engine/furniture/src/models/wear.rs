@@ -1,10 +1,11 @@
 //! Clothes, bags, umbrellas, helmets, flowers, papers, small ornaments.
 
-use crate::draw::Draw;
-use crate::finish::{Finish, black, paper, plastic};
-use crate::model::{Model, Part};
+use crate::finishes::{Finish, black, paper, plastic};
+use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::{
-    Solid, ball, block, cylinder, lathe, leaf, panel, rod, rounded_block, turn, vessel,
+    SolidMesh, ball, block, cylinder, leaf, panel, rod, rounded_block, surface_of_revolution, turn,
+    vessel,
 };
 use crate::style::Style;
 use dwell_scene::Pose;
@@ -26,13 +27,13 @@ const WORN: [[u8; 3]; 8] = [
 
 /// A folded shirt or pullover.
 pub fn folded_clothes(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("folded_clothes", key);
+    let d = SizeSampler::new("folded_clothes", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let count = ((h / 0.03).round() as usize).clamp(1, 4);
     let each = h / count as f32;
     let mut random = d.stream("tones");
-    let mut body = Part::new("body");
+    let mut body = PartBuilder::new("body");
     for k in 0..count {
         let tone = WORN[random.below(WORN.len())];
         let slack = random.range(0.0, 0.012);
@@ -43,18 +44,18 @@ pub fn folded_clothes(_style: &Style, key: RandomKey) -> Model {
             0.45 * each,
             2,
         );
-        body = body.with_filled(&crate::finish::cloth("garment", tone), fold, 0.35);
+        body = body.with_filled(&crate::finishes::cloth("garment", tone), fold, 0.35);
     }
     Model::pickable("folded_clothes", "cloth").part(body)
 }
 
 /// A helmet for a cyclist.
 pub fn helmet(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("helmet", key);
+    let d = SizeSampler::new("helmet", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let shell = plastic("helmet_shell", d.of("tone", WORN));
     let stretch = depth / w;
-    let mut dome = lathe(
+    let mut dome = surface_of_revolution(
         &[
             (0.0, 0.0),
             (0.5 * w, 0.0),
@@ -81,9 +82,9 @@ pub fn helmet(_style: &Style, key: RandomKey) -> Model {
             0.008,
             1,
         )
-        .untouchable()
+        .visual_only()
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(&shell, dome, 0.05)
         .with_all(&black(), [vent(-0.13 * w), vent(0.13 * w)]);
     Model::pickable("helmet", "helmet").part(body)
@@ -91,10 +92,10 @@ pub fn helmet(_style: &Style, key: RandomKey) -> Model {
 
 /// A backpack standing on the floor.
 pub fn backpack(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("backpack", key);
+    let d = SizeSampler::new("backpack", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let cloth = crate::finish::cloth("backpack_cloth", d.of("tone", WORN));
+    let cloth = crate::finishes::cloth("backpack_cloth", d.of("tone", WORN));
     let strap = Finish {
         srgb: cloth.srgb.map(|c| (f32::from(c) * 0.6) as u8),
         ..cloth.clone()
@@ -107,7 +108,7 @@ pub fn backpack(_style: &Style, key: RandomKey) -> Model {
             1,
         )
     };
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with_filled(
             &cloth,
             rounded_block([-x, 0.0, -z + 0.02], [x, h - 0.03, 0.35 * z], 0.07, 3),
@@ -124,7 +125,7 @@ pub fn backpack(_style: &Style, key: RandomKey) -> Model {
                 [-0.6 * x, 0.4 * h, z - 0.004],
                 [0.6 * x, 0.41 * h, z + 0.001],
             )
-            .untouchable(),
+            .visual_only(),
         )
         .with_all(&strap, [belt(-1.0), belt(1.0)])
         .with(
@@ -136,7 +137,7 @@ pub fn backpack(_style: &Style, key: RandomKey) -> Model {
 
 /// A stand with umbrellas.
 pub fn umbrella_stand(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("umbrella_stand", key);
+    let d = SizeSampler::new("umbrella_stand", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
     let rim = 0.55;
@@ -150,12 +151,12 @@ pub fn umbrella_stand(style: &Style, key: RandomKey) -> Model {
         substance: "steel",
         ..holder
     };
-    let mut body = Part::new("body").with_filled(&thin, shell, 0.2);
+    let mut body = PartBuilder::new("body").with_filled(&thin, shell, 0.2);
     let mut random = d.stream("umbrellas");
     for k in 0..2 {
-        let tone = crate::finish::cloth("umbrella_cloth", WORN[random.below(WORN.len())]);
+        let tone = crate::finishes::cloth("umbrella_cloth", WORN[random.below(WORN.len())]);
         let side = if k == 0 { -1.0 } else { 1.0 };
-        let furled = lathe(
+        let furled = surface_of_revolution(
             &[
                 (0.0, 0.02),
                 (0.012, 0.02),
@@ -170,17 +171,17 @@ pub fn umbrella_stand(style: &Style, key: RandomKey) -> Model {
         let lean = turn(Vec3::Z, -side * 0.05);
         let pose = Pose::new(Vec3::new(side * 0.25 * r, 0.0, 0.1 * r * side), lean);
         body = body
-            .with_filled(&tone, furled.placed(&pose).untouchable(), 0.15)
-            .with(&style.wood, grip.placed(&pose).untouchable());
+            .with_filled(&tone, furled.placed(&pose).visual_only(), 0.15)
+            .with(&style.wood, grip.placed(&pose).visual_only());
     }
     // The bundle is felt as one post.
-    let bundle = cylinder(0.45 * r, h - 0.05, 12).unseen();
+    let bundle = cylinder(0.45 * r, h - 0.05, 12).collision_only();
     Model::movable("umbrella_stand", "umbrella").part(body.with(&thin, bundle))
 }
 
 /// A bunch of flowers in a vase, or lying in paper where `loose`.
 pub fn flowers(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("flowers", key);
+    let d = SizeSampler::new("flowers", key);
     let (w, h) = (d.m("span"), d.m("height"));
     let petals = [
         [226, 60, 70],
@@ -208,8 +209,8 @@ pub fn flowers(style: &Style, key: RandomKey) -> Model {
         20,
     );
     let mut random = d.stream("stems");
-    let mut body = Part::new("body").with(glaze, shell);
-    let mut crown = Solid::default();
+    let mut body = PartBuilder::new("body").with(glaze, shell);
+    let mut crown = SolidMesh::default();
     for k in 0..9 {
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * 0.381_966 * k as f32);
         let out = (0.5 * w - 0.03) * ((k as f32 + 0.5) / 9.0).sqrt();
@@ -221,10 +222,10 @@ pub fn flowers(style: &Style, key: RandomKey) -> Model {
         let foot = Vec3::new(0.2 * r * sin, 0.7 * pot, 0.2 * r * cos);
         body = body.with(
             &stem,
-            rod(foot.to_array(), top.to_array(), 0.002).untouchable(),
+            rod(foot.to_array(), top.to_array(), 0.002).visual_only(),
         );
         crown = crown.and(
-            lathe(
+            surface_of_revolution(
                 &[
                     (0.0, -0.012),
                     (0.018, -0.006),
@@ -235,11 +236,11 @@ pub fn flowers(style: &Style, key: RandomKey) -> Model {
                 8,
             )
             .at(top.x, top.y, top.z)
-            .untouchable(),
+            .visual_only(),
         );
         body = body.with(
             &heart,
-            ball(0.007, 6).at(top.x, top.y + 0.012, top.z).untouchable(),
+            ball(0.007, 6).at(top.x, top.y + 0.012, top.z).visual_only(),
         );
         if k % 2 == 0 {
             let pose = Pose::new(
@@ -258,7 +259,7 @@ pub fn flowers(style: &Style, key: RandomKey) -> Model {
 
 /// A few sheets of paper.
 pub fn papers(_style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("papers", key);
+    let d = SizeSampler::new("papers", key);
     let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let white = paper("white_sheet", [246, 246, 242]);
@@ -269,32 +270,32 @@ pub fn papers(_style: &Style, key: RandomKey) -> Model {
         [[244, 244, 240], [70, 70, 76], [0; 3]],
         3,
     );
-    let body = Part::new("body")
+    let body = PartBuilder::new("body")
         .with(&white, block([-x, 0.0, -z], [x, h, z]))
         .with(
             &ink,
             panel(0.8 * w, 0.82 * depth, 0.0002)
                 .about_x(-FRAC_PI_2)
                 .at(0.0, h, 0.41 * depth)
-                .untouchable(),
+                .visual_only(),
         );
     Model::pickable("papers", "paper").part(body)
 }
 
 /// A small ornament: a bird, a snow globe, a pyramid of stone, or a box.
 pub fn trinket(style: &Style, key: RandomKey) -> Model {
-    let d = Draw::new("trinket", key);
+    let d = SizeSampler::new("trinket", key);
     let (w, h) = (d.m("width"), d.m("height"));
     let r = 0.5 * w;
     let glaze = style.glaze(&mut d.stream("glaze"));
-    let body = Part::new("body");
+    let body = PartBuilder::new("body");
     let body = match d.below("build", 4) {
         0 => {
             let tail = block([-r, 0.3 * h, -0.1 * w], [-0.5 * r, 0.4 * h, 0.1 * w]);
             let beak = crate::shapes::cone(0.06 * w, 0.006 * w, 0.2 * w, 8).about_z(-FRAC_PI_2);
             body.with_filled(
                 glaze,
-                lathe(
+                surface_of_revolution(
                     &[
                         (0.0, 0.0),
                         (0.5 * r, 0.0),
@@ -307,17 +308,17 @@ pub fn trinket(style: &Style, key: RandomKey) -> Model {
                 0.6,
             )
             .with(glaze, ball(0.2 * h, 14).at(0.28 * r, 0.8 * h, 0.0))
-            .with(glaze, tail.untouchable())
+            .with(glaze, tail.visual_only())
             .with(
                 &style.metal,
-                beak.at(0.28 * r + 0.15 * h, 0.8 * h, 0.0).untouchable(),
+                beak.at(0.28 * r + 0.15 * h, 0.8 * h, 0.0).visual_only(),
             )
         }
         1 => body
             .with(&style.wood, cylinder(0.8 * r, 0.25 * h, 20))
             .with_filled(
-                &crate::finish::glass(),
-                lathe(
+                &crate::finishes::glass(),
+                surface_of_revolution(
                     &[
                         (0.0, 0.25 * h),
                         (0.7 * r, 0.25 * h),

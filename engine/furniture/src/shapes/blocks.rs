@@ -1,6 +1,6 @@
 //! Boxes with sharp and with rounded edges.
 
-use super::Solid;
+use super::SolidMesh;
 use super::grid::{Vertex, add_face, add_grid};
 use dwell_scene::{Collider, Mesh};
 use glam::{Vec2, Vec3};
@@ -16,7 +16,7 @@ pub(super) const SIDES: [[Vec3; 3]; 6] = [
 ];
 
 /// A box with sharp edges between two corners, m.
-pub fn block(min: [f32; 3], max: [f32; 3]) -> Solid {
+pub fn block(min: [f32; 3], max: [f32; 3]) -> SolidMesh {
     let (min, max) = (Vec3::from(min), Vec3::from(max));
     let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
     let mut mesh = Mesh::default();
@@ -39,12 +39,12 @@ pub fn block(min: [f32; 3], max: [f32; 3]) -> Solid {
         };
         add_face(&mut mesh, &corners, along);
     }
-    Solid::new(mesh, vec![Collider::cuboid(center - half, center + half)])
+    SolidMesh::new(mesh, vec![Collider::cuboid(center - half, center + half)])
 }
 
 /// A box with rounded edges between two corners, m; `steps` faces make a quarter of a round edge. It collides as the
 /// sharp box.
-pub fn rounded_block(min: [f32; 3], max: [f32; 3], radius_m: f32, steps: usize) -> Solid {
+pub fn rounded_block(min: [f32; 3], max: [f32; 3], radius_m: f32, steps: usize) -> SolidMesh {
     let (min, max) = (Vec3::from(min), Vec3::from(max));
     let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
     let radius = radius_m.min(half.min_element() * 0.98);
@@ -87,5 +87,5 @@ pub fn rounded_block(min: [f32; 3], max: [f32; 3], radius_m: f32, steps: usize) 
             }
         });
     }
-    Solid::new(mesh, vec![Collider::cuboid(min, max)])
+    SolidMesh::new(mesh, vec![Collider::cuboid(min, max)])
 }

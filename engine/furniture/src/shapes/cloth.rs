@@ -1,6 +1,6 @@
 //! Cloth: hanging folds, and covers that lie over an edge.
 
-use super::Solid;
+use super::SolidMesh;
 use super::grid::{Vertex, add_grid};
 use super::smooth::smooth_normals;
 use dwell_scene::{Collider, Mesh, math};
@@ -12,7 +12,7 @@ const CLOTH_M: f32 = 0.004;
 
 /// A curtain that hangs in folds from y = 0 down to `-height_m`, `width_m` wide about x = 0, folds `depth_m` deep about z = 0.
 /// It collides as the box around it.
-pub fn curtain(width_m: f32, height_m: f32, depth_m: f32, folds: usize) -> Solid {
+pub fn curtain(width_m: f32, height_m: f32, depth_m: f32, folds: usize) -> SolidMesh {
     let (columns, rows) = (folds * 4 + 1, 3);
     let half = 0.5 * (depth_m - CLOTH_M);
     let sheet = |i: usize, j: usize| {
@@ -27,12 +27,12 @@ pub fn curtain(width_m: f32, height_m: f32, depth_m: f32, folds: usize) -> Solid
     };
     let mesh = thick_sheet(columns, rows, sheet, Vec3::Z * CLOTH_M);
     let bounds = mesh.bounds();
-    Solid::new(mesh, vec![Collider::cuboid(bounds.min, bounds.max)])
+    SolidMesh::new(mesh, vec![Collider::cuboid(bounds.min, bounds.max)])
 }
 
 /// A blanket over the upper edges of a box: it lies on the plane y = 0 over `width_m` (x) by `depth_m` (z) about the origin
 /// and hangs down by `drop_m` outside both x edges and the +z edge, with soft corners. It collides as the sheet on top.
-pub fn blanket(width_m: f32, depth_m: f32, drop_m: f32, thickness_m: f32) -> Solid {
+pub fn blanket(width_m: f32, depth_m: f32, drop_m: f32, thickness_m: f32) -> SolidMesh {
     let (x, z) = (0.5 * width_m, 0.5 * depth_m);
     let radius = 2.0 * thickness_m;
     // Along each direction: how far out, and how far down.
@@ -71,7 +71,7 @@ pub fn blanket(width_m: f32, depth_m: f32, drop_m: f32, thickness_m: f32) -> Sol
     };
     let mesh = thick_sheet(across.len(), along.len(), sheet, Vec3::Y * thickness_m);
     let top = Collider::cuboid(Vec3::new(-x, 0.0, -z), Vec3::new(x, thickness_m, z));
-    Solid::new(mesh, vec![top])
+    SolidMesh::new(mesh, vec![top])
 }
 
 /// A closed sheet: the surface through the points, the same surface moved by `-offset` behind it, and the rim between.

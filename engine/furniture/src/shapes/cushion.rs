@@ -1,6 +1,6 @@
 //! Upholstery: cushions and pillows.
 
-use super::Solid;
+use super::SolidMesh;
 use super::blocks::SIDES;
 use super::grid::{Vertex, add_grid};
 use super::smooth::smooth_normals;
@@ -19,7 +19,7 @@ fn line(k: usize, count: usize) -> f32 {
 }
 
 /// A seat cushion between two corners: a superellipsoid, nearly a box. It collides as the box.
-pub fn cushion(min: [f32; 3], max: [f32; 3]) -> Solid {
+pub fn cushion(min: [f32; 3], max: [f32; 3]) -> SolidMesh {
     let (min, max) = (Vec3::from(min), Vec3::from(max));
     let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
     let mut mesh = Mesh::default();
@@ -41,11 +41,11 @@ pub fn cushion(min: [f32; 3], max: [f32; 3]) -> Solid {
         });
     }
     smooth_normals(&mut mesh);
-    Solid::new(mesh, vec![Collider::cuboid(min, max)])
+    SolidMesh::new(mesh, vec![Collider::cuboid(min, max)])
 }
 
 /// A pillow that lies on the origin's plane: `size_m` (x, thickness, z); thin rims, a bulging middle.
-pub fn pillow(size_m: [f32; 3]) -> Solid {
+pub fn pillow(size_m: [f32; 3]) -> SolidMesh {
     let [width, height, depth] = size_m;
     let place = |s: f32, t: f32, side: f32| {
         let fall = |x: f32| (1.0 - x * x * x * x).max(0.0);
@@ -77,5 +77,5 @@ pub fn pillow(size_m: [f32; 3]) -> Solid {
     points.extend(
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(s, t)| place(s, t, 0.0)),
     );
-    Solid::new(mesh, vec![Collider::Hull { points }])
+    SolidMesh::new(mesh, vec![Collider::Hull { points }])
 }

@@ -1,6 +1,6 @@
 //! Prisms over any polygon.
 
-use super::Solid;
+use super::SolidMesh;
 use super::grid::add_face;
 use super::polygon::triangulate;
 use dwell_scene::{Collider, Mesh};
@@ -8,7 +8,7 @@ use glam::{DVec2, Vec2, Vec3};
 
 /// The prism over a simple polygon in the (x, y) plane, corners counter-clockwise, from z = 0 to `depth_m`. It collides as
 /// the hull of its corners: give a polygon that is not convex its own pieces.
-pub fn extrude(polygon: &[[f32; 2]], depth_m: f32) -> Solid {
+pub fn extrude(polygon: &[[f32; 2]], depth_m: f32) -> SolidMesh {
     let corners: Vec<Vec2> = polygon.iter().map(|p| Vec2::from(*p)).collect();
     let lift = |p: Vec2, z: f32| p.extend(z);
     let mut mesh = Mesh::default();
@@ -37,5 +37,5 @@ pub fn extrude(polygon: &[[f32; 2]], depth_m: f32) -> Solid {
         .iter()
         .flat_map(|p| [lift(*p, 0.0), lift(*p, depth_m)])
         .collect();
-    Solid::new(mesh, vec![Collider::Hull { points }])
+    SolidMesh::new(mesh, vec![Collider::Hull { points }])
 }

@@ -1,6 +1,6 @@
 //! Leaves and clusters of them.
 
-use super::Solid;
+use super::SolidMesh;
 use super::cloth::thick_sheet;
 use super::solid::turn;
 use dwell_scene::random::RandomKey;
@@ -13,7 +13,7 @@ const HULL_DIRECTIONS: usize = 18;
 
 /// One leaf: from the origin along +Z, arching up and down again by `droop` (0 flat, 1 strong), widest in its lower half.
 /// Nothing touches it.
-pub fn leaf(length_m: f32, width_m: f32, droop: f32) -> Solid {
+pub fn leaf(length_m: f32, width_m: f32, droop: f32) -> SolidMesh {
     let rows = 6;
     let mesh = thick_sheet(
         3,
@@ -33,13 +33,19 @@ pub fn leaf(length_m: f32, width_m: f32, droop: f32) -> Solid {
         },
         Vec3::Y * 0.0015,
     );
-    Solid::new(mesh, Vec::new())
+    SolidMesh::new(mesh, Vec::new())
 }
 
 /// A crown of `count` leaves around +Y, from the origin up: lower ones larger and flatter. It collides as its hull.
-pub fn foliage(count: usize, length_m: f32, width_m: f32, height_m: f32, key: RandomKey) -> Solid {
+pub fn foliage(
+    count: usize,
+    length_m: f32,
+    width_m: f32,
+    height_m: f32,
+    key: RandomKey,
+) -> SolidMesh {
     let mut random = key.stream();
-    let mut crown = Solid::default();
+    let mut crown = SolidMesh::default();
     for k in 0..count {
         let level = (k as f32 + 0.5) / count as f32;
         let size = (1.05 - 0.45 * level) * random.range(0.85, 1.15);

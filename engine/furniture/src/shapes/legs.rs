@@ -1,12 +1,12 @@
 //! Legs of furniture.
 
-use super::Solid;
+use super::SolidMesh;
 use super::grid::add_face;
 use dwell_scene::{Collider, Mesh};
 use glam::Vec3;
 
 /// A square leg from `foot` to `top`, horizontal ends, `foot_m` and `top_m` wide. It collides as its hull.
-pub fn tapered_leg(foot: [f32; 3], top: [f32; 3], foot_m: f32, top_m: f32) -> Solid {
+pub fn tapered_leg(foot: [f32; 3], top: [f32; 3], foot_m: f32, top_m: f32) -> SolidMesh {
     let ring = |center: [f32; 3], width: f32| {
         [(-0.5, 0.5), (0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)]
             .map(|(x, z)| Vec3::from(center) + Vec3::new(x * width, 0.0, z * width))
@@ -21,5 +21,5 @@ pub fn tapered_leg(foot: [f32; 3], top: [f32; 3], foot_m: f32, top_m: f32) -> So
     add_face(&mut mesh, &high, Vec3::X);
     add_face(&mut mesh, &[low[3], low[2], low[1], low[0]], Vec3::X);
     let points = low.into_iter().chain(high).collect();
-    Solid::new(mesh, vec![Collider::Hull { points }])
+    SolidMesh::new(mesh, vec![Collider::Hull { points }])
 }

@@ -1,6 +1,6 @@
 //! Bodies through a stack of outlines: bowls, garments.
 
-use super::Solid;
+use super::SolidMesh;
 use super::grid::{Vertex, add_grid, add_triangle};
 use super::smooth::smooth_normals;
 use dwell_scene::{Collider, Mesh};
@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 
 /// The body through `rings` from below: outlines of equally many points, counter-clockwise seen from above, each convex and
 /// level. Flat below and above. It collides as a hull between each two neighbours.
-pub fn loft(rings: &[Vec<Vec3>]) -> Solid {
+pub fn loft(rings: &[Vec<Vec3>]) -> SolidMesh {
     let count = rings.first().map_or(0, Vec::len);
     let mut mesh = Mesh::default();
     let ring_at = |i: usize, j: usize| rings[j][i % count];
@@ -45,7 +45,7 @@ pub fn loft(rings: &[Vec<Vec3>]) -> Solid {
             points: [some(&pair[0]), some(&pair[1])].concat(),
         })
         .collect();
-    Solid::new(mesh, colliders)
+    SolidMesh::new(mesh, colliders)
 }
 
 /// A level oval with flat sides about (0, `y`, `z`): half widths along x and z, `sides` corners.

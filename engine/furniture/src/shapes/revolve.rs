@@ -1,6 +1,6 @@
 //! Shapes turned on a lathe: cylinders, cones, balls, vases.
 
-use super::Solid;
+use super::SolidMesh;
 use super::grid::{Vertex, add_grid};
 use dwell_scene::{Collider, Mesh, Pose, math};
 use glam::{Vec2, Vec3};
@@ -15,12 +15,12 @@ const MOST_CYLINDERS: usize = 4;
 /// (from the lower end of the axis outwards and up to the upper end; or around a closed loop whose last point is its first).
 /// It collides as a few
 /// cylinders.
-pub fn lathe(profile: &[(f32, f32)], segments: usize) -> Solid {
-    Solid::new(surface(profile, segments), stack(profile))
+pub fn surface_of_revolution(profile: &[(f32, f32)], segments: usize) -> SolidMesh {
+    SolidMesh::new(surface(profile, segments), stack(profile))
 }
 
 /// A cylinder that stands on the origin.
-pub fn cylinder(radius_m: f32, height_m: f32, segments: usize) -> Solid {
+pub fn cylinder(radius_m: f32, height_m: f32, segments: usize) -> SolidMesh {
     let profile = [
         (0.0, 0.0),
         (radius_m, 0.0),
@@ -32,22 +32,22 @@ pub fn cylinder(radius_m: f32, height_m: f32, segments: usize) -> Solid {
         half_height: height_m * 0.5,
         radius: radius_m,
     };
-    Solid::new(surface(&profile, segments), vec![collider])
+    SolidMesh::new(surface(&profile, segments), vec![collider])
 }
 
 /// A truncated cone that stands on the origin.
-pub fn cone(lower_radius_m: f32, upper_radius_m: f32, height_m: f32, segments: usize) -> Solid {
+pub fn cone(lower_radius_m: f32, upper_radius_m: f32, height_m: f32, segments: usize) -> SolidMesh {
     let profile = [
         (0.0, 0.0),
         (lower_radius_m, 0.0),
         (upper_radius_m, height_m),
         (0.0, height_m),
     ];
-    lathe(&profile, segments)
+    surface_of_revolution(&profile, segments)
 }
 
 /// A ball about the origin.
-pub fn ball(radius_m: f32, segments: usize) -> Solid {
+pub fn ball(radius_m: f32, segments: usize) -> SolidMesh {
     let rings = segments / 2;
     let profile: Vec<(f32, f32)> = (0..=rings)
         .map(|k| {
@@ -64,7 +64,7 @@ pub fn ball(radius_m: f32, segments: usize) -> Solid {
         center: Vec3::ZERO,
         radius: radius_m,
     };
-    Solid::new(surface(&profile, segments), vec![collider])
+    SolidMesh::new(surface(&profile, segments), vec![collider])
 }
 
 /// The point of a profile at `segment` of `segments` around the axis.
@@ -94,12 +94,12 @@ pub(super) fn stack(profile: &[(f32, f32)]) -> Vec<Collider> {
             .filter_map(crossing)
             .fold(0.0_f32, f32::max)
     };
-    let mut slabs: Vec<Slab> = heights
+    let mut slabs: Vec<HorizontalSlice> = heights
         .windows(2)
         .map(|y| {
             let inset = 0.01 * (y[1] - y[0]);
             let (a, b) = (outer(y[0] + inset), outer(y[1] - inset));
-            Slab {
+            HorizontalSlice {
                 low: y[0],
                 high: y[1],
                 square: (a * a + a * b + b * b) / 3.0,
@@ -126,20 +126,20 @@ pub(super) fn stack(profile: &[(f32, f32)]) -> Vec<Collider> {
     slabs
         .into_iter()
         .filter(|slab| slab.square > 0.0)
-        .map(Slab::cylinder)
+        .map(HorizontalSlice::cylinder)
         .collect()
 }
 
 /// A level slice of a body of revolution.
 #[derive(Clone, Copy)]
-struct Slab {
+struct HorizontalSlice {
     low: f32,
     high: f32,
     /// Mean square of the radius, m².
     square: f32,
 }
 
-impl Slab {
+impl HorizontalSlice {
     fn with(self, upper: &Self) -> Self {
         let (a, b) = (self.high - self.low, upper.high - upper.low);
         let square = (self.square * a + upper.square * b) / (a + b);

@@ -5,14 +5,14 @@ use glam::{Quat, Vec3};
 
 /// A closed mesh with its convex collision pieces.
 #[derive(Clone, Debug, Default)]
-pub struct Solid {
+pub struct SolidMesh {
     /// The surface, faces outwards, one material slot.
     pub mesh: Mesh,
     /// The convex pieces.
     pub colliders: Vec<Collider>,
 }
 
-impl Solid {
+impl SolidMesh {
     /// A mesh and its pieces.
     pub fn new(mesh: Mesh, colliders: Vec<Collider>) -> Self {
         Self { mesh, colliders }
@@ -59,14 +59,14 @@ impl Solid {
 
     /// The same shape, which nothing touches.
     #[must_use]
-    pub fn untouchable(mut self) -> Self {
+    pub fn visual_only(mut self) -> Self {
         self.colliders.clear();
         self
     }
 
     /// The same shape, which nobody sees: it stands for many thin things in collisions.
     #[must_use]
-    pub fn unseen(mut self) -> Self {
+    pub fn collision_only(mut self) -> Self {
         self.mesh = Mesh::default();
         self
     }

@@ -4,7 +4,7 @@ use super::*;
 use crate::testing::meshes::{assert_closed, collider_bounds};
 use dwell_scene::random::RandomKey;
 
-fn all() -> Vec<(&'static str, Solid)> {
+fn all() -> Vec<(&'static str, SolidMesh)> {
     let mug = [(0.0, 0.0), (0.03, 0.0), (0.04, 0.02), (0.04, 0.09)];
     let arch = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.5, 0.2], [0.0, 0.5]];
     vec![
@@ -20,7 +20,7 @@ fn all() -> Vec<(&'static str, Solid)> {
         ("ball", ball(0.1, 16)),
         (
             "lathe",
-            lathe(
+            surface_of_revolution(
                 &[(0.0, 0.0), (0.1, 0.0), (0.2, 0.3), (0.05, 0.5), (0.0, 0.5)],
                 16,
             ),
@@ -116,7 +116,7 @@ fn collision_pieces_stay_within_a_tenth_of_the_size_of_their_shape() {
 
 #[test]
 fn known_volumes_come_out() {
-    let near = |name: &str, solid: &Solid, expected: f64| {
+    let near = |name: &str, solid: &SolidMesh, expected: f64| {
         let found = solid.mesh.enclosed_volume_m3();
         assert!(
             (found / expected - 1.0).abs() < 0.03,

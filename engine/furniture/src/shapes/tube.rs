@@ -1,6 +1,6 @@
 //! Bent round bars: handles, taps, rings, metal frames.
 
-use super::Solid;
+use super::SolidMesh;
 use super::grid::{Vertex, add_grid};
 use super::revolve::around;
 use dwell_scene::{Collider, Mesh, Pose, math};
@@ -8,12 +8,12 @@ use glam::{Quat, Vec2, Vec3};
 use std::f32::consts::TAU;
 
 /// A straight round bar.
-pub fn rod(from: [f32; 3], to: [f32; 3], radius_m: f32) -> Solid {
+pub fn rod(from: [f32; 3], to: [f32; 3], radius_m: f32) -> SolidMesh {
     tube(&[from, to], radius_m, 8)
 }
 
 /// A round bar along `path`, flat ends. It collides as a cylinder for each straight piece.
-pub fn tube(path: &[[f32; 3]], radius_m: f32, sides: usize) -> Solid {
+pub fn tube(path: &[[f32; 3]], radius_m: f32, sides: usize) -> SolidMesh {
     let path: Vec<Vec3> = path.iter().map(|p| Vec3::from(*p)).collect();
     let last = path.len() - 1;
     let direction = |k: usize| (path[k + 1] - path[k]).normalize_or(Vec3::Y);
@@ -61,11 +61,11 @@ pub fn tube(path: &[[f32; 3]], radius_m: f32, sides: usize) -> Solid {
     let colliders = (0..last)
         .map(|k| bar(path[k], path[k + 1], radius_m))
         .collect();
-    Solid::new(mesh, colliders)
+    SolidMesh::new(mesh, colliders)
 }
 
 /// A round bar bent to a ring about +Y, in the plane y = 0. It collides as a cylinder for each of eight pieces.
-pub fn ring(radius_m: f32, bar_radius_m: f32, segments: usize) -> Solid {
+pub fn ring(radius_m: f32, bar_radius_m: f32, segments: usize) -> SolidMesh {
     let sides = 8;
     let mut mesh = Mesh::default();
     add_grid(&mut mesh, segments + 1, sides + 1, |i, j| {
@@ -86,7 +86,7 @@ pub fn ring(radius_m: f32, bar_radius_m: f32, segments: usize) -> Solid {
     let colliders = (0..8)
         .map(|k| bar(corner(k), corner(k + 1), bar_radius_m))
         .collect();
-    Solid::new(mesh, colliders)
+    SolidMesh::new(mesh, colliders)
 }
 
 fn bar(from: Vec3, to: Vec3, radius: f32) -> Collider {

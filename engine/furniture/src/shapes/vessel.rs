@@ -1,6 +1,6 @@
 //! Open vessels: mugs, bowls, pots. They are hollow for eyes and for things that are put in.
 
-use super::Solid;
+use super::SolidMesh;
 use super::revolve::{around, surface};
 use dwell_scene::{Collider, Pose};
 use glam::Vec3;
@@ -10,7 +10,7 @@ const WALL_PIECES: usize = 8;
 
 /// A body of revolution with a cavity. `outer`: (radius, height) in m from the middle of the bottom up to the rim;
 /// `wall_m`: thickness of wall and bottom. It collides as its bottom and eight pieces of wall.
-pub fn vessel(outer: &[(f32, f32)], wall_m: f32, segments: usize) -> Solid {
+pub fn vessel(outer: &[(f32, f32)], wall_m: f32, segments: usize) -> SolidMesh {
     let floor = outer[0].1 + wall_m;
     let inner: Vec<(f32, f32)> = outer
         .iter()
@@ -55,5 +55,5 @@ pub fn vessel(outer: &[(f32, f32)], wall_m: f32, segments: usize) -> Solid {
             colliders.push(Collider::Hull { points });
         }
     }
-    Solid::new(mesh, colliders)
+    SolidMesh::new(mesh, colliders)
 }

@@ -1,7 +1,7 @@
 //! Looks that never occur in houses for training.
 
-use super::{Leg, Split, Style, boards, parquet, timber};
-use crate::finish::{
+use super::{LegStyle, Style, StyleSplit, boards, parquet, timber};
+use crate::finishes::{
     Finish, brass, chrome, cloth, enamel, lacquer, leather, marble, painted_steel, porcelain,
     steel, terry, upholstery, white_lacquer,
 };
@@ -9,7 +9,7 @@ use crate::finish::{
 /// Whitewashed wood, navy and sand.
 pub(super) const COASTAL: Style = Style {
     name: "coastal",
-    split: Split::Val,
+    split: StyleSplit::Val,
     wood: Finish::tiled(
         "whitewashed_wood",
         "wood",
@@ -49,7 +49,7 @@ pub(super) const COASTAL: Style = Style {
     ],
     floor: boards("driftwood_boards", [206, 196, 178], [166, 154, 136]),
     appliance: enamel("coastal_enamel", [238, 240, 240]),
-    leg: Leg::Square,
+    leg: LegStyle::Square,
     knobs: true,
     panelled: true,
 };
@@ -57,7 +57,7 @@ pub(super) const COASTAL: Style = Style {
 /// Pale cedar, black lacquer, rice white and ink.
 pub(super) const JAPANDI: Style = Style {
     name: "japandi",
-    split: Split::Val,
+    split: StyleSplit::Val,
     wood: timber("cedar", "wood", [216, 178, 138], [184, 142, 104]),
     second_wood: lacquer("ink_lacquer", [44, 44, 48]),
     front: timber("cedar", "wood", [216, 178, 138], [184, 142, 104]),
@@ -91,7 +91,7 @@ pub(super) const JAPANDI: Style = Style {
     ],
     floor: boards("cedar_boards", [218, 184, 144], [182, 144, 106]),
     appliance: enamel("japandi_enamel", [226, 222, 212]),
-    leg: Leg::Square,
+    leg: LegStyle::Square,
     knobs: false,
     panelled: false,
 };
@@ -99,7 +99,7 @@ pub(super) const JAPANDI: Style = Style {
 /// Smoked oak, black steel, leather.
 pub(super) const INDUSTRIAL: Style = Style {
     name: "industrial",
-    split: Split::Test,
+    split: StyleSplit::Test,
     wood: Finish::tiled(
         "smoked_oak",
         "oak",
@@ -139,7 +139,7 @@ pub(super) const INDUSTRIAL: Style = Style {
     ],
     floor: boards("smoked_boards", [150, 122, 94], [108, 84, 62]),
     appliance: enamel("industrial_enamel", [60, 62, 66]),
-    leg: Leg::Metal,
+    leg: LegStyle::Metal,
     knobs: false,
     panelled: false,
 };
@@ -147,7 +147,7 @@ pub(super) const INDUSTRIAL: Style = Style {
 /// Rosewood, black, gold, emerald and blush.
 pub(super) const ART_DECO: Style = Style {
     name: "art_deco",
-    split: Split::Test,
+    split: StyleSplit::Test,
     wood: timber("rosewood", "wood", [110, 56, 50], [62, 28, 28]),
     second_wood: lacquer("piano_lacquer", [26, 26, 28]),
     front: lacquer("piano_lacquer", [26, 26, 28]),
@@ -181,7 +181,7 @@ pub(super) const ART_DECO: Style = Style {
     ],
     floor: parquet("rosewood_parquet", [128, 72, 60], [84, 42, 38]),
     appliance: enamel("art_deco_enamel", [34, 36, 38]),
-    leg: Leg::Metal,
+    leg: LegStyle::Metal,
     knobs: true,
     panelled: false,
 };

@@ -3,15 +3,15 @@
 mod held_out;
 mod train;
 
-use super::finish::Finish;
-use super::models::cabinet::Front;
-use super::shapes::{Solid, lathe, rod, tapered_leg};
+use super::finishes::Finish;
+use super::models::cabinet::FrontPanel;
+use super::shapes::{SolidMesh, rod, surface_of_revolution, tapered_leg};
 use super::textures::Srgb;
 use dwell_scene::random::RandomStream;
 
 /// Which houses may use a style: looks of `Val` and `Test` never occur in houses for training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Split {
+pub enum StyleSplit {
     /// For training.
     Train,
     /// For choosing between trained agents.
@@ -22,7 +22,7 @@ pub enum Split {
 
 /// How legs are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Leg {
+pub enum LegStyle {
     /// Square, thinner towards the foot.
     Tapered,
     /// Square, as thick below as above.
@@ -39,7 +39,7 @@ pub struct Style {
     /// `"nordic"`.
     pub name: &'static str,
     /// Which houses may have it: those to train, to choose or to test with.
-    pub split: Split,
+    pub split: StyleSplit,
     /// Tables, beds, shelves.
     pub wood: Finish,
     /// The wood of smaller pieces.
@@ -67,7 +67,7 @@ pub struct Style {
     /// Casings of household appliances.
     pub appliance: Finish,
     /// Legs of tables, seats and beds.
-    pub leg: Leg,
+    pub leg: LegStyle,
     /// Whether doors and drawers have knobs instead of bars.
     pub knobs: bool,
     /// Whether doors and drawers are framed panels instead of plain boards.
@@ -107,24 +107,24 @@ impl Style {
     /// What legs are made of.
     pub fn leg_finish(&self) -> &Finish {
         match self.leg {
-            Leg::Metal => &self.metal,
+            LegStyle::Metal => &self.metal,
             _ => &self.wood,
         }
     }
 
     /// Four upright legs with their middles at (±`out[0]`, ±`out[1]`), `height_m` tall, about `width_m` wide.
-    pub fn legs(&self, out: [f32; 2], height_m: f32, width_m: f32) -> [Solid; 4] {
+    pub fn legs(&self, out: [f32; 2], height_m: f32, width_m: f32) -> [SolidMesh; 4] {
         let [x, z] = out;
         [[-x, -z], [x, -z], [x, z], [-x, z]].map(|at| self.one_leg(at, height_m, width_m))
     }
 
-    fn one_leg(&self, [x, z]: [f32; 2], h: f32, w: f32) -> Solid {
+    fn one_leg(&self, [x, z]: [f32; 2], h: f32, w: f32) -> SolidMesh {
         let (foot, top) = ([x, 0.0, z], [x, h, z]);
         match self.leg {
-            Leg::Tapered => tapered_leg(foot, top, 0.65 * w, w),
-            Leg::Square => tapered_leg(foot, top, w, w),
-            Leg::Metal => rod(foot, top, 0.3 * w),
-            Leg::Turned => {
+            LegStyle::Tapered => tapered_leg(foot, top, 0.65 * w, w),
+            LegStyle::Square => tapered_leg(foot, top, w, w),
+            LegStyle::Metal => rod(foot, top, 0.3 * w),
+            LegStyle::Turned => {
                 let r = 0.5 * w;
                 let beads = [
                     (0.0, 0.0),
@@ -137,23 +137,23 @@ impl Style {
                     (1.0, 1.0),
                     (0.0, 1.0),
                 ];
-                lathe(&beads.map(|(out, up)| (out * r, up * h)), 10).at(x, 0.0, z)
+                surface_of_revolution(&beads.map(|(out, up)| (out * r, up * h)), 10).at(x, 0.0, z)
             }
         }
     }
 
     /// How doors and drawers of furniture look.
-    pub fn doors(&self) -> Front {
+    pub fn doors(&self) -> FrontPanel {
         self.fronts(&self.front)
     }
 
     /// How doors and drawers of the kitchen look.
-    pub fn kitchen_doors(&self) -> Front {
+    pub fn kitchen_doors(&self) -> FrontPanel {
         self.fronts(&self.kitchen_front)
     }
 
-    fn fronts(&self, board: &Finish) -> Front {
-        Front {
+    fn fronts(&self, board: &Finish) -> FrontPanel {
+        FrontPanel {
             board: board.clone(),
             handle: self.metal.clone(),
             knobs: self.knobs,
@@ -205,7 +205,7 @@ mod tests {
     fn every_style_has_its_name_and_known_substances_and_every_split_has_a_style() {
         let names: BTreeSet<_> = STYLES.iter().map(|style| style.name).collect();
         assert_eq!(names.len(), STYLES.len());
-        for split in [Split::Train, Split::Val, Split::Test] {
+        for split in [StyleSplit::Train, StyleSplit::Val, StyleSplit::Test] {
             assert!(STYLES.iter().any(|style| style.split == split), "{split:?}");
         }
         for style in STYLES {
@@ -234,8 +234,9 @@ mod tests {
     /// A look that is held out has woods and covers that no training house has.
     #[test]
     fn held_out_styles_share_no_wood_and_no_cover_with_training() {
-        let (train, held): (Vec<_>, Vec<_>) =
-            STYLES.iter().partition(|style| style.split == Split::Train);
+        let (train, held): (Vec<_>, Vec<_>) = STYLES
+            .iter()
+            .partition(|style| style.split == StyleSplit::Train);
         for style in held {
             for known in &train {
                 assert_ne!(style.wood, known.wood, "{} {}", style.name, known.name);

@@ -1,7 +1,7 @@
 //! Looks of houses for training.
 
-use super::{Leg, Split, Style, boards, parquet, timber};
-use crate::finish::{
+use super::{LegStyle, Style, StyleSplit, boards, parquet, timber};
+use crate::finishes::{
     Finish, beech, brass, chrome, cloth, enamel, granite, lacquer, marble, oak, painted_steel,
     pine, porcelain, rattan, steel, terry, upholstery, walnut, white_lacquer,
 };
@@ -9,7 +9,7 @@ use crate::finish::{
 /// Light oak, white, sage.
 pub(super) const NORDIC: Style = Style {
     name: "nordic",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: oak(),
     second_wood: white_lacquer(),
     front: white_lacquer(),
@@ -43,7 +43,7 @@ pub(super) const NORDIC: Style = Style {
     ],
     floor: boards("pale_boards", [214, 184, 140], [176, 142, 98]),
     appliance: enamel("nordic_enamel", [240, 241, 240]),
-    leg: Leg::Tapered,
+    leg: LegStyle::Tapered,
     knobs: false,
     panelled: false,
 };
@@ -51,7 +51,7 @@ pub(super) const NORDIC: Style = Style {
 /// Anthracite, chrome, charcoal and red.
 pub(super) const MODERN: Style = Style {
     name: "modern",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: lacquer("anthracite_lacquer", [62, 64, 68]),
     second_wood: oak(),
     front: white_lacquer(),
@@ -85,7 +85,7 @@ pub(super) const MODERN: Style = Style {
     ],
     floor: boards("grey_boards", [176, 166, 152], [136, 126, 114]),
     appliance: enamel("modern_enamel", [172, 174, 178]),
-    leg: Leg::Metal,
+    leg: LegStyle::Metal,
     knobs: false,
     panelled: false,
 };
@@ -93,7 +93,7 @@ pub(super) const MODERN: Style = Style {
 /// Walnut, brass, burgundy, turned legs.
 pub(super) const CLASSIC: Style = Style {
     name: "classic",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: walnut(),
     second_wood: walnut(),
     front: walnut(),
@@ -127,7 +127,7 @@ pub(super) const CLASSIC: Style = Style {
     ],
     floor: parquet("walnut_parquet", [150, 104, 66], [108, 70, 42]),
     appliance: enamel("classic_enamel", [238, 232, 216]),
-    leg: Leg::Turned,
+    leg: LegStyle::Turned,
     knobs: true,
     panelled: true,
 };
@@ -135,7 +135,7 @@ pub(super) const CLASSIC: Style = Style {
 /// Pine, black iron, moss and rust.
 pub(super) const RUSTIC: Style = Style {
     name: "rustic",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: pine(),
     second_wood: pine(),
     front: pine(),
@@ -169,7 +169,7 @@ pub(super) const RUSTIC: Style = Style {
     ],
     floor: boards("pine_boards", [216, 170, 112], [178, 130, 78]),
     appliance: enamel("rustic_enamel", [236, 228, 206]),
-    leg: Leg::Square,
+    leg: LegStyle::Square,
     knobs: true,
     panelled: true,
 };
@@ -177,7 +177,7 @@ pub(super) const RUSTIC: Style = Style {
 /// Teak, brass, teal and orange.
 pub(super) const MID_CENTURY: Style = Style {
     name: "mid_century",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: Finish::tiled(
         "teak",
         "wood",
@@ -217,7 +217,7 @@ pub(super) const MID_CENTURY: Style = Style {
     ],
     floor: parquet("teak_parquet", [190, 134, 84], [148, 98, 56]),
     appliance: enamel("mid_century_enamel", [206, 226, 220]),
-    leg: Leg::Tapered,
+    leg: LegStyle::Tapered,
     knobs: false,
     panelled: false,
 };
@@ -225,7 +225,7 @@ pub(super) const MID_CENTURY: Style = Style {
 /// Beech, white, bright cotton.
 pub(super) const CHEERFUL: Style = Style {
     name: "cheerful",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: beech(),
     second_wood: white_lacquer(),
     front: white_lacquer(),
@@ -259,7 +259,7 @@ pub(super) const CHEERFUL: Style = Style {
     ],
     floor: boards("beech_boards", [222, 178, 130], [188, 142, 98]),
     appliance: enamel("cheerful_enamel", [240, 236, 230]),
-    leg: Leg::Square,
+    leg: LegStyle::Square,
     knobs: true,
     panelled: false,
 };
@@ -267,7 +267,7 @@ pub(super) const CHEERFUL: Style = Style {
 /// Cream paint over pine tops, checked blue, oil-rubbed bronze.
 pub(super) const FARMHOUSE: Style = Style {
     name: "farmhouse",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: lacquer("cream_paint", [232, 222, 196]),
     second_wood: timber("waxed_pine", "pine", [206, 160, 104], [172, 124, 74]),
     front: lacquer("cream_paint", [232, 222, 196]),
@@ -301,7 +301,7 @@ pub(super) const FARMHOUSE: Style = Style {
     ],
     floor: boards("waxed_boards", [204, 158, 104], [164, 118, 72]),
     appliance: enamel("farmhouse_enamel", [238, 230, 212]),
-    leg: Leg::Turned,
+    leg: LegStyle::Turned,
     knobs: true,
     panelled: true,
 };
@@ -309,7 +309,7 @@ pub(super) const FARMHOUSE: Style = Style {
 /// Pale ash, warm grey, terracotta, matt black.
 pub(super) const CONTEMPORARY: Style = Style {
     name: "contemporary",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: timber("ash", "wood", [222, 204, 174], [196, 174, 140]),
     second_wood: lacquer("warm_grey_lacquer", [176, 170, 162]),
     front: lacquer("warm_grey_lacquer", [176, 170, 162]),
@@ -343,7 +343,7 @@ pub(super) const CONTEMPORARY: Style = Style {
     ],
     floor: boards("ash_boards", [222, 204, 174], [188, 166, 132]),
     appliance: enamel("contemporary_enamel", [70, 70, 72]),
-    leg: Leg::Tapered,
+    leg: LegStyle::Tapered,
     knobs: false,
     panelled: false,
 };
@@ -351,7 +351,7 @@ pub(super) const CONTEMPORARY: Style = Style {
 /// Rattan and honey wood, plum, saffron, turquoise.
 pub(super) const BOHO: Style = Style {
     name: "boho",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: timber("honey_wood", "wood", [206, 146, 84], [160, 104, 56]),
     second_wood: rattan(),
     front: timber("honey_wood", "wood", [206, 146, 84], [160, 104, 56]),
@@ -385,7 +385,7 @@ pub(super) const BOHO: Style = Style {
     ],
     floor: boards("honey_boards", [210, 156, 96], [166, 114, 64]),
     appliance: enamel("boho_enamel", [232, 222, 196]),
-    leg: Leg::Tapered,
+    leg: LegStyle::Tapered,
     knobs: true,
     panelled: false,
 };
@@ -393,7 +393,7 @@ pub(super) const BOHO: Style = Style {
 /// Dark mahogany, linen, palm green, cane.
 pub(super) const COLONIAL: Style = Style {
     name: "colonial",
-    split: Split::Train,
+    split: StyleSplit::Train,
     wood: timber("mahogany", "wood", [122, 62, 42], [78, 36, 26]),
     second_wood: timber("mahogany", "wood", [122, 62, 42], [78, 36, 26]),
     front: timber("mahogany", "wood", [122, 62, 42], [78, 36, 26]),
@@ -427,7 +427,7 @@ pub(super) const COLONIAL: Style = Style {
     ],
     floor: parquet("mahogany_parquet", [140, 82, 56], [98, 52, 36]),
     appliance: enamel("colonial_enamel", [236, 228, 206]),
-    leg: Leg::Turned,
+    leg: LegStyle::Turned,
     knobs: true,
     panelled: true,
 };

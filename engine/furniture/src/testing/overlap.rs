@@ -6,7 +6,7 @@ use std::f32::consts::TAU;
 
 /// A convex piece in the world, by its farthest extent along any direction.
 #[derive(Clone, Debug)]
-pub struct Convex {
+pub struct ConvexPiece {
     points: Vec<Vec3>,
     /// Added all round.
     radius: f32,
@@ -18,7 +18,7 @@ pub struct Convex {
     pub bounds: Aabb,
 }
 
-impl Convex {
+impl ConvexPiece {
     /// The piece of a part at this pose.
     ///
     /// # Panics
@@ -115,7 +115,7 @@ impl Convex {
 
 /// How far two pieces reach into each other, m; negative: the gap between them. Never less than the truth: a direction
 /// that separates the pieces is a proof, and the search for the best one stops at `enough`.
-pub fn depth(a: &Convex, b: &Convex, enough: f32) -> f32 {
+pub fn depth(a: &ConvexPiece, b: &ConvexPiece, enough: f32) -> f32 {
     let mut best = (f32::MAX, Vec3::Y);
     let mut attempt = |direction: Vec3| {
         let direction = direction.normalize_or(Vec3::Y);
@@ -171,16 +171,16 @@ pub fn depth(a: &Convex, b: &Convex, enough: f32) -> f32 {
 }
 
 /// The pieces of a part that stands at `world_from_part`.
-pub fn part_pieces(house: &House, part: PartId, world_from_part: &Pose) -> Vec<Convex> {
+pub fn part_pieces(house: &House, part: PartId, world_from_part: &Pose) -> Vec<ConvexPiece> {
     house.parts[part]
         .colliders
         .iter()
-        .map(|collider| Convex::new(collider, world_from_part))
+        .map(|collider| ConvexPiece::new(collider, world_from_part))
         .collect()
 }
 
 /// The pieces of an object at the start.
-pub fn object_pieces(house: &House, object: ObjectId) -> Vec<Convex> {
+pub fn object_pieces(house: &House, object: ObjectId) -> Vec<ConvexPiece> {
     house.objects[object]
         .parts()
         .flat_map(|part| part_pieces(house, part, &house.parts[part].world_from_part))
@@ -188,7 +188,7 @@ pub fn object_pieces(house: &House, object: ObjectId) -> Vec<Convex> {
 }
 
 /// The largest depth between two sets of pieces, at least `enough`.
-pub fn deepest(a: &[Convex], b: &[Convex], enough: f32) -> f32 {
+pub fn deepest(a: &[ConvexPiece], b: &[ConvexPiece], enough: f32) -> f32 {
     let mut worst = enough;
     for p in a {
         let near = p.bounds.grown(-enough.min(0.0));
@@ -201,7 +201,7 @@ pub fn deepest(a: &[Convex], b: &[Convex], enough: f32) -> f32 {
 
 #[test]
 fn depth_of_boxes_and_balls_is_known() {
-    let unit = Convex::cuboid(&Aabb::new(Vec3::ZERO, Vec3::ONE));
+    let unit = ConvexPiece::cuboid(&Aabb::new(Vec3::ZERO, Vec3::ONE));
     let close = |a: f32, b: f32| assert!((a - b).abs() < 2e-3, "{a} instead of {b}");
     close(
         depth(&unit, &unit.moved(Vec3::new(0.9, 0.3, 0.2)), -1.0),
@@ -211,7 +211,7 @@ fn depth_of_boxes_and_balls_is_known() {
         depth(&unit, &unit.moved(Vec3::new(1.25, 0.0, 0.0)), -1.0),
         -0.25,
     );
-    let ball = Convex::new(
+    let ball = ConvexPiece::new(
         &Collider::Ball {
             center: Vec3::ZERO,
             radius: 0.5,
@@ -224,7 +224,7 @@ fn depth_of_boxes_and_balls_is_known() {
     );
     let corner = Vec3::splat(1.0 + 0.4 / 3.0_f32.sqrt());
     close(depth(&unit, &ball.moved(corner), -1.0), 0.1);
-    let post = Convex::new(
+    let post = ConvexPiece::new(
         &Collider::Cylinder {
             part_from_cylinder: Pose::IDENTITY,
             half_height: 1.0,

@@ -4,7 +4,7 @@ use super::cases::{Case, Summary, every_draw, every_draw_in_every_style};
 use crate::catalogue::entries;
 use crate::style::STYLES;
 use crate::testing::meshes::open_edges;
-use crate::testing::overlap::{Convex, deepest};
+use crate::testing::overlap::{ConvexPiece, deepest};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Collider, Mobility, Pose};
 use glam::Vec3;
@@ -122,7 +122,7 @@ fn what_stands_loose_stands_firm() {
                 let (volume, middle) = content(collider);
                 mass += volume * part.density_kg_m3;
                 moment += middle * volume * part.density_kg_m3;
-                pieces.push(Convex::new(collider, &Pose::IDENTITY));
+                pieces.push(ConvexPiece::new(collider, &Pose::IDENTITY));
             }
         }
         let center = moment / mass;
@@ -157,12 +157,12 @@ fn what_stands_loose_stands_firm() {
 #[test]
 fn places_for_things_are_free() {
     every_draw(|case: &Case| {
-        let pieces: Vec<Convex> = case
+        let pieces: Vec<ConvexPiece> = case
             .model
             .parts
             .iter()
             .flat_map(|part| &part.colliders)
-            .map(|collider| Convex::new(collider, &Pose::IDENTITY))
+            .map(|collider| ConvexPiece::new(collider, &Pose::IDENTITY))
             .collect();
         let mut faults = Vec::new();
         for space in &case.model.spaces {
@@ -171,7 +171,7 @@ fn places_for_things_are_free() {
                 faults.push(format!("{} is {size} m", space.name));
                 continue;
             }
-            let free = Convex::cuboid(&space.space.grown(-0.004));
+            let free = ConvexPiece::cuboid(&space.space.grown(-0.004));
             let into = deepest(std::slice::from_ref(&free), &pieces, 0.001);
             if into > 0.001 {
                 faults.push(format!("{} is taken by {into} m", space.name));

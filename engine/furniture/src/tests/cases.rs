@@ -1,6 +1,6 @@
 //! The whole catalogue, drawn many times.
 
-use crate::catalogue::{Entry, entries};
+use crate::catalogue::{CatalogueEntry, entries};
 use crate::model::Model;
 use crate::style::{STYLES, Style};
 use crate::testing::meshes::collider_bounds;
@@ -14,14 +14,14 @@ const KEYS: u64 = 20;
 
 /// One thing of the catalogue.
 pub(super) struct Case {
-    pub entry: &'static Entry,
+    pub entry: &'static CatalogueEntry,
     pub style: &'static Style,
     pub key: RandomKey,
     pub model: Model,
 }
 
 impl Case {
-    fn new(entry: &'static Entry, style: &'static Style, number: u64) -> Self {
+    fn new(entry: &'static CatalogueEntry, style: &'static Style, number: u64) -> Self {
         let key = RandomKey::root(number);
         let model = (entry.build)(style, key);
         Self {
@@ -35,7 +35,7 @@ impl Case {
 
 /// What is kept of one draw of an entry in a style.
 pub(super) struct Summary {
-    pub entry: &'static Entry,
+    pub entry: &'static CatalogueEntry,
     style: &'static str,
     pub name: &'static str,
     pub bounds: Aabb,

@@ -3,7 +3,7 @@
 use super::cases::{Case, every_draw};
 use crate::model::ModelJoint;
 use crate::shapes::turn;
-use crate::testing::overlap::{Convex, deepest};
+use crate::testing::overlap::{ConvexPiece, deepest};
 use dwell_scene::{JointKind, Mobility, Pose};
 use glam::Vec3;
 
@@ -54,20 +54,23 @@ fn joints_move_parts_that_exist_and_open_from_zero() {
 fn everything_opens_without_meeting_its_own_body() {
     every_draw(|case: &Case| {
         let model = &case.model;
-        let still = |part: usize| -> Vec<Convex> {
+        let still = |part: usize| -> Vec<ConvexPiece> {
             let colliders = model.parts[part].colliders.iter();
-            colliders.map(|c| Convex::new(c, &Pose::IDENTITY)).collect()
+            colliders
+                .map(|c| ConvexPiece::new(c, &Pose::IDENTITY))
+                .collect()
         };
         let mut faults = Vec::new();
         for joint in &model.joints {
-            let others: Vec<Convex> = (0..model.parts.len())
+            let others: Vec<ConvexPiece> = (0..model.parts.len())
                 .filter(|part| *part != joint.child)
                 .flat_map(still)
                 .collect();
             for step in 0..=STEPS {
                 let pose = moved(joint, joint.open * step as f32 / STEPS as f32);
                 let colliders = model.parts[joint.child].colliders.iter();
-                let pieces: Vec<Convex> = colliders.map(|c| Convex::new(c, &pose)).collect();
+                let pieces: Vec<ConvexPiece> =
+                    colliders.map(|c| ConvexPiece::new(c, &pose)).collect();
                 let into = deepest(&pieces, &others, TOLERANCE_M);
                 if into > TOLERANCE_M {
                     faults.push(format!(

@@ -2,14 +2,14 @@
 
 use super::cases::{Case, Summary, every_draw, every_draw_in_every_style};
 use crate::catalogue::entries;
-use crate::draw::{Spread, spreads};
+use crate::sampling::{SizeDistribution, spreads};
 use crate::style::STYLES;
 use crate::tables::category;
 use dwell_scene::random::RandomKey;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The spreads of a model that is no kind of its own, or of the kind.
-fn rows(draw: &Summary) -> Option<&'static BTreeMap<String, Spread>> {
+fn rows(draw: &Summary) -> Option<&'static BTreeMap<String, SizeDistribution>> {
     let is_kind = entries().iter().any(|entry| entry.kind == draw.name);
     let own = spreads().get(draw.name).filter(|_| !is_kind);
     own.or_else(|| spreads().get(draw.entry.kind))

@@ -1,11 +1,17 @@
 //! Wood: boards, plank floors, herringbone parquet. The grain runs along u.
 
-use super::canvas::{Canvas, Color, mix, shade, smooth_step};
+use super::canvas::{EncodedColor, PixelCanvas, mix, shade, smooth_step};
 use super::noise::floor;
-use super::{Noise, Paint};
+use super::{TexturePaint, ValueNoise};
 
 /// The colour of wood at a place; `rings` year rings cross the square.
-fn grain(noise: &Noise, [light, dark, _]: [Color; 3], u: f32, v: f32, rings: f32) -> Color {
+fn grain(
+    noise: &ValueNoise,
+    [light, dark, _]: [EncodedColor; 3],
+    u: f32,
+    v: f32,
+    rings: f32,
+) -> EncodedColor {
     let bend = noise.value(u, v, 2, 5) + 0.3 * noise.value(u, v, 3, 11);
     let ring = wave(rings * v + 1.1 * bend);
     let (tone, fibre, pore) = (
@@ -25,12 +31,12 @@ fn wave(x: f32) -> f32 {
 }
 
 /// One board.
-pub(super) fn wood(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn wood(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     canvas.fill(|u, v| grain(&paint.noise, paint.colors, u, v, 9.0));
 }
 
 /// Floor boards along u: eight courses, each course a board and a half long.
-pub(super) fn planks(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn planks(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     const COURSES: f32 = 8.0;
     let noise = &paint.noise;
     canvas.fill(|u, v| {
@@ -51,7 +57,7 @@ pub(super) fn planks(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Herringbone: boards four times as long as wide, two directions.
-pub(super) fn herringbone(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn herringbone(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     const CELLS: i32 = 16;
     const LONG: i32 = 4;
     let noise = &paint.noise;

@@ -3,10 +3,10 @@
 use dwell_scene::interrupt;
 
 /// A colour while it is mixed: sRGB-encoded, each 0 to 1.
-pub(super) type Color = [f32; 3];
+pub(super) type EncodedColor = [f32; 3];
 
 /// Mixes two colours: 0 gives `a`, 1 gives `b`.
-pub(super) fn mix(a: Color, b: Color, amount: f32) -> Color {
+pub(super) fn mix(a: EncodedColor, b: EncodedColor, amount: f32) -> EncodedColor {
     let t = amount.clamp(0.0, 1.0);
     [
         a[0] + (b[0] - a[0]) * t,
@@ -16,7 +16,7 @@ pub(super) fn mix(a: Color, b: Color, amount: f32) -> Color {
 }
 
 /// The same colour lighter (above 1) or darker.
-pub(super) fn shade(color: Color, factor: f32) -> Color {
+pub(super) fn shade(color: EncodedColor, factor: f32) -> EncodedColor {
     color.map(|c| c * factor)
 }
 
@@ -27,13 +27,13 @@ pub(super) fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
 }
 
 /// Rows of pixels from the top.
-pub(super) struct Canvas {
+pub(super) struct PixelCanvas {
     width: u32,
     height: u32,
-    pixels: Vec<Color>,
+    pixels: Vec<EncodedColor>,
 }
 
-impl Canvas {
+impl PixelCanvas {
     /// A black picture.
     pub(super) fn new(width: u32, height: u32) -> Self {
         Self {
@@ -44,12 +44,12 @@ impl Canvas {
     }
 
     /// Colours each pixel anew by its place, u to the right and v up, each 0 to 1.
-    pub(super) fn fill(&mut self, mut color: impl FnMut(f32, f32) -> Color) {
+    pub(super) fn fill(&mut self, mut color: impl FnMut(f32, f32) -> EncodedColor) {
         self.change(|u, v, _| color(u, v));
     }
 
     /// Colours each pixel by its place and the colour that it has.
-    pub(super) fn change(&mut self, mut color: impl FnMut(f32, f32, Color) -> Color) {
+    pub(super) fn change(&mut self, mut color: impl FnMut(f32, f32, EncodedColor) -> EncodedColor) {
         let (du, dv) = (1.0 / self.width as f32, 1.0 / self.height as f32);
         for (row, pixels) in self
             .pixels
@@ -65,7 +65,7 @@ impl Canvas {
     }
 
     /// A filled rectangle from its lower left to its upper right corner.
-    pub(super) fn rectangle(&mut self, low: [f32; 2], high: [f32; 2], color: Color) {
+    pub(super) fn rectangle(&mut self, low: [f32; 2], high: [f32; 2], color: EncodedColor) {
         self.change(|u, v, old| {
             let inside = u >= low[0] && u < high[0] && v >= low[1] && v < high[1];
             if inside { color } else { old }
@@ -73,7 +73,7 @@ impl Canvas {
     }
 
     /// A filled disc; `radius` in units of the height.
-    pub(super) fn disc(&mut self, center: [f32; 2], radius: f32, color: Color) {
+    pub(super) fn disc(&mut self, center: [f32; 2], radius: f32, color: EncodedColor) {
         let aspect = self.aspect();
         let edge = 1.5 / self.height as f32;
         self.change(|u, v, old| {

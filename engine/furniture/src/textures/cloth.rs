@@ -1,12 +1,12 @@
 //! Cloth, carpet, leather, wicker.
 
-use super::Paint;
-use super::canvas::{Canvas, mix, shade, smooth_step};
+use super::TexturePaint;
+use super::canvas::{PixelCanvas, mix, shade, smooth_step};
 use dwell_scene::math;
 use std::f32::consts::TAU;
 
 /// Cut pile: the ground colour in many tufts.
-pub(super) fn carpet(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn carpet(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, second, _] = paint.colors;
     canvas.fill(|u, v| {
         let tuft = paint.noise.value(u, v, 64, 64);
@@ -19,7 +19,7 @@ pub(super) fn carpet(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Plain weave of 8 by 8 threads.
-pub(super) fn weave(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn weave(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, second, _] = paint.colors;
     canvas.fill(|u, v| {
         let (x, y) = (u * 16.0, v * 16.0);
@@ -39,7 +39,7 @@ pub(super) fn weave(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Grained hide.
-pub(super) fn leather(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn leather(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     canvas.fill(|u, v| {
         // Distance to the nearest of jittered points, one in each of 24 by 24 cells, makes the pebbles.
         let (x, y) = (u * 24.0, v * 24.0);
@@ -70,7 +70,7 @@ pub(super) fn leather(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Broad stripes of three colours along v, woven.
-pub(super) fn stripes(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn stripes(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [a, b, c] = paint.colors;
     canvas.fill(|u, v| {
         let color = match (u * 8.0) as i32 {
@@ -83,7 +83,7 @@ pub(super) fn stripes(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// A tartan of crossing bands.
-pub(super) fn checks(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn checks(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, band, line] = paint.colors;
     canvas.fill(|u, v| {
         let band_at = |x: f32| f32::from((x * 2.0) as i32 % 2 == 0);
@@ -98,7 +98,7 @@ pub(super) fn checks(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Basket work: rods over and under stakes.
-pub(super) fn wicker(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn wicker(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [light, dark, _] = paint.colors;
     canvas.fill(|u, v| {
         let (x, y) = (u * 4.0, v * 8.0);
@@ -114,7 +114,7 @@ pub(super) fn wicker(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// A whole rug: border, field with a lattice of rhombs, medallion. Colours: field, border, motif.
-pub(super) fn rug(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn rug(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [field, border, motif] = paint.colors;
     canvas.fill(|u, v| {
         let edge = u.min(1.0 - u).min(v.min(1.0 - v));

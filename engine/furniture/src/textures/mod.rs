@@ -11,10 +11,10 @@ mod screens;
 mod stones;
 mod tiles;
 
-use canvas::Canvas;
+use canvas::PixelCanvas;
 use dwell_scene::Texture;
 use dwell_scene::random::RandomKey;
-use noise::Noise;
+use noise::ValueNoise;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -23,9 +23,9 @@ pub type Srgb = [u8; 3];
 
 /// An image to be made: a recipe, its colours and its seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Pattern {
+pub struct TexturePattern {
     /// A name of the list of recipes.
-    pub recipe: &'static str,
+    pub generator: &'static str,
     /// Ground, second and third colour.
     pub colors: [Srgb; 3],
     /// Same seed, same image.
@@ -33,35 +33,35 @@ pub struct Pattern {
 }
 
 /// What a recipe works with.
-struct Paint {
+struct TexturePaint {
     colors: [[f32; 3]; 3],
-    noise: Noise,
+    noise: ValueNoise,
     key: RandomKey,
 }
 
 /// How one kind of image is made.
-struct Recipe {
+struct TextureGenerator {
     name: &'static str,
     /// Pixels across and down.
     size_px: [u32; 2],
-    draw: fn(&mut Canvas, &Paint),
+    draw: fn(&mut PixelCanvas, &TexturePaint),
 }
 
 /// All kinds of images.
-fn recipes() -> &'static [Recipe] {
+fn recipes() -> &'static [TextureGenerator] {
     const fn recipe(
         name: &'static str,
         width_px: u32,
         height_px: u32,
-        draw: fn(&mut Canvas, &Paint),
-    ) -> Recipe {
-        Recipe {
+        draw: fn(&mut PixelCanvas, &TexturePaint),
+    ) -> TextureGenerator {
+        TextureGenerator {
             name,
             size_px: [width_px, height_px],
             draw,
         }
     }
-    const ALL: &[Recipe] = &[
+    const ALL: &[TextureGenerator] = &[
         recipe("wood", 256, 256, boards::wood),
         recipe("planks", 384, 384, boards::planks),
         recipe("herringbone", 384, 384, boards::herringbone),
@@ -102,44 +102,48 @@ fn recipes() -> &'static [Recipe] {
     ALL
 }
 
-impl Pattern {
+impl TexturePattern {
     /// The pixels of the image.
     fn paint(&self) -> Vec<u8> {
         let key = RandomKey::root(self.seed)
             .child("texture")
-            .child(self.recipe);
+            .child(self.generator);
         let colors = self.colors.map(|color| color.map(|c| f32::from(c) / 255.0));
-        let paint = Paint {
+        let paint = TexturePaint {
             colors,
-            noise: Noise::new(key.child("noise")),
+            noise: ValueNoise::new(key.child("noise")),
             key,
         };
-        let recipe = self.recipe();
-        let [width, height] = recipe.map_or([1, 1], |recipe| recipe.size_px);
-        let mut canvas = Canvas::new(width, height);
-        if let Some(recipe) = recipe {
-            (recipe.draw)(&mut canvas, &paint);
+        let generator = self.recipe();
+        let [width, height] = generator.map_or([1, 1], |generator| generator.size_px);
+        let mut canvas = PixelCanvas::new(width, height);
+        if let Some(generator) = generator {
+            (generator.draw)(&mut canvas, &paint);
         }
         canvas.into_rgba()
     }
 
     /// The image as a texture that is painted when someone first looks at it; mid-grey for a recipe that does not exist.
     pub fn texture(self) -> Texture {
-        let [width, height] = self.recipe().map_or([1, 1], |recipe| recipe.size_px);
-        Texture::painted_later(self.recipe.to_owned(), width, height, move || self.paint())
+        let [width, height] = self.recipe().map_or([1, 1], |generator| generator.size_px);
+        Texture::painted_later(self.generator.to_owned(), width, height, move || {
+            self.paint()
+        })
     }
 
-    fn recipe(&self) -> Option<&'static Recipe> {
-        recipes().iter().find(|recipe| recipe.name == self.recipe)
+    fn recipe(&self) -> Option<&'static TextureGenerator> {
+        recipes()
+            .iter()
+            .find(|generator| generator.name == self.generator)
     }
 }
 
 /// The images of patterns, in their order. Each exists once in a process, shared by all houses, and is painted when someone
 /// first looks at it.
-pub fn textures(patterns: &[Pattern]) -> Vec<Arc<Texture>> {
-    static KNOWN: Mutex<BTreeMap<Pattern, Arc<Texture>>> = Mutex::new(BTreeMap::new());
+pub fn textures(patterns: &[TexturePattern]) -> Vec<Arc<Texture>> {
+    static KNOWN: Mutex<BTreeMap<TexturePattern, Arc<Texture>>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    let texture = |pattern: &Pattern| {
+    let texture = |pattern: &TexturePattern| {
         let texture = known.entry(*pattern);
         texture
             .or_insert_with(|| Arc::new(pattern.texture()))
@@ -152,9 +156,9 @@ pub fn textures(patterns: &[Pattern]) -> Vec<Arc<Texture>> {
 mod tests {
     use super::*;
 
-    fn pattern(recipe: &'static str) -> Pattern {
-        Pattern {
-            recipe,
+    fn pattern(generator: &'static str) -> TexturePattern {
+        TexturePattern {
+            generator,
             colors: [[200, 170, 120], [90, 60, 40], [60, 90, 150]],
             seed: 5,
         }
@@ -162,20 +166,25 @@ mod tests {
 
     #[test]
     fn every_recipe_gives_the_same_bytes_twice_and_is_no_plain_colour() {
-        for recipe in recipes() {
-            let texture = pattern(recipe.name).texture();
-            texture.check(recipe.name).unwrap();
-            assert_eq!(texture, pattern(recipe.name).texture(), "{}", recipe.name);
+        for generator in recipes() {
+            let texture = pattern(generator.name).texture();
+            texture.check(generator.name).unwrap();
+            assert_eq!(
+                texture,
+                pattern(generator.name).texture(),
+                "{}",
+                generator.name
+            );
             let first = &texture.rgba()[..4];
             assert!(
                 texture.rgba().chunks_exact(4).any(|pixel| pixel != first),
                 "{}",
-                recipe.name
+                generator.name
             );
             assert!(
                 texture.rgba().chunks_exact(4).all(|pixel| pixel[3] == 255),
                 "{}",
-                recipe.name
+                generator.name
             );
         }
     }

@@ -12,12 +12,12 @@ pub(super) fn floor(x: f32) -> i32 {
 }
 
 /// Value noise on a lattice.
-pub(super) struct Noise {
+pub(super) struct ValueNoise {
     values: [f32; TABLE],
     order: [u8; TABLE],
 }
 
-impl Noise {
+impl ValueNoise {
     /// The noise of a key.
     pub(super) fn new(key: RandomKey) -> Self {
         let mut stream = key.stream();

@@ -1,12 +1,12 @@
 //! Wallpapers.
 
-use super::Paint;
-use super::canvas::{Canvas, mix, shade, smooth_step};
+use super::TexturePaint;
+use super::canvas::{PixelCanvas, mix, shade, smooth_step};
 use dwell_scene::math;
 use std::f32::consts::TAU;
 
 /// Sprigs of paired leaves on a half-drop repeat; colours: ground, leaf, stalk.
-pub(super) fn leaves(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn leaves(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, leaf, stalk] = paint.colors;
     canvas.fill(|u, v| {
         let column = (u * 4.0).floor();
@@ -44,7 +44,7 @@ pub(super) fn leaves(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Scattered stars of two colours.
-pub(super) fn stars(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn stars(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, a, b] = paint.colors;
     canvas.fill(|u, v| {
         let (x, y) = (u * 4.0, v * 4.0);
@@ -64,7 +64,7 @@ pub(super) fn stars(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Fine upright stripes.
-pub(super) fn pinstripe(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn pinstripe(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, stripe, line] = paint.colors;
     canvas.fill(|u, v| {
         let x = (u * 4.0).fract();

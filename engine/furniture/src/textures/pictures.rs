@@ -1,12 +1,12 @@
 //! Pictures for walls; they fill their frame.
 
-use super::Paint;
-use super::canvas::{Canvas, mix, shade, smooth_step};
+use super::TexturePaint;
+use super::canvas::{PixelCanvas, mix, shade, smooth_step};
 use dwell_scene::math;
 use std::f32::consts::TAU;
 
 /// Sky, sun, three ranges of hills, a lake. Colours: sky, hills, sun.
-pub(super) fn landscape(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn landscape(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [sky, hill, sun] = paint.colors;
     let noise = &paint.noise;
     let light = mix(sky, [1.0, 0.96, 0.88], 0.75);
@@ -36,7 +36,7 @@ pub(super) fn landscape(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Overlapping arcs and blocks in the manner of a modern print.
-pub(super) fn shapes(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn shapes(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [a, b, c] = paint.colors;
     let paper = [0.95, 0.93, 0.88];
     canvas.fill(|u, v| shade(paper, 0.97 + 0.04 * paint.noise.value(u, v, 60, 60)));
@@ -54,7 +54,7 @@ pub(super) fn shapes(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// A botanical print: one branch with leaves on paper. Colours: paper, leaf, stalk.
-pub(super) fn branch(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn branch(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [paper, leaf, stalk] = paint.colors;
     canvas.fill(|u, v| {
         let x = (u - 0.5) * 0.75 - 0.08 * math::sin(3.0 * v);
@@ -83,7 +83,7 @@ pub(super) fn branch(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Three soft fields of colour, one over the other.
-pub(super) fn fields(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn fields(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [a, b, c] = paint.colors;
     let ground = mix(shade(b, 0.75), [0.9, 0.86, 0.8], 0.35);
     canvas.fill(|u, v| {
@@ -107,7 +107,7 @@ pub(super) fn fields(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Rings and half rings on a grid of squares.
-pub(super) fn rings(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn rings(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let colors = paint.colors;
     let paper = [0.94, 0.92, 0.87];
     canvas.fill(|u, v| {
@@ -130,7 +130,7 @@ pub(super) fn rings(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Dunes or waves under a pale sky, each line in front of the last.
-pub(super) fn waves(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn waves(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [a, b, c] = paint.colors;
     let sky = mix(c, [0.97, 0.95, 0.9], 0.8);
     canvas.fill(|u, v| {
@@ -152,7 +152,7 @@ pub(super) fn waves(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// A poster for a child: planets on their ways round the sun.
-pub(super) fn planets(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn planets(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [space, a, b] = paint.colors;
     canvas.fill(|u, v| {
         let star = smooth_step(0.93, 0.97, paint.noise.value(u, v, 60, 45));

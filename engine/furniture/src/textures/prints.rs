@@ -1,10 +1,10 @@
 //! Small things: book covers, page edges, leaves, peel.
 
-use super::Paint;
-use super::canvas::{Canvas, mix, shade, smooth_step};
+use super::TexturePaint;
+use super::canvas::{PixelCanvas, mix, shade, smooth_step};
 
 /// The cover of a book: cloth, a label with two lines, a band. Colours: cloth, label, band.
-pub(super) fn cover(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn cover(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [cloth, label, band] = paint.colors;
     canvas.fill(|u, v| shade(cloth, 0.92 + 0.12 * paint.noise.value(u, v, 48, 64)));
     canvas.rectangle([0.14, 0.58], [0.86, 0.82], label);
@@ -14,12 +14,12 @@ pub(super) fn cover(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// The edges of many pages, lines along u.
-pub(super) fn pages(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn pages(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     canvas.fill(|u, v| shade(paint.colors[0], 0.8 + 0.25 * paint.noise.value(u, v, 2, 64)));
 }
 
 /// The green of leaves with lighter ribs.
-pub(super) fn foliage(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn foliage(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [green, rib, _] = paint.colors;
     canvas.fill(|u, v| {
         let side = (v * 8.0 + 3.0 * (u - 0.5).abs()).fract();
@@ -32,7 +32,7 @@ pub(super) fn foliage(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// The skin of a fruit: ground, blush, freckles.
-pub(super) fn peel(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn peel(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, blush, freckle] = paint.colors;
     canvas.fill(|u, v| {
         let body = mix(

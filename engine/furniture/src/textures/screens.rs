@@ -1,12 +1,12 @@
 //! Faces of devices.
 
-use super::Paint;
-use super::canvas::{Canvas, mix, shade, smooth_step};
+use super::TexturePaint;
+use super::canvas::{PixelCanvas, mix, shade, smooth_step};
 use dwell_scene::math;
 use std::f32::consts::TAU;
 
 /// A television programme: a harbour at dusk and a caption below.
-pub(super) fn television(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn television(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [sky, sea, caption] = paint.colors;
     let noise = &paint.noise;
     canvas.fill(|u, v| {
@@ -37,7 +37,7 @@ pub(super) fn television(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// A computer's desktop with a window of text.
-pub(super) fn desktop(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn desktop(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, window, text] = paint.colors;
     canvas.fill(|u, v| {
         mix(
@@ -59,7 +59,7 @@ pub(super) fn desktop(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Keys in rows and a touch pad. Colours: case, key, pad.
-pub(super) fn keyboard(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn keyboard(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [case, key, pad] = paint.colors;
     canvas.fill(|u, v| {
         let (x, y) = ((u - 0.06) / 0.88 * 15.0, (v - 0.42) / 0.52 * 5.0);
@@ -77,7 +77,7 @@ pub(super) fn keyboard(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// A tuning dial: a scale and a pointer. Colours: face, ink, pointer.
-pub(super) fn dial(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn dial(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [face, ink, pointer] = paint.colors;
     canvas.fill(|u, v| {
         let tick = ((u * 20.0).fract() - 0.5).abs() > 0.42;
@@ -94,7 +94,7 @@ pub(super) fn dial(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// A clock that shows ten past ten. Colours: face, ink, second hand.
-pub(super) fn clock(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn clock(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [face, ink, second] = paint.colors;
     canvas.fill(|u, v| {
         let (x, y) = (u - 0.5, v - 0.5);
@@ -117,7 +117,7 @@ pub(super) fn clock(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Perforated metal or loudspeaker cloth. Colours: metal, hole.
-pub(super) fn grille(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn grille(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [metal, hole, _] = paint.colors;
     canvas.fill(|u, v| {
         let row = (v * 8.0).floor();

@@ -1,12 +1,12 @@
 //! Plaster, marble, speckled stone.
 
-use super::Paint;
-use super::canvas::{Canvas, mix, shade, smooth_step};
+use super::TexturePaint;
+use super::canvas::{PixelCanvas, mix, shade, smooth_step};
 use dwell_scene::math;
 use std::f32::consts::TAU;
 
 /// Rolled paint on plaster: the ground colour with a faint grain.
-pub(super) fn plaster(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn plaster(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     canvas.fill(|u, v| {
         let grain = paint.noise.cloud(u, v, 8, 8, 4);
         let fine = paint.noise.value(u, v, 64, 64);
@@ -15,7 +15,7 @@ pub(super) fn plaster(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Veined stone; colours: ground, vein, cloud.
-pub(super) fn marble(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn marble(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, vein, cloud] = paint.colors;
     canvas.fill(|u, v| {
         let warp = paint.noise.cloud(u, v, 3, 3, 4);
@@ -27,7 +27,7 @@ pub(super) fn marble(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Granite or terrazzo: ground with grains of two colours.
-pub(super) fn speckle(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn speckle(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, dark, light] = paint.colors;
     canvas.fill(|u, v| {
         let (coarse, fine) = (

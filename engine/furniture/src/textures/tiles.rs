@@ -1,10 +1,10 @@
 //! Things laid with joints: tiles and bricks.
 
-use super::Paint;
-use super::canvas::{Canvas, mix, shade, smooth_step};
+use super::TexturePaint;
+use super::canvas::{PixelCanvas, mix, shade, smooth_step};
 
 /// Two by two square tiles; colours: tile, joint, cloud in the tile.
-pub(super) fn tile(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn tile(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [tile, joint, cloud] = paint.colors;
     canvas.fill(|u, v| {
         let (x, y) = (u * 2.0, v * 2.0);
@@ -22,7 +22,7 @@ pub(super) fn tile(canvas: &mut Canvas, paint: &Paint) {
 
 /// Bricks in running bond, six courses of two: on half a metre those of DIN 4172, 25 cm long and twelve to a metre high with
 /// their joints. Colours: brick, joint, burnt brick.
-pub(super) fn brick(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn brick(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [brick, joint, burnt] = paint.colors;
     canvas.fill(|u, v| {
         let y = v * 6.0;
@@ -44,7 +44,7 @@ pub(super) fn brick(canvas: &mut Canvas, paint: &Paint) {
 }
 
 /// Glazed tiles twice as wide as high in running bond, four courses of two; colours: tile, joint, cloud.
-pub(super) fn metro(canvas: &mut Canvas, paint: &Paint) {
+pub(super) fn metro(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [tile, joint, cloud] = paint.colors;
     canvas.fill(|u, v| {
         let y = v * 4.0;

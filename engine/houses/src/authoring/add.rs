@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use dwell_furniture::catalogue::entries;
 use dwell_furniture::model::Model;
-use dwell_furniture::stock::stock;
-use dwell_furniture::style::{STYLES, Split, Style};
+use dwell_furniture::model_cache::cached_model;
+use dwell_furniture::style::{STYLES, Style, StyleSplit};
 use dwell_scene::material::library;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{
@@ -92,7 +92,7 @@ pub(super) fn put(
 pub(super) fn style(name: Option<&str>, seed: u64) -> Result<&'static Style, HousesError> {
     let train: Vec<&Style> = STYLES
         .iter()
-        .filter(|style| style.split == Split::Train)
+        .filter(|style| style.split == StyleSplit::Train)
         .collect();
     let Some(name) = name else {
         let drawn = RandomKey::root(seed)
@@ -140,7 +140,7 @@ pub(super) fn model(
     seed: u64,
 ) -> Result<Arc<Model>, HousesError> {
     let style = style(style_name, seed)?;
-    let made = stock(
+    let made = cached_model(
         kind,
         style,
         RandomKey::root(seed).child("authored").child(kind),

@@ -1,9 +1,9 @@
 //! Puts models into the tables of a house.
 
 use crate::build::{Names, category};
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::Model;
-use dwell_furniture::textures::{Pattern, textures};
+use dwell_furniture::textures::{TexturePattern, textures};
 use dwell_scene::{
     Aabb, Articulation, Category, HouseData, Id, JointKind, Level, LevelId, Light, MaterialId,
     Mesh, MeshId, Object, ObjectId, Part, PartId, Pose, Receptacle, RoomId, SoundEmitter,
@@ -38,7 +38,7 @@ pub(crate) struct Assembly {
     pub(crate) data: HouseData,
     /// The storey that is being built.
     pub(crate) level: LevelId,
-    patterns: Vec<Pattern>,
+    patterns: Vec<TexturePattern>,
     finishes: Vec<(Finish, MaterialId)>,
     /// By the address of their models, which they keep alive.
     kinds: BTreeMap<usize, Kind>,
@@ -149,7 +149,7 @@ impl Assembly {
         openness: f32,
     ) {
         let model = if openness > 0.0 {
-            Arc::new(Model::clone(&kind.model).ajar(openness))
+            Arc::new(Model::clone(&kind.model).with_initial_opening(openness))
         } else {
             kind.model.clone()
         };

@@ -3,8 +3,8 @@
 use std::f32::consts::FRAC_PI_2;
 
 use super::assembly::Assembly;
+use dwell_furniture::model_cache::built_to_size;
 use dwell_furniture::models::openings::{Door, Window};
-use dwell_furniture::stock::made_to_measure;
 use dwell_scene::{Pose, RoomId};
 
 /// Hangs a door into a hole, open by `openness` (0 to 1). `square`: the leaf opens to a right angle, as beside an outer wall,
@@ -18,7 +18,7 @@ pub(crate) fn put_door(
     openness: f32,
 ) {
     let settings = format!("{door:?} square {square}");
-    let kind = assembly.kind(made_to_measure(settings, || {
+    let kind = assembly.kind(built_to_size(settings, || {
         let mut model = door.build();
         for joint in model.joints.iter_mut().filter(|_| square) {
             joint.open = joint.open.min(FRAC_PI_2);
@@ -30,6 +30,6 @@ pub(crate) fn put_door(
 
 /// Puts a window into a hole; `pose` is its middle, the room at +Z.
 pub(crate) fn put_window(assembly: &mut Assembly, window: &Window, pose: Pose, room: RoomId) {
-    let kind = assembly.kind(made_to_measure(format!("{window:?}"), || window.build()));
+    let kind = assembly.kind(built_to_size(format!("{window:?}"), || window.build()));
     assembly.place(&kind, pose, room, 0.0);
 }

@@ -1,7 +1,7 @@
 //! Rooms of a plan with their slabs.
 
 use super::assembly::Assembly;
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_furniture::shapes::extrude;
 use dwell_scene::{Aabb, Room, RoomId, StructureKind};
 use glam::{Vec2, Vec3};

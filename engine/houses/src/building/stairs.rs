@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use super::assembly::Assembly;
 use super::yaw::yaw;
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::Model;
+use dwell_furniture::model_cache::built_to_size;
 use dwell_furniture::models::stairs::{Stairs, railing};
-use dwell_furniture::stock::made_to_measure;
 use dwell_furniture::style::Style;
 use dwell_scene::{Pose, RoomId};
 use glam::Vec3;
@@ -64,7 +64,7 @@ pub(crate) fn put_stairs(
         wood: style.wood.clone(),
         paint: Finish::plain("stair_white", "wood", [238, 236, 230]),
     };
-    let kind = assembly.kind(made_to_measure(format!("{model:?}"), || model.build()));
+    let kind = assembly.kind(built_to_size(format!("{model:?}"), || model.build()));
     let pose = Pose::new(flights.front, yaw(flights.yaw_deg()));
     assembly.place(&kind, pose, room, 0.0);
 }
@@ -88,7 +88,7 @@ pub(crate) fn put_railing(assembly: &mut Assembly, flights: &Flights, style: &St
 /// A railing of a length.
 pub(crate) fn railing_of(length_m: f32, style: &Style) -> Arc<Model> {
     let metal = &style.metal;
-    made_to_measure(format!("railing {length_m} {metal:?}"), || {
+    built_to_size(format!("railing {length_m} {metal:?}"), || {
         railing(length_m, metal)
     })
 }

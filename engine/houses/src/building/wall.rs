@@ -2,7 +2,7 @@
 
 use super::assembly::Assembly;
 use super::plan::Rect;
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_scene::{Mesh, RoomId, StructureKind};
 use glam::{Vec2, Vec3};
 

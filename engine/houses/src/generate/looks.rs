@@ -2,7 +2,7 @@
 
 use super::rooms::RoomKind;
 use crate::building::wall::Bands;
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_furniture::style::Style;
 use dwell_furniture::textures::Srgb;
 use dwell_scene::random::{RandomKey, RandomStream};

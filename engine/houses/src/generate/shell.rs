@@ -14,7 +14,7 @@ use crate::building::plan::{CEILING_M, RoomPlan, Slab};
 use crate::building::stairs::{Flights, RAILING_INSET_M, put_railing, put_stairs, railing_of};
 use crate::building::wall::{Along, Bands, Opening, Wall};
 use crate::building::yaw::yaw;
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
 use dwell_furniture::style::Style;
 use dwell_scene::random::RandomKey;

@@ -2,7 +2,7 @@
 
 use super::rooms::RoomKind;
 use crate::error::HousesError;
-use dwell_furniture::style::{STYLES, Split};
+use dwell_furniture::style::{STYLES, StyleSplit};
 use dwell_scene::Daytime;
 use serde::{Deserialize, Serialize};
 
@@ -51,11 +51,11 @@ pub enum AssetSplit {
 }
 
 impl AssetSplit {
-    pub(crate) fn allows(self, split: Split) -> bool {
+    pub(crate) fn allows(self, split: StyleSplit) -> bool {
         match self {
-            Self::Train => split == Split::Train,
-            Self::Val => split == Split::Val,
-            Self::Test => split == Split::Test,
+            Self::Train => split == StyleSplit::Train,
+            Self::Val => split == StyleSplit::Val,
+            Self::Test => split == StyleSplit::Test,
             Self::All => true,
         }
     }

@@ -1,6 +1,6 @@
 //! What floors, walls and ceilings are covered with, by the words of the material's name.
 
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_furniture::textures::Srgb;
 use serde_json::Value;
 

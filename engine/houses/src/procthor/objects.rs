@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use dwell_furniture::finish::Finish;
-use dwell_furniture::model::{Model, Part};
+use dwell_furniture::finishes::Finish;
+use dwell_furniture::model::{Model, PartBuilder};
+use dwell_furniture::model_cache::cached_model;
 use dwell_furniture::shapes::{block, turn};
-use dwell_furniture::stock::stock;
 use dwell_furniture::style::STYLES;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Mobility, Pose};
@@ -145,7 +145,7 @@ impl Reader<'_> {
         let key = RandomKey::root(0).child("procthor").child(asset);
         let ours = kind
             .filter(|kind| !kind.is_empty())
-            .and_then(|kind| stock(kind, style, key));
+            .and_then(|kind| cached_model(kind, style, key));
         let mut model = match (ours, size) {
             (Some(ours), _) => Model::clone(&ours.model),
             (None, Some(size)) => plain_block(type_name, size),
@@ -176,7 +176,8 @@ impl Reader<'_> {
     /// A ceiling lamp below the ceiling wherever the file has a point of light.
     pub(super) fn lamps(&mut self, lights: &[LightFile]) {
         let Some(style) = STYLES.first() else { return };
-        let Some(lamp) = stock("ceiling_lamp", style, RandomKey::root(0).child("procthor")) else {
+        let Some(lamp) = cached_model("ceiling_lamp", style, RandomKey::root(0).child("procthor"))
+        else {
             return;
         };
         let kind = self.assembly.kind(Arc::clone(&lamp.model));
@@ -221,7 +222,7 @@ fn plain_block(type_name: &str, size: Vec3) -> Model {
         Model::movable("block", category)
     };
     // Most of a thing's box is air.
-    model.part(Part::new("body").with_filled(&wood, shape, 0.3))
+    model.part(PartBuilder::new("body").with_filled(&wood, shape, 0.3))
 }
 
 #[cfg(test)]
@@ -242,7 +243,7 @@ mod tests {
             assert!(row.kind.is_empty() || known, "{}: {}", row.name, row.kind);
             let style = &STYLES[0];
             assert!(
-                row.kind.is_empty() || stock(&row.kind, style, RandomKey::root(1)).is_some(),
+                row.kind.is_empty() || cached_model(&row.kind, style, RandomKey::root(1)).is_some(),
                 "{}: {} does not suit {}",
                 row.name,
                 row.kind,

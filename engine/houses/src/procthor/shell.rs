@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_furniture::models::openings::{Door, Window, clear_pane};
 use dwell_furniture::shapes::extrude;
 use dwell_scene::{Aabb, Mesh, Pose, Room, StructureKind};

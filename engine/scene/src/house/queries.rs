@@ -8,7 +8,7 @@ use crate::state::State;
 use glam::{Vec2, Vec3};
 
 impl Room {
-    /// The area of the footprint, m²; [`House::footprint_area_m2`] leaves out what belongs to smaller rooms.
+    /// The area of the footprint, m²; [`House::exclusive_area_m2`] leaves out what belongs to smaller rooms.
     pub fn area_m2(&self) -> f32 {
         self.footprint
             .iter()
@@ -126,7 +126,7 @@ impl House {
 
     /// The area of a room's floor that lies in no smaller room, m²: what people take for the room's size. Where rooms overlap
     /// it is estimated from 256 points.
-    pub fn footprint_area_m2(&self, id: RoomId) -> f32 {
+    pub fn exclusive_area_m2(&self, id: RoomId) -> f32 {
         const POINTS: usize = 256;
         let share = self.points_in_room(id, POINTS).len() as f32 / POINTS as f32;
         self.rooms[id].area_m2() * share

@@ -1,6 +1,6 @@
 //! What floors, walls and ceilings that are told are covered with.
 
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_furniture::textures::Srgb;
 
 use super::super::faults::{inside, substance};

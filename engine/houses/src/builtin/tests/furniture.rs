@@ -1,24 +1,27 @@
 //! Nothing interpenetrates, nothing floats, everything opens.
 
 use super::support::{apartment, building_boxes};
-use dwell_furniture::testing::overlap::{Convex, deepest, depth, object_pieces, part_pieces};
+use dwell_furniture::testing::overlap::{ConvexPiece, deepest, depth, object_pieces, part_pieces};
 use dwell_scene::{Aabb, House, Mobility, ObjectId};
 use glam::Vec3;
 
 /// What counts as interpenetration, m.
 const TOLERANCE_M: f32 = 0.002;
 
-fn shell(house: &House) -> Vec<Convex> {
-    building_boxes(house).iter().map(Convex::cuboid).collect()
+fn shell(house: &House) -> Vec<ConvexPiece> {
+    building_boxes(house)
+        .iter()
+        .map(ConvexPiece::cuboid)
+        .collect()
 }
 
-fn around(pieces: &[Convex]) -> Aabb {
+fn around(pieces: &[ConvexPiece]) -> Aabb {
     pieces
         .iter()
         .fold(Aabb::EMPTY, |bounds, piece| bounds.union(&piece.bounds))
 }
 
-fn all(house: &House) -> Vec<(ObjectId, Vec<Convex>)> {
+fn all(house: &House) -> Vec<(ObjectId, Vec<ConvexPiece>)> {
     house
         .objects
         .ids()
@@ -70,7 +73,7 @@ fn nothing_floats() {
         let fixed = object.mobility != Mobility::Movable;
         // Things on walls may keep 5 mm off.
         let reach = if fixed { 0.005 } else { DROP_M };
-        let lowered: Vec<Convex> = pieces
+        let lowered: Vec<ConvexPiece> = pieces
             .iter()
             .map(|piece| piece.moved(Vec3::NEG_Y * DROP_M))
             .collect();
@@ -152,7 +155,7 @@ fn everything_opens() {
             let place = house.parts[space.part].world_from_part.to_affine();
             spaces.push(space.space_in_part.transformed(&place).grown(0.01));
         }
-        let rides = |pieces: &[Convex]| {
+        let rides = |pieces: &[ConvexPiece]| {
             let middle = around(pieces).center();
             spaces.iter().any(|space| space.contains(middle))
         };

@@ -3,7 +3,7 @@
 use super::support::apartment;
 use crate::build::category;
 use dwell_furniture::testing::meshes::assert_closed;
-use dwell_furniture::testing::overlap::{Convex, depth, object_pieces};
+use dwell_furniture::testing::overlap::{ConvexPiece, depth, object_pieces};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::rays::RayScene;
@@ -256,7 +256,7 @@ fn receptacles_have_a_floor_and_free_space() {
         let pieces = object_pieces(house, receptacle.object);
         let touches = |lift: f32| {
             let center = world.transform_point(floor + Vec3::Y * (0.004 + lift));
-            let ball = Convex::new(
+            let ball = ConvexPiece::new(
                 &dwell_scene::Collider::Ball {
                     center,
                     radius: 0.004,

@@ -1,7 +1,7 @@
 //! One can walk through the rooms.
 
 use super::support::{apartment, building_boxes};
-use dwell_furniture::testing::overlap::{Convex, object_pieces};
+use dwell_furniture::testing::overlap::{ConvexPiece, object_pieces};
 use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{Aabb, House, Object, Room, State};
 use glam::{Vec2, Vec3};
@@ -25,7 +25,7 @@ fn obstacles() -> Vec<Aabb> {
                 house.parts[frame]
                     .colliders
                     .iter()
-                    .map(|collider| Convex::new(collider, pose).bounds),
+                    .map(|collider| ConvexPiece::new(collider, pose).bounds),
             );
         } else {
             boxes.extend(object_pieces(house, id).iter().map(|piece| piece.bounds));

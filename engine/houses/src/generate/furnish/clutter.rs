@@ -4,7 +4,7 @@ use super::place::REST_GAP_M;
 use super::rules::Clutter;
 use super::space::{Piece, Space};
 use crate::building::yaw::yaw;
-use dwell_furniture::stock::{Stock, stock};
+use dwell_furniture::model_cache::{CachedModel, cached_model};
 use dwell_furniture::style::Style;
 use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{Aabb, Pose, ReceptacleKind};
@@ -65,7 +65,7 @@ fn on_one(
         let Some(kind) = draw.choose(&rule.kinds) else {
             return;
         };
-        let Some(stock) = stock(kind, style, key) else {
+        let Some(stock) = cached_model(kind, style, key) else {
             continue;
         };
         for _ in 0..TRIES {
@@ -85,14 +85,14 @@ fn on_one(
 fn place(
     host: &Piece,
     k: usize,
-    stock: &Arc<Stock>,
+    stock: &Arc<CachedModel>,
     turn_deg: f32,
     draw: &mut RandomStream,
 ) -> Option<Pose> {
     let top = &host.stock.model.spaces[k];
     let turn = yaw(draw.range(-turn_deg, turn_deg));
     let turned = stock
-        .felt
+        .collider_bounds
         .transformed(&Pose::new(Vec3::ZERO, turn).to_affine());
     let free = Aabb {
         min: top.space.min + Vec3::new(EDGE_M, 0.0, EDGE_M),

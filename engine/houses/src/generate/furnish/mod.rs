@@ -13,7 +13,7 @@ use super::plan::{Cells, FloorPlan, metres};
 use super::rooms::RoomKind;
 use super::spec::HouseSpec;
 use crate::building::yaw::yaw;
-use dwell_furniture::stock::{Stock, stock};
+use dwell_furniture::model_cache::{CachedModel, cached_model};
 use dwell_furniture::style::Style;
 use dwell_scene::Pose;
 use dwell_scene::random::{RandomKey, RandomStream};
@@ -194,10 +194,10 @@ impl Furnishing<'_> {
             let looks = if rule.differ { UNLIKE_LOOKS } else { LOOKS };
             for attempt in 0..looks {
                 let key = look.child(kind.as_str()).child(attempt);
-                let Some(stock) = stock(kind, self.style, key) else {
+                let Some(stock) = cached_model(kind, self.style, key) else {
                     break;
                 };
-                if rule.differ && self.shows(stock.motif) {
+                if rule.differ && self.shows(stock.picture_id) {
                     continue;
                 }
                 let host = anchor.map(|k| &self.space.pieces[k]);
@@ -220,9 +220,9 @@ impl Furnishing<'_> {
     }
 
     /// Whether a picture in the room shows this already.
-    fn shows(&self, motif: Option<&'static str>) -> bool {
+    fn shows(&self, picture_id: Option<&'static str>) -> bool {
         let mut pieces = self.space.pieces.iter();
-        motif.is_some() && pieces.any(|piece| piece.stock.motif == motif)
+        picture_id.is_some() && pieces.any(|piece| piece.stock.picture_id == picture_id)
     }
 
     fn at_windows(&mut self, rule: &Rule, key: RandomKey) -> bool {
@@ -252,9 +252,9 @@ impl Furnishing<'_> {
     fn run(&mut self, run: &Run, key: RandomKey) -> bool {
         let mut draw = key.stream();
         for row in &run.rows {
-            let units: Vec<Option<Arc<Stock>>> = row
+            let units: Vec<Option<Arc<CachedModel>>> = row
                 .iter()
-                .map(|kind| stock(kind, self.style, key.child(kind.as_str())))
+                .map(|kind| cached_model(kind, self.style, key.child(kind.as_str())))
                 .collect();
             let mut spans: Vec<usize> = (0..self.space.spans.len()).collect();
             draw.shuffle(&mut spans);
@@ -281,7 +281,7 @@ impl Furnishing<'_> {
     }
 
     /// Adds the whole row, or nothing.
-    fn row_fits(&mut self, row: &[Option<Arc<Stock>>], poses: &[Pose], front_m: f32) -> bool {
+    fn row_fits(&mut self, row: &[Option<Arc<CachedModel>>], poses: &[Pose], front_m: f32) -> bool {
         let before = self.space.clone();
         for (stock, pose) in row.iter().flatten().zip(poses) {
             let piece = Piece::new(stock, *pose).with_front(front_m);

@@ -4,7 +4,7 @@ use super::rules::{Place, Rule};
 use super::space::{Piece, Space, Span};
 use crate::building::plan::CEILING_M;
 use crate::building::yaw::yaw;
-use dwell_furniture::stock::Stock;
+use dwell_furniture::model_cache::CachedModel;
 use dwell_scene::random::RandomStream;
 use dwell_scene::{Aabb, Pose, ReceptacleKind};
 use glam::{Vec2, Vec3};
@@ -25,8 +25,8 @@ const SEAT_M: f32 = 0.6;
 type Idea = (f32, Pose);
 
 /// Half of a thing's width with its doors open, and from its origin to its back with its lid up.
-fn half_and_back(stock: &Stock) -> (f32, f32) {
-    let all = || stock.swings.iter().chain([&stock.felt]);
+fn half_and_back(stock: &CachedModel) -> (f32, f32) {
+    let all = || stock.swept_boxes.iter().chain([&stock.collider_bounds]);
     let wide = |bounds: &Aabb| bounds.min.x.abs().max(bounds.max.x.abs());
     let half = all().map(wide).fold(0.0, f32::max);
     let back = all().map(|bounds| -bounds.min.z);
@@ -37,7 +37,7 @@ fn half_and_back(stock: &Stock) -> (f32, f32) {
 pub(crate) fn ideas(
     rule: &Rule,
     space: &Space,
-    stock: &Arc<Stock>,
+    stock: &Arc<CachedModel>,
     anchor: Option<&Piece>,
     stream: &mut RandomStream,
 ) -> Vec<Pose> {
@@ -68,7 +68,7 @@ pub(crate) fn ideas(
 /// With the back to a wall; hung at a height, or standing.
 fn walls(
     space: &Space,
-    stock: &Stock,
+    stock: &CachedModel,
     height_m: Option<f32>,
     corners: bool,
     stream: &mut RandomStream,
@@ -108,7 +108,7 @@ fn walls(
 
 /// Those places within a hand's reach (`reach_m`) of the middle of an anchor's front, the nearest first.
 fn near(ideas: Vec<Idea>, anchor: &Piece, reach_m: f32) -> Vec<Idea> {
-    let front = Vec3::Z * anchor.stock.felt.max.z;
+    let front = Vec3::Z * anchor.stock.collider_bounds.max.z;
     let hand = anchor.pose.transform_point(front).with_y(0.0);
     let away = |pose: &Pose| pose.position.with_y(0.0).distance(hand);
     let ideas = ideas.into_iter().map(|(_, pose)| (away(&pose), pose));
@@ -171,9 +171,9 @@ fn ceiling(space: &Space, anchor: Option<&Piece>) -> Vec<Idea> {
     ideas
 }
 
-fn beside(stock: &Stock, anchor: &Piece, gap_m: f32, stream: &mut RandomStream) -> Vec<Idea> {
+fn beside(stock: &CachedModel, anchor: &Piece, gap_m: f32, stream: &mut RandomStream) -> Vec<Idea> {
     let (half, back) = half_and_back(stock);
-    let host = anchor.stock.felt;
+    let host = anchor.stock.collider_bounds;
     let z = host.min.z + back;
     let mut ideas = Vec::new();
     for extra in [0.0, 0.1, 0.25] {
@@ -187,16 +187,16 @@ fn beside(stock: &Stock, anchor: &Piece, gap_m: f32, stream: &mut RandomStream) 
 }
 
 fn before(
-    stock: &Stock,
+    stock: &CachedModel,
     anchor: &Piece,
     gap_m: [f32; 2],
     turn_deg: f32,
     stream: &mut RandomStream,
 ) -> Vec<Idea> {
     let depth = if turn_deg == 0.0 {
-        -stock.felt.min.z
+        -stock.collider_bounds.min.z
     } else {
-        stock.felt.max.z
+        stock.collider_bounds.max.z
     };
     let liked = stream.range(gap_m[0], gap_m[1].max(gap_m[0] + 0.01));
     let count = ((gap_m[1] - gap_m[0]) / 0.1).max(0.0) as usize;
@@ -204,7 +204,7 @@ fn before(
     for k in 0..=count {
         let gap = gap_m[0] + 0.1 * k as f32;
         for x in [0.0, 0.2, -0.2, 0.45, -0.45] {
-            let z = anchor.stock.felt.max.z + gap + depth;
+            let z = anchor.stock.collider_bounds.max.z + gap + depth;
             let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw(turn_deg));
             ideas.push(((gap - liked).abs() + x.abs(), pose));
         }
@@ -212,10 +212,10 @@ fn before(
     ideas
 }
 
-fn around(stock: &Stock, anchor: &Piece) -> Vec<Idea> {
-    let host = anchor.stock.felt;
+fn around(stock: &CachedModel, anchor: &Piece) -> Vec<Idea> {
+    let host = anchor.stock.collider_bounds;
     let size = host.size();
-    let depth = stock.felt.max.z;
+    let depth = stock.collider_bounds.max.z;
     let along = ((size.x - 0.1) / SEAT_M).max(1.0) as usize;
     let heads = ((size.z - 0.1) / SEAT_M).max(1.0) as usize;
     let mut ideas = Vec::new();
@@ -242,11 +242,11 @@ fn around(stock: &Stock, anchor: &Piece) -> Vec<Idea> {
     ideas
 }
 
-fn at(stock: &Stock, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
+fn at(stock: &CachedModel, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
     let mut ideas = Vec::new();
     for (k, tuck) in [0.25, 0.15, 0.05, -0.06, -0.15].into_iter().enumerate() {
         for x in [-0.2, 0.0, 0.2, -0.35] {
-            let z = anchor.stock.felt.max.z + stock.felt.max.z - tuck;
+            let z = anchor.stock.collider_bounds.max.z + stock.collider_bounds.max.z - tuck;
             let aside = stream.range(-12.0, 12.0);
             let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw(180.0 + aside));
             ideas.push((0.3 * k as f32 + (x + 0.2_f32).abs(), pose));
@@ -255,7 +255,7 @@ fn at(stock: &Stock, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
     ideas
 }
 
-fn on(stock: &Stock, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
+fn on(stock: &CachedModel, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
     let tops = anchor.stock.model.spaces.iter();
     let area = |space: &Aabb| space.size().x * space.size().z;
     let largest = tops
@@ -268,14 +268,18 @@ fn on(stock: &Stock, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
     for share in [0.0, 0.25, -0.25, 0.45, -0.45] {
         for deep in [0.0, -0.3, 0.3] {
             let middle = top.space.center();
-            let room = (top.space.size() - stock.felt.size()).max(Vec3::ZERO);
-            let own = stock.felt.center();
+            let room = (top.space.size() - stock.collider_bounds.size()).max(Vec3::ZERO);
+            let own = stock.collider_bounds.center();
             let place = Vec3::new(
                 middle.x + share * room.x - own.x,
-                top.space.min.y - stock.felt.min.y + REST_GAP_M,
+                top.space.min.y - stock.collider_bounds.min.y + REST_GAP_M,
                 middle.z + deep * room.z - own.z,
             );
-            let fits = stock.felt.size().cmple(top.space.size() + 0.06).all();
+            let fits = stock
+                .collider_bounds
+                .size()
+                .cmple(top.space.size() + 0.06)
+                .all();
             if fits {
                 let part = anchor.stock.model.model_from_part(top.part);
                 let pose = anchor.pose * part * Pose::from_position(place);
@@ -290,7 +294,7 @@ fn on(stock: &Stock, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
 fn above(space: &Space, anchor: &Piece, height_m: f32) -> Vec<Idea> {
     let mut ideas = Vec::new();
     for x in [0.0, 0.2, -0.2] {
-        let behind = Vec3::new(x, height_m - REST_GAP_M, anchor.stock.felt.min.z);
+        let behind = Vec3::new(x, height_m - REST_GAP_M, anchor.stock.collider_bounds.min.z);
         let at = anchor.pose.transform_point(behind);
         let facing = anchor.pose.rotation * Vec3::Z;
         for span in &space.spans {
@@ -317,18 +321,22 @@ fn above(space: &Space, anchor: &Piece, height_m: f32) -> Vec<Idea> {
 const ROW_GAP_M: f32 = 0.09;
 
 /// How long a row of fitted units is, gaps (`None`) among them, m.
-pub(crate) fn row_length(row: &[Option<Arc<Stock>>]) -> f32 {
-    let length = |stock: &Option<Arc<Stock>>| {
-        stock
-            .as_ref()
-            .map_or(ROW_GAP_M, |stock| stock.felt.size().x + WALL_GAP_M)
+pub(crate) fn row_length(row: &[Option<Arc<CachedModel>>]) -> f32 {
+    let length = |stock: &Option<Arc<CachedModel>>| {
+        stock.as_ref().map_or(ROW_GAP_M, |stock| {
+            stock.collider_bounds.size().x + WALL_GAP_M
+        })
     };
     row.iter().map(length).sum()
 }
 
 /// The poses of a row of fitted units along a span, from left to right as one stands before them, starting `start_m` from
 /// the left end; `None` when the row is longer than the span.
-pub(crate) fn row(span: &Span, row: &[Option<Arc<Stock>>], start_m: f32) -> Option<Vec<Pose>> {
+pub(crate) fn row(
+    span: &Span,
+    row: &[Option<Arc<CachedModel>>],
+    start_m: f32,
+) -> Option<Vec<Pose>> {
     if start_m + row_length(row) + WALL_GAP_M > span.to_m - span.from_m {
         return None;
     }
@@ -343,16 +351,16 @@ pub(crate) fn row(span: &Span, row: &[Option<Arc<Stock>>], start_m: f32) -> Opti
             at += ROW_GAP_M;
             continue;
         };
-        let left = at - stock.felt.min.x;
+        let left = at - stock.collider_bounds.min.x;
         let along = if rightward > 0.0 {
             span.from_m + left
         } else {
             span.to_m - left
         };
-        let off = WALL_GAP_M - stock.felt.min.z;
+        let off = WALL_GAP_M - stock.collider_bounds.min.z;
         let place = span.point(along, off) + Vec3::Y * REST_GAP_M;
         poses.push(Pose::new(place, turn));
-        at += stock.felt.size().x + WALL_GAP_M;
+        at += stock.collider_bounds.size().x + WALL_GAP_M;
     }
     Some(poses)
 }

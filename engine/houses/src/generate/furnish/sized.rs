@@ -1,11 +1,11 @@
 //! Things that are made to measure for a window.
 
 use crate::generate::openings::Hole;
-use dwell_furniture::finish::Finish;
+use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::Model;
+use dwell_furniture::model_cache::{CachedModel, built_to_size};
 use dwell_furniture::models::openings::radiator;
 use dwell_furniture::models::textiles::Curtains;
-use dwell_furniture::stock::{Stock, made_to_measure};
 use dwell_furniture::style::Style;
 use dwell_scene::random::RandomKey;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ pub(crate) fn sized(
     hole: &Hole,
     style: &Style,
     key: RandomKey,
-) -> Option<(Arc<Stock>, f32)> {
+) -> Option<(Arc<CachedModel>, f32)> {
     let mut draw = key.stream();
     let width_m = hole.to_m - hole.from_m;
     match kind {
@@ -42,17 +42,17 @@ pub(crate) fn sized(
                 },
             };
             // One cut for all cloths.
-            let cut = made_to_measure(format!("{curtains:?}"), || curtains.build());
+            let cut = built_to_size(format!("{curtains:?}"), || curtains.build());
             let sewn = Model::clone(&cut).repainted("curtain_cloth", &cloth);
-            Some((Arc::new(Stock::new("curtains", sewn)), rod_m))
+            Some((Arc::new(CachedModel::new("curtains", sewn)), rod_m))
         }
         "radiator" if hole.low_m > 0.45 && width_m > 0.5 => {
             let height_m = (hole.low_m - 0.3).min(0.5);
             let width_m = (0.8 * width_m).clamp(0.5, 1.4);
-            let model = made_to_measure(format!("radiator {width_m} {height_m}"), || {
+            let model = built_to_size(format!("radiator {width_m} {height_m}"), || {
                 radiator(width_m, height_m)
             });
-            Some((Arc::new(Stock::new("radiator", model)), 0.12))
+            Some((Arc::new(CachedModel::new("radiator", model)), 0.12))
         }
         _ => None,
     }

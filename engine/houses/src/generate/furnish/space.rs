@@ -6,7 +6,7 @@
 use crate::generate::openings::{Filling, Hole, Zone, overlap};
 use crate::generate::plan::{Cells, Storey, metres};
 use crate::generate::shell::{covers, free_floor, half_wall};
-use dwell_furniture::stock::Stock;
+use dwell_furniture::model_cache::CachedModel;
 use dwell_scene::{Aabb, Pose};
 use glam::Vec3;
 use std::sync::Arc;
@@ -60,11 +60,11 @@ impl Span {
 /// Something that stands in the room.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
-    pub(crate) stock: Arc<Stock>,
+    pub(crate) stock: Arc<CachedModel>,
     pub(crate) pose: Pose,
     pub(crate) boxes: Vec<Aabb>,
     pub(crate) bounds: Aabb,
-    pub(crate) swings: Vec<Aabb>,
+    pub(crate) swept_boxes: Vec<Aabb>,
     /// Around all swings.
     pub(crate) reach: Aabb,
     /// Floor that must stay free for its use.
@@ -77,7 +77,7 @@ pub(crate) struct Piece {
 
 impl Piece {
     /// A thing at a place; `pose` maps the model to the room.
-    pub(crate) fn new(stock: &Arc<Stock>, pose: Pose) -> Self {
+    pub(crate) fn new(stock: &Arc<CachedModel>, pose: Pose) -> Self {
         let place = pose.to_affine();
         let moved = |boxes: &[Aabb]| {
             boxes
@@ -87,12 +87,12 @@ impl Piece {
         };
         let around = |boxes: &[Aabb]| boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
         let boxes = moved(&stock.boxes);
-        let swings = moved(&stock.swings);
+        let swept_boxes = moved(&stock.swept_boxes);
         Self {
             bounds: around(&boxes),
-            reach: around(&swings),
+            reach: around(&swept_boxes),
             boxes,
-            swings,
+            swept_boxes,
             stock: stock.clone(),
             pose,
             clear: Vec::new(),
@@ -104,8 +104,8 @@ impl Piece {
     /// The same thing, which needs `front_m` of free floor before it.
     pub(crate) fn with_front(mut self, front_m: f32) -> Self {
         if front_m > 0.0 {
-            let felt = self.stock.felt;
-            let (min, max) = (felt.min, felt.max);
+            let collider_bounds = self.stock.collider_bounds;
+            let (min, max) = (collider_bounds.min, collider_bounds.max);
             let front = Aabb::new(
                 Vec3::new(min.x, 0.0, max.z),
                 Vec3::new(max.x, 0.1, max.z + front_m),
@@ -319,12 +319,12 @@ impl Space {
                 return false;
             }
         }
-        if !piece.swings.is_empty() {
+        if !piece.swept_boxes.is_empty() {
             let swept = zone(&piece.reach);
             if !self.covers(&swept) || self.keep.iter().any(|keep| overlap(keep, &swept)) {
                 return false;
             }
-            if open().any(|o| hits(&piece.swings, &piece.reach, o)) {
+            if open().any(|o| hits(&piece.swept_boxes, &piece.reach, o)) {
                 return false;
             }
         }
@@ -360,20 +360,20 @@ impl Space {
                     .iter()
                     .any(|b| other.boxes.iter().any(|o| meets(b, o)));
             let own = inside && k == host;
-            let swings = !own
+            let swept_boxes = !own
                 && meets(&piece.bounds, &other.reach)
                 && piece
                     .boxes
                     .iter()
-                    .any(|b| other.swings.iter().any(|o| meets(b, o)));
+                    .any(|b| other.swept_boxes.iter().any(|o| meets(b, o)));
             // Its own lid or door opens as well.
             let opens = k == host
                 || !meets(&piece.reach, &other.bounds)
                 || !piece
-                    .swings
+                    .swept_boxes
                     .iter()
                     .any(|b| other.boxes.iter().any(|o| meets(b, o)));
-            !boxes && !swings && opens
+            !boxes && !swept_boxes && opens
         }) && self.openings.iter().all(|o| !meets(&piece.bounds, o))
     }
 
@@ -412,8 +412,8 @@ fn apart(a: &Piece, b: &Piece, together: bool) -> bool {
                 .any(|one| q.iter().any(|other| meets(one, other)))
     };
     if touch(&a.boxes, &a.bounds, &b.boxes, &b.bounds)
-        || touch(&a.swings, &a.reach, &b.boxes, &b.bounds)
-        || touch(&a.boxes, &a.bounds, &b.swings, &b.reach)
+        || touch(&a.swept_boxes, &a.reach, &b.boxes, &b.bounds)
+        || touch(&a.boxes, &a.bounds, &b.swept_boxes, &b.reach)
     {
         return false;
     }

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 /// How one dimension of one model spreads.
 #[derive(Clone, Debug, Deserialize)]
-pub(crate) struct Spread {
+pub(crate) struct SizeDistribution {
     /// A model of the catalogue.
     pub model: String,
     /// `width`, `height` and `depth` are those of the whole thing, closed; any other word is the model's own.
@@ -23,15 +23,15 @@ pub(crate) struct Spread {
     source: String,
 }
 
-type Table = BTreeMap<String, BTreeMap<String, Spread>>;
+type SizeTable = BTreeMap<String, BTreeMap<String, SizeDistribution>>;
 
 /// All spreads, by model and dimension.
-pub(crate) fn spreads() -> &'static Table {
-    static TABLE: OnceLock<Table> = OnceLock::new();
+pub(crate) fn spreads() -> &'static SizeTable {
+    static TABLE: OnceLock<SizeTable> = OnceLock::new();
     TABLE.get_or_init(|| {
         let text = include_str!("../../../assets/furniture_sizes.csv");
-        let mut table = Table::new();
-        for row in csv::Reader::from_reader(text.as_bytes()).deserialize::<Spread>() {
+        let mut table = SizeTable::new();
+        for row in csv::Reader::from_reader(text.as_bytes()).deserialize::<SizeDistribution>() {
             let row = row.expect("the tables of assets/ are checked by this file's tests");
             table
                 .entry(row.model.clone())
@@ -44,12 +44,12 @@ pub(crate) fn spreads() -> &'static Table {
 
 /// The draws of one instance of a model. Each draw has a stream of its own, so that one more shifts no other.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Draw {
+pub(crate) struct SizeSampler {
     model: &'static str,
     key: RandomKey,
 }
 
-impl Draw {
+impl SizeSampler {
     /// The draws of `model` under `key`.
     pub(crate) fn new(model: &'static str, key: RandomKey) -> Self {
         Self {
@@ -129,7 +129,7 @@ mod tests {
     fn draws_keep_their_median_and_their_ends() {
         let spread = &spreads()["sofa"]["depth"];
         let drawn: Vec<f32> = (0..2000)
-            .map(|k| Draw::new("sofa", RandomKey::root(k)).m("depth"))
+            .map(|k| SizeSampler::new("sofa", RandomKey::root(k)).m("depth"))
             .collect();
         let share = |test: &dyn Fn(f32) -> bool| {
             drawn.iter().filter(|d| test(**d)).count() as f32 / drawn.len() as f32

@@ -1,6 +1,6 @@
 //! Finishes: what a surface is made of and how it looks, before a house gives it ids.
 
-use super::textures::{Pattern, Srgb};
+use super::textures::{Srgb, TexturePattern};
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{Material, TextureId};
 
@@ -14,7 +14,7 @@ pub struct Finish {
     /// Colour; multiplies the image.
     pub srgb: Srgb,
     /// The image.
-    pub pattern: Option<Pattern>,
+    pub pattern: Option<TexturePattern>,
     /// Edge of one repeat of the image, m; 0: the image fills its surface once, as the shape's coordinates say.
     pub tile_m: f32,
     /// Fraction of light that does not pass; `None`: the substance's.
@@ -44,12 +44,12 @@ impl Finish {
     pub const fn tiled(
         name: &'static str,
         substance: &'static str,
-        recipe: &'static str,
+        generator: &'static str,
         colors: [Srgb; 3],
         tile_m: f32,
     ) -> Self {
-        let pattern = Some(Pattern {
-            recipe,
+        let pattern = Some(TexturePattern {
+            generator,
             colors,
             seed: 1,
         });
@@ -64,12 +64,12 @@ impl Finish {
     pub const fn picture(
         name: &'static str,
         substance: &'static str,
-        recipe: &'static str,
+        generator: &'static str,
         colors: [Srgb; 3],
         seed: u64,
     ) -> Self {
-        let pattern = Some(Pattern {
-            recipe,
+        let pattern = Some(TexturePattern {
+            generator,
             colors,
             seed,
         });

@@ -151,8 +151,8 @@ fn ring(y: f32, radius: f32) -> impl Iterator<Item = Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finish::Finish;
-    use crate::model::Part;
+    use crate::finishes::Finish;
+    use crate::model::PartBuilder;
     use crate::shapes::{block, cylinder};
     use crate::testing::meshes::{assert_closed, collider_bounds};
 
@@ -161,11 +161,11 @@ mod tests {
         let wood = Finish::plain("oak", "wood", [150, 110, 70]);
         let model = Model::articulated("cupboard", "dresser")
             .part(
-                Part::new("body")
+                PartBuilder::new("body")
                     .with(&wood, block([-0.5, 0.0, -0.2], [0.5, 0.8, 0.2]))
                     .with(&wood, cylinder(0.1, 0.4, 16)),
             )
-            .part(Part::new("drawer").with(&wood, block([-0.4, 0.8, -0.2], [0.4, 1.0, 0.2])))
+            .part(PartBuilder::new("drawer").with(&wood, block([-0.4, 0.8, -0.2], [0.4, 1.0, 0.2])))
             .sliding("rail", Vec3::Z, 0.3);
         let by = Vec3::new(2.0, 0.5, 1.5);
         let large = model.clone().stretched(by);

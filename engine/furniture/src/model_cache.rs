@@ -1,6 +1,6 @@
 //! Models ready to be placed: each is built once in a process and shared by all houses.
 
-use super::catalogue::{Entry, entries_of};
+use super::catalogue::{CatalogueEntry, entries_of};
 use super::model::Model;
 use super::style::Style;
 use dwell_scene::random::RandomKey;
@@ -18,7 +18,7 @@ const CUT_M: f32 = 0.15;
 
 /// A model with the boxes around its collision pieces.
 #[derive(Debug)]
-pub struct Stock {
+pub struct CachedModel {
     /// What rules call it.
     pub kind: &'static str,
     /// The model, shared by all houses of the process.
@@ -26,20 +26,20 @@ pub struct Stock {
     /// Around each collision piece at the start, model space.
     pub boxes: Vec<Aabb>,
     /// Where its doors and drawers pass, model space.
-    pub swings: Vec<Aabb>,
+    pub swept_boxes: Vec<Aabb>,
     /// Where the leaves of those of its doors stand, wide open, that are as high as a person, model space.
     pub open_leaves: Vec<Aabb>,
     /// Around everything that is felt, model space.
-    pub felt: Aabb,
+    pub collider_bounds: Aabb,
     /// What a picture shows.
-    pub motif: Option<&'static str>,
+    pub picture_id: Option<&'static str>,
 }
 
-impl Stock {
+impl CachedModel {
     /// A model that is not in the catalogue.
     pub fn new(kind: &'static str, model: impl Into<Arc<Model>>) -> Self {
         let model = model.into();
-        let (mut boxes, mut swings, mut open_leaves) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut boxes, mut swept_boxes, mut open_leaves) = (Vec::new(), Vec::new(), Vec::new());
         for (k, part) in model.parts.iter().enumerate() {
             let pose = model.model_from_part(k);
             boxes.extend(around(&part.colliders, &pose));
@@ -65,28 +65,28 @@ impl Stock {
                         open_leaves.extend(open.filter(|leaf| leaf.max.y > HIGH_M));
                     }
                     let cut = colliders.iter().flat_map(cut);
-                    swings.extend(cut.map(|piece| piece.transformed(&pose.to_affine())));
+                    swept_boxes.extend(cut.map(|piece| piece.transformed(&pose.to_affine())));
                 }
             }
             if !swept.is_empty() {
-                swings.push(swept);
+                swept_boxes.push(swept);
             }
         }
         // Thousands of these stay for as long as the process.
         boxes.shrink_to_fit();
-        swings.shrink_to_fit();
-        let felt = boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
+        swept_boxes.shrink_to_fit();
+        let collider_bounds = boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
         let mut finishes = model.parts.iter().flat_map(|part| &part.finishes);
         let image = finishes.find(|finish| finish.name == "framed_image");
-        let motif = image.and_then(|image| Some(image.pattern?.recipe));
+        let picture_id = image.and_then(|image| Some(image.pattern?.generator));
         Self {
             kind,
             model,
             boxes,
-            swings,
+            swept_boxes,
             open_leaves,
-            felt,
-            motif,
+            collider_bounds,
+            picture_id,
         }
     }
 }
@@ -130,7 +130,7 @@ fn cut(collider: &Collider) -> Vec<Aabb> {
 
 /// What is made to measure: equal settings are built once in a process and shared by all houses. `settings` names the thing and
 /// says all that `build` depends on.
-pub fn made_to_measure(settings: String, build: impl FnOnce() -> Model) -> Arc<Model> {
+pub fn built_to_size(settings: String, build: impl FnOnce() -> Model) -> Arc<Model> {
     static SHELF: Mutex<BTreeMap<String, Arc<Model>>> = Mutex::new(BTreeMap::new());
     let lock = || SHELF.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = lock().get(&settings) {
@@ -141,7 +141,7 @@ pub fn made_to_measure(settings: String, build: impl FnOnce() -> Model) -> Arc<M
 }
 
 /// One of the entries of a kind that suit a style, in one of its variants; `None` when there is no such kind.
-pub fn stock(kind: &str, style: &Style, key: RandomKey) -> Option<Arc<Stock>> {
+pub fn cached_model(kind: &str, style: &Style, key: RandomKey) -> Option<Arc<CachedModel>> {
     let mut draw = key.stream();
     let (index, entry) = *draw.choose(&entries_of(kind, style))?;
     let variant = draw.bits() % entry.variants;
@@ -149,8 +149,13 @@ pub fn stock(kind: &str, style: &Style, key: RandomKey) -> Option<Arc<Stock>> {
 }
 
 /// A variant of an entry.
-fn variant_of(index: usize, entry: &'static Entry, style: &Style, variant: u64) -> Arc<Stock> {
-    type Shelf = BTreeMap<(usize, &'static str, u64), Arc<Stock>>;
+fn variant_of(
+    index: usize,
+    entry: &'static CatalogueEntry,
+    style: &Style,
+    variant: u64,
+) -> Arc<CachedModel> {
+    type Shelf = BTreeMap<(usize, &'static str, u64), Arc<CachedModel>>;
     static SHELF: Mutex<Shelf> = Mutex::new(BTreeMap::new());
     let lock = || SHELF.lock().unwrap_or_else(PoisonError::into_inner);
     let place = (index, style.name, variant);
@@ -163,6 +168,6 @@ fn variant_of(index: usize, entry: &'static Entry, style: &Style, variant: u64) 
         .child(index as u64)
         .child(style.name)
         .child(variant);
-    let made = Arc::new(Stock::new(entry.kind, (entry.build)(style, key)));
+    let made = Arc::new(CachedModel::new(entry.kind, (entry.build)(style, key)));
     lock().entry(place).or_insert(made).clone()
 }
