@@ -4,7 +4,7 @@
 
 #![expect(clippy::print_stdout, reason = "a program tells by printing")]
 
-use dwell_houses::generate::{HomeKind, HouseSpec, RoomKind, generate};
+use dwell_houses::generate::{GeneratedRoomKind, HomeKind, HouseSpec, generate};
 use dwell_scene::House;
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 use std::alloc::System;
@@ -46,11 +46,11 @@ fn main() {
     };
     let six_rooms = HouseSpec {
         rooms: vec![
-            RoomKind::LivingRoom,
-            RoomKind::Kitchen,
-            RoomKind::Bedroom,
-            RoomKind::ChildRoom,
-            RoomKind::Bathroom,
+            GeneratedRoomKind::LivingRoom,
+            GeneratedRoomKind::Kitchen,
+            GeneratedRoomKind::Bedroom,
+            GeneratedRoomKind::ChildRoom,
+            GeneratedRoomKind::Bathroom,
         ],
         furniture_density: 0.6,
         clutter: 0.4,

@@ -8,7 +8,7 @@
 #![expect(clippy::print_stdout, reason = "a program tells by printing")]
 
 use dwell::{Engines, Env, EnvConfig};
-use dwell_houses::authoring::{Files, Plan, build, edit, edits_from_json};
+use dwell_houses::authoring::{FileAccess, HousePlan, build, edit, edits_from_json};
 use dwell_scene::interrupt;
 use dwell_scene::{
     Aabb, AgentStart, House, HouseData, Id, JointId, ObjectId, PartId, Pose, RoomId, State,
@@ -95,8 +95,8 @@ fn floor(edge_m: f32) -> Option<House> {
     let plan = format!(
         r#"{{"name": "floor", "building": {{"storeys": [{{"rooms": [{{"name": "hall", "outline": [[0, 0], [{edge_m}, 0], [{edge_m}, {edge_m}], [0, {edge_m}]]}}]}}]}}, "edits": [{adds}]}}"#
     );
-    let plan: Plan = serde_json::from_str(&plan).unwrap();
-    match build(&plan, &Files::Anywhere) {
+    let plan: HousePlan = serde_json::from_str(&plan).unwrap();
+    match build(&plan, &FileAccess::Anywhere) {
         Ok((house, _)) => Some(house),
         Err(error) => {
             println!("{error}");
@@ -334,7 +334,7 @@ fn plans(rows: &mut Rows, shape: Shape, house: &House) {
     ] {
         let edits = edits_from_json(&edits).unwrap();
         rows.row(shape, count, name, || {
-            let done = edit(house, &edits, &Files::Anywhere);
+            let done = edit(house, &edits, &FileAccess::Anywhere);
             if let Err(error) = &done {
                 println!("{error}");
             }

@@ -3,13 +3,13 @@
 use crate::errors::Fault;
 use crate::house::PyHouse;
 use dwell_acoustics::{Recording, signals};
-use dwell_houses::authoring::{self, Files, Plan, UnmappedNames};
-use dwell_houses::{At, Report};
+use dwell_houses::authoring::{self, FileAccess, HousePlan, UnmappedNames};
+use dwell_houses::{FileLocation, LoadReport};
 use dwell_scene::House;
 use serde_json::Value;
 
 /// The report of damage with a sentence for each warning.
-pub(crate) fn rows(report: &Report) -> Result<Value, Fault> {
+pub(crate) fn rows(report: &LoadReport) -> Result<Value, Fault> {
     let mut rows = serde_json::to_value(report)?;
     if let Some(warnings) = rows["warnings"].as_array_mut() {
         for (row, warning) in warnings.iter_mut().zip(report.warnings()) {
@@ -21,8 +21,8 @@ pub(crate) fn rows(report: &Report) -> Result<Value, Fault> {
 
 /// The house of a plan.
 pub(crate) fn built(plan_json: &str) -> Result<PyHouse, Fault> {
-    let plan = Plan::from_json(plan_json.as_bytes(), &At::file("plan"))?;
-    let (house, report) = authoring::build(&plan, &Files::Anywhere)?;
+    let plan = HousePlan::from_json(plan_json.as_bytes(), &FileLocation::file("plan"))?;
+    let (house, report) = authoring::build(&plan, &FileAccess::Anywhere)?;
     check_signals(&house, 0)?;
     Ok(PyHouse::from_house(house, rows(&report)?))
 }
@@ -30,7 +30,7 @@ pub(crate) fn built(plan_json: &str) -> Result<PyHouse, Fault> {
 /// The same house with edits.
 pub(crate) fn edited(base: &PyHouse, edits_json: &str) -> Result<PyHouse, Fault> {
     let edits = authoring::edits_from_json(edits_json)?;
-    let (house, report) = authoring::edit(base.house(), &edits, &Files::Anywhere)?;
+    let (house, report) = authoring::edit(base.house(), &edits, &FileAccess::Anywhere)?;
     check_signals(&house, base.house().emitters.len())?;
     let mut all = report_of(base);
     all.append(report);
@@ -52,7 +52,7 @@ fn check_signals(house: &House, known: usize) -> Result<(), Fault> {
     Ok(())
 }
 
-fn report_of(house: &PyHouse) -> Report {
+fn report_of(house: &PyHouse) -> LoadReport {
     serde_json::from_value(house.report().clone()).unwrap_or_default()
 }
 

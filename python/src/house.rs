@@ -5,7 +5,7 @@ use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::head::PyHead;
 use dwell::Engines;
-use dwell_houses::Loss;
+use dwell_houses::ExportLoss;
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -54,7 +54,7 @@ impl PyHouse {
         })
     }
 
-    /// The house of a plan, as `dwell_houses::authoring::Plan` in JSON.
+    /// The house of a plan, as `dwell_houses::authoring::HousePlan` in JSON.
     #[staticmethod]
     fn built(py: Python<'_>, plan_json: &str) -> PyResult<Self> {
         py.engine(|| authoring::built(plan_json))
@@ -239,11 +239,11 @@ impl PyHouse {
     }
 }
 
-fn writer(form: &str) -> Result<&'static dwell_houses::Writer, Fault> {
+fn writer(form: &str) -> Result<&'static dwell_houses::HouseWriter, Fault> {
     dwell_houses::writer(form).map_err(|error| Fault::Config(error.to_string()))
 }
 
-fn sentences(losses: &[Loss]) -> Vec<String> {
+fn sentences(losses: &[ExportLoss]) -> Vec<String> {
     losses.iter().map(ToString::to_string).collect()
 }
 

@@ -8,7 +8,7 @@
 
 use dwell::{Engines, World, WorldConfig};
 use dwell_acoustics::{AcousticConfig, AcousticScene};
-use dwell_houses::authoring::{Files, Plan, build};
+use dwell_houses::authoring::{FileAccess, HousePlan, build};
 use dwell_physics::Action;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, House, State};
@@ -22,8 +22,8 @@ const AGENT: AgentId = AgentId(0);
 const BLOCK: usize = 800;
 
 fn built(plan: Value) -> House {
-    let plan: Plan = serde_json::from_value(plan).unwrap();
-    build(&plan, &Files::Anywhere).unwrap().0
+    let plan: HousePlan = serde_json::from_value(plan).unwrap();
+    build(&plan, &FileAccess::Anywhere).unwrap().0
 }
 
 /// A room of 4 by 2.5 by 3 m with a floor of carpet and walls of brick, and a second one behind a door.

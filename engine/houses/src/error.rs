@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
 
 /// Everything that stops a house from being opened or written.
 ///
-/// Damage that can be survived is not here but in [`crate::Report`].
+/// Damage that can be survived is not here but in [`crate::LoadReport`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum HousesError {
@@ -64,7 +64,7 @@ pub enum HousesError {
     #[error("{at}: {what} {found} is more than the {allowed} that are read")]
     TooLarge {
         /// The file and place.
-        at: At,
+        at: FileLocation,
         /// What was counted, with its unit.
         what: &'static str,
         /// The number found.
@@ -76,7 +76,7 @@ pub enum HousesError {
     #[error("{at}: {message}")]
     Syntax {
         /// The file and place.
-        at: At,
+        at: FileLocation,
         /// What was found and what was expected.
         message: String,
     },
@@ -84,7 +84,7 @@ pub enum HousesError {
     #[error("{at}: expected {expected}, found {found}")]
     Field {
         /// The file and field.
-        at: At,
+        at: FileLocation,
         /// What the field must hold.
         expected: &'static str,
         /// What it holds.
@@ -94,7 +94,7 @@ pub enum HousesError {
     #[error("{at}: version {found:?} is not read; allowed are {allowed:?}")]
     Version {
         /// The file and field.
-        at: At,
+        at: FileLocation,
         /// The version the file states.
         found: String,
         /// The versions read.
@@ -104,7 +104,7 @@ pub enum HousesError {
     #[error("{at}: path {path:?} leaves the folder {root}; refused")]
     PathLeavesRoot {
         /// The file that holds the path.
-        at: At,
+        at: FileLocation,
         /// The path as written there.
         path: String,
         /// The folder that bounds every path.
@@ -114,7 +114,7 @@ pub enum HousesError {
     #[error("{at}: the house is empty, not one triangle could be read; {report}")]
     Empty {
         /// The file.
-        at: At,
+        at: FileLocation,
         /// How many warnings there are, and the first of them: they say why.
         report: String,
     },
@@ -122,7 +122,7 @@ pub enum HousesError {
     #[error("{at}: {source}")]
     Scene {
         /// The file.
-        at: At,
+        at: FileLocation,
         /// The rule and the place.
         source: Box<dwell_scene::SceneError>,
     },
@@ -144,7 +144,7 @@ impl HousesError {
     }
 
     /// A [`HousesError::Scene`] at `at`.
-    pub(crate) fn scene(at: &At) -> impl FnOnce(dwell_scene::SceneError) -> Self {
+    pub(crate) fn scene(at: &FileLocation) -> impl FnOnce(dwell_scene::SceneError) -> Self {
         let at = at.clone();
         move |source| Self::Scene {
             at,
@@ -168,7 +168,7 @@ impl HousesError {
     }
 
     /// An [`HousesError::Empty`] at `at`, with what was reported on the way.
-    pub(crate) fn empty(at: &At, report: &Report) -> Self {
+    pub(crate) fn empty(at: &FileLocation, report: &LoadReport) -> Self {
         const TOLD: usize = 3;
         let first: Vec<String> = (report.warnings().iter().take(TOLD))
             .map(ToString::to_string)

@@ -7,12 +7,12 @@ use std::time::Instant;
 use dwell_scene::House;
 use dwell_scene::parallel::Threads;
 
+use crate::data_root::read_capped;
 use crate::error::HousesError;
-use crate::report::Report;
-use crate::root::read_capped;
+use crate::report::LoadReport;
 
 /// A house and the damage that was survived on the way to it.
-pub type Opened = Result<(House, Report), HousesError>;
+pub type Opened = Result<(House, LoadReport), HousesError>;
 
 /// A way to get a house.
 pub struct Format {
@@ -115,18 +115,18 @@ fn open_builtin(name: &str) -> Opened {
         name: name.to_owned(),
         known: known(),
     })?;
-    Ok((house, Report::new()))
+    Ok((house, LoadReport::new()))
 }
 
 /// Opens the house that `house` names, on as many threads as the machine gives. `HOUSE?map=FILE` opens it with a map of its
-/// foreign names ([`crate::authoring::Map`]).
+/// foreign names ([`crate::authoring::NameMapping`]).
 ///
 /// # Errors
 /// [`HousesError::UnknownHouse`] lists what is allowed; otherwise what the format says.
 ///
 /// # Determinism
 /// The same files give the same house and report for any number of threads.
-pub fn open(house: &str) -> Result<(House, Report), HousesError> {
+pub fn open(house: &str) -> Result<(House, LoadReport), HousesError> {
     open_with(house, Threads::default())
 }
 
@@ -163,7 +163,7 @@ pub fn seed_range(house: &str) -> Result<Option<(Range<u64>, &str)>, HousesError
 ///
 /// # Errors
 /// Those of [`open`].
-pub fn open_with(house: &str, threads: Threads) -> Result<(House, Report), HousesError> {
+pub fn open_with(house: &str, threads: Threads) -> Result<(House, LoadReport), HousesError> {
     let _span = tracing::debug_span!("open", house).entered();
     if let Some((foreign, map)) = house.rsplit_once("?map=") {
         return crate::authoring::open_mapped(foreign, map, threads);

@@ -3,7 +3,7 @@
 use serde::de::DeserializeOwned;
 
 use crate::error::HousesError;
-use crate::report::At;
+use crate::report::FileLocation;
 
 /// Some editors begin a text with a byte order mark.
 pub(crate) fn without_mark(text: &[u8]) -> &[u8] {
@@ -19,11 +19,11 @@ pub(crate) fn from_slice<T: DeserializeOwned>(text: &[u8]) -> serde_json::Result
 }
 
 /// [`HousesError::Syntax`] in the line of the file `at` where a reader stopped.
-pub(crate) fn syntax(at: &At) -> impl Fn(serde_json::Error) -> HousesError {
+pub(crate) fn syntax(at: &FileLocation) -> impl Fn(serde_json::Error) -> HousesError {
     let at = at.clone();
     move |error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
-        message: crate::plain(&error),
+        message: crate::plain_parse_error(&error),
     }
 }
 

@@ -5,14 +5,14 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::damage::{Damage, Unmapped};
+use crate::warning_kind::{UnmappedKind, WarningKind};
 
 /// Distinct warnings kept; later ones are only counted, so that a hostile file cannot fill the memory.
 const MAX_WARNINGS: usize = 10_000;
 
 /// A place in a file: the file, then a line or a field where they are known.
 #[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct At {
+pub struct FileLocation {
     /// The file, relative to the house's data root where it has one.
     pub file: String,
     /// 1-based line.
@@ -23,7 +23,7 @@ pub struct At {
     pub field: Option<String>,
 }
 
-impl At {
+impl FileLocation {
     /// A whole file.
     pub fn file(file: impl Into<String>) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl At {
     }
 }
 
-impl fmt::Display for At {
+impl fmt::Display for FileLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.file)?;
         if let Some(line) = self.line {
@@ -73,9 +73,9 @@ impl fmt::Display for At {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Warning {
     /// The first place it was seen.
-    pub at: At,
+    pub at: FileLocation,
     /// What was wrong.
-    pub damage: Damage,
+    pub damage: WarningKind,
     /// How often; at least 1.
     pub count: u64,
 }
@@ -94,27 +94,27 @@ impl fmt::Display for Warning {
 ///
 /// The same damage in the same file is one warning with a count; its place is the first one.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Report {
+pub struct LoadReport {
     warnings: Vec<Warning>,
     /// Warnings beyond the ten thousand that are kept.
     not_kept: u64,
     #[serde(skip)]
-    index: BTreeMap<(String, Damage), usize>,
+    index: BTreeMap<(String, WarningKind), usize>,
 }
 
-impl Report {
+impl LoadReport {
     /// A report without warnings.
     pub fn new() -> Self {
         Self::default()
     }
 
     /// Adds one warning.
-    pub fn warn(&mut self, at: At, damage: Damage) {
+    pub fn warn(&mut self, at: FileLocation, damage: WarningKind) {
         self.warn_times(at, damage, 1);
     }
 
     /// Adds the same warning `count` times; nothing when `count` is 0.
-    pub fn warn_times(&mut self, at: At, damage: Damage, count: u64) {
+    pub fn warn_times(&mut self, at: FileLocation, damage: WarningKind, count: u64) {
         if count == 0 {
             return;
         }
@@ -171,7 +171,7 @@ impl Report {
     }
 
     /// How often damage happened for which `is` holds.
-    pub fn count(&self, is: impl Fn(&Damage) -> bool) -> u64 {
+    pub fn count(&self, is: impl Fn(&WarningKind) -> bool) -> u64 {
         self.warnings
             .iter()
             .filter(|w| is(&w.damage))
@@ -180,15 +180,15 @@ impl Report {
     }
 
     /// The names our tables do not know, with how often they are used.
-    pub fn unmapped(&self) -> impl Iterator<Item = (Unmapped, &str, u64)> {
+    pub fn unmapped(&self) -> impl Iterator<Item = (UnmappedKind, &str, u64)> {
         self.warnings.iter().filter_map(|w| match &w.damage {
-            Damage::Unmapped { what, name } => Some((*what, name.as_str(), w.count)),
+            WarningKind::Unmapped { what, name } => Some((*what, name.as_str(), w.count)),
             _ => None,
         })
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for LoadReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for warning in &self.warnings {
             writeln!(f, "{warning}")?;
@@ -206,13 +206,13 @@ mod tests {
 
     #[test]
     fn equal_damage_in_one_file_is_counted_not_repeated() {
-        let mut report = Report::new();
-        let at = At::file("room/a/fr_0rm_0w.obj");
-        report.warn(at.line(7), Damage::NanVertices);
-        report.warn_times(at.line(9), Damage::NanVertices, 2);
-        report.warn(At::file("other.obj"), Damage::NanVertices);
+        let mut report = LoadReport::new();
+        let at = FileLocation::file("room/a/fr_0rm_0w.obj");
+        report.warn(at.line(7), WarningKind::NanVertices);
+        report.warn_times(at.line(9), WarningKind::NanVertices, 2);
+        report.warn(FileLocation::file("other.obj"), WarningKind::NanVertices);
         assert_eq!(report.len(), 2);
-        assert_eq!(report.count(|d| *d == Damage::NanVertices), 4);
+        assert_eq!(report.count(|d| *d == WarningKind::NanVertices), 4);
         assert_eq!(
             report.to_string(),
             "room/a/fr_0rm_0w.obj:7: vertex coordinates that are not finite numbers; set to 0 (3 times)\n\
@@ -222,16 +222,16 @@ mod tests {
 
     #[test]
     fn warnings_beyond_the_cap_are_counted() {
-        let mut report = Report::new();
+        let mut report = LoadReport::new();
         for i in 0..MAX_WARNINGS + 5 {
-            report.warn(At::file(format!("{i}")), Damage::Shear);
+            report.warn(FileLocation::file(format!("{i}")), WarningKind::Shear);
         }
         assert_eq!((report.len(), report.not_kept()), (MAX_WARNINGS, 5));
     }
 
     #[test]
     fn fields_nest_in_the_place() {
-        let at = At::file("house.json")
+        let at = FileLocation::file("house.json")
             .field("levels[0]")
             .field("nodes[3]")
             .field("transform");

@@ -6,30 +6,30 @@ use std::path::{Path, PathBuf};
 use dwell_scene::House;
 
 use crate::error::HousesError;
-use crate::loss::Loss;
+use crate::export_loss::ExportLoss;
 
 /// A form in which houses are written.
-pub struct Writer {
+pub struct HouseWriter {
     /// The form's name.
     pub name: &'static str,
     /// Writes a house at a path and says what the form does not hold.
-    pub write: fn(&House, &Path) -> Written,
+    pub write: fn(&House, &Path) -> WriteResult,
     /// Writes a house under a name below `house/` of a folder of many, which share what they can; returns where it is.
-    pub write_into: fn(&House, &Path, &str) -> WrittenInto,
+    pub write_into: fn(&House, &Path, &str) -> FolderWriteResult,
     /// Writes what stands once in a folder of many: after the last house, or again at any time.
     pub finish: fn(&Path) -> Result<(), HousesError>,
 }
 
 /// What a form does not hold.
-pub type Written = Result<Vec<Loss>, HousesError>;
+pub type WriteResult = Result<Vec<ExportLoss>, HousesError>;
 
 /// Where a house is, and what the form does not hold.
-pub type WrittenInto = Result<(PathBuf, Vec<Loss>), HousesError>;
+pub type FolderWriteResult = Result<(PathBuf, Vec<ExportLoss>), HousesError>;
 
 /// All forms. A new one is one entry here.
-pub fn writers() -> &'static [Writer] {
+pub fn writers() -> &'static [HouseWriter] {
     &[
-        Writer {
+        HouseWriter {
             name: "dwell",
             write: |house, path| crate::native::write(house, path).map(|()| Vec::new()),
             write_into: |house, root, name| {
@@ -37,13 +37,13 @@ pub fn writers() -> &'static [Writer] {
             },
             finish: |_| Ok(()),
         },
-        Writer {
+        HouseWriter {
             name: "suncg",
             write: crate::suncg::write,
             write_into: crate::suncg::write_into,
             finish: crate::suncg::finish,
         },
-        Writer {
+        HouseWriter {
             name: "glb",
             write: crate::gltf::write,
             write_into: |house, root, name| {
@@ -61,7 +61,7 @@ pub fn writers() -> &'static [Writer] {
 ///
 /// # Errors
 /// [`HousesError::UnknownForm`] lists what there is.
-pub fn writer(name: &str) -> Result<&'static Writer, HousesError> {
+pub fn writer(name: &str) -> Result<&'static HouseWriter, HousesError> {
     writers()
         .iter()
         .find(|writer| writer.name == name)

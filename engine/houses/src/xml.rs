@@ -5,14 +5,14 @@ use roxmltree::{Document, ParsingOptions};
 
 use crate::error::HousesError;
 use crate::limits::{MAX_XML_ATTRIBUTES, MAX_XML_DEPTH, MAX_XML_ELEMENTS};
-use crate::report::At;
+use crate::report::FileLocation;
 
 /// Parses a text.
 ///
 /// # Errors
 /// [`HousesError::TooLarge`] for elements nested too deep, and for too many attributes or namespaces, [`HousesError::Syntax`] with
 /// the line for what is no XML, or has a document type, or too many nodes.
-pub(crate) fn parse<'a>(text: &'a str, at: &At) -> Result<Document<'a>, HousesError> {
+pub(crate) fn parse<'a>(text: &'a str, at: &FileLocation) -> Result<Document<'a>, HousesError> {
     check(text, at)?;
     let options = ParsingOptions {
         // Elements, and the white space around them.
@@ -27,7 +27,7 @@ pub(crate) fn parse<'a>(text: &'a str, at: &At) -> Result<Document<'a>, HousesEr
 
 /// Refuses elements that are nested deeper than is read, and those with more attributes. As long as the text is XML, the counts
 /// are exact; what comes after a fault is not parsed.
-fn check(text: &str, at: &At) -> Result<(), HousesError> {
+fn check(text: &str, at: &FileLocation) -> Result<(), HousesError> {
     let mut depth = 0_u64;
     let mut namespaces = 0;
     let mut from = 0;
@@ -133,20 +133,20 @@ mod tests {
     use super::*;
 
     fn told(text: &str) -> String {
-        let at = At::file("a.xml");
+        let at = FileLocation::file("a.xml");
         parse(text, &at).map(|_| ()).unwrap_err().to_string()
     }
 
     #[test]
     fn nesting_ends_at_the_cap_and_not_with_the_stack() {
         let nested = |depth: usize| format!("{}{}", "<a>\n".repeat(depth), "</a>".repeat(depth));
-        assert!(parse(&nested(MAX_XML_DEPTH), &At::file("a.xml")).is_ok());
+        assert!(parse(&nested(MAX_XML_DEPTH), &FileLocation::file("a.xml")).is_ok());
         let found = "a.xml:201: depth of elements 201 is more than the 200 that are read";
         assert_eq!(told(&nested(MAX_XML_DEPTH + 1)), found);
         assert_eq!(told(&"<a>\n".repeat(1_000_000)), found);
         // Brackets in quotes and comments are no tags, and those of empty elements nest nothing.
         let flat = "<a b='>' c=\"/>\"/><!-- <a> --><![CDATA[<a>]]><?a <a>?>".repeat(500);
-        assert!(parse(&format!("<b>{flat}</b>"), &At::file("a.xml")).is_ok());
+        assert!(parse(&format!("<b>{flat}</b>"), &FileLocation::file("a.xml")).is_ok());
         let quoted = "<a b='/>'>".repeat(1000);
         assert_eq!(told(&quoted), found.replace(":201:", ":1:"));
     }
@@ -157,12 +157,16 @@ mod tests {
             let all: Vec<String> = (0..count).map(|k| format!("{name}{k}=\"=\"")).collect();
             format!("<b>\n<a {}/></b>", all.join(" "))
         };
-        assert!(parse(&of(MAX_XML_ATTRIBUTES, "x"), &At::file("a.xml")).is_ok());
+        assert!(parse(&of(MAX_XML_ATTRIBUTES, "x"), &FileLocation::file("a.xml")).is_ok());
         let found = "a.xml:2: count of attributes 300000 is more than the 128 that are read";
         assert_eq!(told(&of(300_000, "x")), found);
         // Namespaces are those of the whole file.
         let some = of(100, "xmlns:n").replace("=\"=\"", "=\"n\"");
-        assert!(parse(&some, &At::file("a.xml")).is_ok(), "{}", told(&some));
+        assert!(
+            parse(&some, &FileLocation::file("a.xml")).is_ok(),
+            "{}",
+            told(&some)
+        );
         let twice = some.replace("</b>", &some[4..]);
         let found = "a.xml:2: count of namespaces 200 is more than the 128 that are read";
         assert_eq!(told(&twice), found);

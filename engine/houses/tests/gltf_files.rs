@@ -8,7 +8,7 @@ mod common;
 
 use common::base64;
 
-use dwell_houses::{Damage, HousesError, gltf, open};
+use dwell_houses::{HousesError, WarningKind, gltf, open};
 use dwell_scene::{House, LightShape, Mobility, ShoeboxMaterials, State};
 use glam::{Vec2, Vec3};
 
@@ -39,7 +39,7 @@ fn text(nodes: &str, extra: &str) -> String {
     )
 }
 
-fn open_text(text: &str) -> Result<(House, dwell_houses::Report), HousesError> {
+fn open_text(text: &str) -> Result<(House, dwell_houses::LoadReport), HousesError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.gltf");
     std::fs::write(&path, text).unwrap();
@@ -127,7 +127,7 @@ fn what_is_not_read_is_reported() {
     let (_, report) = open_text(&text(r#"[{"mesh": 0, "camera": 0}]"#, cameras)).unwrap();
     assert_eq!(
         report.count(
-            |d| matches!(d, Damage::Simplified { what } if what == "1 cameras are not read")
+            |d| matches!(d, WarningKind::Simplified { what } if what == "1 cameras are not read")
         ),
         1
     );
@@ -153,7 +153,7 @@ fn the_apartment_keeps_its_places_and_textures_as_glb() {
     gltf::write(&house, &path).unwrap();
     let (again, report) = open(&path.to_string_lossy()).unwrap();
     assert_eq!(
-        report.count(|d| !matches!(d, Damage::DegenerateTriangles)),
+        report.count(|d| !matches!(d, WarningKind::DegenerateTriangles)),
         0,
         "{report}"
     );
@@ -222,7 +222,7 @@ fn images_of_basis_universal_are_reported_and_the_rest_is_read() {
     );
     let (house, report) = open_text(&text).unwrap();
     assert_eq!(house.objects.len(), 1);
-    let unreadable = |damage: &Damage| matches!(damage, Damage::UnreadableTexture { .. });
+    let unreadable = |damage: &WarningKind| matches!(damage, WarningKind::UnreadableTexture { .. });
     assert_eq!(report.count(unreadable), 1, "{report:?}");
 }
 
@@ -512,6 +512,9 @@ fn rooms_that_cannot_be_are_reported_and_passed_over() {
     ] {
         let (house, report) = room(footprint, ceiling, place);
         assert!(house.rooms.is_empty(), "{footprint} {ceiling} {place}");
-        assert_eq!(report.count(|d| matches!(d, Damage::Simplified { .. })), 1);
+        assert_eq!(
+            report.count(|d| matches!(d, WarningKind::Simplified { .. })),
+            1
+        );
     }
 }

@@ -4,13 +4,13 @@
     reason = "tests stop at the first surprise and compare exact numbers"
 )]
 
-use dwell_houses::{Damage, gltf, open};
+use dwell_houses::{WarningKind, gltf, open};
 use dwell_scene::House;
 use glam::Vec3;
 
 /// What was reported beside triangles without area, which models have.
-fn real_damage(report: &dwell_houses::Report) -> u64 {
-    report.count(|damage| !matches!(damage, Damage::DegenerateTriangles))
+fn real_damage(report: &dwell_houses::LoadReport) -> u64 {
+    report.count(|damage| !matches!(damage, WarningKind::DegenerateTriangles))
 }
 
 /// Objects by name, with all that they are; ids as names, since a file may order them otherwise.
@@ -125,7 +125,7 @@ fn edited(
     house: &House,
     object: &str,
     change: impl Fn(&mut serde_json::Value),
-) -> (House, dwell_houses::Report) {
+) -> (House, dwell_houses::LoadReport) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("house.glb");
     gltf::write(house, &path).unwrap();

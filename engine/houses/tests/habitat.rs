@@ -4,12 +4,12 @@
 mod common;
 
 use common::habitat_set;
-use dwell_houses::{Damage, Report, open};
+use dwell_houses::{LoadReport, WarningKind, open};
 use dwell_scene::{Aabb, House, Mobility, Object, StructureKind};
 use glam::Vec3;
 use std::path::Path;
 
-fn sample() -> (tempfile::TempDir, House, Report) {
+fn sample() -> (tempfile::TempDir, House, LoadReport) {
     let folder = tempfile::tempdir().unwrap();
     let path = habitat_set::write(folder.path());
     let (house, report) = open(&path.to_string_lossy()).unwrap();
@@ -127,7 +127,7 @@ fn an_articulated_object_begins_in_its_pose() {
     assert!((corner - expected).length() < 1e-5, "{corner} {expected}");
 }
 
-fn opened_with(change: impl Fn(&Path)) -> Result<(House, Report), dwell_houses::HousesError> {
+fn opened_with(change: impl Fn(&Path)) -> Result<(House, LoadReport), dwell_houses::HousesError> {
     let folder = tempfile::tempdir().unwrap();
     let path = habitat_set::write(folder.path());
     change(folder.path());
@@ -166,7 +166,7 @@ fn paths_out_of_the_data_set_are_refused() {
         std::fs::write(root.join("objects/v/my_vase_01.object_config.json"), config).unwrap();
     })
     .unwrap();
-    let refused = |warning: &dwell_houses::Warning| matches!(&warning.damage, Damage::PathRefused { path } if path == "../../../secret.glb");
+    let refused = |warning: &dwell_houses::Warning| matches!(&warning.damage, WarningKind::PathRefused { path } if path == "../../../secret.glb");
     assert!(report.warnings().iter().any(refused), "{report:?}");
 }
 

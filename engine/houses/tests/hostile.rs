@@ -4,7 +4,7 @@
 mod common;
 
 use dwell_houses::suncg::{arch, parse, read_binvox};
-use dwell_houses::{Report, open};
+use dwell_houses::{LoadReport, open};
 use proptest::prelude::*;
 
 use common::samples::{FILES, open_changed, samples};
@@ -46,8 +46,8 @@ proptest! {
 
     #[test]
     fn any_house_json_is_parsed_or_refused(text in "[\\[\\]{}:,\"a-z0-9 .-]{0,200}") {
-        let _ = parse(text.as_bytes(), "house.json", &mut Report::new());
-        let _ = arch::parse(text.as_bytes(), "arch.json", &mut Report::new());
+        let _ = parse(text.as_bytes(), "house.json", &mut LoadReport::new());
+        let _ = arch::parse(text.as_bytes(), "arch.json", &mut LoadReport::new());
     }
 
     #[test]
@@ -197,7 +197,7 @@ fn more_nodes_than_any_house_has_are_refused() {
         r#"{{"levels": [{{"nodes": [{}]}}]}}"#,
         nodes.trim_end_matches(',')
     );
-    let error = parse(text.as_bytes(), "house.json", &mut Report::new())
+    let error = parse(text.as_bytes(), "house.json", &mut LoadReport::new())
         .unwrap_err()
         .to_string();
     assert_eq!(
@@ -209,7 +209,7 @@ fn more_nodes_than_any_house_has_are_refused() {
 #[test]
 fn deep_nesting_is_refused() {
     let text = format!("{{\"levels\": {}", "[".repeat(100_000));
-    let error = parse(text.as_bytes(), "house.json", &mut Report::new())
+    let error = parse(text.as_bytes(), "house.json", &mut LoadReport::new())
         .unwrap_err()
         .to_string();
     assert!(

@@ -4,14 +4,14 @@
     reason = "tests stop at the first surprise and compare exact numbers"
 )]
 
-use dwell_houses::{Damage, HousesError, Report, open};
+use dwell_houses::{HousesError, LoadReport, WarningKind, open};
 use dwell_scene::{House, JointKind, Mobility, Object, ObjectId, State, StructureKind};
 use glam::Vec3;
 
 /// A kitchen (x 0 to 4, y 0 to 3) and a living room (y 3 to 6); +Z up.
 const HOUSE: &str = include_str!("robots/rooms.xml");
 
-fn opened(text: &str) -> Result<(House, Report), HousesError> {
+fn opened(text: &str) -> Result<(House, LoadReport), HousesError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.xml");
     std::fs::write(&path, text).unwrap();
@@ -138,7 +138,8 @@ fn bodies_become_objects_that_stand_move_and_open_as_the_file_says() {
     let parent = house.parts[slide.parent.unwrap()].world_from_part;
     let out = slide.world_from_child(&parent, 0.3).position;
     assert!(out.abs_diff_eq(ours(1.0, 5.0, 0.6), 1e-5), "{out}");
-    let said = |d: &Damage| matches!(d, Damage::Simplified { what } if what.contains("spinner"));
+    let said =
+        |d: &WarningKind| matches!(d, WarningKind::Simplified { what } if what.contains("spinner"));
     assert_eq!(report.count(said), 1, "{report}");
 }
 
@@ -227,7 +228,7 @@ fn materials_show_their_images_on_meshes_with_texture_coordinates() {
         material.texture.is_none() && material.base_color[0] > 0.9 && material.base_color[1] < 0.1
     );
     assert_eq!(
-        report.count(|d| matches!(d, Damage::UnreadableTexture { .. })),
+        report.count(|d| matches!(d, WarningKind::UnreadableTexture { .. })),
         1
     );
 }

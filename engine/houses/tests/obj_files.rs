@@ -9,7 +9,7 @@ mod common;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use dwell_houses::{Damage, Report, obj, open};
+use dwell_houses::{LoadReport, WarningKind, obj, open};
 use dwell_scene::{Mobility, StructureKind};
 use proptest::prelude::*;
 
@@ -17,7 +17,7 @@ use proptest::prelude::*;
 type Corners = BTreeMap<String, Vec<[f32; 3]>>;
 
 fn ours(text: &[u8]) -> Corners {
-    let mut report = Report::new();
+    let mut report = LoadReport::new();
     let file = obj::read_obj(text, "a.obj", &mut report);
     let mut corners = Corners::new();
     for run in &file.runs {
@@ -148,7 +148,9 @@ fn a_scene_of_named_things_becomes_a_house() {
         ("oak", true)
     );
     assert_eq!(
-        report.count(|d| matches!(d, Damage::PathRefused { path } if path == "../../secret.png")),
+        report.count(
+            |d| matches!(d, WarningKind::PathRefused { path } if path == "../../secret.png")
+        ),
         1
     );
 }
@@ -195,7 +197,7 @@ proptest! {
         ], 0..120))
     {
         let text = words.concat();
-        let file = obj::read_obj(text.as_bytes(), "a.obj", &mut Report::new());
+        let file = obj::read_obj(text.as_bytes(), "a.obj", &mut LoadReport::new());
         let covered: usize = file.runs.iter().map(|run| run.faces.len()).sum();
         prop_assert_eq!(covered, file.face_count());
         for corner in &file.corners {
@@ -203,6 +205,6 @@ proptest! {
             prop_assert!(corner.texcoord == obj::file::NONE || (corner.texcoord as usize) < file.texcoords.len());
             prop_assert!(corner.normal == obj::file::NONE || (corner.normal as usize) < file.normals.len());
         }
-        obj::read_mtl(text.as_bytes(), "a.mtl", &mut Report::new());
+        obj::read_mtl(text.as_bytes(), "a.mtl", &mut LoadReport::new());
     }
 }

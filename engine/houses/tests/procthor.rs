@@ -9,18 +9,18 @@ mod common;
 use std::path::Path;
 
 use common::procthor_set::{database, file, xyz};
-use dwell_houses::{Damage, HousesError, Report, open};
+use dwell_houses::{HousesError, LoadReport, WarningKind, open};
 use dwell_scene::{Aabb, House, Mobility, Object, State, StructureKind};
 use glam::Vec3;
 use serde_json::{Value, json};
 
-fn open_at(folder: &Path, file: &Value) -> Result<(House, Report), HousesError> {
+fn open_at(folder: &Path, file: &Value) -> Result<(House, LoadReport), HousesError> {
     let path = folder.join("house.json");
     std::fs::write(&path, file.to_string()).unwrap();
     open(&path.to_string_lossy())
 }
 
-fn opened(file: &Value, with_sizes: bool) -> (House, Report) {
+fn opened(file: &Value, with_sizes: bool) -> (House, LoadReport) {
     let folder = tempfile::tempdir().unwrap();
     if with_sizes {
         let path = folder.path().join("asset-database.json");
@@ -228,7 +228,7 @@ fn a_sofa_looks_where_the_file_says() {
 #[test]
 fn without_a_table_of_assets_things_have_their_usual_size_and_stand_on_the_floor() {
     let (house, report) = opened(&file(), false);
-    let said = |d: &Damage| matches!(d, Damage::Simplified { what } if what.contains("usual size"));
+    let said = |d: &WarningKind| matches!(d, WarningKind::Simplified { what } if what.contains("usual size"));
     assert_eq!(report.count(said), 1, "{report}");
     let state = State::new(&house);
     for (k, o) in house.objects.iter().enumerate() {

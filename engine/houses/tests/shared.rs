@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use dwell_houses::generate::{HouseSpec, generate};
-use dwell_houses::{Damage, HousesError, native, open, suncg, writer};
+use dwell_houses::{HousesError, WarningKind, native, open, suncg, writer};
 use dwell_scene::House;
 
 fn homes() -> Vec<(String, House)> {
@@ -148,9 +148,9 @@ fn suncg_houses_share_models_and_textures() {
         let missing = report.count(|damage| {
             matches!(
                 damage,
-                Damage::MissingMesh { .. }
-                    | Damage::MissingTexture { .. }
-                    | Damage::Unmapped { .. }
+                WarningKind::MissingMesh { .. }
+                    | WarningKind::MissingTexture { .. }
+                    | WarningKind::Unmapped { .. }
             )
         });
         assert_eq!(missing, 0, "{report}");

@@ -8,13 +8,13 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use dwell_houses::{Damage, Loss, Report, open, suncg};
+use dwell_houses::{ExportLoss, LoadReport, WarningKind, open, suncg};
 use dwell_scene::{Aabb, House, Material, Mobility, ObjectId, Room, State, units};
 
 struct RoundTrip {
     again: House,
-    report: Report,
-    losses: Vec<Loss>,
+    report: LoadReport,
+    losses: Vec<ExportLoss>,
 }
 
 fn round_trip(house: &House) -> RoundTrip {
@@ -132,13 +132,13 @@ fn the_apartment_keeps_objects_places_looks_and_categories() {
 #[test]
 fn the_apartment_reads_back_without_damage() {
     let (_, trip) = apartment();
-    let serious = |damage: &Damage| {
+    let serious = |damage: &WarningKind| {
         !matches!(
             damage,
-            Damage::DegenerateTriangles
-                | Damage::Simplified { .. }
-                | Damage::Unmapped { .. }
-                | Damage::MissingField { .. }
+            WarningKind::DegenerateTriangles
+                | WarningKind::Simplified { .. }
+                | WarningKind::Unmapped { .. }
+                | WarningKind::MissingField { .. }
         )
     };
     let serious: Vec<_> = trip

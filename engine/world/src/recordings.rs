@@ -4,7 +4,7 @@ use crate::error::WorldError;
 use dwell_acoustics::recordings::MOST_BYTES;
 use dwell_acoustics::signals::Signal;
 use dwell_acoustics::{AcousticsError, Recording};
-use dwell_houses::{At, DataRoot, HousesError};
+use dwell_houses::{DataRoot, FileLocation, HousesError};
 use dwell_scene::{House, SoundFileId, interrupt};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -62,7 +62,7 @@ impl Recordings {
         }
         let root = DataRoot::new(folder)?;
         let path = DataRoot::resolve("", name).map_err(|_| HousesError::PathLeavesRoot {
-            at: At::file(name),
+            at: FileLocation::file(name),
             path: name.to_owned(),
             root: root.folder().to_owned(),
         })?;

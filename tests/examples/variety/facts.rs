@@ -1,6 +1,6 @@
 //! What is counted of one house.
 
-use dwell_houses::generate::Generated;
+use dwell_houses::generate::GeneratedHouse;
 use dwell_scene::{House, Room, units};
 use glam::Vec2;
 use std::collections::BTreeSet;
@@ -31,7 +31,7 @@ pub(crate) struct Facts {
 }
 
 impl Facts {
-    pub(crate) fn of(seed: u64, generated: &Generated) -> Self {
+    pub(crate) fn of(seed: u64, generated: &GeneratedHouse) -> Self {
         let house = &generated.house;
         let mut rooms: Vec<RoomFacts> = house
             .rooms

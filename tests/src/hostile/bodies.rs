@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use dwell::{DiscreteAction, Engines, PictureRequest, Place, Stride, World, WorldConfig};
-use dwell_houses::{HousesError, Report};
+use dwell_houses::{HousesError, LoadReport};
 use dwell_render::{Camera, Channels, Preset};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -18,7 +18,11 @@ use super::samples::Sample;
 ///
 /// # Panics
 /// When the sentence is missing.
-pub fn read(sample: &Sample, file: usize, bytes: &[u8]) -> Result<(House, Report), HousesError> {
+pub fn read(
+    sample: &Sample,
+    file: usize,
+    bytes: &[u8],
+) -> Result<(House, LoadReport), HousesError> {
     let opened = sample.open_with(file, bytes);
     match &opened {
         Ok((_, report)) => assert_eq!(report.to_string().is_empty(), report.is_empty()),

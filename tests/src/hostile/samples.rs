@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use dwell_houses::{HousesError, Report};
+use dwell_houses::{HousesError, LoadReport};
 use dwell_scene::House;
 use dwell_scene::parallel::Threads;
 use tempfile::TempDir;
@@ -54,7 +54,7 @@ impl Sample {
     ///
     /// # Panics
     /// When the folder cannot be written to.
-    pub fn open_with(&self, file: usize, bytes: &[u8]) -> Result<(House, Report), HousesError> {
+    pub fn open_with(&self, file: usize, bytes: &[u8]) -> Result<(House, LoadReport), HousesError> {
         let (path, sound) = &self.files[file];
         fs::write(path, bytes).expect("a folder of our own can be written to");
         let opened = dwell_houses::open_with(&self.house.to_string_lossy(), Threads::ONE);

@@ -3,7 +3,7 @@
 mod geometric;
 mod settled;
 
-use dwell_houses::generate::{Generated, HouseSpec, generate};
+use dwell_houses::generate::{GeneratedHouse, HouseSpec, generate};
 use dwell_scene::parallel::Threads;
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ pub fn look(seed: u64, spec: &HouseSpec, depth: Depth) -> Looked {
         given_up: Vec::new(),
         faults: Vec::new(),
     };
-    let Generated { house, report } = match generate(seed, spec) {
+    let GeneratedHouse { house, report } = match generate(seed, spec) {
         Ok(generated) => generated,
         Err(error) => {
             let (rule, what) = ("generate", error.to_string());

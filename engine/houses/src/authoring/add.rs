@@ -15,15 +15,15 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Vec3};
 
-use super::apply::Desk;
-use super::edits::{Add, Placing, Traits, Up, What};
-use super::faults::{OFFERED, fault, inside, unknown, within};
-use super::graft::graft;
+use super::apply::EditSession;
+use super::copy_objects::graft;
+use super::edit_errors::{OFFERED, fault, inside, unknown, within};
+use super::edits::{AddObject, ObjectAttributes, ObjectSource, Placement, UpAxis};
 use super::{describe, fixtures, mesh_file, place, surfaces};
-use crate::build::{CategoryRow, category, convex_pieces};
-use crate::building::assembly::Assembly;
+use crate::building::assembly::HouseAssembly;
 use crate::error::HousesError;
-use crate::nearest::nearest;
+use crate::import::{CategoryRow, category, convex_pieces};
+use crate::spelling::nearest;
 
 /// Longest edge and volume of what a hand can take, m and m³.
 const HANDY: (f32, f32) = (0.6, 0.05);
@@ -34,7 +34,7 @@ const USUAL_DENSITY_KG_M3: f32 = 300.0;
 ///
 /// # Errors
 /// [`HousesError::Spec`] for what does not exist or cannot be; what readers of files say.
-pub(super) fn add(desk: &mut Desk<'_>, wanted: &Add) -> Result<ObjectId, HousesError> {
+pub(super) fn add(desk: &mut EditSession<'_>, wanted: &AddObject) -> Result<ObjectId, HousesError> {
     if let Some(name) = &wanted.name {
         desk.free_name("name", name)?;
     }
@@ -42,17 +42,17 @@ pub(super) fn add(desk: &mut Desk<'_>, wanted: &Add) -> Result<ObjectId, HousesE
         return Err(fault("place", "no place", "`at`, `on`, or both"));
     }
     let id = match &wanted.what {
-        What::Catalogue { kind, style, seed } => {
+        ObjectSource::Catalogue { kind, style, seed } => {
             let model = model(kind, style.as_deref(), *seed).map_err(inside("what.catalogue"))?;
             from_model(&mut desk.data, model)
         }
-        What::File { path, scale, up } => {
+        ObjectSource::File { path, scale, up } => {
             from_file(desk, path, *scale, *up, &wanted.traits).map_err(inside("what.file"))?
         }
-        What::Copy { house, object } => {
+        ObjectSource::Copy { house, object } => {
             copy(desk, house.as_deref(), object).map_err(inside("what.copy"))?
         }
-        What::Box { size_m } => {
+        ObjectSource::Box { size_m } => {
             from_box(&mut desk.data, *size_m, &wanted.traits).map_err(inside("what.box"))?
         }
     };
@@ -69,16 +69,19 @@ pub(super) fn add(desk: &mut Desk<'_>, wanted: &Add) -> Result<ObjectId, HousesE
 
 /// Names a new object and puts it into its place.
 pub(super) fn put(
-    desk: &mut Desk<'_>,
+    desk: &mut EditSession<'_>,
     id: ObjectId,
     name: Option<&str>,
-    placing: &Placing,
+    placing: &Placement,
 ) -> Result<(), HousesError> {
     let object = &mut desk.data.objects[id];
     // Not yet counted with the others.
     let base = object.category.coarse.clone();
     object.name = String::new();
-    let name = name.map_or_else(|| desk.census.counted_name(&base), str::to_owned);
+    let name = name.map_or_else(
+        || desk.object_index.next_numbered_name(&base),
+        str::to_owned,
+    );
     let object = &mut desk.data.objects[id];
     object.source_id.clone_from(&name);
     object.name = name;
@@ -151,7 +154,7 @@ pub(super) fn model(
 
 /// An instance of a model, at the origin.
 pub(super) fn from_model(data: &mut HouseData, model: Arc<Model>) -> ObjectId {
-    let mut assembly = Assembly::new("", "");
+    let mut assembly = HouseAssembly::new("", "");
     assembly.storey();
     let kind = assembly.kind(model);
     assembly.place(&kind, Pose::IDENTITY, RoomId(0), 0.0);
@@ -163,7 +166,11 @@ fn first(ids: &[ObjectId]) -> ObjectId {
     ids.first().copied().expect("one object was grafted")
 }
 
-fn copy(desk: &mut Desk<'_>, house: Option<&str>, name: &str) -> Result<ObjectId, HousesError> {
+fn copy(
+    desk: &mut EditSession<'_>,
+    house: Option<&str>,
+    name: &str,
+) -> Result<ObjectId, HousesError> {
     let source: Arc<House> = match house {
         None => {
             let id = desk.object("object", name)?;
@@ -191,11 +198,11 @@ fn copy(desk: &mut Desk<'_>, house: Option<&str>, name: &str) -> Result<ObjectId
 }
 
 fn from_file(
-    desk: &mut Desk<'_>,
+    desk: &mut EditSession<'_>,
     path: &str,
     scale: f32,
-    up: Up,
-    traits: &Traits,
+    up: UpAxis,
+    traits: &ObjectAttributes,
 ) -> Result<ObjectId, HousesError> {
     let loaded = mesh_file::load(desk, path, scale, up)?;
     let stem = path.rsplit(['/', '\\']).next().unwrap_or(path);
@@ -217,7 +224,7 @@ fn from_file(
 fn from_box(
     data: &mut HouseData,
     size_m: [f32; 3],
-    traits: &Traits,
+    traits: &ObjectAttributes,
 ) -> Result<ObjectId, HousesError> {
     for edge in size_m {
         within("size_m", edge, [0.001, 100.0], "m an edge")?;
@@ -238,7 +245,7 @@ fn rigid(
     materials: Vec<MaterialId>,
     colliders: Vec<Collider>,
     model: &str,
-    traits: &Traits,
+    traits: &ObjectAttributes,
 ) -> HouseData {
     let mesh = dwell_scene::MeshId(0);
     let bounds = data.meshes[mesh].bounds();

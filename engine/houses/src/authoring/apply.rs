@@ -8,17 +8,17 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{Aabb, House, HouseData, Level, ObjectId, Pose, State};
 use glam::{Quat, Vec3};
 
-use super::census::Census;
-use super::edits::{AddRobot, Edit, Move, Remove, Rename};
-use super::faults::{fault, inside, point, unknown, within};
-use super::files::Files;
-use super::mesh_file::Loaded;
-use super::overlaps::{overlaps, reaches_into_a_wall};
-use super::{add, agent_starts, describe, doors, fixtures, place, prune, surfaces};
-use crate::build::room_kind;
-use crate::damage::Damage;
+use super::edit_errors::{fault, inside, point, unknown, within};
+use super::edits::{AddRobot, Edit, MoveObject, RemoveObject, Rename};
+use super::files::FileAccess;
+use super::mesh_file::LoadedMesh;
+use super::object_index::ObjectIndex;
+use super::overlap_check::{overlaps, reaches_into_a_wall};
+use super::{add, agent_start, describe, doors, fixtures, place, remove_objects, surfaces};
 use crate::error::HousesError;
-use crate::report::{At, Report};
+use crate::import::room_kind;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// The most edits that are made at once.
 const MAX_EDITS: usize = 10_000;
@@ -49,23 +49,27 @@ const MAX_EDITS: usize = 10_000;
 /// assert_eq!(edited.objects.len(), house.objects.len() + 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn edit(house: &House, edits: &[Edit], files: &Files) -> Result<(House, Report), HousesError> {
+pub fn edit(
+    house: &House,
+    edits: &[Edit],
+    files: &FileAccess,
+) -> Result<(House, LoadReport), HousesError> {
     if edits.len() > MAX_EDITS {
         return Err(HousesError::TooLarge {
-            at: At::file("edits"),
+            at: FileLocation::file("edits"),
             what: "edit count",
             found: edits.len() as u64,
             allowed: MAX_EDITS as u64,
         });
     }
-    let mut desk = Desk::new(house.data().clone(), files);
+    let mut desk = EditSession::new(house.data().clone(), files);
     for (k, edit) in edits.iter().enumerate() {
         interrupt::check();
         let place = format!("edits[{k}].{}", edit.word());
         desk.apply(edit).map_err(inside(place))?;
     }
-    desk.take_out();
-    let at = At::file("edits");
+    desk.flush_removals();
+    let at = FileLocation::file("edits");
     let edited = House::new(desk.data).map_err(HousesError::scene(&at))?;
     let mut report = desk.report;
     let put = put(house, &edited, edits);
@@ -74,14 +78,14 @@ pub fn edit(house: &House, edits: &[Edit], files: &Files) -> Result<(House, Repo
     for id in &put {
         interrupt::check();
         if is_outside(&edited, &state, *id) {
-            report.warn(at.field(named(*id)), Damage::OutsideRooms);
+            report.warn(at.field(named(*id)), WarningKind::OutsideRooms);
         } else if reaches_into_a_wall(&edited, *id) {
-            report.warn(at.field(named(*id)), Damage::InWall);
+            report.warn(at.field(named(*id)), WarningKind::InWall);
         }
     }
     for (one, other) in overlaps(&edited, &put) {
         let other = named(other).clone();
-        report.warn(at.field(named(one)), Damage::Overlap { other });
+        report.warn(at.field(named(one)), WarningKind::Overlap { other });
     }
     Ok((edited, report))
 }
@@ -109,22 +113,22 @@ fn is_outside(house: &House, state: &State, id: ObjectId) -> bool {
 }
 
 /// A house that is being edited, and what was read for it.
-pub(super) struct Desk<'a> {
+pub(super) struct EditSession<'a> {
     pub(super) data: HouseData,
-    pub(super) files: &'a Files,
+    pub(super) files: &'a FileAccess,
     pub(super) threads: Threads,
-    pub(super) report: Report,
-    pub(super) census: Census,
+    pub(super) report: LoadReport,
+    pub(super) object_index: ObjectIndex,
     /// What is taken out before anything else is done.
-    gone: BTreeSet<ObjectId>,
+    removed: BTreeSet<ObjectId>,
     /// Mesh files by path, scale and axis.
-    pub(super) meshes: BTreeMap<String, Arc<Loaded>>,
+    pub(super) meshes: BTreeMap<String, Arc<LoadedMesh>>,
     /// Other houses by their HOUSE strings.
     pub(super) houses: BTreeMap<String, Arc<House>>,
 }
 
-impl<'a> Desk<'a> {
-    pub(super) fn new(mut data: HouseData, files: &'a Files) -> Self {
+impl<'a> EditSession<'a> {
+    pub(super) fn new(mut data: HouseData, files: &'a FileAccess) -> Self {
         if data.levels.is_empty() {
             let (name, bounds) = ("0".to_owned(), Aabb::EMPTY);
             data.levels.push(Level { name, bounds });
@@ -133,9 +137,9 @@ impl<'a> Desk<'a> {
             data,
             files,
             threads: Threads::default(),
-            report: Report::new(),
-            census: Census::default(),
-            gone: BTreeSet::new(),
+            report: LoadReport::new(),
+            object_index: ObjectIndex::default(),
+            removed: BTreeSet::new(),
             meshes: BTreeMap::new(),
             houses: BTreeMap::new(),
         }
@@ -144,26 +148,26 @@ impl<'a> Desk<'a> {
     fn apply(&mut self, edit: &Edit) -> Result<(), HousesError> {
         if let Edit::Remove(remove) = edit
             && !remove.with_things
-            && let Some(id) = self.census.find(&remove.object)
-            && self.gone.insert(id)
+            && let Some(id) = self.object_index.find(&remove.object)
+            && self.removed.insert(id)
         {
             return Ok(());
         }
-        self.take_out();
-        self.census.follow(&self.data);
+        self.flush_removals();
+        self.object_index.follow(&self.data);
         match edit {
             Edit::Add(add) => add::add(self, add).map(drop),
             Edit::Remove(remove) => self.remove(remove),
             Edit::Move(change) => self.shift(change),
-            Edit::ReMaterial(change) => surfaces::re_material(self, change),
+            Edit::ReMaterial(change) => surfaces::change_material(self, change),
             Edit::AddEmitter(emitter) => fixtures::add_emitter(self, emitter),
             Edit::AddLamp(lamp) => fixtures::add_lamp(self, lamp),
             Edit::AddRobot(robot) => self.robot(robot),
-            Edit::AgentStart(start) => agent_starts::set(self, start),
+            Edit::AgentStart(start) => agent_start::set(self, start),
             Edit::SetDoor(door) => {
                 let id = self.object("object", &door.object)?;
-                let joints = self.census.joints_of(&self.data, id);
-                self.census.moved([id]);
+                let joints = self.object_index.joints_of(&self.data, id);
+                self.object_index.moved([id]);
                 doors::set_door(&mut self.data, id, &joints, door)
             }
             Edit::Describe(change) => {
@@ -175,11 +179,11 @@ impl<'a> Desk<'a> {
     }
 
     /// Takes out what edits in a row have named, all at once.
-    fn take_out(&mut self) {
-        if !self.gone.is_empty() {
-            prune::remove(&mut self.data, &self.gone);
-            self.gone.clear();
-            self.census.forget();
+    fn flush_removals(&mut self) {
+        if !self.removed.is_empty() {
+            remove_objects::remove(&mut self.data, &self.removed);
+            self.removed.clear();
+            self.object_index.forget();
         }
     }
 
@@ -188,7 +192,7 @@ impl<'a> Desk<'a> {
     /// # Errors
     /// [`HousesError::Spec`] with the nearest names.
     pub(super) fn object(&self, field: &str, name: &str) -> Result<ObjectId, HousesError> {
-        self.census.find(name).ok_or_else(|| {
+        self.object_index.find(name).ok_or_else(|| {
             let names = self.data.objects.iter().map(|object| object.name.as_str());
             unknown(field, name, "objects", names)
         })
@@ -196,7 +200,7 @@ impl<'a> Desk<'a> {
 
     /// The house as it is now.
     pub(super) fn checked(&self) -> Result<House, HousesError> {
-        House::new(self.data.clone()).map_err(HousesError::scene(&At::file("edits")))
+        House::new(self.data.clone()).map_err(HousesError::scene(&FileLocation::file("edits")))
     }
 
     /// An object, and what stands on it or lies in it where that goes with it.
@@ -208,17 +212,17 @@ impl<'a> Desk<'a> {
         if !with_things {
             return Ok(BTreeSet::from([id]));
         }
-        let boxes = self.census.boxes(&self.data);
+        let boxes = self.object_index.boxes(&self.data);
         place::with_things(&self.data, boxes, id)
     }
 
-    fn remove(&mut self, change: &Remove) -> Result<(), HousesError> {
+    fn remove(&mut self, change: &RemoveObject) -> Result<(), HousesError> {
         let id = self.object("object", &change.object)?;
-        self.gone = self.group(id, change.with_things)?;
+        self.removed = self.group(id, change.with_things)?;
         Ok(())
     }
 
-    fn shift(&mut self, change: &Move) -> Result<(), HousesError> {
+    fn shift(&mut self, change: &MoveObject) -> Result<(), HousesError> {
         let id = self.object("object", &change.object)?;
         let all = self.group(id, change.with_things)?;
         let first = place::movement(self, id, &change.place)?;
@@ -272,7 +276,7 @@ impl<'a> Desk<'a> {
                     self.free_name("to", &change.to)?;
                 }
                 self.data.objects[id].name.clone_from(&change.to);
-                self.census.forget();
+                self.object_index.forget();
                 Ok(())
             }
             (None, Some(name)) => {
@@ -301,7 +305,7 @@ impl<'a> Desk<'a> {
 
     /// Refuses an object's name that is empty or taken.
     pub(super) fn free_name(&self, field: &str, name: &str) -> Result<(), HousesError> {
-        if name.trim().is_empty() || self.census.find(name).is_some() {
+        if name.trim().is_empty() || self.object_index.find(name).is_some() {
             let possible = "a name that no other object has";
             return Err(fault(field, format_args!("{name:?}"), possible));
         }

@@ -3,11 +3,11 @@
 use dwell_furniture::tables::category_names;
 use dwell_scene::{Category, Collider, HouseData, Mobility, ObjectId, Part};
 
-use super::edits::Traits;
-use super::faults::{fault, unknown, within};
+use super::edit_errors::{fault, unknown, within};
+use super::edits::ObjectAttributes;
 use super::place;
-use crate::build::{CategoryRow, category, convex_pieces};
 use crate::error::HousesError;
+use crate::import::{CategoryRow, category, convex_pieces};
 
 /// Writes what is told about an object.
 ///
@@ -16,7 +16,7 @@ use crate::error::HousesError;
 pub(super) fn describe(
     data: &mut HouseData,
     id: ObjectId,
-    traits: &Traits,
+    traits: &ObjectAttributes,
 ) -> Result<(), HousesError> {
     if let Some(name) = &traits.category {
         let plain = name.trim().to_ascii_lowercase().replace([' ', '-'], "_");

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use dwell_scene::{HouseData, JointId, ObjectId};
 
+use super::edit_errors::{fault, unknown, within};
 use super::edits::SetDoor;
-use super::faults::{fault, unknown, within};
 use crate::error::HousesError;
 
 /// Sets the start of one of an object's `joints`, or of all that open.

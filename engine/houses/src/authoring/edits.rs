@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 pub enum Edit {
     /// Adds an object.
-    Add(Add),
+    Add(AddObject),
     /// Takes an object out.
-    Remove(Remove),
+    Remove(RemoveObject),
     /// Puts an object elsewhere.
-    Move(Move),
+    Move(MoveObject),
     /// Makes a surface of something else, or gives it another colour.
-    ReMaterial(ReMaterial),
+    ReMaterial(ChangeMaterial),
     /// Adds a source of sound.
     AddEmitter(AddEmitter),
     /// Adds a lamp, or light to an object.
@@ -22,11 +22,11 @@ pub enum Edit {
     /// Adds a robot.
     AddRobot(AddRobot),
     /// Says where an agent starts.
-    AgentStart(StartAgent),
+    AgentStart(SetAgentStart),
     /// Sets how far a door, drawer or lid is open at the start.
     SetDoor(SetDoor),
     /// Says what an object is.
-    Describe(Describe),
+    Describe(SetAttributes),
     /// Gives another name.
     Rename(Rename),
 }
@@ -53,30 +53,30 @@ impl Edit {
 /// Adds an object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Add {
+pub struct AddObject {
     /// What is added.
-    pub what: What,
+    pub what: ObjectSource,
     /// Its name; `None`: its category with a number.
     #[serde(default)]
     pub name: Option<String>,
     /// Where it goes.
     #[serde(default)]
-    pub place: Placing,
+    pub place: Placement,
     /// What is told about it.
     #[serde(default)]
-    pub traits: Traits,
+    pub traits: ObjectAttributes,
     /// What all its surfaces are made of instead.
     #[serde(default)]
-    pub look: Option<Look>,
+    pub look: Option<SurfaceStyle>,
     /// What it sounds like, from its middle.
     #[serde(default)]
-    pub sound: Option<Sound>,
+    pub sound: Option<SoundSpec>,
 }
 
 /// Where an object comes from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum What {
+pub enum ObjectSource {
     /// A thing of the catalogue that generated houses are furnished from.
     Catalogue {
         /// `"sofa"`, `"dining_chair"`, ...
@@ -97,7 +97,7 @@ pub enum What {
         scale: f32,
         /// Which axis of the file points up.
         #[serde(default)]
-        up: Up,
+        up: UpAxis,
     },
     /// An object of this house or of another one, with its joints, lights and sounds.
     Copy {
@@ -121,7 +121,7 @@ const fn one() -> f32 {
 /// The axis of a mesh file that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Up {
+pub enum UpAxis {
     /// +Y, as in glTF.
     #[default]
     Y,
@@ -132,7 +132,7 @@ pub enum Up {
 /// Where an object goes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Placing {
+pub struct Placement {
     /// Where its anchor goes, m.
     pub at: Option<[f32; 3]>,
     /// The object on whose upper side it goes: at `at`, whose height then does not count, else in the middle.
@@ -162,7 +162,7 @@ pub enum Anchor {
 /// What is told about an object. `None` leaves a thing as it is.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Traits {
+pub struct ObjectAttributes {
     /// A row of `assets/categories.csv`, or one of its aliases.
     pub category: Option<String>,
     /// Fixed or movable; what has joints stays as it is.
@@ -181,7 +181,7 @@ pub struct Traits {
 /// look.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Look {
+pub struct SurfaceStyle {
     /// A row of `assets/materials.toml`.
     pub substance: Option<String>,
     /// sRGB, 0 to 255; takes the place of colour and image.
@@ -197,7 +197,7 @@ pub struct Look {
 /// A sound: a signal or a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Sound {
+pub struct SoundSpec {
     /// The name of a signal.
     #[serde(default)]
     pub signal: Option<String>,
@@ -218,7 +218,7 @@ pub struct Sound {
 /// Takes an object out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Remove {
+pub struct RemoveObject {
     /// The object's name.
     pub object: String,
     /// Whether what stands on it or lies in it goes too; else that stays where it is.
@@ -229,12 +229,12 @@ pub struct Remove {
 /// Puts an object elsewhere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Move {
+pub struct MoveObject {
     /// The object's name.
     pub object: String,
     /// Where it goes; without place and height it only turns.
     #[serde(default)]
-    pub place: Placing,
+    pub place: Placement,
     /// By how much it is shifted after that, m.
     #[serde(default)]
     pub by: [f32; 3],
@@ -253,17 +253,17 @@ const fn yes() -> bool {
 /// Makes surfaces of something else.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ReMaterial {
+pub struct ChangeMaterial {
     /// Which surfaces.
-    pub of: Surfaces,
+    pub of: SurfaceSelector,
     /// What they are now.
-    pub look: Look,
+    pub look: SurfaceStyle,
 }
 
 /// Surfaces of a house.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Surfaces {
+pub enum SurfaceSelector {
     /// A material by its name, wherever it is.
     Material(String),
     /// A piece of the building by its name.
@@ -281,14 +281,14 @@ pub enum Surfaces {
         /// The room's name.
         name: String,
         /// Which of its sides.
-        side: Side,
+        side: RoomSide,
     },
 }
 
 /// A side of a room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Side {
+pub enum RoomSide {
     /// The floor.
     Floor,
     /// All walls.
@@ -302,7 +302,7 @@ pub enum Side {
 #[serde(deny_unknown_fields)]
 pub struct AddEmitter {
     /// What sounds.
-    pub sound: Sound,
+    pub sound: SoundSpec,
     /// The object that sounds, from its middle; it starts switched on.
     #[serde(default)]
     pub object: Option<String>,
@@ -324,7 +324,7 @@ pub struct AddLamp {
     /// The kind of the new lamp in the catalogue.
     #[serde(default = "ceiling_lamp")]
     pub kind: String,
-    /// The new lamp's style, as of [`What::Catalogue`].
+    /// The new lamp's style, as of [`ObjectSource::Catalogue`].
     #[serde(default)]
     pub style: Option<String>,
     /// The new lamp's seed.
@@ -335,7 +335,7 @@ pub struct AddLamp {
     pub name: Option<String>,
     /// Where the new lamp goes.
     #[serde(default)]
-    pub place: Placing,
+    pub place: Placement,
     /// Electrical power, W, of which 1 counts as 100 lm; `None`: the model's, or 10.
     #[serde(default)]
     pub power_w: Option<f32>,
@@ -372,7 +372,7 @@ pub struct AddRobot {
 /// Says where an agent starts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct StartAgent {
+pub struct SetAgentStart {
     /// Where its feet are, m; `None`: nearest to the middle of the room where someone of usual size can stand.
     pub at: Option<[f32; 3]>,
     /// The room's name; beside `at` that room must hold the place.
@@ -399,11 +399,11 @@ pub struct SetDoor {
 /// Says what an object is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Describe {
+pub struct SetAttributes {
     /// The object's name.
     pub object: String,
     /// What it is.
-    pub traits: Traits,
+    pub traits: ObjectAttributes,
 }
 
 /// Gives another name to an object or a room; without either, to the house.

@@ -2,21 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use super::faults::fault;
+use super::edit_errors::fault;
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
-use crate::report::At;
-use crate::root::DataRoot;
+use crate::report::FileLocation;
 
 /// Which files an edit may name.
 #[derive(Clone, Debug)]
-pub enum Files {
+pub enum FileAccess {
     /// Any: the edits come from the user.
     Anywhere,
     /// Those below a folder: the edits come from a file in it.
     Below(DataRoot),
 }
 
-impl Files {
+impl FileAccess {
     /// The path that a name means.
     ///
     /// # Errors
@@ -29,7 +29,7 @@ impl Files {
             return Ok(PathBuf::from(name));
         };
         let leaves = || HousesError::PathLeavesRoot {
-            at: At::file("plan").field(field),
+            at: FileLocation::file("plan").field(field),
             path: name.to_owned(),
             root: root.folder().to_owned(),
         };
@@ -41,7 +41,7 @@ impl Files {
         Ok(full)
     }
 
-    /// The HOUSE that a string means: paths as of [`Files::path`]; no plan rests on another plan.
+    /// The HOUSE that a string means: paths as of [`FileAccess::path`]; no plan rests on another plan.
     ///
     /// # Errors
     /// [`HousesError::PathLeavesRoot`], and [`HousesError::Spec`] for a plan.

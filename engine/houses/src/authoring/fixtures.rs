@@ -10,10 +10,10 @@ use dwell_scene::{
 use glam::{Affine3A, Vec3};
 
 use super::add::{from_model, model, put};
-use super::apply::Desk;
-use super::edits::{AddEmitter, AddLamp, Placing, Sound};
-use super::faults::{fault, inside, point, within};
-use super::graft::graft;
+use super::apply::EditSession;
+use super::copy_objects::graft;
+use super::edit_errors::{fault, inside, point, within};
+use super::edits::{AddEmitter, AddLamp, Placement, SoundSpec};
 use super::sound_file;
 use crate::error::HousesError;
 
@@ -28,9 +28,9 @@ const USUAL_W: f32 = 10.0;
 
 /// Gives an object a sound from its middle; it starts switched on.
 pub(super) fn sound_of(
-    desk: &mut Desk<'_>,
+    desk: &mut EditSession<'_>,
     id: ObjectId,
-    sound: &Sound,
+    sound: &SoundSpec,
 ) -> Result<(), HousesError> {
     let level_db = within("level_db", sound.level_db, [-20.0, 140.0], "dB SPL at 1 m")?;
     let start_s = within("start_s", sound.start_s, [0.0, 86_400.0], "s")?;
@@ -72,7 +72,10 @@ pub(super) fn sound_of(
 ///
 /// # Errors
 /// [`HousesError::Spec`].
-pub(super) fn add_emitter(desk: &mut Desk<'_>, wanted: &AddEmitter) -> Result<(), HousesError> {
+pub(super) fn add_emitter(
+    desk: &mut EditSession<'_>,
+    wanted: &AddEmitter,
+) -> Result<(), HousesError> {
     match (&wanted.object, wanted.at) {
         (Some(name), None) => {
             let id = desk.object("object", name)?;
@@ -93,13 +96,13 @@ pub(super) fn add_emitter(desk: &mut Desk<'_>, wanted: &AddEmitter) -> Result<()
             let id = disc(&mut desk.data);
             let name = match &wanted.name {
                 Some(name) => name.clone(),
-                None => desk.census.counted_name("source"),
+                None => desk.object_index.next_numbered_name("source"),
             };
             let [_, _, below] = DISC_M;
-            let place = Placing {
+            let place = Placement {
                 at: Some((at - Vec3::Y * below).to_array()),
                 anchor: super::edits::Anchor::Top,
-                ..Placing::default()
+                ..Placement::default()
             };
             put(desk, id, Some(&name), &place)?;
             sound_of(desk, id, &wanted.sound).map_err(inside("sound"))?;
@@ -141,7 +144,7 @@ fn disc(data: &mut HouseData) -> ObjectId {
         density_kg_m3: 1000.0,
         inertial: None,
     });
-    let row = crate::build::category(["loudspeaker"]);
+    let row = crate::import::category(["loudspeaker"]);
     let category = row.map_or_else(Category::default, |row| Category {
         fine: row.name.clone(),
         coarse: row.name.clone(),
@@ -168,7 +171,7 @@ fn disc(data: &mut HouseData) -> ObjectId {
 ///
 /// # Errors
 /// [`HousesError::Spec`].
-pub(super) fn add_lamp(desk: &mut Desk<'_>, wanted: &AddLamp) -> Result<(), HousesError> {
+pub(super) fn add_lamp(desk: &mut EditSession<'_>, wanted: &AddLamp) -> Result<(), HousesError> {
     let power = wanted
         .power_w
         .map(|power| within("power_w", power, [0.0, 1e5], "W"))

@@ -18,11 +18,11 @@ const APART_M: f32 = 0.01;
 const REACH_M: f32 = 0.1;
 
 /// The surfaces of an object.
-pub(super) struct Top {
+pub(super) struct SupportSurface {
     triangles: Vec<[Vec3; 3]>,
 }
 
-impl Top {
+impl SupportSurface {
     pub(super) fn of(data: &HouseData, object: ObjectId) -> Self {
         let triangles = triangles(data, object);
         Self { triangles }
@@ -36,8 +36,8 @@ impl Top {
 }
 
 /// A search for a place on a carrier.
-pub(super) struct FreePlace<'a> {
-    top: Top,
+pub(super) struct PlacementSearch<'a> {
+    top: SupportSurface,
     bounds: Aabb,
     /// The thing's box around its anchor, m.
     around: &'a Aabb,
@@ -45,7 +45,7 @@ pub(super) struct FreePlace<'a> {
     others: Vec<Aabb>,
 }
 
-impl<'a> FreePlace<'a> {
+impl<'a> PlacementSearch<'a> {
     /// On `carrier`, for `thing`, which has the box `around` its anchor; `boxes`: those around all objects, m.
     pub(super) fn on(
         data: &HouseData,
@@ -65,7 +65,7 @@ impl<'a> FreePlace<'a> {
         // A building is around all that stands in it.
         let others = others.filter(|(_, b)| b.intersects(&reach) && !b.encloses(&bounds));
         Self {
-            top: Top::of(data, carrier),
+            top: SupportSurface::of(data, carrier),
             bounds,
             around,
             others: others.map(|(_, b)| *b).collect(),

@@ -4,11 +4,11 @@ use dwell_scene::{Articulation, Collider, HouseData, JointKind, Mobility, Object
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::edits::Traits;
-use super::faults::{fault, point, within};
+use super::edit_errors::{fault, point, within};
+use super::edits::ObjectAttributes;
 use super::{describe, place};
-use crate::build::convex_pieces;
 use crate::error::HousesError;
+use crate::import::convex_pieces;
 
 /// Friction of the hinge, N·m, and its damping, N·m·s/rad: those of the doors of other foreign houses.
 const FRICTION_N_M: f32 = 0.6;
@@ -142,9 +142,9 @@ pub(super) fn hang(
         return Err(fault("hinge.open_deg", hinge.open_deg, possible));
     }
     // What moves has a mass and convex pieces, as anything loose.
-    let traits = Traits {
+    let traits = ObjectAttributes {
         mobility: Some(Mobility::Movable),
-        ..Traits::default()
+        ..ObjectAttributes::default()
     };
     describe::describe(data, id, &traits)?;
     let object = &mut data.objects[id];

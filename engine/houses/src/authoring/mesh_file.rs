@@ -6,18 +6,18 @@ use std::sync::Arc;
 use dwell_scene::{HouseData, MaterialId, Mesh};
 use glam::{Affine3A, Quat, Vec3};
 
-use super::apply::Desk;
-use super::edits::Up;
-use super::faults::{fault, within};
-use crate::build::{Scene, joined};
-use crate::damage::Damage;
+use super::apply::EditSession;
+use super::edit_errors::{fault, within};
+use super::edits::UpAxis;
+use crate::data_root::UserFile;
 use crate::error::HousesError;
+use crate::import::{ImportedScene, merge_meshes};
 use crate::limits::MAX_BUFFER_BYTES;
-use crate::report::{At, Report};
-use crate::root::Named;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// What a mesh file holds, as the first mesh of tables that hold its materials and images too.
-pub(super) struct Loaded {
+pub(super) struct LoadedMesh {
     /// One mesh, and the file's materials and textures.
     pub(super) data: HouseData,
     /// The material of each slot of the mesh.
@@ -29,11 +29,11 @@ pub(super) struct Loaded {
 /// # Errors
 /// What the format's reader says; [`HousesError::Empty`] without a triangle.
 pub(super) fn load(
-    desk: &mut Desk<'_>,
+    desk: &mut EditSession<'_>,
     name: &str,
     scale: f32,
-    up: Up,
-) -> Result<Arc<Loaded>, HousesError> {
+    up: UpAxis,
+) -> Result<Arc<LoadedMesh>, HousesError> {
     let scale = within(
         "scale",
         scale,
@@ -45,11 +45,11 @@ pub(super) fn load(
         return Ok(known.clone());
     }
     let path = desk.files.path("path", name)?;
-    let mut report = Report::new();
+    let mut report = LoadReport::new();
     let scene = read(&path, desk.threads, &mut report)?;
     let turn = match up {
-        Up::Y => Quat::IDENTITY,
-        Up::Z => Quat::from_xyzw(
+        UpAxis::Y => Quat::IDENTITY,
+        UpAxis::Z => Quat::from_xyzw(
             -std::f32::consts::FRAC_1_SQRT_2,
             0.0,
             0.0,
@@ -72,9 +72,9 @@ pub(super) fn load(
             (Arc::new(mesh), thing.materials)
         })
         .collect();
-    let (mut mesh, materials) = joined(&pieces);
+    let (mut mesh, materials) = merge_meshes(&pieces);
     if mesh.triangles.is_empty() {
-        let at = At::file(path.display().to_string());
+        let at = FileLocation::file(path.display().to_string());
         return Err(HousesError::empty(&at, &report));
     }
     if mesh.bounds().size().max_element() > 1_000.0 {
@@ -83,13 +83,13 @@ pub(super) fn load(
     }
     mesh.shrink_to_fit();
     let mut data = HouseData {
-        materials: scene.looks.into_materials(),
+        materials: scene.looks.finish_materials(),
         textures: scene.textures.into(),
         ..HouseData::default()
     };
     data.meshes.push(Arc::new(mesh));
     desk.report.append(report);
-    let loaded = Arc::new(Loaded { data, materials });
+    let loaded = Arc::new(LoadedMesh { data, materials });
     desk.meshes.insert(key, loaded.clone());
     Ok(loaded)
 }
@@ -97,15 +97,15 @@ pub(super) fn load(
 fn read(
     path: &Path,
     threads: dwell_scene::parallel::Threads,
-    report: &mut Report,
-) -> Result<Scene, HousesError> {
+    report: &mut LoadReport,
+) -> Result<ImportedScene, HousesError> {
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     if crate::obj::recognizes(path) {
         let (scene, at) = crate::obj::read_scene(path, threads, report)?;
         let unread = report
             .warnings()
             .iter()
-            .find(|w| matches!(w.damage, Damage::UnreadableMesh { .. }));
+            .find(|w| matches!(w.damage, WarningKind::UnreadableMesh { .. }));
         return match unread {
             Some(warning) => Err(HousesError::Syntax {
                 at,
@@ -115,7 +115,7 @@ fn read(
         };
     }
     if crate::gltf::recognizes(path) {
-        let Named { root, name, bytes } = Named::read(path, MAX_BUFFER_BYTES)?;
+        let UserFile { root, name, bytes } = UserFile::read(path, MAX_BUFFER_BYTES)?;
         return crate::gltf::read_scene(&bytes, &root, &name, threads, report);
     }
     let found = format!("{:?}", path.display().to_string());

@@ -7,17 +7,17 @@ use dwell_scene::parallel::Threads;
 use serde::{Deserialize, Serialize};
 
 use super::apply::edit;
-use super::building::{Building, raise};
+use super::edit_errors::{fault, inside};
 use super::edits::Edit;
-use super::faults::{fault, inside};
-use super::files::Files;
-use super::map::Map;
+use super::files::FileAccess;
+use super::floor_plan::{BuildingPlan, construct};
+use super::name_mapping::NameMapping;
+use crate::data_root::UserFile;
 use crate::error::HousesError;
 use crate::formats::{Opened, open_with};
 use crate::json;
 use crate::limits::MAX_TEXT_BYTES;
-use crate::report::{At, Report};
-use crate::root::Named;
+use crate::report::{FileLocation, LoadReport};
 
 /// What the field `format` of a plan file holds.
 const FORMAT: &str = "dwell-plan";
@@ -29,7 +29,7 @@ const ENDING: &str = ".plan.json";
 /// What a house is made of: a building or another house, and edits, one after another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Plan {
+pub struct HousePlan {
     /// `"dwell-plan"`.
     pub format: String,
     /// 1.
@@ -39,12 +39,12 @@ pub struct Plan {
     /// A HOUSE that is edited.
     pub house: Option<String>,
     /// A building that is raised; not beside a house.
-    pub building: Option<Building>,
+    pub building: Option<BuildingPlan>,
     /// What is added and changed.
     pub edits: Vec<Edit>,
 }
 
-impl Default for Plan {
+impl Default for HousePlan {
     fn default() -> Self {
         Self {
             format: FORMAT.to_owned(),
@@ -62,15 +62,15 @@ impl Default for Plan {
 /// # Errors
 /// [`HousesError::Syntax`] with what was found and what is allowed there.
 pub fn edits_from_json(text: &str) -> Result<Vec<Edit>, HousesError> {
-    serde_json::from_str(text).map_err(json::syntax(&At::file("edits")))
+    serde_json::from_str(text).map_err(json::syntax(&FileLocation::file("edits")))
 }
 
-impl Plan {
+impl HousePlan {
     /// Reads a plan from JSON; `at` stands in errors.
     ///
     /// # Errors
     /// [`HousesError::Syntax`], [`HousesError::Field`] for another format, [`HousesError::Version`].
-    pub fn from_json(text: &[u8], at: &At) -> Result<Self, HousesError> {
+    pub fn from_json(text: &[u8], at: &FileLocation) -> Result<Self, HousesError> {
         let plan: Self = json::from_slice(text).map_err(json::syntax(at))?;
         if plan.format != FORMAT {
             return Err(HousesError::Field {
@@ -108,21 +108,22 @@ impl Plan {
 /// assert!((house.rooms.as_slice()[0].area_m2() - 12.0).abs() < 1e-4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn build(plan: &Plan, files: &Files) -> Result<(House, Report), HousesError> {
+pub fn build(plan: &HousePlan, files: &FileAccess) -> Result<(House, LoadReport), HousesError> {
     build_with(plan, files, Threads::default())
 }
 
 fn build_with(
-    plan: &Plan,
-    files: &Files,
+    plan: &HousePlan,
+    files: &FileAccess,
     threads: Threads,
-) -> Result<(House, Report), HousesError> {
+) -> Result<(House, LoadReport), HousesError> {
     let (base, mut report) = match (&plan.house, &plan.building) {
         (Some(house), None) => open_with(&files.house("house", house)?, threads)?,
         (None, Some(building)) => {
-            let data = raise(&plan.name, building).map_err(inside("building"))?;
-            let house = House::new(data).map_err(HousesError::scene(&At::file("plan")))?;
-            (house, Report::new())
+            let data = construct(&plan.name, building).map_err(inside("building"))?;
+            let house =
+                House::new(data).map_err(HousesError::scene(&FileLocation::file("plan")))?;
+            (house, LoadReport::new())
         }
         (both, _) => {
             let found = if both.is_some() { "both" } else { "neither" };
@@ -134,7 +135,7 @@ fn build_with(
     if !plan.name.is_empty() && plan.name != house.name {
         let mut data = house.data().clone();
         data.name.clone_from(&plan.name);
-        house = House::new(data).map_err(HousesError::scene(&At::file("plan")))?;
+        house = House::new(data).map_err(HousesError::scene(&FileLocation::file("plan")))?;
     }
     Ok((house, report))
 }
@@ -150,12 +151,12 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 
 /// Opens a plan file; the files that it names are read below its folder.
 pub(crate) fn open(path: &Path, threads: Threads) -> Opened {
-    let Named { root, name, bytes } = Named::read(path, MAX_TEXT_BYTES)?;
-    let mut plan = Plan::from_json(&bytes, &At::file(&name))?;
+    let UserFile { root, name, bytes } = UserFile::read(path, MAX_TEXT_BYTES)?;
+    let mut plan = HousePlan::from_json(&bytes, &FileLocation::file(&name))?;
     if plan.name.is_empty() && plan.building.is_some() {
         name[..name.len().saturating_sub(ENDING.len())].clone_into(&mut plan.name);
     }
-    build_with(&plan, &Files::Below(root), threads)
+    build_with(&plan, &FileAccess::Below(root), threads)
 }
 
 /// Opens a house with a map of its foreign names: `HOUSE?map=FILE`.
@@ -163,7 +164,7 @@ pub(crate) fn open_mapped(house: &str, map: &str, threads: Threads) -> Opened {
     if house.contains("?map=") {
         return Err(fault("map", "two maps", "one"));
     }
-    let map = Map::read(Path::new(map))?;
+    let map = NameMapping::read(Path::new(map))?;
     let (house, mut report) = open_with(house, threads)?;
     let house = map.apply(&house, &mut report)?;
     Ok((house, report))

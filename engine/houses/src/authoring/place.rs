@@ -8,10 +8,10 @@ use dwell_scene::{
 };
 use glam::{Quat, Vec2, Vec3};
 
-use super::apply::Desk;
-use super::edits::{Anchor, Placing};
-use super::faults::{fault, point, within};
-use super::free_place::{FreePlace, Top};
+use super::apply::EditSession;
+use super::edit_errors::{fault, point, within};
+use super::edits::{Anchor, Placement};
+use super::free_place::{PlacementSearch, SupportSurface};
 use crate::error::HousesError;
 
 /// How far a thing may hover above what it stands on, m.
@@ -84,10 +84,10 @@ pub(super) fn anchor_in_world(data: &HouseData, object: ObjectId, which: Anchor)
 }
 
 /// Shifts and turns objects, each part and each joint that hangs on the house.
-pub(super) fn carry(desk: &mut Desk<'_>, objects: &BTreeSet<ObjectId>, change: &Pose) {
-    desk.census.moved(objects.iter().copied());
+pub(super) fn carry(desk: &mut EditSession<'_>, objects: &BTreeSet<ObjectId>, change: &Pose) {
+    desk.object_index.moved(objects.iter().copied());
     for object in objects {
-        let joints = desk.census.joints_of(&desk.data, *object);
+        let joints = desk.object_index.joints_of(&desk.data, *object);
         let data = &mut desk.data;
         for part in data.objects[*object].parts() {
             let pose = &mut data.parts[part].world_from_part;
@@ -104,9 +104,9 @@ pub(super) fn carry(desk: &mut Desk<'_>, objects: &BTreeSet<ObjectId>, change: &
 
 /// The movement that puts an object's anchor somewhere and turns it there; what `placing` leaves open stays.
 pub(super) fn movement(
-    desk: &mut Desk<'_>,
+    desk: &mut EditSession<'_>,
     object: ObjectId,
-    placing: &Placing,
+    placing: &Placement,
 ) -> Result<Pose, HousesError> {
     let data = &desk.data;
     let root = data.parts[data.objects[object].first_part].world_from_part;
@@ -136,9 +136,9 @@ pub(super) fn movement(
 
 /// Where the anchor goes; `None`: it stays. `around`: the box of the thing around its anchor as it will be turned, m.
 fn target(
-    desk: &mut Desk<'_>,
+    desk: &mut EditSession<'_>,
     object: ObjectId,
-    placing: &Placing,
+    placing: &Placement,
     around: &Aabb,
 ) -> Result<Option<Vec3>, HousesError> {
     let at = placing.at.map(|at| point("place.at", at)).transpose()?;
@@ -155,8 +155,8 @@ fn target(
     let carrier = desk.object("place.on", on)?;
     let data = &desk.data;
     let Some(Vec3 { x, z, .. }) = at else {
-        let boxes = desk.census.boxes(data);
-        let free = FreePlace::on(data, boxes, carrier, object, around).find();
+        let boxes = desk.object_index.boxes(data);
+        let free = PlacementSearch::on(data, boxes, carrier, object, around).find();
         let [wide, deep] = [around.size().x, around.size().z];
         return free.map(Some).ok_or_else(|| {
             fault(
@@ -166,7 +166,7 @@ fn target(
             )
         });
     };
-    let top = Top::of(data, carrier).height_m(Vec2::new(x, z));
+    let top = SupportSurface::of(data, carrier).height_m(Vec2::new(x, z));
     let top = top.ok_or_else(|| {
         let bounds = world_box(data, carrier);
         let [low, high] = [bounds.min, bounds.max];

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use dwell_scene::{IdVec, SoundFile, SoundFileId};
 
-use super::faults::fault;
-use super::files::Files;
+use super::edit_errors::fault;
+use super::files::FileAccess;
+use crate::data_root::UserFile;
 use crate::error::HousesError;
-use crate::root::Named;
 
 /// What the files begin with: WAV, FLAC, Ogg.
 const BEGINNINGS: [&[u8]; 3] = [b"RIFF", b"fLaC", b"OggS"];
@@ -17,9 +17,9 @@ const BEGINNINGS: [&[u8]; 3] = [b"RIFF", b"fLaC", b"OggS"];
 /// # Errors
 /// [`HousesError::PathLeavesRoot`], [`HousesError::Io`], [`HousesError::TooLarge`] above [`SoundFile::MOST_BYTES`], and
 /// [`HousesError::Spec`] for a file of another form.
-pub(super) fn load(files: &Files, file: &str) -> Result<SoundFile, HousesError> {
+pub(super) fn load(files: &FileAccess, file: &str) -> Result<SoundFile, HousesError> {
     let path = files.path("file", file)?;
-    let Named { name, bytes, .. } = Named::read(&path, SoundFile::MOST_BYTES)?;
+    let UserFile { name, bytes, .. } = UserFile::read(&path, SoundFile::MOST_BYTES)?;
     if !BEGINNINGS.iter().any(|begin| bytes.starts_with(begin)) {
         let begins: Vec<u8> = bytes.iter().copied().take(4).collect();
         let begins = String::from_utf8_lossy(&begins);

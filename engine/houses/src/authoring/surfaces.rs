@@ -9,11 +9,11 @@ use dwell_scene::{
 };
 use glam::{Vec2, Vec3};
 
-use super::apply::Desk;
-use super::edits::{Look, ReMaterial, Side, Surfaces};
-use super::faults::{fault, inside, substance, unknown, within};
-use super::graft::material_of;
-use super::prune;
+use super::apply::EditSession;
+use super::copy_objects::material_of;
+use super::edit_errors::{fault, inside, substance, unknown, within};
+use super::edits::{ChangeMaterial, RoomSide, SurfaceSelector, SurfaceStyle};
+use super::remove_objects;
 use crate::error::HousesError;
 
 /// How far before a face one looks whether the room is there, m.
@@ -38,10 +38,13 @@ pub(super) fn room(data: &HouseData, field: &str, name: &str) -> Result<RoomId, 
 ///
 /// # Errors
 /// [`HousesError::Spec`] for surfaces, substances or numbers that are not there.
-pub(super) fn re_material(desk: &mut Desk<'_>, change: &ReMaterial) -> Result<(), HousesError> {
+pub(super) fn change_material(
+    desk: &mut EditSession<'_>,
+    change: &ChangeMaterial,
+) -> Result<(), HousesError> {
     let look = &change.look;
     match &change.of {
-        Surfaces::Material(name) => {
+        SurfaceSelector::Material(name) => {
             let data = &mut desk.data;
             let found = data
                 .materials
@@ -53,7 +56,7 @@ pub(super) fn re_material(desk: &mut Desk<'_>, change: &ReMaterial) -> Result<()
             })?;
             change_in_place(data, id, look).map_err(inside("look"))
         }
-        Surfaces::Structure(name) => {
+        SurfaceSelector::Structure(name) => {
             let data = &mut desk.data;
             let found = data.structure.iter().position(|piece| piece.name == *name);
             let id = found.map(StructureId::from_index).ok_or_else(|| {
@@ -63,14 +66,14 @@ pub(super) fn re_material(desk: &mut Desk<'_>, change: &ReMaterial) -> Result<()
             let old = data.structure[id].materials.clone();
             let new = repainted(data, &old, look).map_err(inside("look"))?;
             data.structure[id].materials = new;
-            prune::drop_materials(data, &old);
+            remove_objects::drop_materials(data, &old);
             Ok(())
         }
-        Surfaces::Object { name, part } => {
+        SurfaceSelector::Object { name, part } => {
             let id = desk.object("of.object.name", name)?;
             paint_object(&mut desk.data, id, part.as_deref(), look)
         }
-        Surfaces::Room { name, side } => {
+        SurfaceSelector::Room { name, side } => {
             let data = &mut desk.data;
             let id = room(data, "of.room.name", name)?;
             paint_room(data, id, *side, look)
@@ -85,7 +88,7 @@ pub(super) fn re_material(desk: &mut Desk<'_>, change: &ReMaterial) -> Result<()
 pub(super) fn change_in_place(
     data: &mut HouseData,
     id: MaterialId,
-    look: &Look,
+    look: &SurfaceStyle,
 ) -> Result<(), HousesError> {
     let old = &data.materials[id];
     let new = changed(old, look)?;
@@ -97,7 +100,7 @@ pub(super) fn change_in_place(
 }
 
 /// A material as it is after a change.
-fn changed(old: &Material, look: &Look) -> Result<Material, HousesError> {
+fn changed(old: &Material, look: &SurfaceStyle) -> Result<Material, HousesError> {
     let mut new = old.clone();
     if let Some(name) = &look.substance {
         let row = substance("substance", name)?;
@@ -140,7 +143,7 @@ fn changed(old: &Material, look: &Look) -> Result<Material, HousesError> {
 fn repainted(
     data: &mut HouseData,
     old: &[MaterialId],
-    look: &Look,
+    look: &SurfaceStyle,
 ) -> Result<Vec<MaterialId>, HousesError> {
     let mut new = Vec::with_capacity(old.len());
     for id in old {
@@ -158,7 +161,7 @@ pub(super) fn paint_object(
     data: &mut HouseData,
     id: ObjectId,
     part: Option<&str>,
-    look: &Look,
+    look: &SurfaceStyle,
 ) -> Result<(), HousesError> {
     let parts = data.objects[id]
         .parts()
@@ -181,20 +184,20 @@ pub(super) fn paint_object(
         data.parts[part].materials = repainted(data, &old, look)?;
         before.extend(old);
     }
-    prune::drop_materials(data, &before);
+    remove_objects::drop_materials(data, &before);
     Ok(())
 }
 
 fn paint_room(
     data: &mut HouseData,
     id: RoomId,
-    side: Side,
-    look: &Look,
+    side: RoomSide,
+    look: &SurfaceStyle,
 ) -> Result<(), HousesError> {
     let kind = match side {
-        Side::Floor => StructureKind::Floor,
-        Side::Walls => StructureKind::Wall,
-        Side::Ceiling => StructureKind::Ceiling,
+        RoomSide::Floor => StructureKind::Floor,
+        RoomSide::Walls => StructureKind::Wall,
+        RoomSide::Ceiling => StructureKind::Ceiling,
     };
     let mut found = false;
     let (mut materials, mut meshes) = (Vec::new(), Vec::new());
@@ -222,23 +225,23 @@ fn paint_room(
         let found = format!("no {kind:?} before which room {name:?} lies").to_lowercase();
         return Err(fault("of.room.side", found, "a side that the building has"));
     }
-    prune::drop_materials(data, &materials);
+    remove_objects::drop_materials(data, &materials);
     // One after the other: each that goes moves those behind it.
     meshes.sort_unstable_by(|a, b| b.cmp(a));
     for mesh in meshes {
-        prune::drop_mesh(data, mesh);
+        remove_objects::drop_mesh(data, mesh);
     }
     Ok(())
 }
 
 /// Whether a face looks into a room, as its floor, wall or ceiling does.
-fn looks_into(data: &HouseData, id: RoomId, side: Side, [a, b, c]: [Vec3; 3]) -> bool {
+fn looks_into(data: &HouseData, id: RoomId, side: RoomSide, [a, b, c]: [Vec3; 3]) -> bool {
     let room = &data.rooms[id];
     let normal = (b - a).cross(c - a).normalize_or_zero();
     let fits = match side {
-        Side::Floor => normal.y > LEVEL,
-        Side::Ceiling => normal.y < -LEVEL,
-        Side::Walls => normal != Vec3::ZERO && normal.y.abs() <= LEVEL,
+        RoomSide::Floor => normal.y > LEVEL,
+        RoomSide::Ceiling => normal.y < -LEVEL,
+        RoomSide::Walls => normal != Vec3::ZERO && normal.y.abs() <= LEVEL,
     };
     if !fits {
         return false;
@@ -267,7 +270,7 @@ fn paint_triangles(
     id: StructureId,
     mesh: &Arc<Mesh>,
     chosen: &[bool],
-    look: &Look,
+    look: &SurfaceStyle,
 ) -> Result<Option<MeshId>, HousesError> {
     let slots: Vec<u16> = (0..mesh.triangles.len()).map(|t| mesh.slot(t)).collect();
     let of = |slot: u16, wanted: bool| {

@@ -7,8 +7,8 @@ use dwell_scene::{House, Mesh, Room};
 use glam::Affine3A;
 use serde::{Deserialize, Serialize};
 
-use crate::damage::Unmapped;
-use crate::report::Report;
+use crate::report::LoadReport;
+use crate::warning_kind::UnmappedKind;
 
 /// A name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,14 +36,14 @@ pub struct UnmappedNames {
 
 /// What stayed unmapped of a house: materials of the default substance and those that its reader reported, objects without a
 /// category, and rooms that nobody has a word for.
-pub fn unmapped(house: &House, report: &Report) -> UnmappedNames {
-    let reported = |what: Unmapped| {
+pub fn unmapped(house: &House, report: &LoadReport) -> UnmappedNames {
+    let reported = |what: UnmappedKind| {
         let names = report.unmapped().filter(move |(kind, _, _)| *kind == what);
         names
             .map(|(_, name, _)| name.to_owned())
             .collect::<Vec<_>>()
     };
-    let substances = reported(Unmapped::Substance);
+    let substances = reported(UnmappedKind::Substance);
     let default = &library().default_substance().name;
     let foreign: Vec<Option<String>> = house
         .materials
@@ -102,7 +102,7 @@ pub fn unmapped(house: &House, report: &Report) -> UnmappedNames {
             .sum();
         add(&mut nodes, name, area_m2, "");
     }
-    let types = reported(Unmapped::RoomType);
+    let types = reported(UnmappedKind::RoomType);
     let open = |room: &&Room| {
         let told = room.kinds.iter().chain([&room.name]);
         let mut plain = told.map(|word| word.to_lowercase().replace(['_', '-'], " "));

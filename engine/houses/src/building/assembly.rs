@@ -1,6 +1,6 @@
 //! Puts models into the tables of a house.
 
-use crate::build::{Names, category};
+use crate::import::{UniqueNames, category};
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::Model;
 use dwell_furniture::textures::{TexturePattern, textures};
@@ -26,7 +26,7 @@ const SLIDE_DAMPING: f32 = 8.0;
 
 /// A model that the house knows.
 #[derive(Clone, Debug)]
-pub(crate) struct Kind {
+pub(crate) struct ModelInstances {
     pub(crate) model: Arc<Model>,
     meshes: Vec<MeshId>,
     materials: Vec<Vec<MaterialId>>,
@@ -34,19 +34,19 @@ pub(crate) struct Kind {
 
 /// A house under construction.
 #[derive(Debug, Default)]
-pub(crate) struct Assembly {
+pub(crate) struct HouseAssembly {
     pub(crate) data: HouseData,
     /// The storey that is being built.
     pub(crate) level: LevelId,
     patterns: Vec<TexturePattern>,
     finishes: Vec<(Finish, MaterialId)>,
     /// By the address of their models, which they keep alive.
-    kinds: BTreeMap<usize, Kind>,
-    material_names: Names,
-    object_names: Names,
+    kinds: BTreeMap<usize, ModelInstances>,
+    material_names: UniqueNames,
+    object_names: UniqueNames,
 }
 
-impl Assembly {
+impl HouseAssembly {
     /// An empty house without a storey; `source` names what makes it and its version.
     pub(crate) fn new(name: &str, source: &str) -> Self {
         let mut assembly = Self::default();
@@ -85,7 +85,7 @@ impl Assembly {
     }
 
     /// Makes a model known; a shared model is one kind.
-    pub(crate) fn kind(&mut self, model: impl Into<Arc<Model>>) -> Kind {
+    pub(crate) fn kind(&mut self, model: impl Into<Arc<Model>>) -> ModelInstances {
         let model = model.into();
         let address = Arc::as_ptr(&model) as usize;
         if let Some(known) = self.kinds.get(&address) {
@@ -106,7 +106,7 @@ impl Assembly {
                     .collect()
             })
             .collect();
-        let kind = Kind {
+        let kind = ModelInstances {
             model,
             meshes,
             materials,
@@ -143,7 +143,7 @@ impl Assembly {
     /// Puts an instance into a room, its first joint open by `openness` (0 to 1).
     pub(crate) fn place(
         &mut self,
-        kind: &Kind,
+        kind: &ModelInstances,
         world_from_model: Pose,
         room: RoomId,
         openness: f32,

@@ -3,7 +3,7 @@
 pub(crate) mod assembly;
 pub(crate) mod openings;
 pub(crate) mod outline;
-pub(crate) mod plan;
+pub(crate) mod room;
 pub(crate) mod stairs;
 pub(crate) mod wall;
 pub(crate) mod yaw;

@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use super::assembly::Assembly;
+use super::assembly::HouseAssembly;
 use dwell_furniture::model_cache::built_to_size;
 use dwell_furniture::models::openings::{Door, Window};
 use dwell_scene::{Pose, RoomId};
@@ -10,7 +10,7 @@ use dwell_scene::{Pose, RoomId};
 /// Hangs a door into a hole, open by `openness` (0 to 1). `square`: the leaf opens to a right angle, as beside an outer wall,
 /// which is thicker.
 pub(crate) fn put_door(
-    assembly: &mut Assembly,
+    assembly: &mut HouseAssembly,
     door: &Door,
     square: bool,
     pose: Pose,
@@ -29,7 +29,7 @@ pub(crate) fn put_door(
 }
 
 /// Puts a window into a hole; `pose` is its middle, the room at +Z.
-pub(crate) fn put_window(assembly: &mut Assembly, window: &Window, pose: Pose, room: RoomId) {
+pub(crate) fn put_window(assembly: &mut HouseAssembly, window: &Window, pose: Pose, room: RoomId) {
     let kind = assembly.kind(built_to_size(format!("{window:?}"), || window.build()));
     assembly.place(&kind, pose, room, 0.0);
 }

@@ -1,10 +1,10 @@
 //! The outline of a union of rectangles.
 
-use super::plan::Rect;
+use super::room::PlanRect;
 
 /// The corners of the union of `zones`, (x, z), clockwise seen from above, without those in the middle of an edge. The
 /// union must be one piece without holes.
-pub(crate) fn outline(zones: &[Rect]) -> Vec<[f32; 2]> {
+pub(crate) fn outline(zones: &[PlanRect]) -> Vec<[f32; 2]> {
     let lines = [0, 1].map(|axis| {
         let mut lines: Vec<f32> = zones.iter().flat_map(|z| [z[axis], z[axis + 2]]).collect();
         lines.sort_by(f32::total_cmp);

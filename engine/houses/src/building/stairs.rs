@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::assembly::Assembly;
+use super::assembly::HouseAssembly;
 use super::yaw::yaw;
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::Model;
@@ -17,7 +17,7 @@ pub(crate) const RAILING_INSET_M: f32 = 0.05;
 
 /// Where two flights beside each other stand.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Flights {
+pub(crate) struct StairFlights {
     /// The middle of the front edge on the storey's floor, m.
     pub(crate) front: Vec3,
     /// The direction in which the first flight climbs, (x, z): one step along an axis.
@@ -30,7 +30,7 @@ pub(crate) struct Flights {
     pub(crate) depth_m: f32,
 }
 
-impl Flights {
+impl StairFlights {
     fn climb(&self) -> Vec3 {
         Vec3::new(self.climb[0] as f32, 0.0, self.climb[1] as f32)
     }
@@ -48,8 +48,8 @@ impl Flights {
 
 /// Puts stairs to the next storey, `rise_m` higher. `goes_on`: another flight starts there.
 pub(crate) fn put_stairs(
-    assembly: &mut Assembly,
-    flights: &Flights,
+    assembly: &mut HouseAssembly,
+    flights: &StairFlights,
     rise_m: f32,
     goes_on: bool,
     style: &Style,
@@ -70,7 +70,12 @@ pub(crate) fn put_stairs(
 }
 
 /// Puts a railing where a first flight would start on the storey where the stairs end.
-pub(crate) fn put_railing(assembly: &mut Assembly, flights: &Flights, style: &Style, room: RoomId) {
+pub(crate) fn put_railing(
+    assembly: &mut HouseAssembly,
+    flights: &StairFlights,
+    style: &Style,
+    room: RoomId,
+) {
     let climb = flights.climb();
     // From the first flight to the second.
     let across = if flights.mirrored {

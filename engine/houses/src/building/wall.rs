@@ -1,17 +1,17 @@
 //! Straight walls with openings.
 
-use super::assembly::Assembly;
-use super::plan::Rect;
+use super::assembly::HouseAssembly;
+use super::room::PlanRect;
 use dwell_furniture::finishes::Finish;
 use dwell_scene::{Mesh, RoomId, StructureKind};
 use glam::{Vec2, Vec3};
 
 /// The face of a wall from the floor up: each finish with the height where it ends, m.
-pub(crate) type Bands = Vec<(f32, Finish)>;
+pub(crate) type FinishBands = Vec<(f32, Finish)>;
 
 /// The direction in which a wall runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Along {
+pub(crate) enum WallAxis {
     /// West to east; its front looks south (+Z).
     X,
     /// North to south; its front looks east (+X).
@@ -20,7 +20,7 @@ pub(crate) enum Along {
 
 /// A hole in a wall.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Opening {
+pub(crate) struct WallOpening {
     /// From and to along the wall: world x or z, m.
     pub(crate) along: [f32; 2],
     /// Lower and upper edge above the floor, m.
@@ -29,29 +29,29 @@ pub(crate) struct Opening {
 
 /// A straight piece of wall between two rooms, or between a room and the outside.
 #[derive(Clone, Debug)]
-pub(crate) struct Wall {
+pub(crate) struct ShellWall {
     pub(crate) name: String,
     pub(crate) room: RoomId,
     /// Height of the floor on which it stands, m.
     pub(crate) floor_m: f32,
     pub(crate) height_m: f32,
-    pub(crate) rect: Rect,
-    pub(crate) along: Along,
-    pub(crate) front: Bands,
-    pub(crate) back: Bands,
+    pub(crate) rect: PlanRect,
+    pub(crate) along: WallAxis,
+    pub(crate) front: FinishBands,
+    pub(crate) back: FinishBands,
     /// Ends, top and the insides of openings.
     pub(crate) edge: Finish,
-    pub(crate) openings: Vec<Opening>,
+    pub(crate) openings: Vec<WallOpening>,
 }
 
 /// A slot of the wall's mesh, and the edge of its texture's tile, m.
-type Look = (u16, f32);
+type SlotAndTile = (u16, f32);
 
-impl Wall {
+impl ShellWall {
     /// The wall's lines along its length and up its height: every edge of an opening or a band.
     fn lines(&self) -> [Vec<f32>; 2] {
         let [x0, z0, x1, z1] = self.rect;
-        let ends = if self.along == Along::X {
+        let ends = if self.along == WallAxis::X {
             [x0, x1]
         } else {
             [z0, z1]
@@ -82,7 +82,7 @@ impl Wall {
     /// Where the back and the front stand across the wall.
     fn depth(&self) -> [f32; 2] {
         let [x0, z0, x1, z1] = self.rect;
-        if self.along == Along::X {
+        if self.along == WallAxis::X {
             [z0, z1]
         } else {
             [x0, x1]
@@ -92,15 +92,15 @@ impl Wall {
     fn point(&self, [along, up, across]: [f32; 3]) -> Vec3 {
         let up = self.floor_m + up;
         match self.along {
-            Along::X => Vec3::new(along, up, across),
-            Along::Z => Vec3::new(across, up, along),
+            WallAxis::X => Vec3::new(along, up, across),
+            WallAxis::Z => Vec3::new(across, up, along),
         }
     }
 
     /// Adds the wall, one closed piece.
-    pub(crate) fn build(&self, assembly: &mut Assembly) {
+    pub(crate) fn build(&self, assembly: &mut HouseAssembly) {
         let mut finishes: Vec<Finish> = vec![self.edge.clone()];
-        let mut look = |finish: &Finish| -> Look {
+        let mut look = |finish: &Finish| -> SlotAndTile {
             let known = finishes.iter().position(|known| known == finish);
             let slot = known.unwrap_or_else(|| {
                 finishes.push(finish.clone());
@@ -108,7 +108,7 @@ impl Wall {
             });
             (slot as u16, finish.tile_m)
         };
-        let mut bands = |bands: &Bands| -> Vec<(f32, Look)> {
+        let mut bands = |bands: &FinishBands| -> Vec<(f32, SlotAndTile)> {
             bands
                 .iter()
                 .map(|(top, finish)| (*top, look(finish)))
@@ -120,7 +120,12 @@ impl Wall {
         assembly.structure(&name, StructureKind::Wall, Some(self.room), mesh, &finishes);
     }
 
-    fn mesh(&self, back: &[(f32, Look)], front: &[(f32, Look)], edge: Look) -> Mesh {
+    fn mesh(
+        &self,
+        back: &[(f32, SlotAndTile)],
+        front: &[(f32, SlotAndTile)],
+        edge: SlotAndTile,
+    ) -> Mesh {
         let [along, up] = self.lines();
         let [b, f] = self.depth();
         let middle = |lines: &[f32], k: usize| 0.5 * (lines[k] + lines[k + 1]);
@@ -137,7 +142,7 @@ impl Wall {
                     continue;
                 }
                 let ([l, r], [u, o]) = ([along[i], along[i + 1]], [up[j], up[j + 1]]);
-                let band = |bands: &[(f32, Look)]| {
+                let band = |bands: &[(f32, SlotAndTile)]| {
                     let found = bands
                         .iter()
                         .find(|(top, _)| o <= *top + 1e-4)
@@ -180,7 +185,7 @@ impl Wall {
                 for (corners, _, look) in faces.into_iter().filter(|(_, open, _)| *open) {
                     let mut quad = corners.map(|corner| self.point(corner));
                     // A wall along Z is the mirror image of one along X: its faces run the other way round.
-                    if self.along == Along::Z {
+                    if self.along == WallAxis::Z {
                         quad.reverse();
                     }
                     add_quad(&mut mesh, quad, look);
@@ -192,7 +197,7 @@ impl Wall {
 }
 
 /// Appends a rectangle; texture coordinates in metres over the tile, v up on upright faces.
-fn add_quad(mesh: &mut Mesh, corners: [Vec3; 4], (slot, tile_m): Look) {
+fn add_quad(mesh: &mut Mesh, corners: [Vec3; 4], (slot, tile_m): SlotAndTile) {
     let normal = (corners[1] - corners[0])
         .cross(corners[3] - corners[0])
         .normalize_or_zero();

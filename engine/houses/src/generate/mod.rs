@@ -1,16 +1,16 @@
 //! Houses from a seed: floor plan, building, furniture, small things, by rules that builders and people follow.
 //!
 //! Stages, each with plain data in and out and its own random stream, so that a change in one does not reshuffle another:
-//! `programme` (which rooms, how large), `plan` (where they lie), `openings` (doors and windows), `shell` (the building),
+//! `room_program` (which rooms, how large), `plan` (where they lie), `openings` (doors and windows), `shell` (the building),
 //! `furnish` (furniture, lamps and small things).
 //! Tries are bounded everywhere; what was given up is in the [`GenerateReport`].
 
 mod furnish;
-pub(crate) mod looks;
 mod openings;
 mod plan;
-mod programme;
-mod reach;
+mod reachability;
+pub(crate) mod room_finishes;
+mod room_program;
 mod rooms;
 mod shell;
 mod spec;
@@ -18,20 +18,20 @@ mod spec;
 #[cfg(test)]
 mod tests;
 
-pub use rooms::RoomKind;
+pub use rooms::GeneratedRoomKind;
 pub use spec::{AssetSplit, DoorStates, HomeKind, HouseSpec};
 
-use crate::building::assembly::Assembly;
-use crate::damage::Damage;
+use crate::building::assembly::HouseAssembly;
 use crate::error::HousesError;
 use crate::formats::Opened;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 use dwell_furniture::style::{STYLES, Style};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Daytime, House, SceneError, Sky};
-use openings::Hole;
-use plan::{Cells, FloorPlan};
-use programme::Programme;
+use openings::WallHole;
+use plan::{GeneratedPlan, StoreyCells};
+use room_program::RoomProgram;
 use serde::Serialize;
 
 /// The version of the generator: another one may make other houses of the same seed.
@@ -39,7 +39,7 @@ pub const VERSION: u32 = 4;
 
 /// A generated house.
 #[derive(Debug)]
-pub struct Generated {
+pub struct GeneratedHouse {
     /// The house.
     pub house: House,
     /// What was drawn and what was given up.
@@ -64,15 +64,15 @@ pub struct GenerateReport {
 ///
 /// # Determinism
 /// The same seed and spec give the same bytes, for any number of threads.
-pub fn generate(seed: u64, spec: &HouseSpec) -> Result<Generated, HousesError> {
+pub fn generate(seed: u64, spec: &HouseSpec) -> Result<GeneratedHouse, HousesError> {
     spec.check()?;
     let key = RandomKey::root(seed).child("house");
     let style = style(spec, key.child("style"));
-    let mut best: Option<Paper> = None;
+    let mut best: Option<FurnishedPlan> = None;
     // Where a room cannot be reached whatever is left out, another plan is drawn.
     for round in 0..HOUSES {
-        let paper = furnished_paper(spec, style, key.child("house").child(round))?;
-        let lost = |paper: &Paper| paper.unreached.len();
+        let paper = furnished_plan(spec, style, key.child("house").child(round))?;
+        let lost = |paper: &FurnishedPlan| paper.unreached.len();
         if best.as_ref().is_none_or(|best| lost(&paper) < lost(best)) {
             best = Some(paper);
         }
@@ -81,11 +81,11 @@ pub fn generate(seed: u64, spec: &HouseSpec) -> Result<Generated, HousesError> {
         }
     }
     let paper = best.ok_or_else(|| no_plan(spec, None))?;
-    let Paper {
+    let FurnishedPlan {
         draft, furnished, ..
     } = &paper;
-    let mut assembly = Assembly::new(&format!("seed_{seed}"), &format!("generate@{VERSION}"));
-    let builder = shell::Builder {
+    let mut assembly = HouseAssembly::new(&format!("seed_{seed}"), &format!("generate@{VERSION}"));
+    let builder = shell::ShellBuilder {
         plan: &draft.plan,
         holes: &draft.holes,
         style,
@@ -94,7 +94,7 @@ pub fn generate(seed: u64, spec: &HouseSpec) -> Result<Generated, HousesError> {
     };
     let shell = builder.build(&mut assembly);
     shell.furnish(furnished, &mut assembly);
-    let at = At::file(format!("seed:{seed}"));
+    let at = FileLocation::file(format!("seed:{seed}"));
     assembly.data.sky = Some(sky(spec, key.child("sky")).map_err(HousesError::scene(&at))?);
     let house = House::new(assembly.finish()).map_err(HousesError::scene(&at))?;
     let mut given_up = draft.given_up();
@@ -108,26 +108,30 @@ pub fn generate(seed: u64, spec: &HouseSpec) -> Result<Generated, HousesError> {
         style: style.name.to_owned(),
         given_up,
     };
-    Ok(Generated { house, report })
+    Ok(GeneratedHouse { house, report })
 }
 
 /// Houses that are drawn at most until every room is reached.
 const HOUSES: u64 = 4;
 
 /// A furnished house on paper.
-struct Paper {
+struct FurnishedPlan {
     key: RandomKey,
-    draft: Draft,
-    furnished: Vec<Vec<furnish::Furnished>>,
+    draft: UnfurnishedPlan,
+    furnished: Vec<Vec<furnish::RoomFurniture>>,
     /// Rooms that nobody can enter.
-    unreached: Vec<reach::RoomAt>,
+    unreached: Vec<reachability::RoomIndex>,
 }
 
 /// Furnishes a plan. Rooms that cannot be reached for furniture, and those beside them, are furnished again with less.
-fn furnished_paper(spec: &HouseSpec, style: &Style, key: RandomKey) -> Result<Paper, HousesError> {
+fn furnished_plan(
+    spec: &HouseSpec,
+    style: &Style,
+    key: RandomKey,
+) -> Result<FurnishedPlan, HousesError> {
     let draft = draft(spec, key)?;
     let furnish_key = key.child("furnish");
-    let furnisher = furnish::Furnisher {
+    let furnisher = furnish::HouseFurnisher {
         plan: &draft.plan,
         holes: &draft.holes,
         style,
@@ -135,13 +139,13 @@ fn furnished_paper(spec: &HouseSpec, style: &Style, key: RandomKey) -> Result<Pa
         key: furnish_key.child(0_u64),
     };
     let mut furnished = furnisher.furnish();
-    let mut unreached = reach::unreached(&draft.plan, &draft.holes, &furnished);
+    let mut unreached = reachability::unreached(&draft.plan, &draft.holes, &furnished);
     for (round, share) in SHARES.into_iter().enumerate() {
         if unreached.is_empty() {
             break;
         }
         for (level, storey) in draft.plan.storeys.iter().enumerate() {
-            let cells = Cells::new(&storey.rooms);
+            let cells = StoreyCells::new(&storey.rooms);
             let lost = |room: usize| unreached.contains(&(level, room));
             for (room, place) in furnished[level].iter_mut().enumerate() {
                 let beside = storey.links.iter().any(|link| {
@@ -154,9 +158,9 @@ fn furnished_paper(spec: &HouseSpec, style: &Style, key: RandomKey) -> Result<Pa
                 }
             }
         }
-        unreached = reach::unreached(&draft.plan, &draft.holes, &furnished);
+        unreached = reachability::unreached(&draft.plan, &draft.holes, &furnished);
     }
-    Ok(Paper {
+    Ok(FurnishedPlan {
         key,
         draft,
         furnished,
@@ -175,9 +179,9 @@ pub(crate) fn open(house: &str) -> Opened {
             .to_owned(),
     })?;
     let generated = generate(seed, &spec_of(fields)?)?;
-    let mut report = Report::new();
+    let mut report = LoadReport::new();
     for what in generated.report.given_up {
-        report.warn(At::file(house), Damage::GivenUp { what });
+        report.warn(FileLocation::file(house), WarningKind::GivenUp { what });
     }
     Ok((generated.house, report))
 }
@@ -211,13 +215,13 @@ fn parsed(fields: serde_json::Map<String, serde_json::Value>) -> Result<HouseSpe
         let alone = [(name.clone(), value.clone())].into_iter().collect();
         read(alone).map_err(|error| HousesError::Spec {
             field: name.clone(),
-            found: crate::plain(&error),
+            found: crate::plain_parse_error(&error),
             possible: "the fields of a HouseSpec as field=value, joined by &".to_owned(),
         })?;
     }
     read(fields).map_err(|error| HousesError::Spec {
         field: "spec".to_owned(),
-        found: crate::plain(&error),
+        found: crate::plain_parse_error(&error),
         possible: "the fields of a HouseSpec as field=value, joined by &".to_owned(),
     })
 }
@@ -229,22 +233,22 @@ const SHARES: [f32; 3] = [0.6, 0.3, 0.0];
 const PROGRAMMES: u64 = 8;
 
 /// A house on paper.
-struct Draft {
-    programme: Programme,
-    plan: FloorPlan,
-    holes: Vec<Vec<Hole>>,
+struct UnfurnishedPlan {
+    programme: RoomProgram,
+    plan: GeneratedPlan,
+    holes: Vec<Vec<WallHole>>,
     /// Doors that stand in the way of others.
     tight: usize,
 }
 
-impl Draft {
+impl UnfurnishedPlan {
     /// What was wanted and could not be had, in sentences.
     fn given_up(&self) -> Vec<String> {
-        let unmet = self.plan.unmet.iter().map(|pair| {
+        let missing_connections = self.plan.missing_connections.iter().map(|pair| {
             let [a, b] = pair.map(|kind| kind.traits().words[0]);
             format!("no door between {a} and {b}")
         });
-        let mut given_up: Vec<String> = unmet.collect();
+        let mut given_up: Vec<String> = missing_connections.collect();
         if self.tight > 0 {
             given_up.push(format!("{} doors stand in the way of others", self.tight));
         }
@@ -256,11 +260,11 @@ impl Draft {
 }
 
 /// The first draft in which no door stands in the way of another, or the best of a few.
-fn draft(spec: &HouseSpec, key: RandomKey) -> Result<Draft, HousesError> {
-    let mut best: Option<Draft> = None;
+fn draft(spec: &HouseSpec, key: RandomKey) -> Result<UnfurnishedPlan, HousesError> {
+    let mut best: Option<UnfurnishedPlan> = None;
     let mut last = None;
     for round in 0..PROGRAMMES {
-        let programme = programme::programme(spec, key.child("programme").child(round));
+        let programme = room_program::programme(spec, key.child("programme").child(round));
         check_area(spec, &programme)?;
         let drawn = plan::lay_out(&programme, &spec.adjacency, key.child("plan").child(round));
         let Some(plan) = drawn else {
@@ -269,7 +273,7 @@ fn draft(spec: &HouseSpec, key: RandomKey) -> Result<Draft, HousesError> {
         };
         let (holes, tight) = openings::openings(&plan, key.child("openings").child(round));
         if best.as_ref().is_none_or(|best| tight < best.tight) {
-            best = Some(Draft {
+            best = Some(UnfurnishedPlan {
                 programme,
                 plan,
                 holes,
@@ -301,13 +305,13 @@ fn sky(spec: &HouseSpec, key: RandomKey) -> Result<Sky, SceneError> {
     })
 }
 
-fn has_outside(plan: &FloorPlan) -> bool {
+fn has_outside(plan: &GeneratedPlan) -> bool {
     let mut rooms = plan.storeys.iter().flat_map(|storey| &storey.rooms);
     rooms.any(|room| room.kind.is_outside())
 }
 
 /// Refuses an area that the home's rooms cannot have.
-fn check_area(spec: &HouseSpec, programme: &Programme) -> Result<(), HousesError> {
+fn check_area(spec: &HouseSpec, programme: &RoomProgram) -> Result<(), HousesError> {
     let Some(area) = spec.area_m2 else {
         return Ok(());
     };
@@ -331,7 +335,7 @@ fn check_area(spec: &HouseSpec, programme: &Programme) -> Result<(), HousesError
     })
 }
 
-fn no_plan(spec: &HouseSpec, programme: Option<&Programme>) -> HousesError {
+fn no_plan(spec: &HouseSpec, programme: Option<&RoomProgram>) -> HousesError {
     let rooms = || {
         programme
             .into_iter()

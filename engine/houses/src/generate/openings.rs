@@ -3,9 +3,12 @@
 //! A door stands beside a corner of the room into which it swings, its hinges at that corner, so that the open leaf lies
 //! against the wall. No two leaves meet, and no open leaf stands before another door.
 
-use super::plan::{Area, Cells, FloorPlan, LinkKind, Run, Stairs, Steps, Storey, metres, steps};
-use super::reach::unreached_when_empty;
-use super::rooms::{RoomKind, Windows};
+use super::plan::{
+    ConnectionKind, GeneratedPlan, GeneratedStorey, GridRect, GridSteps, RoomBoundary,
+    StairwellPlan, StoreyCells, metres, steps,
+};
+use super::reachability::unreached_when_empty;
+use super::rooms::{GeneratedRoomKind, WindowStyle};
 use dwell_scene::random::{RandomKey, RandomStream};
 
 /// Thickness of walls between rooms, m.
@@ -13,9 +16,9 @@ pub(crate) const INNER_M: f32 = 0.1;
 /// Thickness of walls to the outside, m.
 pub(crate) const OUTER_M: f32 = 0.2;
 /// Width of the opening of a door, in steps.
-const DOOR: Steps = 19;
+const DOOR: GridSteps = 19;
 /// From the middle of the wall at a corner to the opening.
-const CORNER: Steps = 3;
+const CORNER: GridSteps = 3;
 /// What a leaf that opens beyond a right angle takes beside its opening, with its handle, m.
 const BESIDE_M: f32 = 0.099;
 /// Depth before a door that no open leaf may reach into, from the middle of its wall, m: one passes between the two.
@@ -26,11 +29,11 @@ pub(crate) const DOOR_M: f32 = 2.06;
 const ARCH_M: f32 = 2.2;
 
 /// A rectangle in metres: x from, z from, x to, z to.
-pub(crate) type Zone = [f32; 4];
+pub(crate) type ZoneXz = [f32; 4];
 
 /// What fills a hole in a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Filling {
+pub(crate) enum HoleContents {
     /// A leaf into the room.
     Door {
         /// Whether it hangs on the right as one stands in the room and looks at the wall from inside.
@@ -51,7 +54,7 @@ pub(crate) enum Filling {
 
 /// A hole in a wall with what fills it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Hole {
+pub(crate) struct WallHole {
     /// The room to which it belongs: that into which a leaf swings.
     pub(crate) room: usize,
     /// The room behind; `None`: outside.
@@ -68,12 +71,12 @@ pub(crate) struct Hole {
     pub(crate) high_m: f32,
     /// +1 when the room lies at larger coordinates across the wall, else -1.
     pub(crate) inward: f32,
-    pub(crate) filling: Filling,
+    pub(crate) filling: HoleContents,
 }
 
-impl Hole {
+impl WallHole {
     /// The thickness of its wall, m.
-    pub(crate) fn wall_m(&self, storey: &Storey) -> f32 {
+    pub(crate) fn wall_m(&self, storey: &GeneratedStorey) -> f32 {
         let outside = self
             .behind
             .is_none_or(|room| storey.rooms[room].kind.is_outside());
@@ -81,7 +84,7 @@ impl Hole {
     }
 
     /// A rectangle before it in its room (`side` 1) or in the one behind (-1), from the wall's middle to `depth_m`.
-    pub(crate) fn front(&self, side: f32, depth_m: f32, margin_m: f32) -> Zone {
+    pub(crate) fn front(&self, side: f32, depth_m: f32, margin_m: f32) -> ZoneXz {
         let far = self.at_m + self.inward * side * depth_m;
         let (low, high) = (self.at_m.min(far), self.at_m.max(far));
         let (from, to) = (self.from_m - margin_m, self.to_m + margin_m);
@@ -93,14 +96,14 @@ impl Hole {
     }
 
     /// The floor that its leaf passes, if it has one.
-    pub(crate) fn sweep(&self) -> Option<Zone> {
-        matches!(self.filling, Filling::Door { .. })
+    pub(crate) fn sweep(&self) -> Option<ZoneXz> {
+        matches!(self.filling, HoleContents::Door { .. })
             .then(|| self.front(1.0, self.to_m - self.from_m + 0.1, 0.06))
     }
 
     /// The floor beside its hinges into which a leaf reaches that opens beyond a right angle, if it has one.
-    pub(crate) fn beside_hinges(&self, wall_m: f32) -> Option<Zone> {
-        let Filling::Door { hinge_right, .. } = self.filling else {
+    pub(crate) fn beside_hinges(&self, wall_m: f32) -> Option<ZoneXz> {
+        let HoleContents::Door { hinge_right, .. } = self.filling else {
             return None;
         };
         let (from, to) = if self.hinge_at_low_end(hinge_right) {
@@ -118,8 +121,8 @@ impl Hole {
     }
 
     /// Where its leaf stands when open.
-    pub(crate) fn open_leaf(&self) -> Option<Zone> {
-        let Filling::Door { hinge_right, .. } = self.filling else {
+    pub(crate) fn open_leaf(&self) -> Option<ZoneXz> {
+        let HoleContents::Door { hinge_right, .. } = self.filling else {
             return None;
         };
         let zone = self.front(1.0, self.to_m - self.from_m + 0.1, 0.0);
@@ -159,16 +162,16 @@ impl Hole {
 }
 
 /// Whether two zones share some floor.
-pub(crate) fn overlap(a: &Zone, b: &Zone) -> bool {
+pub(crate) fn overlap(a: &ZoneXz, b: &ZoneXz) -> bool {
     a[0] < b[2] - 1e-4 && b[0] < a[2] - 1e-4 && a[1] < b[3] - 1e-4 && b[1] < a[3] - 1e-4
 }
 
 /// The holes of every storey; the second is the number of doors that stand in each other's way all the same.
-pub(crate) fn openings(plan: &FloorPlan, key: RandomKey) -> (Vec<Vec<Hole>>, usize) {
+pub(crate) fn openings(plan: &GeneratedPlan, key: RandomKey) -> (Vec<Vec<WallHole>>, usize) {
     let mut tight = 0;
     let all = plan.storeys.iter().enumerate().map(|(k, storey)| {
         let key = key.child(k as u64);
-        let runs = Cells::new(&storey.rooms).runs();
+        let runs = StoreyCells::new(&storey.rooms).runs();
         let stairs = plan.stairs.map(|stairs| stairs.area);
         let (mut holes, faults) =
             doors(storey, &runs, plan.stairs, &mut key.child("doors").stream());
@@ -190,12 +193,12 @@ const DEALS: usize = 24;
 
 /// The doors of a storey; the second is the number of those that stand in the way of others all the same.
 fn doors(
-    storey: &Storey,
-    runs: &[Run],
-    stairs: Option<Stairs>,
+    storey: &GeneratedStorey,
+    runs: &[RoomBoundary],
+    stairs: Option<StairwellPlan>,
     stream: &mut RandomStream,
-) -> (Vec<Hole>, usize) {
-    let mut best: Option<(Vec<Hole>, usize)> = None;
+) -> (Vec<WallHole>, usize) {
+    let mut best: Option<(Vec<WallHole>, usize)> = None;
     for _ in 0..DEALS {
         let mut dealt = deal(storey, runs, stairs.map(|stairs| stairs.area), stream);
         // Where no two doors meet, an open leaf may still shut the way to a room.
@@ -213,17 +216,17 @@ fn doors(
 }
 
 fn deal(
-    storey: &Storey,
-    runs: &[Run],
-    stairs: Option<Area>,
+    storey: &GeneratedStorey,
+    runs: &[RoomBoundary],
+    stairs: Option<GridRect>,
     stream: &mut RandomStream,
-) -> (Vec<Hole>, usize) {
-    let mut holes: Vec<Hole> = Vec::new();
+) -> (Vec<WallHole>, usize) {
+    let mut holes: Vec<WallHole> = Vec::new();
     let mut tight = 0;
     for link in &storey.links {
         let mut found = candidates(storey, runs, link.into, link.from, link.kind, stream);
         stream.shuffle(&mut found);
-        let clear = |hole: &Hole| {
+        let clear = |hole: &WallHole| {
             let on_stairs = stairs.is_some_and(|area| {
                 let zone = area.map(metres);
                 [1.0, -1.0]
@@ -245,13 +248,13 @@ fn deal(
 const FREE_LEAF_M: f32 = 1.75;
 
 /// Whether one can pass the open leaf: it lies against a wall of a corner, or the room is deep.
-fn leaves_passage(storey: &Storey, runs: &[Run], hole: &Hole) -> bool {
-    let Filling::Door { hinge_right, .. } = hole.filling else {
+fn leaves_passage(storey: &GeneratedStorey, runs: &[RoomBoundary], hole: &WallHole) -> bool {
+    let HoleContents::Door { hinge_right, .. } = hole.filling else {
         return true;
     };
     let zone = hole.front(1.0, FREE_LEAF_M, 0.1);
-    let area = |z: &Zone| (z[2] - z[0]).max(0.0) * (z[3] - z[1]).max(0.0);
-    let common = |a: Zone| {
+    let area = |z: &ZoneXz| (z[2] - z[0]).max(0.0) * (z[3] - z[1]).max(0.0);
+    let common = |a: ZoneXz| {
         area(&[
             a[0].max(zone[0]),
             a[1].max(zone[1]),
@@ -284,12 +287,12 @@ fn leaves_passage(storey: &Storey, runs: &[Run], hole: &Hole) -> bool {
 }
 
 /// Whether two doors of a storey leave each other alone.
-fn apart(a: &Hole, b: &Hole) -> bool {
-    let meet = |p: Option<Zone>, q: Option<Zone>| match (p, q) {
+fn apart(a: &WallHole, b: &WallHole) -> bool {
+    let meet = |p: Option<ZoneXz>, q: Option<ZoneXz>| match (p, q) {
         (Some(p), Some(q)) => overlap(&p, &q),
         _ => false,
     };
-    let blocked = |leaf: &Hole, door: &Hole| {
+    let blocked = |leaf: &WallHole, door: &WallHole| {
         leaf.open_leaf().is_some_and(|leaf| {
             [1.0, -1.0]
                 .iter()
@@ -303,22 +306,22 @@ fn apart(a: &Hole, b: &Hole) -> bool {
 
 /// Where a door between two rooms can be: at both ends and in the middle of every stretch that is long enough.
 fn candidates(
-    storey: &Storey,
-    runs: &[Run],
+    storey: &GeneratedStorey,
+    runs: &[RoomBoundary],
     room: usize,
     behind: Option<usize>,
-    kind: LinkKind,
+    kind: ConnectionKind,
     stream: &mut RandomStream,
-) -> Vec<Hole> {
-    use RoomKind::{Balcony, DiningRoom, LivingRoom, Lobby, Studio, Terrace};
+) -> Vec<WallHole> {
+    use GeneratedRoomKind::{Balcony, DiningRoom, LivingRoom, Lobby, Studio, Terrace};
     let kinds = [Some(room), behind].map(|room| room.map(|room| storey.rooms[room].kind));
     let between = runs.iter().filter(|run| run.parts(Some(room), behind));
     let mut holes = Vec::new();
     for run in between {
         let length = run.to - run.from;
         let wide = match kind {
-            LinkKind::Open => (length - 12).min(steps(stream.range(1.5, 2.2))),
-            LinkKind::Door => DOOR,
+            ConnectionKind::Open => (length - 12).min(steps(stream.range(1.5, 2.2))),
+            ConnectionKind::Door => DOOR,
         };
         if length < wide + 5 {
             continue;
@@ -332,7 +335,7 @@ fn candidates(
         let (start, end) = (run.from + gap, run.to - gap - wide);
         let middle = run.from + (length - wide) / 2;
         for (from, hinge_low) in [(start, true), (end, false), (middle, stream.below(2) == 0)] {
-            let mut hole = Hole {
+            let mut hole = WallHole {
                 room,
                 behind,
                 along_x: run.along_x,
@@ -340,21 +343,21 @@ fn candidates(
                 from_m: metres(from),
                 to_m: metres(from + wide),
                 low_m: 0.0,
-                high_m: if kind == LinkKind::Open {
+                high_m: if kind == ConnectionKind::Open {
                     ARCH_M
                 } else {
                     DOOR_M
                 },
                 inward,
-                filling: Filling::Open,
+                filling: HoleContents::Open,
             };
-            if kind == LinkKind::Door {
+            if kind == ConnectionKind::Door {
                 let outside = matches!(kinds[1], Some(Balcony | Terrace));
                 let glazed = outside
                     || matches!(kinds[0], Some(LivingRoom | DiningRoom | Studio | Lobby))
                         && behind.is_some();
                 let right = hole.hinge_at_low_end(true) == hinge_low;
-                hole.filling = Filling::Door {
+                hole.filling = HoleContents::Door {
                     hinge_right: right,
                     glazed,
                     entrance: behind.is_none(),
@@ -367,17 +370,17 @@ fn candidates(
 }
 
 fn windows(
-    storey: &Storey,
-    runs: &[Run],
-    stairs: Option<Area>,
-    holes: &mut Vec<Hole>,
+    storey: &GeneratedStorey,
+    runs: &[RoomBoundary],
+    stairs: Option<GridRect>,
+    holes: &mut Vec<WallHole>,
     stream: &mut RandomStream,
 ) {
     for (room, plan) in storey.rooms.iter().enumerate() {
         let traits = plan.kind.traits();
         // Width, lower and upper edge in m, how many at most, and how much wall each takes.
         let (wide_m, low_m, high_m, most, each_m) = match traits.windows {
-            Windows::Wide => (
+            WindowStyle::Wide => (
                 stream.range(1.4, 2.0),
                 // In steps, so that windows of many houses are alike.
                 0.05 * stream.range(10.0, 17.0).round(),
@@ -385,12 +388,12 @@ fn windows(
                 4,
                 3.2,
             ),
-            Windows::Usual => (stream.range(1.1, 1.6), 0.9, 2.2, 2, 3.6),
-            Windows::High => (stream.range(0.9, 1.3), 1.2, 2.2, 1, 3.0),
-            Windows::Frosted => (stream.range(0.5, 0.7), 1.45, 2.1, 1, 3.0),
-            Windows::None => continue,
+            WindowStyle::Usual => (stream.range(1.1, 1.6), 0.9, 2.2, 2, 3.6),
+            WindowStyle::High => (stream.range(0.9, 1.3), 1.2, 2.2, 1, 3.0),
+            WindowStyle::Frosted => (stream.range(0.5, 0.7), 1.45, 2.1, 1, 3.0),
+            WindowStyle::None => continue,
         };
-        let mut outer: Vec<&Run> = runs
+        let mut outer: Vec<&RoomBoundary> = runs
             .iter()
             .filter(|run| run.parts(Some(room), None) && run.to - run.from >= 18)
             .collect();
@@ -408,7 +411,7 @@ fn windows(
                     // To the step, so that walls keep to the grid.
                     let [from_m, to_m] =
                         [middle - half, middle + half].map(|edge| metres(steps(edge)));
-                    let hole = Hole {
+                    let hole = WallHole {
                         room,
                         behind: None,
                         along_x: run.along_x,
@@ -422,8 +425,8 @@ fn windows(
                         } else {
                             -1.0
                         },
-                        filling: Filling::Window {
-                            frosted: traits.windows == Windows::Frosted,
+                        filling: HoleContents::Window {
+                            frosted: traits.windows == WindowStyle::Frosted,
                         },
                     };
                     let in_wall = from_m > metres(run.from) + 0.2 && to_m < metres(run.to) - 0.2;
@@ -434,7 +437,7 @@ fn windows(
                     }
                 }
             }
-            if left == 0 || matches!(traits.windows, Windows::Frosted | Windows::High) {
+            if left == 0 || matches!(traits.windows, WindowStyle::Frosted | WindowStyle::High) {
                 break;
             }
         }
@@ -442,9 +445,9 @@ fn windows(
 }
 
 /// Whether a window keeps clear of other holes, of open leaves and of the stairs.
-fn is_clear(hole: &Hole, holes: &[Hole], stairs: Option<Area>) -> bool {
+fn is_clear(hole: &WallHole, holes: &[WallHole], stairs: Option<GridRect>) -> bool {
     let before = hole.front(1.0, 0.5 * OUTER_M + 0.12, 0.02);
-    let free = |other: &Hole| {
+    let free = |other: &WallHole| {
         let beside = other.along_x != hole.along_x
             || (other.at_m - hole.at_m).abs() > 0.01
             || other.to_m + 0.2 < hole.from_m

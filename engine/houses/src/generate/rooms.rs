@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A kind of room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RoomKind {
+pub enum GeneratedRoomKind {
     /// One room to live, cook and sleep in.
     Studio,
     /// Sofa and television.
@@ -46,7 +46,7 @@ pub enum RoomKind {
 
 /// What windows a room gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Windows {
+pub(crate) enum WindowStyle {
     /// Wide ones on every outer wall.
     Wide,
     /// One or two of usual size.
@@ -61,7 +61,7 @@ pub(crate) enum Windows {
 
 /// What builders expect of a kind of room.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Traits {
+pub(crate) struct RoomRequirements {
     /// A row of `assets/rooms.csv`; rooms are named after it.
     pub(crate) name: &'static str,
     /// What people call it, most fitting first.
@@ -70,7 +70,7 @@ pub(crate) struct Traits {
     pub(crate) area_m2: [f32; 3],
     /// Between the middles of its walls, m.
     pub(crate) least_width_m: f32,
-    pub(crate) windows: Windows,
+    pub(crate) windows: WindowStyle,
     /// The storey that it is usually on when there are several: 0 the ground, 1 above.
     pub(crate) storey: usize,
 }
@@ -80,10 +80,10 @@ const fn traits(
     words: &'static [&'static str],
     area_m2: [f32; 3],
     least_width_m: f32,
-    windows: Windows,
+    windows: WindowStyle,
     storey: usize,
-) -> Traits {
-    Traits {
+) -> RoomRequirements {
+    RoomRequirements {
         name,
         words,
         area_m2,
@@ -93,7 +93,7 @@ const fn traits(
     }
 }
 
-impl RoomKind {
+impl GeneratedRoomKind {
     /// All kinds that a spec can ask for.
     pub const ALL: [Self; 17] = [
         Self::Studio,
@@ -116,8 +116,8 @@ impl RoomKind {
     ];
 
     /// Areas: usual German flats after E. Neufert, *Architects' Data*, 4th ed. (2012), "Housing", rounded.
-    pub(crate) const fn traits(self) -> Traits {
-        use Windows::{Frosted, High, None, Usual, Wide};
+    pub(crate) const fn traits(self) -> RoomRequirements {
+        use WindowStyle::{Frosted, High, None, Usual, Wide};
         match self {
             Self::Studio => traits(
                 "studio",

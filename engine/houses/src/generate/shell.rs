@@ -1,19 +1,21 @@
 //! The building: rooms with their slabs, walls with holes, doors, windows, stairs and railings.
 
-use super::furnish::Furnished;
-use super::looks::{RoomLook, facade, look, reveal};
-use super::openings::{Filling, Hole, INNER_M, OUTER_M, Zone, overlap};
-use super::plan::{Cells, FloorPlan, PlanRoom, Run, Storey, metres};
-use super::rooms::RoomKind;
+use super::furnish::RoomFurniture;
+use super::openings::{HoleContents, INNER_M, OUTER_M, WallHole, ZoneXz, overlap};
+use super::plan::{
+    GeneratedPlan, GeneratedRoom, GeneratedStorey, RoomBoundary, StoreyCells, metres,
+};
+use super::room_finishes::{RoomFinishes, facade, look, reveal};
+use super::rooms::GeneratedRoomKind;
 use super::spec::DoorStates;
-use crate::build::Names;
-use crate::building::assembly::Assembly;
+use crate::building::assembly::HouseAssembly;
 use crate::building::openings::{put_door, put_window};
 use crate::building::outline::outline;
-use crate::building::plan::{CEILING_M, RoomPlan, Slab};
-use crate::building::stairs::{Flights, RAILING_INSET_M, put_railing, put_stairs, railing_of};
-use crate::building::wall::{Along, Bands, Opening, Wall};
+use crate::building::room::{CEILING_M, FloorSlab, ShellRoom};
+use crate::building::stairs::{RAILING_INSET_M, StairFlights, put_railing, put_stairs, railing_of};
+use crate::building::wall::{FinishBands, ShellWall, WallAxis, WallOpening};
 use crate::building::yaw::yaw;
+use crate::import::UniqueNames;
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::models::openings::{Door, Window, clear_pane, frosted_pane};
 use dwell_furniture::style::Style;
@@ -29,17 +31,17 @@ const FLOOR_SLAB_M: f32 = 0.2;
 pub(crate) const STOREY_M: f32 = CEILING_M + CEILING_SLAB_M + FLOOR_SLAB_M;
 
 /// The building's parts that later stages ask for.
-pub(crate) struct Shell {
+pub(crate) struct BuildingShell {
     /// The ids of the rooms, by storey.
     pub(crate) rooms: Vec<Vec<RoomId>>,
 }
 
-impl Shell {
+impl BuildingShell {
     /// Puts furniture into the rooms.
-    pub(crate) fn furnish(&self, storeys: &[Vec<Furnished>], assembly: &mut Assembly) {
+    pub(crate) fn furnish(&self, storeys: &[Vec<RoomFurniture>], assembly: &mut HouseAssembly) {
         for (level, rooms) in storeys.iter().enumerate() {
             assembly.level = LevelId(level as u32);
-            let up = Pose::from_position(Vec3::Y * Builder::floor_m(level));
+            let up = Pose::from_position(Vec3::Y * ShellBuilder::floor_m(level));
             for (room, furnished) in rooms.iter().enumerate() {
                 for piece in &furnished.pieces {
                     let model = &piece.stock.model;
@@ -52,16 +54,16 @@ impl Shell {
 }
 
 /// What a shell is built from.
-pub(crate) struct Builder<'a> {
-    pub(crate) plan: &'a FloorPlan,
-    pub(crate) holes: &'a [Vec<Hole>],
+pub(crate) struct ShellBuilder<'a> {
+    pub(crate) plan: &'a GeneratedPlan,
+    pub(crate) holes: &'a [Vec<WallHole>],
     pub(crate) style: &'a Style,
     pub(crate) doors: DoorStates,
     pub(crate) key: RandomKey,
 }
 
 /// Half of the thickness of what stands between a room and its neighbour, m; 0 where nothing does.
-pub(crate) fn half_wall(storey: &Storey, room: usize, other: Option<usize>) -> f32 {
+pub(crate) fn half_wall(storey: &GeneratedStorey, room: usize, other: Option<usize>) -> f32 {
     let outside = |room: usize| storey.rooms[room].kind.is_outside();
     match other {
         Some(other) if other == room => 0.0,
@@ -72,7 +74,11 @@ pub(crate) fn half_wall(storey: &Storey, room: usize, other: Option<usize>) -> f
 }
 
 /// The free floor of a room between its walls, in rectangles that do not overlap, m.
-pub(crate) fn free_floor(storey: &Storey, cells: &Cells, room: usize) -> Vec<Zone> {
+pub(crate) fn free_floor(
+    storey: &GeneratedStorey,
+    cells: &StoreyCells,
+    room: usize,
+) -> Vec<ZoneXz> {
     let rectangles = cells.of(room).into_iter().map(|(area, neighbours)| {
         let [west, north, east, south] = neighbours.map(|other| half_wall(storey, room, other));
         let [x0, z0, x1, z1] = area.map(metres);
@@ -82,9 +88,9 @@ pub(crate) fn free_floor(storey: &Storey, cells: &Cells, room: usize) -> Vec<Zon
 }
 
 /// Whether a rectangle lies over a floor entirely.
-pub(crate) fn covers(floor: &[Zone], rect: &Zone) -> bool {
-    let area = |r: &Zone| (r[2] - r[0]).max(0.0) * (r[3] - r[1]).max(0.0);
-    let common = |z: &Zone| {
+pub(crate) fn covers(floor: &[ZoneXz], rect: &ZoneXz) -> bool {
+    let area = |r: &ZoneXz| (r[2] - r[0]).max(0.0) * (r[3] - r[1]).max(0.0);
+    let common = |z: &ZoneXz| {
         [
             z[0].max(rect[0]),
             z[1].max(rect[1]),
@@ -102,7 +108,12 @@ pub(crate) fn covers(floor: &[Zone], rect: &Zone) -> bool {
 }
 
 /// The rectangles that a room's slab covers: to the middle of inner and to the outer face of outer walls, m.
-fn slab(storey: &Storey, cells: &Cells, room: usize, hole: Option<Zone>) -> Vec<[f32; 2]> {
+fn slab(
+    storey: &GeneratedStorey,
+    cells: &StoreyCells,
+    room: usize,
+    hole: Option<ZoneXz>,
+) -> Vec<[f32; 2]> {
     let inside = !storey.rooms[room].kind.is_outside();
     let grown = cells.of(room).into_iter().filter_map(|(area, neighbours)| {
         let zone = area.map(metres);
@@ -123,16 +134,16 @@ fn slab(storey: &Storey, cells: &Cells, room: usize, hole: Option<Zone>) -> Vec<
     outline(&grown.collect::<Vec<_>>())
 }
 
-impl Builder<'_> {
+impl ShellBuilder<'_> {
     /// Adds the building to an empty house.
-    pub(crate) fn build(&self, assembly: &mut Assembly) -> Shell {
-        let mut names = Names::default();
+    pub(crate) fn build(&self, assembly: &mut HouseAssembly) -> BuildingShell {
+        let mut names = UniqueNames::default();
         let outside = facade(self.key.child("facade"));
-        let mut shell = Shell { rooms: Vec::new() };
+        let mut shell = BuildingShell { rooms: Vec::new() };
         for (level, storey) in self.plan.storeys.iter().enumerate() {
             assembly.storey();
-            let cells = Cells::new(&storey.rooms);
-            let looks: Vec<RoomLook> = (0..storey.rooms.len())
+            let cells = StoreyCells::new(&storey.rooms);
+            let looks: Vec<RoomFinishes> = (0..storey.rooms.len())
                 .map(|room| {
                     let key = self
                         .key
@@ -152,7 +163,7 @@ impl Builder<'_> {
         shell
     }
 
-    fn storey(&self, level: usize) -> &Storey {
+    fn storey(&self, level: usize) -> &GeneratedStorey {
         &self.plan.storeys[level]
     }
 
@@ -163,10 +174,10 @@ impl Builder<'_> {
     fn rooms(
         &self,
         level: usize,
-        cells: &Cells,
-        looks: &[RoomLook],
-        names: &mut Names,
-        assembly: &mut Assembly,
+        cells: &StoreyCells,
+        looks: &[RoomFinishes],
+        names: &mut UniqueNames,
+        assembly: &mut HouseAssembly,
     ) -> Vec<RoomId> {
         let storey = self.storey(level);
         let top = level + 1 == self.plan.storeys.len();
@@ -178,7 +189,7 @@ impl Builder<'_> {
         };
         let rooms = storey.rooms.iter().enumerate().map(|(room, plan)| {
             let traits = plan.kind.traits();
-            let void = well(level > 0 && plan.kind == RoomKind::Hallway);
+            let void = well(level > 0 && plan.kind == GeneratedRoomKind::Hallway);
             let mut floor = free_floor(storey, cells, room);
             floor.retain(|zone| void.is_none_or(|void| !overlap(&void, zone)));
             floor.extend(self.doorways(level, room));
@@ -186,10 +197,10 @@ impl Builder<'_> {
             let ceiling = if outside {
                 Vec::new()
             } else {
-                let void = well(!top && plan.kind == RoomKind::Hallway);
+                let void = well(!top && plan.kind == GeneratedRoomKind::Hallway);
                 slab(storey, cells, room, void)
             };
-            let built = RoomPlan {
+            let built = ShellRoom {
                 name: names.unique(traits.name),
                 kinds: traits.words.iter().map(|word| (*word).to_owned()).collect(),
                 floor,
@@ -197,11 +208,11 @@ impl Builder<'_> {
                 ceiling_m: CEILING_M,
                 storey_m: CEILING_M,
                 slabs: [
-                    Slab {
+                    FloorSlab {
                         outlines: vec![slab(storey, cells, room, void)],
                         thick_m: FLOOR_SLAB_M,
                     },
-                    Slab {
+                    FloorSlab {
                         outlines: vec![ceiling],
                         thick_m: if top { FLOOR_SLAB_M } else { CEILING_SLAB_M },
                     },
@@ -216,11 +227,11 @@ impl Builder<'_> {
     }
 
     /// Halves of doorways belong to the room on their side.
-    fn doorways(&self, level: usize, room: usize) -> Vec<Zone> {
+    fn doorways(&self, level: usize, room: usize) -> Vec<ZoneXz> {
         let storey = self.storey(level);
         let doors = self.holes[level]
             .iter()
-            .filter(|hole| !matches!(hole.filling, Filling::Window { .. }));
+            .filter(|hole| !matches!(hole.filling, HoleContents::Window { .. }));
         doors
             .filter_map(|hole| {
                 let half = 0.5 * hole.wall_m(storey);
@@ -236,14 +247,14 @@ impl Builder<'_> {
     fn walls(
         &self,
         level: usize,
-        cells: &Cells,
-        looks: &[RoomLook],
-        outside: &Bands,
+        cells: &StoreyCells,
+        looks: &[RoomFinishes],
+        outside: &FinishBands,
         ids: &[RoomId],
-        assembly: &mut Assembly,
+        assembly: &mut HouseAssembly,
     ) {
         let storey = self.storey(level);
-        let runs: Vec<Run> = cells
+        let runs: Vec<RoomBoundary> = cells
             .runs()
             .into_iter()
             .filter(|run| !is_railing(storey, run))
@@ -289,18 +300,22 @@ impl Builder<'_> {
                     && hole.from_m > low
                     && hole.to_m < end
             });
-            let wall = Wall {
+            let wall = ShellWall {
                 name: format!("{level}_{k}"),
                 room: ids[*room],
                 floor_m: Self::floor_m(level),
                 height_m: if high { STOREY_M } else { CEILING_M },
                 rect,
-                along: if run.along_x { Along::X } else { Along::Z },
+                along: if run.along_x {
+                    WallAxis::X
+                } else {
+                    WallAxis::Z
+                },
                 front: bands(run.sides[1]),
                 back: bands(run.sides[0]),
                 edge: reveal(),
                 openings: openings
-                    .map(|hole| Opening {
+                    .map(|hole| WallOpening {
                         along: [hole.from_m, hole.to_m],
                         up: [hole.low_m, hole.high_m],
                     })
@@ -310,11 +325,11 @@ impl Builder<'_> {
         }
     }
 
-    fn fillings(&self, level: usize, ids: &[RoomId], assembly: &mut Assembly) {
+    fn fillings(&self, level: usize, ids: &[RoomId], assembly: &mut HouseAssembly) {
         let storey = self.storey(level);
         let floor = Self::floor_m(level);
         let key = self.key.child("fillings").child(level as u64);
-        let cells = Cells::new(&storey.rooms);
+        let cells = StoreyCells::new(&storey.rooms);
         for (k, hole) in self.holes[level].iter().enumerate() {
             let free = free_floor(storey, &cells, hole.room);
             let middle = 0.5 * (hole.from_m + hole.to_m);
@@ -327,8 +342,8 @@ impl Builder<'_> {
             let width_m = hole.to_m - hole.from_m;
             let turn = yaw(hole.yaw_deg());
             match hole.filling {
-                Filling::Open => {}
-                Filling::Door {
+                HoleContents::Open => {}
+                HoleContents::Door {
                     hinge_right,
                     glazed,
                     entrance,
@@ -351,7 +366,7 @@ impl Builder<'_> {
                     let pose = Pose::new(Vec3::new(x, floor, z), turn);
                     put_door(assembly, &door, square, pose, ids[hole.room], openness);
                 }
-                Filling::Window { frosted } => {
+                HoleContents::Window { frosted } => {
                     let pane = if frosted {
                         frosted_pane()
                     } else {
@@ -373,10 +388,10 @@ impl Builder<'_> {
         }
     }
 
-    fn openness(&self, hole: &Hole, key: RandomKey) -> f32 {
+    fn openness(&self, hole: &WallHole, key: RandomKey) -> f32 {
         let outside = hole
             .behind
-            .is_none_or(|_| matches!(hole.filling, Filling::Door { entrance: true, .. }));
+            .is_none_or(|_| matches!(hole.filling, HoleContents::Door { entrance: true, .. }));
         if outside {
             return 0.0;
         }
@@ -391,7 +406,7 @@ impl Builder<'_> {
         }
     }
 
-    fn stairs(&self, level: usize, ids: &[RoomId], assembly: &mut Assembly) {
+    fn stairs(&self, level: usize, ids: &[RoomId], assembly: &mut HouseAssembly) {
         let Some(stairs) = self.plan.stairs else {
             return;
         };
@@ -399,7 +414,7 @@ impl Builder<'_> {
         let hallway = storey
             .rooms
             .iter()
-            .position(|r| r.kind == RoomKind::Hallway);
+            .position(|r| r.kind == GeneratedRoomKind::Hallway);
         let Some(room) = hallway.map(|room| ids[room]) else {
             return;
         };
@@ -415,7 +430,7 @@ impl Builder<'_> {
         let middle = Vec3::new(0.5 * (x0 + x1), 0.0, 0.5 * (z0 + z1));
         let front = middle - climb * (0.5 * size.dot(climb.abs()));
         // The model climbs towards -Z with its second flight at +X.
-        let flights = Flights {
+        let flights = StairFlights {
             front: front + Vec3::Y * Self::floor_m(level),
             climb: stairs.climb,
             mirrored: across.dot(Vec3::Y.cross(climb)) > 0.0,
@@ -431,9 +446,15 @@ impl Builder<'_> {
         }
     }
 
-    fn railings(&self, level: usize, cells: &Cells, ids: &[RoomId], assembly: &mut Assembly) {
+    fn railings(
+        &self,
+        level: usize,
+        cells: &StoreyCells,
+        ids: &[RoomId],
+        assembly: &mut HouseAssembly,
+    ) {
         let storey = self.storey(level);
-        let rails: Vec<Run> = cells
+        let rails: Vec<RoomBoundary> = cells
             .runs()
             .into_iter()
             .filter(|run| is_railing(storey, run))
@@ -444,7 +465,7 @@ impl Builder<'_> {
                 continue;
             };
             // A terrace on the ground has none.
-            if storey.rooms[*room].kind != RoomKind::Balcony {
+            if storey.rooms[*room].kind != GeneratedRoomKind::Balcony {
                 continue;
             }
             // Shorter at the building's wall, and at corners, where rails along x take the corner.
@@ -477,8 +498,8 @@ impl Builder<'_> {
 }
 
 /// Whether a stretch parts a balcony from the open air.
-fn is_railing(storey: &Storey, run: &Run) -> bool {
-    let outside = |room: &PlanRoom| room.kind.is_outside();
+fn is_railing(storey: &GeneratedStorey, run: &RoomBoundary) -> bool {
+    let outside = |room: &GeneratedRoom| room.kind.is_outside();
     match run.sides {
         [Some(room), None] | [None, Some(room)] => outside(&storey.rooms[room]),
         _ => false,
@@ -486,7 +507,7 @@ fn is_railing(storey: &Storey, run: &Run) -> bool {
 }
 
 /// Thickness of the wall over a stretch, m.
-fn thickness(storey: &Storey, run: &Run) -> f32 {
+fn thickness(storey: &GeneratedStorey, run: &RoomBoundary) -> f32 {
     let indoors = |side: &Option<usize>| side.is_some_and(|k| !storey.rooms[k].kind.is_outside());
     if run.sides.iter().all(indoors) {
         INNER_M
@@ -497,9 +518,9 @@ fn thickness(storey: &Storey, run: &Run) -> f32 {
 
 /// How far a wall reaches beyond (or, below 0, ends before) the crossing at one of its ends, so that walls meet without
 /// a gap and without lying in each other: what goes straight on goes through, and at a corner the wall along z does.
-fn reach(storey: &Storey, runs: &[Run], run: &Run, end: bool) -> f32 {
+fn reach(storey: &GeneratedStorey, runs: &[RoomBoundary], run: &RoomBoundary, end: bool) -> f32 {
     let at = if end { run.to } else { run.from };
-    let here = |other: &&Run| {
+    let here = |other: &&RoomBoundary| {
         let (along, across) = if other.along_x == run.along_x {
             (at, run.at)
         } else {
@@ -507,9 +528,9 @@ fn reach(storey: &Storey, runs: &[Run], run: &Run, end: bool) -> f32 {
         };
         other.at == across && (other.from == along || other.to == along) && *other != run
     };
-    let half = |other: &Run| 0.5 * thickness(storey, other);
+    let half = |other: &RoomBoundary| 0.5 * thickness(storey, other);
     let straight = runs.iter().filter(here).find(|o| o.along_x == run.along_x);
-    let crossing: Vec<&Run> = runs
+    let crossing: Vec<&RoomBoundary> = runs
         .iter()
         .filter(here)
         .filter(|other| other.along_x != run.along_x)

@@ -1,6 +1,6 @@
 //! What a house shall be like.
 
-use super::rooms::RoomKind;
+use super::rooms::GeneratedRoomKind;
 use crate::error::HousesError;
 use dwell_furniture::style::{STYLES, StyleSplit};
 use dwell_scene::Daytime;
@@ -83,9 +83,9 @@ pub struct HouseSpec {
     /// fifth, as far as the rooms allow.
     pub area_m2: Option<f32>,
     /// Exactly these rooms, 1 to 12; empty: as the home usually has. Hallways come by themselves.
-    pub rooms: Vec<RoomKind>,
+    pub rooms: Vec<GeneratedRoomKind>,
     /// Kinds of rooms that shall have a door between them, as far as the plan allows.
-    pub adjacency: Vec<[RoomKind; 2]>,
+    pub adjacency: Vec<[GeneratedRoomKind; 2]>,
     /// The name of a style of furniture.
     pub style: Option<String>,
     /// How much of the furniture that a home can do without is there, 0 to 1.
@@ -157,7 +157,7 @@ impl HouseSpec {
         if self.rooms.len() > MAX_ROOMS {
             return Err(fault("rooms", self.rooms.len().to_string(), "1 to 12"));
         }
-        if self.rooms.contains(&RoomKind::Hallway) {
+        if self.rooms.contains(&GeneratedRoomKind::Hallway) {
             return Err(fault(
                 "rooms",
                 "hallway",
@@ -170,7 +170,7 @@ impl HouseSpec {
         }
         for [a, b] in &self.adjacency {
             for kind in [a, b] {
-                if kind.is_outside() || *kind == RoomKind::Hallway {
+                if kind.is_outside() || *kind == GeneratedRoomKind::Hallway {
                     return Err(fault("adjacency", kind.traits().name, "rooms inside"));
                 }
                 if !self.rooms.is_empty() && !self.rooms.contains(kind) {

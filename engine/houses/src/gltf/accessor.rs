@@ -53,7 +53,7 @@ pub(super) fn indices(
     ) {
         return Err("indices that are not whole numbers from 0".to_owned());
     }
-    let whole = |element: Element<'_>| {
+    let whole = |element: ElementBytes<'_>| {
         element
             .bytes
             .iter()
@@ -64,12 +64,12 @@ pub(super) fn indices(
 }
 
 /// One element's bytes.
-struct Element<'a> {
+struct ElementBytes<'a> {
     bytes: &'a [u8],
     component: ComponentType,
 }
 
-impl Element<'_> {
+impl ElementBytes<'_> {
     fn component_value(&self, bytes: &[u8], normalized: bool) -> f32 {
         let pair = || [bytes[0], bytes[1]];
         let (value, largest) = match self.component {
@@ -105,7 +105,7 @@ fn elements<'a>(
     buffers: &'a Buffers<'_>,
     accessor: &Accessor,
     components: usize,
-) -> Result<impl Iterator<Item = Element<'a>> + use<'a>, String> {
+) -> Result<impl Iterator<Item = ElementBytes<'a>> + use<'a>, String> {
     let component = component(accessor)?;
     let found = match accessor.type_ {
         Checked::Valid(Type::Scalar) => 1,
@@ -145,7 +145,7 @@ fn elements<'a>(
         return Err(format!("{count} elements do not fit {} bytes", bytes.len()));
     }
     // The check above holds every slice inside the view.
-    Ok((0..count).map(move |k| Element {
+    Ok((0..count).map(move |k| ElementBytes {
         bytes: &bytes[start + k * stride..start + k * stride + size],
         component,
     }))

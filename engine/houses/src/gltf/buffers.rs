@@ -5,11 +5,11 @@ use std::borrow::Cow;
 use ::gltf::json::{Root, buffer::View};
 
 use super::glb::{TO_LIBRARY, content_name};
-use crate::damage::Damage;
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::limits::MAX_BUFFER_BYTES;
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// The bytes of all buffers; one that cannot be read is empty and reported.
 pub(super) struct Buffers<'a> {
@@ -22,8 +22,8 @@ impl<'a> Buffers<'a> {
         json: &Root,
         blob: &'a [u8],
         library: &DataRoot,
-        at: &At,
-        report: &mut Report,
+        at: &FileLocation,
+        report: &mut LoadReport,
     ) -> Result<Self, HousesError> {
         let read = |uri: &str| read_shared(uri, library, MAX_BUFFER_BYTES);
         Self::read(json, blob, read, at, report)
@@ -34,8 +34,8 @@ impl<'a> Buffers<'a> {
         json: &Root,
         blob: &'a [u8],
         root: &DataRoot,
-        at: &At,
-        report: &mut Report,
+        at: &FileLocation,
+        report: &mut LoadReport,
     ) -> Result<Self, HousesError> {
         let read = |uri: &str| read_uri(uri, root, MAX_BUFFER_BYTES);
         Self::read(json, blob, read, at, report)
@@ -44,9 +44,9 @@ impl<'a> Buffers<'a> {
     fn read(
         json: &Root,
         blob: &'a [u8],
-        read: impl Fn(&str) -> Result<Vec<u8>, Damage>,
-        at: &At,
-        report: &mut Report,
+        read: impl Fn(&str) -> Result<Vec<u8>, WarningKind>,
+        at: &FileLocation,
+        report: &mut LoadReport,
     ) -> Result<Self, HousesError> {
         let total: u64 = json
             .buffers
@@ -75,7 +75,7 @@ impl<'a> Buffers<'a> {
                     format!("{} bytes", bytes.len()),
                     format!("{} bytes", buffer.byte_length.0),
                 );
-                report.warn(at, Damage::BadField { found, expected });
+                report.warn(at, WarningKind::BadField { found, expected });
             }
             buffers.push(bytes);
         }
@@ -93,9 +93,9 @@ impl<'a> Buffers<'a> {
 }
 
 /// The bytes behind a URI: `data:` or a path beside the file.
-pub(super) fn read_uri(uri: &str, root: &DataRoot, max_bytes: u64) -> Result<Vec<u8>, Damage> {
+pub(super) fn read_uri(uri: &str, root: &DataRoot, max_bytes: u64) -> Result<Vec<u8>, WarningKind> {
     let short = || uri.chars().take(60).collect::<String>();
-    let unreadable = |reason: String| Damage::UnreadableMesh {
+    let unreadable = |reason: String| WarningKind::UnreadableMesh {
         path: short(),
         reason,
     };
@@ -106,10 +106,10 @@ pub(super) fn read_uri(uri: &str, root: &DataRoot, max_bytes: u64) -> Result<Vec
             .ok_or_else(|| unreadable("no valid base64 data".to_owned()));
     }
     let path = percent_decode(uri);
-    let inside =
-        DataRoot::resolve("", &path).map_err(|_| Damage::PathRefused { path: path.clone() })?;
+    let inside = DataRoot::resolve("", &path)
+        .map_err(|_| WarningKind::PathRefused { path: path.clone() })?;
     if !root.has_file(&inside) {
-        return Err(Damage::MissingMesh { path: inside });
+        return Err(WarningKind::MissingMesh { path: inside });
     }
     root.read(&inside, max_bytes)
         .map_err(|error| unreadable(error.reason()))
@@ -120,9 +120,9 @@ pub(super) fn read_shared(
     uri: &str,
     library: &DataRoot,
     max_bytes: u64,
-) -> Result<Vec<u8>, Damage> {
+) -> Result<Vec<u8>, WarningKind> {
     let short = || uri.chars().take(60).collect::<String>();
-    let refused = || Damage::PathRefused { path: short() };
+    let refused = || WarningKind::PathRefused { path: short() };
     let path = uri.strip_prefix(TO_LIBRARY).ok_or_else(refused)?;
     let (folder, file) = path.split_once('/').ok_or_else(refused)?;
     let (name, _) = file.split_once('.').ok_or_else(refused)?;
@@ -130,7 +130,7 @@ pub(super) fn read_shared(
     if !(is_name && matches!(folder, "object" | "texture") && !file.contains(['/', '\\'])) {
         return Err(refused());
     }
-    let unreadable = |reason: String| Damage::UnreadableMesh {
+    let unreadable = |reason: String| WarningKind::UnreadableMesh {
         path: short(),
         reason,
     };

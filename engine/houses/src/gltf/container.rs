@@ -28,7 +28,9 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
             text.len()
         ));
     }
-    let invalid = |error: serde_json::Error| format!("no valid glTF 2.0: {}", crate::plain(&error));
+    let invalid = |error: serde_json::Error| {
+        format!("no valid glTF 2.0: {}", crate::plain_parse_error(&error))
+    };
     indices::check(text).map_err(invalid)?;
     // Only files that need it are read as a tree: that is slower, and places in the text are lost.
     let mut json: Root = if contains(text, BASISU.as_bytes()) {

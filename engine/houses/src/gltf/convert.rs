@@ -13,12 +13,12 @@ use super::accessor::{floats, indices};
 use super::buffers::Buffers;
 use super::nodes::tree;
 use super::surface::{images, materials};
-use crate::build::{LookTable, Scene, Thing, texture_name};
-use crate::damage::Damage;
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
+use crate::import::{ImportedScene, MaterialTableBuilder, SceneNode, texture_name};
 use crate::limits::{MAX_CORNERS_SHOWN, MAX_NODES};
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 pub(super) fn convert(
     json: &Root,
@@ -27,9 +27,9 @@ pub(super) fn convert(
     name: &str,
     trusted: bool,
     threads: Threads,
-    report: &mut Report,
-) -> Result<Scene, HousesError> {
-    let at = At::file(name);
+    report: &mut LoadReport,
+) -> Result<ImportedScene, HousesError> {
+    let at = FileLocation::file(name);
     if json.nodes.len() > MAX_NODES {
         let (found, allowed) = (json.nodes.len() as u64, MAX_NODES as u64);
         return Err(HousesError::TooLarge {
@@ -46,16 +46,16 @@ pub(super) fn convert(
     for (what, count) in unread.into_iter().filter(|(_, count)| *count > 0) {
         report.warn(
             at.field(what),
-            Damage::Simplified {
+            WarningKind::Simplified {
                 what: format!("{count} {what} are not read"),
             },
         );
     }
-    let mut looks = LookTable::default();
+    let mut looks = MaterialTableBuilder::default();
     let images = images(json, buffers, root, &at, threads, report);
     let material_ids = materials(json, &images, trusted, &mut looks, &at, report);
     let mut meshes: Vec<Option<(Arc<Mesh>, Vec<MaterialId>)>> = vec![None; json.meshes.len()];
-    let (mut read, mut shown) = (Corners::default(), Corners::default());
+    let (mut read, mut shown) = (VertexWriter::default(), VertexWriter::default());
     let mut things = Vec::new();
     let tree = tree(json, trusted, &at, report);
     for instance in tree.instances {
@@ -77,7 +77,7 @@ pub(super) fn convert(
         if shape.triangles.is_empty() {
             report.warn(
                 at.clone(),
-                Damage::EmptyMesh {
+                WarningKind::EmptyMesh {
                     path: instance.name,
                 },
             );
@@ -86,7 +86,7 @@ pub(super) fn convert(
         if let Err(reason) = shown.take(shape.positions.len(), 3 * shape.triangles.len()) {
             report.warn(
                 at.field("nodes"),
-                Damage::UnreadableMesh {
+                WarningKind::UnreadableMesh {
                     path: instance.name,
                     reason,
                 },
@@ -94,7 +94,7 @@ pub(super) fn convert(
             continue;
         }
         let (mesh, materials) = (shape.clone(), materials.clone());
-        things.push(Thing {
+        things.push(SceneNode {
             name: instance.name,
             mesh,
             world_from_mesh: instance.world_from_mesh,
@@ -105,7 +105,7 @@ pub(super) fn convert(
             part_of: instance.part_of,
         });
     }
-    Ok(Scene {
+    Ok(ImportedScene {
         name: texture_name(name),
         source: "gltf",
         things,
@@ -121,9 +121,9 @@ pub(super) fn convert(
 
 /// Vertices and indices so far.
 #[derive(Default)]
-struct Corners(u64);
+struct VertexWriter(u64);
 
-impl Corners {
+impl VertexWriter {
     /// Takes those of a mesh.
     ///
     /// # Errors
@@ -167,9 +167,9 @@ fn merge(
     buffers: &Buffers<'_>,
     primitives: &[Primitive],
     material_ids: &[MaterialId],
-    corners: &mut Corners,
-    at: &At,
-    report: &mut Report,
+    corners: &mut VertexWriter,
+    at: &FileLocation,
+    report: &mut LoadReport,
 ) -> (Arc<Mesh>, Vec<MaterialId>) {
     let mut merged = Mesh::default();
     let mut materials: Vec<MaterialId> = Vec::new();
@@ -181,7 +181,7 @@ fn merge(
         let mut part = match part {
             Ok(part) => part,
             Err(reason) => {
-                report.warn(at.clone(), Damage::BadFace { reason });
+                report.warn(at.clone(), WarningKind::BadFace { reason });
                 continue;
             }
         };
@@ -273,8 +273,8 @@ fn read(
     json: &Root,
     buffers: &Buffers<'_>,
     primitive: &Primitive,
-    at: &At,
-    report: &mut Report,
+    at: &FileLocation,
+    report: &mut LoadReport,
 ) -> Result<Mesh, String> {
     let attribute = |wanted: &Semantic| {
         let mut found = primitive.attributes.iter();
@@ -300,7 +300,7 @@ fn read(
             .collect(),
         ..Mesh::default()
     };
-    report.warn_times(at.clone(), Damage::NanVertices, nan);
+    report.warn_times(at.clone(), WarningKind::NanVertices, nan);
     if let Some(index) = attribute(&Semantic::Normals) {
         let normals: Vec<[f32; 3]> = floats(json, buffers, index)?;
         mesh.normals = normals
@@ -360,6 +360,6 @@ fn read(
         (b - a).cross(c - a) == Vec3::ZERO
     };
     let degenerate = mesh.triangles.iter().filter(flat).count() as u64;
-    report.warn_times(at.clone(), Damage::DegenerateTriangles, degenerate);
+    report.warn_times(at.clone(), WarningKind::DegenerateTriangles, degenerate);
     Ok(mesh)
 }

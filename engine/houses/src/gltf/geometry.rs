@@ -7,20 +7,20 @@ use dwell_scene::Texture;
 
 use super::accessor;
 use super::buffers::{Buffers, read_shared};
-use crate::build::decode;
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
+use crate::import::decode;
 use crate::limits::MAX_IMAGE_BYTES;
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
 
 /// A parsed GLB whose numbers and images are asked for one by one.
-pub(crate) struct Geometry<'a> {
+pub(crate) struct ParsedGlb<'a> {
     json: Root,
     buffers: Buffers<'a>,
     library: &'a DataRoot,
 }
 
-impl<'a> Geometry<'a> {
+impl<'a> ParsedGlb<'a> {
     /// Parses the container; what `bytes` do not hold stands in `library`, in files named by their content.
     ///
     /// # Errors
@@ -31,13 +31,13 @@ impl<'a> Geometry<'a> {
         name: &str,
         library: &'a DataRoot,
     ) -> Result<Self, HousesError> {
-        let at = At::file(name);
+        let at = FileLocation::file(name);
         let syntax = |message: String| HousesError::Syntax {
             at: at.clone(),
             message,
         };
         let (json, blob) = super::container::split(bytes).map_err(syntax)?;
-        let mut report = Report::new();
+        let mut report = LoadReport::new();
         let buffers = Buffers::of_library(&json, blob, library, &at, &mut report)?;
         match report.warnings().first() {
             Some(warning) => Err(syntax(warning.damage.to_string())),

@@ -10,13 +10,13 @@ pub(crate) const UNSIGNED_INT: u32 = 5125;
 pub(crate) const UNSIGNED_SHORT: u32 = 5123;
 
 /// A file of bytes that a URI names.
-pub(crate) struct Beside {
+pub(crate) struct SidecarFile {
     /// Its folder and name: `object/<hash>.bin`.
     pub(crate) path: String,
     pub(crate) bytes: Vec<u8>,
 }
 
-/// What URIs put before [`Beside::path`]: a native house stands in `house/NAME.dwell/`.
+/// What URIs put before [`SidecarFile::path`]: a native house stands in `house/NAME.dwell/`.
 pub(crate) const TO_LIBRARY: &str = "../../";
 
 /// The name of a shared file: 128 bits of its content.
@@ -33,17 +33,17 @@ struct Buffer {
 }
 
 /// The binary chunk, and buffers beside the file, under construction, with their views and accessors.
-pub(crate) struct Binary {
+pub(crate) struct BinaryChunk {
     /// The chunk first.
     buffers: Vec<Buffer>,
     /// The buffer that is written to.
     open: usize,
-    beside: Vec<Beside>,
+    beside: Vec<SidecarFile>,
     views: Vec<Value>,
     accessors: Vec<Value>,
 }
 
-impl Default for Binary {
+impl Default for BinaryChunk {
     fn default() -> Self {
         Self {
             buffers: vec![Buffer::default()],
@@ -55,7 +55,7 @@ impl Default for Binary {
     }
 }
 
-impl Binary {
+impl BinaryChunk {
     /// What `write` appends goes into the chunk, or `apart` into a file of its own in `folder`, named by its content.
     pub(crate) fn part<T>(
         &mut self,
@@ -82,7 +82,7 @@ impl Binary {
     pub(crate) fn beside(&mut self, folder: &str, ending: &str, bytes: Vec<u8>) -> String {
         let path = format!("{folder}/{}.{ending}", content_name(&bytes));
         let uri = format!("{TO_LIBRARY}{path}");
-        self.beside.push(Beside { path, bytes });
+        self.beside.push(SidecarFile { path, bytes });
         uri
     }
 
@@ -145,7 +145,7 @@ impl Binary {
     pub(crate) fn into_glb(
         mut self,
         mut document: Value,
-    ) -> Result<(Vec<u8>, Vec<Beside>), String> {
+    ) -> Result<(Vec<u8>, Vec<SidecarFile>), String> {
         if !self.views.is_empty() {
             // The format forbids empty buffers, and the chunk is the first one.
             let chunk = &mut self.buffers[0].bytes;
@@ -164,7 +164,8 @@ impl Binary {
         let mut binary = buffers.next().unwrap_or_default().bytes;
         let mut beside = self.beside;
         beside.extend(
-            buffers.filter_map(|Buffer { bytes, path }| path.map(|path| Beside { path, bytes })),
+            buffers
+                .filter_map(|Buffer { bytes, path }| path.map(|path| SidecarFile { path, bytes })),
         );
         let mut text = document.to_string().into_bytes();
         text.resize(text.len().next_multiple_of(4), b' ');

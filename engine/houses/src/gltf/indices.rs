@@ -47,17 +47,17 @@ const TABLES: [&str; 2] = ["attributes", "targets"];
 /// Those of JSON, and for a number of more than 32 bits.
 pub(super) fn check(text: &[u8]) -> Result<(), serde_json::Error> {
     let mut json = serde_json::Deserializer::from_slice(text);
-    Walk::default().deserialize(&mut json)?;
+    IndexVisitor::default().deserialize(&mut json)?;
     json.end()
 }
 
 #[derive(Debug, Default, Clone, Copy)]
-struct Walk {
+struct IndexVisitor {
     is_index: bool,
     is_table: bool,
 }
 
-impl<'de> DeserializeSeed<'de> for Walk {
+impl<'de> DeserializeSeed<'de> for IndexVisitor {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<(), D::Error> {
@@ -65,7 +65,7 @@ impl<'de> DeserializeSeed<'de> for Walk {
     }
 }
 
-impl<'de> Visitor<'de> for Walk {
+impl<'de> Visitor<'de> for IndexVisitor {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

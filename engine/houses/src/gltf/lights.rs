@@ -11,9 +11,9 @@ use ::gltf::json::{Node, Root};
 use dwell_scene::math::cos;
 use glam::{Affine3A, Vec3};
 
-use crate::build::FileLamp;
-use crate::damage::Damage;
-use crate::report::{At, Report};
+use crate::import::ImportedLamp;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// lm of a lamp of 1 W, as [`dwell_scene::Light::power_w`] says.
 pub(super) const LUMENS_PER_WATT: f32 = 100.0;
@@ -24,7 +24,7 @@ const MOST_W: f32 = 1e5;
 
 /// What our own files say of a lamp beside the extension.
 #[derive(Clone, Default)]
-pub(super) struct Said {
+pub(super) struct LampExtras {
     pub(super) power_w: Option<f32>,
     pub(super) on: Option<bool>,
     pub(super) light_of: Option<String>,
@@ -37,10 +37,10 @@ pub(super) fn lamp(
     json: &Root,
     node: &Node,
     world_from_node: Affine3A,
-    said: Said,
-    at: &At,
-    report: &mut Report,
-) -> Option<FileLamp> {
+    said: LampExtras,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> Option<ImportedLamp> {
     let index = (node
         .extensions
         .as_ref()?
@@ -66,7 +66,7 @@ pub(super) fn lamp(
                 let what = "a directional light is not read; suns are, from extras.dwell.sky";
                 report.warn(
                     at.clone(),
-                    Damage::Simplified {
+                    WarningKind::Simplified {
                         what: what.to_owned(),
                     },
                 );
@@ -79,10 +79,10 @@ pub(super) fn lamp(
         .unwrap_or_else(|| power_w(light, cone.map(|cone| cone.1)));
     if !power_w.is_finite() || power_w < 0.0 || !light.color.iter().all(|c| c.is_finite()) {
         let what = "a light without a finite colour and intensity is not read".to_owned();
-        report.warn(at.clone(), Damage::Simplified { what });
+        report.warn(at.clone(), WarningKind::Simplified { what });
         return None;
     }
-    Some(FileLamp {
+    Some(ImportedLamp {
         position: world_from_node.translation.into(),
         cone,
         color: light.color.map(|c| c.clamp(0.0, 1.0)),

@@ -12,7 +12,7 @@ mod nodes;
 mod surface;
 mod write;
 
-pub(crate) use geometry::Geometry;
+pub(crate) use geometry::ParsedGlb;
 pub use write::write;
 pub(crate) use write::{MeshAccessors, Storage, encode};
 
@@ -21,12 +21,12 @@ use std::path::Path;
 use dwell_scene::House;
 use dwell_scene::parallel::Threads;
 
-use crate::build::Scene;
-use crate::damage::Damage;
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
+use crate::import::ImportedScene;
 use crate::limits::MAX_BUFFER_BYTES;
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// Whether `path` names a glTF file.
 pub(crate) fn recognizes(path: &Path) -> bool {
@@ -45,7 +45,7 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no valid glTF 2.0,
 /// [`HousesError::TooLarge`] for buffers beyond 2 GiB, [`HousesError::Empty`] when no triangle is left,
 /// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
-pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let name = path
         .file_name()
@@ -67,15 +67,15 @@ pub fn open_bytes(
     root: &DataRoot,
     name: &str,
     threads: Threads,
-) -> Result<(House, Report), HousesError> {
-    let at = At::file(name);
-    let mut report = Report::new();
+) -> Result<(House, LoadReport), HousesError> {
+    let at = FileLocation::file(name);
+    let mut report = LoadReport::new();
     let scene = read(bytes, root, name, true, threads, &mut report)?;
     match scene.into_house(&at, &mut report) {
         Err(HousesError::Scene { source, .. }) => {
-            let mut report = Report::new();
+            let mut report = LoadReport::new();
             let what = format!("what extras say of objects and materials is not read: {source}");
-            report.warn(at.field("extras.dwell"), Damage::Simplified { what });
+            report.warn(at.field("extras.dwell"), WarningKind::Simplified { what });
             let scene = read(bytes, root, name, false, threads, &mut report)?;
             Ok((scene.into_house(&at, &mut report)?, report))
         }
@@ -92,8 +92,8 @@ pub(crate) fn read_scene(
     root: &DataRoot,
     name: &str,
     threads: Threads,
-    report: &mut Report,
-) -> Result<Scene, HousesError> {
+    report: &mut LoadReport,
+) -> Result<ImportedScene, HousesError> {
     read(bytes, root, name, true, threads, report)
 }
 
@@ -104,9 +104,9 @@ fn read(
     name: &str,
     trusted: bool,
     threads: Threads,
-    report: &mut Report,
-) -> Result<Scene, HousesError> {
-    let at = At::file(name);
+    report: &mut LoadReport,
+) -> Result<ImportedScene, HousesError> {
+    let at = FileLocation::file(name);
     let syntax = |message: String| HousesError::Syntax {
         at: at.clone(),
         message,
@@ -123,7 +123,7 @@ fn read(
 }
 
 /// Whether the asset is one of glTF 2: by the version that it asks of readers, else by its own.
-fn check_version(asset: &::gltf::json::Asset, at: &At) -> Result<(), HousesError> {
+fn check_version(asset: &::gltf::json::Asset, at: &FileLocation) -> Result<(), HousesError> {
     let (field, found) = match &asset.min_version {
         Some(needed) => ("asset.minVersion", needed),
         None => ("asset.version", &asset.version),
@@ -149,7 +149,7 @@ fn check_version(asset: &::gltf::json::Asset, at: &At) -> Result<(), HousesError
 
 /// Whether the positions of all primitives are accessors that exist: the `gltf` crate (1.4) looks them up before it checks them, which
 /// panics.
-fn check_positions(json: &::gltf::json::Root, at: &At) -> Result<(), HousesError> {
+fn check_positions(json: &::gltf::json::Root, at: &FileLocation) -> Result<(), HousesError> {
     use ::gltf::json::mesh::Semantic;
     use ::gltf::json::validation::Checked;
     let positions = Checked::Valid(Semantic::Positions);

@@ -6,46 +6,48 @@ use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use super::lights::{self, Said};
-use crate::build::{FileLamp, FileRoom, GivenLight, GivenObject, GivenPart, Role};
-use crate::damage::Damage;
-use crate::report::{At, Report};
+use super::lights::{self, LampExtras};
+use crate::import::{
+    AnnotatedLight, AnnotatedObject, AnnotatedPart, ImportedLamp, NamedRoom, NodeRole,
+};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// A node that shows a mesh.
-pub(super) struct Instance {
+pub(super) struct MeshNode {
     pub(super) name: String,
     pub(super) mesh: usize,
     pub(super) world_from_mesh: Affine3A,
-    /// The storey and the room that its node stands in, as positions in [`Tree`].
+    /// The storey and the room that its node stands in, as positions in [`NodeTree`].
     pub(super) level: Option<usize>,
     pub(super) room: Option<usize>,
-    pub(super) role: Role,
-    /// The object and its part, as positions in [`Tree::objects`], whose look this is.
+    pub(super) role: NodeRole,
+    /// The object and its part, as positions in [`NodeTree::objects`], whose look this is.
     pub(super) part_of: Option<(usize, usize)>,
 }
 
 /// All that nodes say.
 #[derive(Default)]
-pub(super) struct Tree {
-    pub(super) instances: Vec<Instance>,
+pub(super) struct NodeTree {
+    pub(super) instances: Vec<MeshNode>,
     /// Names of storeys that have rooms.
     pub(super) levels: Vec<String>,
-    pub(super) rooms: Vec<FileRoom>,
+    pub(super) rooms: Vec<NamedRoom>,
     pub(super) sky: Option<Sky>,
-    pub(super) lamps: Vec<FileLamp>,
+    pub(super) lamps: Vec<ImportedLamp>,
     /// Objects of which the file says more than shapes and names.
-    pub(super) objects: Vec<GivenObject>,
+    pub(super) objects: Vec<AnnotatedObject>,
 }
 
 /// A node's `extras`.
 #[derive(Deserialize)]
-struct Extras<T> {
+struct NodeExtras<T> {
     dwell: T,
 }
 
 /// A node's `extras.dwell`, as far as it is read; `docs/formats/glb.md` has all of it.
 #[derive(Default, Deserialize)]
-struct Known {
+struct DwellNodeExtras {
     #[serde(default)]
     room: Option<String>,
     #[serde(default)]
@@ -63,7 +65,7 @@ struct Known {
     #[serde(default)]
     part: Option<String>,
     #[serde(default)]
-    light: Option<GivenLight>,
+    light: Option<AnnotatedLight>,
     #[serde(default)]
     sky: Option<Sky>,
     #[serde(default)]
@@ -75,7 +77,7 @@ struct Known {
 }
 
 /// A node on the way down.
-struct Open {
+struct PendingNode {
     node: usize,
     world_from_parent: Affine3A,
     /// The name of the topmost node above, which is a storey's in our files.
@@ -83,13 +85,18 @@ struct Open {
     room: Option<usize>,
     /// Whether it is a part of an object.
     of_object: bool,
-    /// The object, as a position in [`Tree::objects`], when it says all that one needs.
+    /// The object, as a position in [`NodeTree::objects`], when it says all that one needs.
     object: Option<usize>,
 }
 
 /// All nodes of the default scene (of all scenes when none is the default), parents first. `trusted`: whether what `extras` say
 /// of objects counts.
-pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> Tree {
+pub(super) fn tree(
+    json: &Root,
+    trusted: bool,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> NodeTree {
     let scenes: Vec<_> = match json.scene.and_then(|scene| json.scenes.get(scene.value())) {
         Some(scene) => vec![scene],
         None => json.scenes.iter().collect(),
@@ -97,7 +104,7 @@ pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> 
     let roots = scenes
         .iter()
         .flat_map(|scene| scene.nodes.iter().map(Index::value));
-    let root = |node: usize| Open {
+    let root = |node: usize| PendingNode {
         node,
         world_from_parent: Affine3A::IDENTITY,
         top: None,
@@ -105,16 +112,16 @@ pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> 
         of_object: false,
         object: None,
     };
-    let mut open: Vec<Open> = roots.map(root).collect();
+    let mut open: Vec<PendingNode> = roots.map(root).collect();
     if json.scenes.is_empty() {
         open.extend((0..json.nodes.len()).map(root));
     }
     open.reverse();
     let mut seen = vec![false; json.nodes.len()];
-    let mut found = Tree::default();
+    let mut found = NodeTree::default();
     // Storeys by their nodes, in the order of their first rooms.
     let mut tops: Vec<usize> = Vec::new();
-    while let Some(Open {
+    while let Some(PendingNode {
         node: index,
         world_from_parent,
         top,
@@ -128,7 +135,7 @@ pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> 
         };
         // A file may claim a cycle; each node is visited once.
         if std::mem::replace(&mut seen[index], true) {
-            let damage = Damage::BadIndex {
+            let damage = WarningKind::BadIndex {
                 found: index.to_string(),
                 reason: "a node that was reached already".to_owned(),
             };
@@ -149,11 +156,11 @@ pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> 
         let node_at = at.field(format_args!("nodes[{index}]"));
         if !world_from_mesh.is_finite() {
             let reason = "it is not finite".to_owned();
-            report.warn(node_at, Damage::BadTransform { reason });
+            report.warn(node_at, WarningKind::BadTransform { reason });
             continue;
         }
         let known = known(node, &node_at, report);
-        let said = Said {
+        let said = LampExtras {
             power_w: known.power_w,
             on: known.on,
             light_of: known.light_of.clone(),
@@ -176,7 +183,7 @@ pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> 
         let top = top.unwrap_or(index);
         let of_object = of_object || known.object.is_some();
         let begun = (trusted && known.object.is_some())
-            .then(|| given::<GivenObject>(node, &node_at, report))
+            .then(|| given::<AnnotatedObject>(node, &node_at, report))
             .flatten();
         let object = begun.map_or(object, |mut own| {
             (own.level, own.room) = (Some(top), room);
@@ -184,7 +191,7 @@ pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> 
             Some(found.objects.len() - 1)
         });
         let part = (object.is_some() && known.part.is_some())
-            .then(|| given::<GivenPart>(node, &node_at, report))
+            .then(|| given::<AnnotatedPart>(node, &node_at, report))
             .flatten();
         let part_of = object.zip(part).map(|(object, mut part)| {
             part.world_from_node = world_from_mesh;
@@ -220,26 +227,26 @@ pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> 
                 .or_else(of_mesh)
                 .filter(|name| !name.is_empty());
             let name = name.unwrap_or_else(|| format!("node_{index}"));
-            found.instances.push(Instance {
+            found.instances.push(MeshNode {
                 name,
                 mesh: mesh.value(),
                 world_from_mesh,
                 level: Some(top),
                 room,
                 role: match known.structure {
-                    Some(kind) => Role::Building(kind),
-                    None if of_object => Role::Object,
-                    None => Role::Unsaid,
+                    Some(kind) => NodeRole::Building(kind),
+                    None if of_object => NodeRole::Object,
+                    None => NodeRole::Unspecified,
                 },
                 part_of,
             });
         }
         if node.skin.is_some() {
             let what = "skins are not read; the mesh stands in its rest pose".to_owned();
-            report.warn(node_at, Damage::Simplified { what });
+            report.warn(node_at, WarningKind::Simplified { what });
         }
         let children = node.children.iter().flatten().rev();
-        open.extend(children.map(|child| Open {
+        open.extend(children.map(|child| PendingNode {
             node: child.value(),
             world_from_parent: world_from_mesh,
             top: Some(top),
@@ -258,46 +265,53 @@ pub(super) fn tree(json: &Root, trusted: bool, at: &At, report: &mut Report) -> 
 }
 
 /// What a node says of an object or part; what cannot be read is reported and counts for nothing.
-fn given<T: DeserializeOwned>(node: &Node, at: &At, report: &mut Report) -> Option<T> {
+fn given<T: DeserializeOwned>(
+    node: &Node,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> Option<T> {
     let text = node.extras.as_ref()?.get();
-    let read: Result<Extras<T>, _> = serde_json::from_str(text);
+    let read: Result<NodeExtras<T>, _> = serde_json::from_str(text);
     read.map(|extras| extras.dwell)
         .map_err(|error| {
             let what = format!(
                 "what extras.dwell says of an object is not read: {}",
-                crate::plain(&error)
+                crate::plain_parse_error(&error)
             );
-            report.warn(at.field("extras"), Damage::Simplified { what });
+            report.warn(at.field("extras"), WarningKind::Simplified { what });
         })
         .ok()
 }
 
 /// What a node says of itself in our words; nothing where `extras` are not ours.
-fn known(node: &Node, at: &At, report: &mut Report) -> Known {
+fn known(node: &Node, at: &FileLocation, report: &mut LoadReport) -> DwellNodeExtras {
     let Some(text) = node.extras.as_ref().map(|extras| extras.get()) else {
-        return Known::default();
+        return DwellNodeExtras::default();
     };
     if !text.contains("\"dwell\"") {
-        return Known::default();
+        return DwellNodeExtras::default();
     }
     serde_json::from_str(text).map_or_else(
         |error| {
-            let what = format!("extras.dwell is not read: {}", crate::plain(&error));
-            report.warn(at.field("extras"), Damage::Simplified { what });
-            Known::default()
+            let what = format!(
+                "extras.dwell is not read: {}",
+                crate::plain_parse_error(&error)
+            );
+            report.warn(at.field("extras"), WarningKind::Simplified { what });
+            DwellNodeExtras::default()
         },
-        |extras: Extras<Known>| extras.dwell,
+        |extras: NodeExtras<DwellNodeExtras>| extras.dwell,
     )
 }
 
 /// The room that a node is; its numbers count in the world, so that a node that is moved is none.
 fn file_room(
     name: Option<&str>,
-    known: &Known,
+    known: &DwellNodeExtras,
     world_from_node: Affine3A,
-    at: &At,
-    report: &mut Report,
-) -> Option<FileRoom> {
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> Option<NamedRoom> {
     let name = name?;
     let points = || known.footprint.iter().flatten();
     let finite = points().all(|p| p.is_finite())
@@ -305,10 +319,10 @@ fn file_room(
         && known.floor_y > -1e4;
     if world_from_node != Affine3A::IDENTITY || !finite {
         let what = "a room that is moved, or without floor and ceiling, is not read".to_owned();
-        report.warn(at.field("extras.dwell"), Damage::Simplified { what });
+        report.warn(at.field("extras.dwell"), WarningKind::Simplified { what });
         return None;
     }
-    Some(FileRoom {
+    Some(NamedRoom {
         name: name.to_owned(),
         level: 0,
         kinds: known.kinds.clone(),

@@ -11,16 +11,17 @@ use dwell_scene::{Material, MaterialId, Texture, TextureId, units};
 use serde::Deserialize;
 
 use super::buffers::{Buffers, read_uri};
-use crate::build::{
-    Look, LookTable, PixelBudget, decode, is_cut, pixels, substance_of, texture_name,
+use crate::data_root::DataRoot;
+use crate::import::{
+    ImportedMaterial, MaterialTableBuilder, PixelBudget, decode, is_cut, pixels, substance_of,
+    texture_name,
 };
-use crate::damage::Damage;
 use crate::limits::MAX_IMAGE_BYTES;
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// The images that base colours use, decoded; `ids` has an entry for each image of the file.
-pub(super) struct Images {
+pub(super) struct DecodedImages {
     pub(super) textures: Vec<Arc<Texture>>,
     pub(super) ids: Vec<Option<TextureId>>,
 }
@@ -30,10 +31,10 @@ pub(super) fn images(
     json: &Root,
     buffers: &Buffers<'_>,
     root: &DataRoot,
-    at: &At,
+    at: &FileLocation,
     threads: Threads,
-    report: &mut Report,
-) -> Images {
+    report: &mut LoadReport,
+) -> DecodedImages {
     let used: BTreeSet<usize> = json
         .materials
         .iter()
@@ -54,7 +55,7 @@ pub(super) fn images(
             .unwrap_or_else(|| format!("image_{}", used[k]))
     };
     let unreadable = |k: usize| {
-        move |reason: String| Damage::UnreadableTexture {
+        move |reason: String| WarningKind::UnreadableTexture {
             path: name_of(k),
             reason,
         }
@@ -72,9 +73,9 @@ pub(super) fn images(
             (None, Some(uri)) => {
                 let bytes = read_uri(uri, root, MAX_IMAGE_BYTES);
                 bytes.map(Cow::Owned).map_err(|damage| match damage {
-                    Damage::MissingMesh { path } => Damage::MissingTexture { path },
-                    Damage::UnreadableMesh { path, reason } => {
-                        Damage::UnreadableTexture { path, reason }
+                    WarningKind::MissingMesh { path } => WarningKind::MissingTexture { path },
+                    WarningKind::UnreadableMesh { path, reason } => {
+                        WarningKind::UnreadableTexture { path, reason }
                     }
                     other => other,
                 })
@@ -85,7 +86,7 @@ pub(super) fn images(
     // Sizes first: many images may name the same few bytes.
     let sizes = threads.map(used.len(), |k| pixels(&bytes_of(k)?).map_err(unreadable(k)));
     let mut budget = PixelBudget::default();
-    let within: Vec<Result<(), Damage>> = sizes
+    let within: Vec<Result<(), WarningKind>> = sizes
         .into_iter()
         .enumerate()
         .map(|(k, size)| budget.take(size?).map_err(unreadable(k)))
@@ -96,7 +97,7 @@ pub(super) fn images(
         let texture = decode(&name_of(k), &bytes).map_err(unreadable(k))?;
         Ok((texture, is_cut(&bytes)))
     });
-    let mut images = Images {
+    let mut images = DecodedImages {
         textures: Vec::new(),
         ids: vec![None; json.images.len()],
     };
@@ -106,7 +107,7 @@ pub(super) fn images(
                 if cut {
                     let path = texture.name.clone();
                     let at = at.field(format_args!("images[{k}]"));
-                    report.warn(at, Damage::CutTexture { path });
+                    report.warn(at, WarningKind::CutTexture { path });
                 }
                 images.ids[k] = Some(TextureId(images.textures.len() as u32));
                 images.textures.push(Arc::new(texture));
@@ -128,14 +129,14 @@ fn image_of(json: &Root, material: &::gltf::json::Material) -> Option<usize> {
 
 /// A material's `extras`.
 #[derive(Deserialize)]
-struct Extras {
-    dwell: Known,
+struct MaterialExtras {
+    dwell: DwellMaterialExtras,
 }
 
 /// A material's `extras.dwell`: what it is beyond its looks.
 #[derive(Default, Deserialize)]
 #[serde(default)]
-struct Known {
+struct DwellMaterialExtras {
     substance: Option<String>,
     emission: Option<[f32; 3]>,
     density_kg_m3: Option<f32>,
@@ -146,19 +147,22 @@ struct Known {
     transmission_loss_db: Option<Bands>,
 }
 
-impl Known {
-    fn read(material: &::gltf::json::Material, at: &At, report: &mut Report) -> Self {
+impl DwellMaterialExtras {
+    fn read(material: &::gltf::json::Material, at: &FileLocation, report: &mut LoadReport) -> Self {
         let text = material.extras.as_ref().map(|extras| extras.get());
         let Some(text) = text.filter(|text| text.contains("\"dwell\"")) else {
             return Self::default();
         };
         serde_json::from_str(text).map_or_else(
             |error| {
-                let what = format!("extras.dwell is not read: {}", crate::plain(&error));
-                report.warn(at.field("extras"), Damage::Simplified { what });
+                let what = format!(
+                    "extras.dwell is not read: {}",
+                    crate::plain_parse_error(&error)
+                );
+                report.warn(at.field("extras"), WarningKind::Simplified { what });
                 Self::default()
             },
-            |extras: Extras| extras.dwell,
+            |extras: MaterialExtras| extras.dwell,
         )
     }
 
@@ -185,11 +189,11 @@ impl Known {
 /// The materials of the file, and after them the one that primitives without a material show, if there are such.
 pub(super) fn materials(
     json: &Root,
-    images: &Images,
+    images: &DecodedImages,
     trusted: bool,
-    looks: &mut LookTable,
-    at: &At,
-    report: &mut Report,
+    looks: &mut MaterialTableBuilder,
+    at: &FileLocation,
+    report: &mut LoadReport,
 ) -> Vec<MaterialId> {
     let mut ids = Vec::new();
     for (k, material) in json.materials.iter().enumerate() {
@@ -212,7 +216,7 @@ pub(super) fn materials(
         let roughness = finite(pbr.roughness_factor.0, 1.0);
         let metallic = finite(pbr.metallic_factor.0, 1.0);
         if not_finite > 0 {
-            let damage = Damage::BadField {
+            let damage = WarningKind::BadField {
                 found: "a factor that is too large".to_owned(),
                 expected: "0 to 1".to_owned(),
             };
@@ -240,21 +244,21 @@ pub(super) fn materials(
             library().get_or_default(of_look)
         };
         let known = if trusted {
-            Known::read(material, &at.field(format_args!("materials[{k}]")), report)
+            DwellMaterialExtras::read(material, &at.field(format_args!("materials[{k}]")), report)
         } else {
-            Known::default()
+            DwellMaterialExtras::default()
         };
         let said = known.substance.as_deref();
         let said = said.and_then(|name| library().get(name));
         let substance = said.or(named).unwrap_or_else(usual);
-        let id = looks.add(&Look {
+        let id = looks.add(&ImportedMaterial {
             srgb: [r, g, b].map(units::srgb_from_linear),
             texture,
             opacity,
             emission,
             roughness: Some(roughness),
             metallic: Some(metallic),
-            ..Look::plain(&name, substance)
+            ..ImportedMaterial::plain(&name, substance)
         });
         looks.refine(id, |material| {
             // The colour of the file goes before one that was rounded on the way.
@@ -268,9 +272,9 @@ pub(super) fn materials(
     let mut primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let without = primitives.any(|primitive| primitive.material.is_none());
     if without || ids.is_empty() {
-        ids.push(looks.add(&Look {
+        ids.push(looks.add(&ImportedMaterial {
             srgb: [1.0; 3],
-            ..Look::plain("default", library().default_substance())
+            ..ImportedMaterial::plain("default", library().default_substance())
         }));
     }
     ids

@@ -3,21 +3,23 @@
 use dwell_scene::{Aabb, Mobility};
 use serde_json::Value;
 
-use super::dataset::Kind;
-use super::file::{ArticulatedTemplate, Instance};
+use super::dataset::TemplateKind;
+use super::file::{ArticulatedTemplate, SceneInstance};
 use super::objects::{coarse, home};
-use super::{Reader, place};
-use crate::damage::Damage;
-use crate::report::At;
+use super::{HabitatReader, place};
+use crate::data_root::DataRoot;
+use crate::report::FileLocation;
 use crate::robot::{self, Robot};
-use crate::root::DataRoot;
 use crate::urdf;
+use crate::warning_kind::WarningKind;
 
-impl Reader<'_> {
+impl HabitatReader<'_> {
     /// Adds the articulated object that `instance` places: a URDF by name, or a template that names one.
-    pub(super) fn articulated(&mut self, instance: &Instance, at: &At) {
+    pub(super) fn articulated(&mut self, instance: &SceneInstance, at: &FileLocation) {
         let name = &instance.template_name;
-        let config = self.dataset.template(Kind::Articulated, name, self.report);
+        let config = self
+            .dataset
+            .template(TemplateKind::Articulated, name, self.report);
         let template = match &config {
             Some(found) => match self.parse::<ArticulatedTemplate>(found) {
                 Some(template) => template,
@@ -25,7 +27,7 @@ impl Reader<'_> {
             },
             None => ArticulatedTemplate::default(),
         };
-        let Some(found) = config.or_else(|| self.template(Kind::Urdf, name, at)) else {
+        let Some(found) = config.or_else(|| self.template(TemplateKind::Urdf, name, at)) else {
             return;
         };
         let path = if template.urdf_filepath.is_empty() {
@@ -35,26 +37,29 @@ impl Reader<'_> {
         };
         let Ok(path) = path else {
             let path = template.urdf_filepath;
-            return self.report.warn(found.at, Damage::PathRefused { path });
+            return self
+                .report
+                .warn(found.at, WarningKind::PathRefused { path });
         };
         let (Some(pose), Some(scale)) = (place::pose(instance), place::scale(instance)) else {
             let reason = "numbers that are no place or no scale".to_owned();
             return self
                 .report
-                .warn(at.clone(), Damage::BadTransform { reason });
+                .warn(at.clone(), WarningKind::BadTransform { reason });
         };
         let mut robot = match self.robot(&path) {
             Ok(robot) => robot,
             Err(reason) => {
                 return self
                     .report
-                    .warn(at.clone(), Damage::UnreadableMesh { path, reason });
+                    .warn(at.clone(), WarningKind::UnreadableMesh { path, reason });
             }
         };
         if (scale.max_element() - scale.min_element()).abs() > 1e-3 * scale.x.abs() || scale.x < 0.0
         {
             let what = format!("scale {scale} of an articulated object; its first number counts");
-            self.report.warn(at.clone(), Damage::Simplified { what });
+            self.report
+                .warn(at.clone(), WarningKind::Simplified { what });
         }
         let usual = |value: Option<f32>| value.filter(|x| *x > 0.0 && x.is_finite()).unwrap_or(1.0);
         let factor = scale.x.abs() * usual(template.uniform_scale);
@@ -127,7 +132,7 @@ fn begin_at(robot: &mut Robot, pose: &Value) {
     let moving = robot
         .joints
         .iter_mut()
-        .filter(|joint| joint.motion != robot::Motion::Fixed);
+        .filter(|joint| joint.motion != robot::RobotJointKind::Fixed);
     for (k, joint) in moving.enumerate() {
         let stated = match pose {
             Value::Array(list) => list.get(k),

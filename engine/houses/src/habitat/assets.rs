@@ -6,17 +6,17 @@ use std::sync::Arc;
 use dwell_scene::parallel::Threads;
 use dwell_scene::{Aabb, HouseData, MaterialId, Mesh, MeshId, TextureId};
 
-use super::dataset::Found;
-use crate::build::{Names, Scene, joined};
-use crate::damage::Damage;
+use super::dataset::ResolvedTemplate;
+use crate::data_root::{DataRoot, folder_of};
 use crate::gltf;
+use crate::import::{ImportedScene, UniqueNames, merge_meshes};
 use crate::limits::MAX_BUFFER_BYTES;
-use crate::report::{At, Report};
-use crate::root::{DataRoot, folder_of};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// A named piece of an asset, its place baked into the mesh.
 #[derive(Debug, Clone)]
-pub(super) struct Piece {
+pub(super) struct AssetMesh {
     pub(super) name: String,
     pub(super) mesh: Arc<Mesh>,
     pub(super) materials: Vec<MaterialId>,
@@ -24,7 +24,7 @@ pub(super) struct Piece {
 
 /// An asset as one mesh.
 #[derive(Debug, Clone)]
-pub(super) struct Whole {
+pub(super) struct MergedAsset {
     pub(super) mesh: MeshId,
     pub(super) shape: Arc<Mesh>,
     pub(super) bounds: Aabb,
@@ -34,19 +34,23 @@ pub(super) struct Whole {
 /// Assets that were read.
 #[derive(Debug, Default)]
 pub(super) struct Assets {
-    pieces: BTreeMap<String, Option<Arc<Vec<Piece>>>>,
-    wholes: BTreeMap<String, Option<Whole>>,
+    pieces: BTreeMap<String, Option<Arc<Vec<AssetMesh>>>>,
+    wholes: BTreeMap<String, Option<MergedAsset>>,
     shapes: BTreeMap<String, Option<Arc<Mesh>>>,
-    material_names: Names,
+    material_names: UniqueNames,
 }
 
 impl Assets {
     /// The path inside the root of an asset that a template names; `None`, reported, when it leaves the root.
-    pub(super) fn path(template: &Found, asset: &str, report: &mut Report) -> Option<String> {
+    pub(super) fn path(
+        template: &ResolvedTemplate,
+        asset: &str,
+        report: &mut LoadReport,
+    ) -> Option<String> {
         let path = DataRoot::resolve(&template.folder, asset);
         if path.is_err() {
             let path = asset.to_owned();
-            report.warn(template.at.clone(), Damage::PathRefused { path });
+            report.warn(template.at.clone(), WarningKind::PathRefused { path });
         }
         path.ok()
     }
@@ -58,8 +62,8 @@ impl Assets {
         path: &str,
         data: &mut HouseData,
         threads: Threads,
-        report: &mut Report,
-    ) -> Option<Arc<Vec<Piece>>> {
+        report: &mut LoadReport,
+    ) -> Option<Arc<Vec<AssetMesh>>> {
         if let Some(known) = self.pieces.get(path) {
             return known.clone();
         }
@@ -74,19 +78,19 @@ impl Assets {
         path: &str,
         data: &mut HouseData,
         threads: Threads,
-        report: &mut Report,
-    ) -> Option<Vec<Piece>> {
-        let at = At::file(path);
+        report: &mut LoadReport,
+    ) -> Option<Vec<AssetMesh>> {
+        let at = FileLocation::file(path);
         let path_owned = || path.to_owned();
         if !root.has_file(path) {
-            report.warn(at, Damage::MissingMesh { path: path_owned() });
+            report.warn(at, WarningKind::MissingMesh { path: path_owned() });
             return None;
         }
         let scene = match read_scene(root, path, threads, report) {
             Ok(scene) => scene,
             Err(reason) => {
                 let path = path_owned();
-                report.warn(at, Damage::UnreadableMesh { path, reason });
+                report.warn(at, WarningKind::UnreadableMesh { path, reason });
                 return None;
             }
         };
@@ -95,7 +99,7 @@ impl Assets {
             data.textures.push(texture);
         }
         let mut ids = Vec::new();
-        for mut material in scene.looks.into_materials().iter().cloned() {
+        for mut material in scene.looks.finish_materials().iter().cloned() {
             material.texture = material.texture.map(|id| TextureId(id.0 + first_texture));
             material.name = self.material_names.unique(&material.name);
             ids.push(data.materials.push(material));
@@ -107,14 +111,14 @@ impl Assets {
                 .materials
                 .iter()
                 .filter_map(|id| ids.get(id.0 as usize));
-            pieces.push(Piece {
+            pieces.push(AssetMesh {
                 name: thing.name,
                 mesh: Arc::new(mesh),
                 materials: own.copied().collect(),
             });
         }
         if pieces.iter().all(|piece| piece.mesh.triangles.is_empty()) {
-            report.warn(at, Damage::EmptyMesh { path: path_owned() });
+            report.warn(at, WarningKind::EmptyMesh { path: path_owned() });
             return None;
         }
         Some(pieces)
@@ -127,7 +131,7 @@ impl Assets {
         root: &DataRoot,
         path: &str,
         threads: Threads,
-        report: &mut Report,
+        report: &mut LoadReport,
     ) -> Option<Arc<Mesh>> {
         if let Some(known) = self.shapes.get(path) {
             return known.clone();
@@ -142,7 +146,10 @@ impl Assets {
             }
             Err(reason) => {
                 let path = path.to_owned();
-                report.warn(At::file(&path), Damage::UnreadableMesh { path, reason });
+                report.warn(
+                    FileLocation::file(&path),
+                    WarningKind::UnreadableMesh { path, reason },
+                );
                 None
             }
         };
@@ -157,8 +164,8 @@ impl Assets {
         path: &str,
         data: &mut HouseData,
         threads: Threads,
-        report: &mut Report,
-    ) -> Option<Whole> {
+        report: &mut LoadReport,
+    ) -> Option<MergedAsset> {
         if let Some(known) = self.wholes.get(path) {
             return known.clone();
         }
@@ -167,9 +174,9 @@ impl Assets {
             let pieces = pieces
                 .iter()
                 .map(|piece| (piece.mesh.clone(), piece.materials.clone()));
-            let (shape, materials) = joined(&pieces.collect::<Vec<_>>());
+            let (shape, materials) = merge_meshes(&pieces.collect::<Vec<_>>());
             let shape = Arc::new(shape);
-            Whole {
+            MergedAsset {
                 mesh: data.meshes.push(shape.clone()),
                 bounds: shape.bounds(),
                 shape,
@@ -185,8 +192,8 @@ fn read_scene(
     root: &DataRoot,
     path: &str,
     threads: Threads,
-    report: &mut Report,
-) -> Result<Scene, String> {
+    report: &mut LoadReport,
+) -> Result<ImportedScene, String> {
     let ending = path.rsplit('.').next().unwrap_or("").to_ascii_lowercase();
     if ending != "glb" && ending != "gltf" {
         return Err(format!(

@@ -6,13 +6,13 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::file::{DatasetFile, Lexicon, Section, SemanticFile};
-use crate::damage::Damage;
+use super::file::{DatasetFile, Lexicon, SemanticFile, TemplateSection};
+use crate::data_root::{DataRoot, folder_of};
 use crate::error::HousesError;
 use crate::json;
 use crate::limits::{MAX_NODES, MAX_PATTERN_WORDS, MAX_TEXT_BYTES};
-use crate::report::{At, Report};
-use crate::root::{DataRoot, folder_of};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// How the data set's own file ends.
 const DATASET_ENDING: &str = ".scene_dataset_config.json";
@@ -23,7 +23,7 @@ const MOST_STEPS: usize = 4;
 
 /// Kinds of template, with the ending of their files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum TemplateKind {
     Stage,
     Object,
     Articulated,
@@ -31,7 +31,7 @@ pub(super) enum Kind {
     Urdf,
 }
 
-impl Kind {
+impl TemplateKind {
     fn ending(self) -> &'static str {
         match self {
             Self::Stage => ".stage_config.json",
@@ -44,8 +44,8 @@ impl Kind {
 
 /// What a template states, and from where its paths count.
 #[derive(Debug, Clone)]
-pub(super) struct Found {
-    pub(super) at: At,
+pub(super) struct ResolvedTemplate {
+    pub(super) at: FileLocation,
     /// Relative to the root.
     pub(super) folder: String,
     pub(super) attributes: Map<String, Value>,
@@ -104,18 +104,23 @@ impl Dataset {
             path: config,
             names: BTreeMap::new(),
         };
-        for kind in [Kind::Stage, Kind::Object, Kind::Articulated, Kind::Urdf] {
+        for kind in [
+            TemplateKind::Stage,
+            TemplateKind::Object,
+            TemplateKind::Articulated,
+            TemplateKind::Urdf,
+        ] {
             let files = dataset.files(&dataset.section(kind).paths, kind.ending());
             dataset.names.insert(kind.ending(), files);
         }
         Ok((dataset, scene))
     }
 
-    fn section(&self, kind: Kind) -> &Section {
+    fn section(&self, kind: TemplateKind) -> &TemplateSection {
         match kind {
-            Kind::Stage => &self.file.stages,
-            Kind::Object => &self.file.objects,
-            Kind::Articulated | Kind::Urdf => &self.file.articulated_objects,
+            TemplateKind::Stage => &self.file.stages,
+            TemplateKind::Object => &self.file.objects,
+            TemplateKind::Articulated | TemplateKind::Urdf => &self.file.articulated_objects,
         }
     }
 
@@ -171,7 +176,12 @@ impl Dataset {
     }
 
     /// The template that `name` means: one of the data set's own, else the file whose path ends in it.
-    pub(super) fn template(&self, kind: Kind, name: &str, report: &mut Report) -> Option<Found> {
+    pub(super) fn template(
+        &self,
+        kind: TemplateKind,
+        name: &str,
+        report: &mut LoadReport,
+    ) -> Option<ResolvedTemplate> {
         let section = self.section(kind);
         let own = section
             .configs
@@ -181,8 +191,8 @@ impl Dataset {
             Some(config) => config.original_file.clone(),
             None => Some(self.path_of(kind, name)?),
         };
-        let mut found = Found {
-            at: At::file(path.as_ref().unwrap_or(&self.path)),
+        let mut found = ResolvedTemplate {
+            at: FileLocation::file(path.as_ref().unwrap_or(&self.path)),
             folder: folder_of(path.as_ref().unwrap_or(&self.path)).to_owned(),
             attributes: section.default_attributes.clone(),
             path: path.clone().unwrap_or_default(),
@@ -192,7 +202,10 @@ impl Dataset {
                 Ok(attributes) => found.attributes.extend(attributes),
                 Err(error) => {
                     let reason = error.reason();
-                    report.warn(found.at.clone(), Damage::UnreadableMesh { path, reason });
+                    report.warn(
+                        found.at.clone(),
+                        WarningKind::UnreadableMesh { path, reason },
+                    );
                     return None;
                 }
             }
@@ -209,7 +222,7 @@ impl Dataset {
         Some(found)
     }
 
-    fn path_of(&self, kind: Kind, name: &str) -> Option<String> {
+    fn path_of(&self, kind: TemplateKind, name: &str) -> Option<String> {
         let direct = DataRoot::resolve("", &format!("{name}{}", kind.ending())).ok()?;
         if self.root.has_file(&direct) {
             return Some(direct);
@@ -227,15 +240,15 @@ impl Dataset {
     pub(super) fn semantics(
         &self,
         scene: &str,
-        report: &mut Report,
-    ) -> (At, SemanticFile, BTreeMap<i64, String>) {
+        report: &mut LoadReport,
+    ) -> (FileLocation, SemanticFile, BTreeMap<i64, String>) {
         let table = &self.file.semantic_scene_descriptor_instances;
-        let section: Section =
+        let section: TemplateSection =
             serde_json::from_value(Value::Object(table.clone())).unwrap_or_default();
         let files = self.files(&section.paths, ".semantic_config.json");
         let path = files.get(scene).and_then(|paths| paths.first()).cloned();
         let mut rooms = SemanticFile::default();
-        let mut at = At::file(&self.path);
+        let mut at = FileLocation::file(&self.path);
         let mut lexicon = section
             .default_attributes
             .get("semantic_descriptor_filename")
@@ -243,7 +256,7 @@ impl Dataset {
             .map(str::to_owned);
         let mut folder = String::new();
         if let Some(path) = path {
-            at = At::file(&path);
+            at = FileLocation::file(&path);
             folder_of(&path).clone_into(&mut folder);
             match read_json::<SemanticFile>(&self.root, &path) {
                 Ok(file) => {
@@ -252,7 +265,7 @@ impl Dataset {
                 }
                 Err(error) => report.warn(
                     at.clone(),
-                    Damage::MissingTable {
+                    WarningKind::MissingTable {
                         path,
                         consequence: format!("rooms are not known ({})", error.reason()),
                     },
@@ -275,8 +288,8 @@ impl Dataset {
                     names.extend(file.classes.into_iter().map(|class| (class.id, class.name)));
                 }
                 Err(error) => report.warn(
-                    At::file(&path),
-                    Damage::MissingTable {
+                    FileLocation::file(&path),
+                    WarningKind::MissingTable {
                         path: path.clone(),
                         consequence: format!("semantic ids have no names ({})", error.reason()),
                     },
@@ -296,7 +309,7 @@ pub(super) fn read_json<T: DeserializeOwned>(
     path: &str,
 ) -> Result<T, HousesError> {
     let bytes = root.read(path, MAX_TEXT_BYTES)?;
-    json::from_slice(&bytes).map_err(json::syntax(&At::file(path)))
+    json::from_slice(&bytes).map_err(json::syntax(&FileLocation::file(path)))
 }
 
 fn is_json(path: &str) -> bool {

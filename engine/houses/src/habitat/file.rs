@@ -8,29 +8,29 @@ use std::collections::BTreeMap;
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct DatasetFile {
-    pub(super) stages: Section,
-    pub(super) objects: Section,
-    pub(super) articulated_objects: Section,
-    /// Handles with paths, or a [`Section`].
+    pub(super) stages: TemplateSection,
+    pub(super) objects: TemplateSection,
+    pub(super) articulated_objects: TemplateSection,
+    /// Handles with paths, or a [`TemplateSection`].
     pub(super) semantic_scene_descriptor_instances: Map<String, Value>,
 }
 
 /// Templates of one kind.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct Section {
+pub(super) struct TemplateSection {
     /// Attributes of every template that does not state them.
     pub(super) default_attributes: Map<String, Value>,
     /// Folders by file ending, each relative to the data set's file, with `*` for a folder's name.
     pub(super) paths: BTreeMap<String, Vec<String>>,
     /// Templates that have no file of their own.
-    pub(super) configs: Vec<Config>,
+    pub(super) configs: Vec<InlineTemplate>,
 }
 
 /// A template inside the data set's file.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct Config {
+pub(super) struct InlineTemplate {
     /// The file it changes, relative to the data set's.
     pub(super) original_file: Option<String>,
     pub(super) template_handle: String,
@@ -51,7 +51,7 @@ pub(super) struct SceneFile {
 
 /// An instance of a stage, an object or an articulated object.
 #[derive(Debug, Deserialize)]
-pub(super) struct Instance {
+pub(super) struct SceneInstance {
     pub(super) template_name: String,
     /// m.
     #[serde(default)]

@@ -18,15 +18,15 @@ use dwell_scene::{House, HouseData};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::build::Names;
-use crate::damage::Damage;
 use crate::error::HousesError;
+use crate::import::UniqueNames;
 use crate::limits::MAX_NODES;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
 use crate::robot::Robot;
+use crate::warning_kind::WarningKind;
 use assets::Assets;
-use dataset::{Dataset, Found, Kind, SCENE_ENDING};
-use file::{Instance, SceneFile, Template};
+use dataset::{Dataset, ResolvedTemplate, SCENE_ENDING, TemplateKind};
+use file::{SceneFile, SceneInstance, Template};
 
 /// Whether `path` names a scene of Habitat.
 pub(crate) fn recognizes(path: &Path) -> bool {
@@ -41,9 +41,9 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// [`HousesError::Io`] when the scene cannot be read, [`HousesError::Syntax`] when it or the data set's file is no JSON of
 /// that form, [`HousesError::TooLarge`] for more instances than are read, [`HousesError::Empty`] when no triangle is left,
 /// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
-pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
     let (dataset, scene_path) = Dataset::around(path)?;
-    let at = At::file(&scene_path);
+    let at = FileLocation::file(&scene_path);
     let scene: SceneFile = dataset::read_json(&dataset.root, &scene_path)?;
     let count = scene.object_instances.len() + scene.articulated_object_instances.len();
     if count > MAX_NODES {
@@ -56,10 +56,10 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
     }
     let name = scene_path.rsplit('/').next().unwrap_or(&scene_path);
     let name = name.strip_suffix(SCENE_ENDING).unwrap_or(name).to_owned();
-    let mut report = Report::new();
+    let mut report = LoadReport::new();
     let (semantic_at, semantics, lexicon) = dataset.semantics(&name, &mut report);
     let regions = stage::regions(semantics, &semantic_at, &mut report);
-    let mut reader = Reader {
+    let mut reader = HabitatReader {
         dataset,
         threads,
         report: &mut report,
@@ -70,7 +70,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         },
         assets: Assets::default(),
         robots: BTreeMap::new(),
-        names: Names::default(),
+        names: UniqueNames::default(),
         lexicon,
         origin: scene.translation_origin,
     };
@@ -90,9 +90,10 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
     }
     if scene.default_lighting.is_some_and(|name| !name.is_empty()) {
         let what = "the scene's light set-up is not read".to_owned();
-        reader
-            .report
-            .warn(at.field("default_lighting"), Damage::Simplified { what });
+        reader.report.warn(
+            at.field("default_lighting"),
+            WarningKind::Simplified { what },
+        );
     }
     let data = reader.data;
     if data.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
@@ -102,27 +103,27 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
 }
 
 /// A scene on its way into a house.
-struct Reader<'a> {
+struct HabitatReader<'a> {
     dataset: Dataset,
     threads: Threads,
-    report: &'a mut Report,
+    report: &'a mut LoadReport,
     data: HouseData,
     assets: Assets,
     robots: BTreeMap<String, Result<Robot, String>>,
-    names: Names,
+    names: UniqueNames,
     /// Names by semantic id.
     lexicon: BTreeMap<i64, String>,
     /// From where places count when an instance does not say.
     origin: Option<String>,
 }
 
-impl Reader<'_> {
-    fn stage(&mut self, value: Value, regions: &[file::Region], at: &At) {
+impl HabitatReader<'_> {
+    fn stage(&mut self, value: Value, regions: &[file::Region], at: &FileLocation) {
         let at = at.field("stage_instance");
         let Some(instance) = self.instance(value, &at) else {
             return;
         };
-        let Some(found) = self.template(Kind::Stage, &instance.template_name, &at) else {
+        let Some(found) = self.template(TemplateKind::Stage, &instance.template_name, &at) else {
             return;
         };
         let Some(template) = self.parse::<Template>(&found) else {
@@ -135,7 +136,7 @@ impl Reader<'_> {
         );
         let (Some(pose), Some(scale), Some(frame)) = placed else {
             let reason = "numbers that are no place, no scale or no directions".to_owned();
-            return self.report.warn(at, Damage::BadTransform { reason });
+            return self.report.warn(at, WarningKind::BadTransform { reason });
         };
         let Some(path) = Assets::path(&found, &template.render_asset, self.report) else {
             return;
@@ -151,32 +152,38 @@ impl Reader<'_> {
     }
 
     /// An instance; `None`, reported, when a field is missing or of the wrong kind.
-    fn instance(&mut self, value: Value, at: &At) -> Option<Instance> {
+    fn instance(&mut self, value: Value, at: &FileLocation) -> Option<SceneInstance> {
         serde_json::from_value(value)
             .map_err(|error| {
-                let reason = crate::plain(&error);
-                self.report.warn(at.clone(), Damage::BadRow { reason });
+                let reason = crate::plain_parse_error(&error);
+                self.report.warn(at.clone(), WarningKind::BadRow { reason });
             })
             .ok()
     }
 
     /// The template that an instance names; `None`, reported, when there is none.
-    fn template(&mut self, kind: Kind, name: &str, at: &At) -> Option<Found> {
+    fn template(
+        &mut self,
+        kind: TemplateKind,
+        name: &str,
+        at: &FileLocation,
+    ) -> Option<ResolvedTemplate> {
         let found = self.dataset.template(kind, name, self.report);
         if found.is_none() {
             let path = format!("{name} (a template)");
-            self.report.warn(at.clone(), Damage::MissingMesh { path });
+            self.report
+                .warn(at.clone(), WarningKind::MissingMesh { path });
         }
         found
     }
 
     /// The attributes of a template; `None`, reported, when one is of the wrong kind.
-    fn parse<T: DeserializeOwned>(&mut self, found: &Found) -> Option<T> {
+    fn parse<T: DeserializeOwned>(&mut self, found: &ResolvedTemplate) -> Option<T> {
         serde_json::from_value(Value::Object(found.attributes.clone()))
             .map_err(|error| {
-                let reason = crate::plain(&error);
+                let reason = crate::plain_parse_error(&error);
                 self.report
-                    .warn(found.at.clone(), Damage::BadRow { reason });
+                    .warn(found.at.clone(), WarningKind::BadRow { reason });
             })
             .ok()
     }

@@ -6,23 +6,23 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Vec2, Vec3};
 
-use super::Reader;
+use super::HabitatReader;
 use super::assets::Assets;
-use super::dataset::{Found, Kind};
-use super::file::{Instance, Template};
+use super::dataset::{ResolvedTemplate, TemplateKind};
+use super::file::{SceneInstance, Template};
 use super::place;
-use crate::build::{CategoryRow, category, category_of, convex_pieces};
-use crate::damage::{Damage, Unmapped};
-use crate::report::At;
+use crate::import::{CategoryRow, category, category_of, convex_pieces};
+use crate::report::FileLocation;
+use crate::warning_kind::{UnmappedKind, WarningKind};
 
 /// How far outside of a room's height its things may be, m.
 const ROOM_M: f32 = 0.3;
 
-impl Reader<'_> {
+impl HabitatReader<'_> {
     /// Adds the object that `instance` places.
-    pub(super) fn object(&mut self, instance: &Instance, at: &At) {
+    pub(super) fn object(&mut self, instance: &SceneInstance, at: &FileLocation) {
         let name = &instance.template_name;
-        let Some(found) = self.template(Kind::Object, name, at) else {
+        let Some(found) = self.template(TemplateKind::Object, name, at) else {
             return;
         };
         let Some(template) = self.parse::<Template>(&found) else {
@@ -37,7 +37,7 @@ impl Reader<'_> {
             let reason = "numbers that are no place, no scale or no directions".to_owned();
             return self
                 .report
-                .warn(at.clone(), Damage::BadTransform { reason });
+                .warn(at.clone(), WarningKind::BadTransform { reason });
         };
         let Some(path) = Assets::path(&found, &template.render_asset, self.report) else {
             return;
@@ -65,7 +65,7 @@ impl Reader<'_> {
             let reason = "it flattens space or is not finite".to_owned();
             return self
                 .report
-                .warn(at.clone(), Damage::BadTransform { reason });
+                .warn(at.clone(), WarningKind::BadTransform { reason });
         };
         let bounds = asset.bounds.transformed(&world_from_mesh);
         let row = self.category(name, template.semantic_id, &found);
@@ -132,7 +132,7 @@ impl Reader<'_> {
     /// The collision asset's mesh in the render asset's place, where a template has one of its own.
     fn collision_shape(
         &mut self,
-        found: &Found,
+        found: &ResolvedTemplate,
         template: &Template,
         render: &str,
     ) -> Option<std::sync::Arc<dwell_scene::Mesh>> {
@@ -148,7 +148,7 @@ impl Reader<'_> {
     }
 
     /// Whether the place of an instance is that of its centre of mass.
-    pub(super) fn counts_from_centre(&self, instance: &Instance) -> bool {
+    pub(super) fn counts_from_centre(&self, instance: &SceneInstance) -> bool {
         let own = instance.translation_origin.as_deref();
         own.or(self.origin.as_deref())
             .is_some_and(|word| word.eq_ignore_ascii_case("COM"))
@@ -159,7 +159,7 @@ impl Reader<'_> {
         &mut self,
         name: &str,
         semantic_id: Option<i64>,
-        found: &Found,
+        found: &ResolvedTemplate,
     ) -> Option<&'static CategoryRow> {
         let word = name.rsplit('/').next().unwrap_or(name);
         let class = semantic_id.and_then(|id| self.lexicon.get(&id));
@@ -170,11 +170,11 @@ impl Reader<'_> {
         let row = by_class.or_else(|| category_of(word));
         if row.is_none() {
             let (what, name) = (
-                Unmapped::Category,
+                UnmappedKind::Category,
                 class.map_or(word, |class| class).to_owned(),
             );
             self.report
-                .warn(found.at.clone(), Damage::Unmapped { what, name });
+                .warn(found.at.clone(), WarningKind::Unmapped { what, name });
         }
         row
     }

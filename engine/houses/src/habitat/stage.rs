@@ -7,12 +7,12 @@ use dwell_scene::{
 };
 use glam::{Affine3A, DVec2, Vec2, Vec3};
 
-use super::assets::Piece;
+use super::assets::AssetMesh;
 use super::file::{Region, SemanticFile};
-use crate::build::{Names, room_kind, structure_kind, submesh, triangulate};
-use crate::damage::{Damage, Unmapped};
+use crate::import::{UniqueNames, room_kind, structure_kind, submesh, triangulate};
 use crate::limits::{MAX_NODES, MAX_OUTLINE};
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::{UnmappedKind, WarningKind};
 
 /// Floors further apart belong to different storeys, m.
 const STOREY_M: f32 = 1.5;
@@ -28,7 +28,11 @@ const FLOOR_AREA_M2: f64 = 1.0;
 const HEADROOM_M: f32 = 1.0;
 
 /// Rooms as the scene's semantic file has them; those that cannot be used are reported.
-pub(super) fn regions(file: SemanticFile, at: &At, report: &mut Report) -> Vec<Region> {
+pub(super) fn regions(
+    file: SemanticFile,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> Vec<Region> {
     let mut regions = Vec::new();
     for (k, value) in file
         .region_annotations
@@ -40,8 +44,8 @@ pub(super) fn regions(file: SemanticFile, at: &At, report: &mut Report) -> Vec<R
         let region: Region = match serde_json::from_value(value) {
             Ok(region) => region,
             Err(error) => {
-                let reason = crate::plain(&error);
-                report.warn(at, Damage::BadRow { reason });
+                let reason = crate::plain_parse_error(&error);
+                report.warn(at, WarningKind::BadRow { reason });
                 continue;
             }
         };
@@ -53,7 +57,7 @@ pub(super) fn regions(file: SemanticFile, at: &At, report: &mut Report) -> Vec<R
             regions.push(region);
         } else {
             let reason = format!("{corners} corners, {} m high", region.extrusion_height);
-            report.warn(at, Damage::BadRow { reason });
+            report.warn(at, WarningKind::BadRow { reason });
         }
     }
     regions
@@ -62,11 +66,11 @@ pub(super) fn regions(file: SemanticFile, at: &At, report: &mut Report) -> Vec<R
 /// Adds the pieces of the stage: by their names where these say wall, floor or ceiling, else by where their faces look.
 pub(super) fn structure(
     data: &mut HouseData,
-    pieces: &[Piece],
+    pieces: &[AssetMesh],
     world_from_stage: &Affine3A,
     regions: &[Region],
 ) {
-    let moved: Vec<(&Piece, Mesh)> = pieces
+    let moved: Vec<(&AssetMesh, Mesh)> = pieces
         .iter()
         .map(|piece| (piece, piece.mesh.transformed(world_from_stage)))
         .filter(|(_, mesh)| !mesh.triangles.is_empty())
@@ -76,7 +80,7 @@ pub(super) fn structure(
     } else {
         regions.iter().map(|region| region.floor_height).collect()
     };
-    let mut names = Names::default();
+    let mut names = UniqueNames::default();
     let mut add = |name: &str, kind: StructureKind, mesh: Mesh, materials: &[MaterialId]| {
         let mesh = data.meshes.push(Arc::new(mesh));
         data.structure.push(Structure {
@@ -155,7 +159,12 @@ fn floor_heights<'a>(meshes: impl Iterator<Item = &'a Mesh> + Clone) -> Vec<f32>
 }
 
 /// Adds storeys and rooms: those of the regions, else one over all floors.
-pub(super) fn rooms(data: &mut HouseData, regions: &[Region], at: &At, report: &mut Report) {
+pub(super) fn rooms(
+    data: &mut HouseData,
+    regions: &[Region],
+    at: &FileLocation,
+    report: &mut LoadReport,
+) {
     let bounds = data.structure.iter().fold(Aabb::EMPTY, |all, piece| {
         all.union(&data.meshes[piece.mesh].bounds())
     });
@@ -180,7 +189,7 @@ pub(super) fn rooms(data: &mut HouseData, regions: &[Region], at: &At, report: &
     for piece in data.structure.as_mut_slice() {
         piece.level = level_of(data.meshes[piece.mesh].bounds().min.y);
     }
-    let mut names = Names::default();
+    let mut names = UniqueNames::default();
     for region in regions {
         let corners: Vec<DVec2> = region
             .poly_loop
@@ -203,8 +212,8 @@ pub(super) fn rooms(data: &mut HouseData, regions: &[Region], at: &At, report: &
         let kinds = match room_kind(label) {
             Ok(kind) => vec![kind],
             Err(plain) => {
-                let (what, name) = (Unmapped::RoomType, plain.clone());
-                report.warn(at.clone(), Damage::Unmapped { what, name });
+                let (what, name) = (UnmappedKind::RoomType, plain.clone());
+                report.warn(at.clone(), WarningKind::Unmapped { what, name });
                 Vec::from_iter((!plain.is_empty()).then_some(plain))
             }
         };

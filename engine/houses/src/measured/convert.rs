@@ -1,10 +1,10 @@
 //! From the file to a house.
 
-use super::file::{MaterialFile, RoomFile, Table};
+use super::file::{BandCoefficient, MeasuredMaterial, MeasuredRoomFile};
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::obj::{PartShape, read_mesh, shape_of};
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
 use dwell_scene::material::{Bands, library};
 use dwell_scene::{
     Aabb, HouseData, Level, LevelId, Material, MaterialId, Mesh, Structure, StructureKind,
@@ -14,9 +14,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A wall of a box: its name in the file, what it is, and its corners as corners of a unit cube, seen from inside counter-clockwise.
-type Side = (&'static str, StructureKind, [[f32; 3]; 4]);
+type BoxFace = (&'static str, StructureKind, [[f32; 3]; 4]);
 
-const SIDES: [Side; 6] = [
+const SIDES: [BoxFace; 6] = [
     (
         "x0",
         StructureKind::Wall,
@@ -55,20 +55,20 @@ fn upright(p: Vec3) -> Vec3 {
 }
 
 /// A house in the making.
-struct Room<'a> {
-    file: &'a RoomFile,
-    at: &'a At,
+struct MeasuredRoomBuilder<'a> {
+    file: &'a MeasuredRoomFile,
+    at: &'a FileLocation,
     data: HouseData,
     materials: BTreeMap<&'a str, MaterialId>,
 }
 
 pub(super) fn convert(
-    file: &RoomFile,
+    file: &MeasuredRoomFile,
     name: &str,
-    (root, at): (&DataRoot, &At),
-    report: &mut Report,
+    (root, at): (&DataRoot, &FileLocation),
+    report: &mut LoadReport,
 ) -> Result<HouseData, HousesError> {
-    let mut room = Room {
+    let mut room = MeasuredRoomBuilder {
         file,
         at,
         data: HouseData {
@@ -99,9 +99,9 @@ pub(super) fn convert(
     Ok(room.data)
 }
 
-impl Room<'_> {
+impl MeasuredRoomBuilder<'_> {
     /// A material of plaster, apart from what it does to sound; nothing passes it.
-    fn material(&self, name: &str, file: &MaterialFile) -> Result<Material, HousesError> {
+    fn material(&self, name: &str, file: &MeasuredMaterial) -> Result<Material, HousesError> {
         let at = self.at.field("materials").field(name);
         let substance = library().get_or_default("plaster");
         Ok(Material {
@@ -112,11 +112,16 @@ impl Room<'_> {
         })
     }
 
-    fn bands(&self, at: &At, field: &str, table: &Table) -> Result<Bands, HousesError> {
+    fn bands(
+        &self,
+        at: &FileLocation,
+        field: &str,
+        table: &BandCoefficient,
+    ) -> Result<Bands, HousesError> {
         let count = self.file.bands_hz.len();
         let values = match table {
-            Table::One(value) => vec![*value; count],
-            Table::Each(values) => values.clone(),
+            BandCoefficient::One(value) => vec![*value; count],
+            BandCoefficient::Each(values) => values.clone(),
         };
         if values.len() != count {
             return Err(HousesError::Field {
@@ -131,7 +136,11 @@ impl Room<'_> {
         })
     }
 
-    fn material_of(&self, at: &At, name: Option<&str>) -> Result<MaterialId, HousesError> {
+    fn material_of(
+        &self,
+        at: &FileLocation,
+        name: Option<&str>,
+    ) -> Result<MaterialId, HousesError> {
         let found = name.and_then(|name| self.materials.get(name));
         found.copied().ok_or_else(|| HousesError::Field {
             at: at.clone(),
@@ -168,7 +177,7 @@ impl Room<'_> {
         &mut self,
         path: &str,
         root: &DataRoot,
-        report: &mut Report,
+        report: &mut LoadReport,
     ) -> Result<(), HousesError> {
         let at = self.at.field("mesh");
         let inside = DataRoot::resolve("", path).map_err(|_| HousesError::Field {
@@ -191,13 +200,13 @@ impl Room<'_> {
         let mut meshes = Vec::new();
         let mut bounds = Aabb::EMPTY;
         for (name, runs) in by_material {
-            let material = self.material_of(&At::file(&inside).field("usemtl"), name)?;
+            let material = self.material_of(&FileLocation::file(&inside).field("usemtl"), name)?;
             let shape = PartShape {
                 obj: &files.obj,
                 runs,
                 box_mapping: false,
             };
-            let mut mesh = shape_of(&shape, &At::file(&inside), report);
+            let mut mesh = shape_of(&shape, &FileLocation::file(&inside), report);
             for point in mesh.positions.iter_mut().chain(&mut mesh.normals) {
                 *point = upright(*point);
             }

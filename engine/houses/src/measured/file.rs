@@ -7,7 +7,7 @@ use std::fmt;
 
 /// A measured room. Fields that are not named here belong to the measurement.
 #[derive(Debug, Deserialize)]
-pub(super) struct RoomFile {
+pub(super) struct MeasuredRoomFile {
     /// Centres of the bands of all tables, Hz.
     #[serde(default = "octaves")]
     pub(super) bands_hz: Vec<f32>,
@@ -20,22 +20,22 @@ pub(super) struct RoomFile {
     pub(super) mesh: Option<String>,
     /// By name, each once.
     #[serde(deserialize_with = "each_once")]
-    pub(super) materials: BTreeMap<String, MaterialFile>,
+    pub(super) materials: BTreeMap<String, MeasuredMaterial>,
 }
 
 /// A map in which no name stands twice: which of two materials counts is not for us to say.
 fn each_once<'de, D: Deserializer<'de>>(
     deserializer: D,
-) -> Result<BTreeMap<String, MaterialFile>, D::Error> {
+) -> Result<BTreeMap<String, MeasuredMaterial>, D::Error> {
     struct Once;
     impl<'de> Visitor<'de> for Once {
-        type Value = BTreeMap<String, MaterialFile>;
+        type Value = BTreeMap<String, MeasuredMaterial>;
         fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
             f.write_str("materials by name")
         }
         fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Self::Value, A::Error> {
             let mut all = BTreeMap::new();
-            while let Some((name, material)) = entries.next_entry::<String, MaterialFile>()? {
+            while let Some((name, material)) = entries.next_entry::<String, MeasuredMaterial>()? {
                 if all.contains_key(&name) {
                     let told = format!("the material {name:?} stands there twice");
                     return Err(serde::de::Error::custom(told));
@@ -50,19 +50,19 @@ fn each_once<'de, D: Deserializer<'de>>(
 
 /// What a surface does to sound energy.
 #[derive(Debug, Deserialize)]
-pub(super) struct MaterialFile {
+pub(super) struct MeasuredMaterial {
     /// 0 to 1.
     #[serde(default = "little")]
-    pub(super) absorption: Table,
+    pub(super) absorption: BandCoefficient,
     /// 0 to 1.
     #[serde(default = "none")]
-    pub(super) scattering: Table,
+    pub(super) scattering: BandCoefficient,
 }
 
 /// One number for all bands, or one for each.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
-pub(super) enum Table {
+pub(super) enum BandCoefficient {
     /// For all.
     One(f32),
     /// Shape (band,).
@@ -73,10 +73,10 @@ fn octaves() -> Vec<f32> {
     vec![125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0]
 }
 
-fn little() -> Table {
-    Table::One(0.1)
+fn little() -> BandCoefficient {
+    BandCoefficient::One(0.1)
 }
 
-fn none() -> Table {
-    Table::One(0.0)
+fn none() -> BandCoefficient {
+    BandCoefficient::One(0.0)
 }

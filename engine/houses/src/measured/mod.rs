@@ -6,13 +6,13 @@
 mod convert;
 mod file;
 
+use crate::data_root::{DataRoot, is_json_with};
 use crate::error::HousesError;
 use crate::json;
 use crate::limits::MAX_TEXT_BYTES;
-use crate::report::{At, Report};
-use crate::root::{DataRoot, is_json_with};
+use crate::report::{FileLocation, LoadReport};
 use dwell_scene::House;
-use file::RoomFile;
+use file::MeasuredRoomFile;
 use std::path::Path;
 
 /// Whether `path` is a measured room: a JSON file that speaks of materials and of absorption.
@@ -26,16 +26,16 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no JSON of that form, [`HousesError::Field`]
 /// for a wall or face without a material, for tables of another length than the bands, and for a mesh that cannot be read or lies outside
 /// of the file's folder, [`HousesError::Empty`] without a triangle, [`HousesError::Scene`] when a number is out of range.
-pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
+pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let root = DataRoot::new(folder)?;
     let bytes = root.read_named(&name, MAX_TEXT_BYTES)?;
-    let at = At::file(&*name);
-    let file: RoomFile = json::from_slice(&bytes).map_err(json::syntax(&at))?;
+    let at = FileLocation::file(&*name);
+    let file: MeasuredRoomFile = json::from_slice(&bytes).map_err(json::syntax(&at))?;
     let stem = name.rsplit_once('.').map_or(&*name, |(stem, _)| stem);
-    let mut report = Report::new();
+    let mut report = LoadReport::new();
     let data = convert::convert(&file, stem, (&root, &at), &mut report)?;
     let house = House::new(data).map_err(HousesError::scene(&at))?;
     Ok((house, report))

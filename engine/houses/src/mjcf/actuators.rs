@@ -4,21 +4,26 @@ use dwell_scene::Servo;
 use mjcf_rs::Model;
 use mjcf_rs::extras::{Actuator, ActuatorKind};
 
-use crate::damage::Damage;
-use crate::report::{At, Report};
-use crate::robot::Joint;
+use crate::report::{FileLocation, LoadReport};
+use crate::robot::RobotJoint;
+use crate::warning_kind::WarningKind;
 
 /// The effort of a motor that states no bound, N·m or N.
 const UNBOUNDED: f64 = 1e6;
 
 /// Gives joints the motors of their actuators. Each joint has one motor that takes every kind of command; what an actuator
 /// does not say stays 0.
-pub(super) fn add(model: &Model, joints: &mut [Joint], at: &At, report: &mut Report) {
+pub(super) fn add(
+    model: &Model,
+    joints: &mut [RobotJoint],
+    at: &FileLocation,
+    report: &mut LoadReport,
+) {
     for actuator in &model.actuators {
         let name = actuator.joint.as_deref().unwrap_or("");
         let Some(joint) = joints.iter_mut().find(|joint| joint.name == name) else {
             let what = format!("an actuator of {name:?} drives no joint that is read; left out");
-            report.warn(at.field("actuator"), Damage::Simplified { what });
+            report.warn(at.field("actuator"), WarningKind::Simplified { what });
             continue;
         };
         joint.servo = Some(servo(actuator, joint.servo));

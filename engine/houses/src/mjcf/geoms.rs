@@ -5,11 +5,11 @@ use mjcf_rs::Model;
 use mjcf_rs::body::{Body, Geom, GeomType};
 
 use super::read::pose;
-use crate::damage::Damage;
+use crate::data_root::folder_of;
 use crate::error::HousesError;
-use crate::report::{At, Report};
-use crate::robot::{Files, Shape, Solid, Weight};
-use crate::root::folder_of;
+use crate::report::{FileLocation, LoadReport};
+use crate::robot::{LinkInertia, LinkShape, RobotFiles, ShapeGeometry};
+use crate::warning_kind::WarningKind;
 use dwell_scene::{Pose, Texture};
 use std::sync::Arc;
 
@@ -23,8 +23,8 @@ const PLANE_DEPTH_M: f32 = 0.05;
 const HIDDEN_GROUP: i32 = 3;
 
 /// A geom that is a body's.
-pub(super) struct Piece {
-    pub(super) shape: Shape,
+pub(super) struct BodyGeom {
+    pub(super) shape: LinkShape,
     /// What the file calls it.
     pub(super) name: Option<String>,
     pub(super) touches: bool,
@@ -41,10 +41,10 @@ pub(super) struct Piece {
 pub(super) fn pieces(
     model: &Model,
     body: &Body,
-    files: &mut Files,
-    at: &At,
-    report: &mut Report,
-) -> Result<Vec<Piece>, HousesError> {
+    files: &mut RobotFiles,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> Result<Vec<BodyGeom>, HousesError> {
     let of_world = std::ptr::eq(body, &raw const model.bodies[0].body);
     let mut pieces = Vec::with_capacity(body.geoms.len());
     for (k, geom) in body.geoms.iter().enumerate() {
@@ -52,7 +52,7 @@ pub(super) fn pieces(
         let at = at.field(format_args!("geom[{name}]"));
         if let Some(shape) = shape(model, geom, of_world, files, &at, report)? {
             let touches = touches(geom);
-            pieces.push(Piece {
+            pieces.push(BodyGeom {
                 shape,
                 name: geom.name.clone(),
                 is_plane: geom.type_ == GeomType::Plane,
@@ -74,10 +74,10 @@ fn shape(
     model: &Model,
     geom: &Geom,
     of_world: bool,
-    files: &mut Files,
-    at: &At,
-    report: &mut Report,
-) -> Result<Option<Shape>, HousesError> {
+    files: &mut RobotFiles,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> Result<Option<LinkShape>, HousesError> {
     let [a, b, c] = geom.size.map(|x| x as f32);
     let mut link_from_shape = pose(&geom.pose);
     let mut half_length = b;
@@ -90,19 +90,19 @@ fn shape(
         link_from_shape = Pose::new(middle, Quat::from_rotation_arc(Vec3::Z, along));
     }
     let solid = match geom.type_ {
-        GeomType::Box => Solid::Cuboid {
+        GeomType::Box => ShapeGeometry::Cuboid {
             half: Vec3::new(a, b, c),
         },
-        GeomType::Sphere => Solid::Ball { radius: a },
-        GeomType::Cylinder => Solid::Cylinder {
+        GeomType::Sphere => ShapeGeometry::Ball { radius: a },
+        GeomType::Cylinder => ShapeGeometry::Cylinder {
             half_height: half_length,
             radius: a,
         },
-        GeomType::Capsule => Solid::Capsule {
+        GeomType::Capsule => ShapeGeometry::Capsule {
             half_height: half_length,
             radius: a,
         },
-        GeomType::Ellipsoid => Solid::Ellipsoid {
+        GeomType::Ellipsoid => ShapeGeometry::Ellipsoid {
             radii: Vec3::new(a, b, c),
         },
         GeomType::Mesh => {
@@ -121,7 +121,7 @@ fn shape(
             };
             let path = files.resolve(folder_of(&files.file), &inside, &at)?;
             link_from_shape = link_from_shape * pose(&asset.refpose).inverse();
-            Solid::Mesh {
+            ShapeGeometry::Mesh {
                 mesh: files.mesh(&path, &at, report)?,
                 scale: DVec3::from_array(asset.scale).as_vec3(),
             }
@@ -131,11 +131,11 @@ fn shape(
             let size = |x: f32| if x > 0.0 { x } else { PLANE_M };
             let half = Vec3::new(size(a), size(b), PLANE_DEPTH_M);
             link_from_shape = link_from_shape * Pose::from_position(Vec3::NEG_Z * PLANE_DEPTH_M);
-            Solid::Cuboid { half }
+            ShapeGeometry::Cuboid { half }
         }
         GeomType::Plane | GeomType::Hfield | GeomType::Sdf => {
             let what = format!("a geom of the type {:?} is not read on a robot", geom.type_);
-            report.warn(at.clone(), Damage::Simplified { what });
+            report.warn(at.clone(), WarningKind::Simplified { what });
             return Ok(None);
         }
     };
@@ -143,13 +143,13 @@ fn shape(
     let asset = model.assets.material(&material);
     let rgba = geom.rgba.or(asset.and_then(|asset| asset.rgba));
     let image = match &solid {
-        Solid::Mesh { mesh, .. } if !mesh.uvs.is_empty() => {
+        ShapeGeometry::Mesh { mesh, .. } if !mesh.uvs.is_empty() => {
             let name = asset.and_then(|asset| asset.texture.as_deref());
             name.and_then(|name| image(model, name, files, at, report))
         }
         _ => None,
     };
-    Ok(Some(Shape {
+    Ok(Some(LinkShape {
         link_from_shape,
         solid,
         rgba: rgba.map(|rgba| rgba.map(|x| x.clamp(0.0, 1.0) as f32)),
@@ -162,9 +162,9 @@ fn shape(
 fn image(
     model: &Model,
     name: &str,
-    files: &mut Files,
-    at: &At,
-    report: &mut Report,
+    files: &mut RobotFiles,
+    at: &FileLocation,
+    report: &mut LoadReport,
 ) -> Option<Arc<Texture>> {
     let texture = model.assets.texture(name)?;
     if texture.type_.as_deref() != Some("2d") {
@@ -180,15 +180,18 @@ fn image(
         Ok(path) => files.image(&path, &at, report),
         Err(error) => {
             let (path, reason) = (inside, error.to_string());
-            report.warn(at, Damage::UnreadableTexture { path, reason });
+            report.warn(at, WarningKind::UnreadableTexture { path, reason });
             None
         }
     }
 }
 
 /// The mass of a body out of its geoms; `None` for a body without one.
-pub(super) fn weight(pieces: &[Piece], at: &At) -> Result<Option<Weight>, HousesError> {
-    let mut lumps: Vec<Weight> = Vec::new();
+pub(super) fn weight(
+    pieces: &[BodyGeom],
+    at: &FileLocation,
+) -> Result<Option<LinkInertia>, HousesError> {
+    let mut lumps: Vec<LinkInertia> = Vec::new();
     for piece in pieces {
         let (volume, center, spread) = moments(&piece.shape);
         let mass = piece.mass.unwrap_or(piece.density * volume);
@@ -200,21 +203,21 @@ pub(super) fn weight(pieces: &[Piece], at: &At) -> Result<Option<Weight>, Houses
             });
         }
         if mass > 0.0 && volume > 0.0 {
-            lumps.push(Weight {
+            lumps.push(LinkInertia {
                 mass,
                 center,
                 inertia: spread * (mass / volume),
             });
         }
     }
-    Ok(Weight::sum(&lumps))
+    Ok(LinkInertia::sum(&lumps))
 }
 
 /// Volume, centre, and inertia about it at density 1, of a shape's surface (by tetrahedra to the origin).
 ///
 /// # Source
 /// B. Mirtich, Fast and Accurate Computation of Polyhedral Mass Properties (1996); here the closed form for tetrahedra.
-fn moments(shape: &Shape) -> (f64, DVec3, DMat3) {
+fn moments(shape: &LinkShape) -> (f64, DVec3, DMat3) {
     let mesh = shape.solid.surface();
     let turn = DMat3::from_quat(shape.link_from_shape.rotation.as_dquat().normalize());
     let at = shape.link_from_shape.position.as_dvec3();
@@ -250,9 +253,9 @@ mod tests {
 
     #[test]
     fn a_box_has_its_moments() {
-        let shape = Shape {
+        let shape = LinkShape {
             link_from_shape: Pose::from_position(Vec3::new(1.0, 2.0, 3.0)),
-            solid: Solid::Cuboid {
+            solid: ShapeGeometry::Cuboid {
                 half: Vec3::new(0.1, 0.2, 0.3),
             },
             rgba: None,

@@ -13,13 +13,15 @@ use dwell_scene::{
 use glam::{Vec2, Vec3};
 use mjcf_rs::BodyId;
 
-use super::geoms::Piece;
-use super::read::{Source, name_of, pose};
-use crate::build::{CategoryRow, Names, category_of, room_kind, structure_kind, substance_of};
-use crate::damage::{Damage, Unmapped};
+use super::geoms::BodyGeom;
+use super::read::{MjcfSource, name_of, pose};
 use crate::error::HousesError;
-use crate::report::Report;
+use crate::import::{
+    CategoryRow, UniqueNames, category_of, room_kind, structure_kind, substance_of,
+};
+use crate::report::LoadReport;
 use crate::robot;
+use crate::warning_kind::{UnmappedKind, WarningKind};
 
 /// The one storey; where floors differ by more, the report says so.
 const LEVEL: LevelId = LevelId(0);
@@ -31,7 +33,7 @@ const HANDY_M: f32 = 0.6;
 const MOST_JOINTS: usize = 40;
 
 /// Whether the file is a house: more than one body stands in the world, or one beside geoms that are called walls or floors.
-pub(super) fn is_house(source: &Source) -> bool {
+pub(super) fn is_house(source: &MjcfSource) -> bool {
     let world = &source.model.bodies[0].body;
     let built = world
         .geoms
@@ -46,19 +48,19 @@ pub(super) fn is_house(source: &Source) -> bool {
 /// # Errors
 /// [`HousesError::Empty`] when no triangle is left,
 /// [`HousesError::Scene`] when the result breaks a rule of the scene.
-pub(super) fn read(mut source: Source, report: &mut Report) -> Result<House, HousesError> {
+pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<House, HousesError> {
     let at = source.at.clone();
     let stem = source.name().rsplit('/').next().unwrap_or_default();
     let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
     let name = source.model.name.clone().unwrap_or_else(|| stem.to_owned());
-    let mut reader = Reader {
+    let mut reader = MjcfHouseReader {
         data: HouseData {
             name,
             source: "mjcf".to_owned(),
             ..HouseData::default()
         },
-        structure_names: Names::default(),
-        names: Names::default(),
+        structure_names: UniqueNames::default(),
+        names: UniqueNames::default(),
         world_from_file: robot::ours_from_robot(),
     };
     reader.data.levels.push(Level {
@@ -92,22 +94,25 @@ pub(super) fn read(mut source: Source, report: &mut Report) -> Result<House, Hou
     House::new(data).map_err(HousesError::scene(&at))
 }
 
-fn left_out(error: &HousesError, source: &Source, report: &mut Report) {
+fn left_out(error: &HousesError, source: &MjcfSource, report: &mut LoadReport) {
     let what = format!("left out: {error}");
-    report.warn(source.at.field("worldbody"), Damage::Simplified { what });
+    report.warn(
+        source.at.field("worldbody"),
+        WarningKind::Simplified { what },
+    );
 }
 
-struct Reader {
+struct MjcfHouseReader {
     data: HouseData,
-    structure_names: Names,
-    names: Names,
+    structure_names: UniqueNames,
+    names: UniqueNames,
     /// From the file's axes, +Z up, to ours.
     world_from_file: Pose,
 }
 
-impl Reader {
+impl MjcfHouseReader {
     /// A body of the building and all below it, where they stand.
-    fn walls(&mut self, source: &mut Source, root: BodyId, report: &mut Report) {
+    fn walls(&mut self, source: &mut MjcfSource, root: BodyId, report: &mut LoadReport) {
         let mut open = vec![(root, Pose::IDENTITY)];
         while let Some((id, file_from_parent)) = open.pop() {
             let file_from_body = file_from_parent * pose(&source.model.bodies[id].body.pose);
@@ -124,11 +129,11 @@ impl Reader {
     /// The geoms of a body as pieces of the building. What is seen counts; where nothing is, what touches.
     fn building(
         &mut self,
-        source: &Source,
+        source: &MjcfSource,
         id: BodyId,
         file_from_body: Pose,
-        pieces: &[Piece],
-        report: &mut Report,
+        pieces: &[BodyGeom],
+        report: &mut LoadReport,
     ) {
         let body = name_of(&source.model, id);
         let seen = pieces.iter().any(|piece| piece.seen);
@@ -167,15 +172,15 @@ impl Reader {
     /// A material of the building: what its name means, else plaster, or parquet on floors.
     fn material(
         &mut self,
-        piece: &Piece,
+        piece: &BodyGeom,
         name: &str,
-        report: &mut Report,
-        source: &Source,
+        report: &mut LoadReport,
+        source: &MjcfSource,
     ) -> MaterialId {
         let known = substance_by_words(&piece.shape.material);
         if known.is_none() && !piece.shape.material.is_empty() {
-            let damage = Damage::Unmapped {
-                what: Unmapped::Substance,
+            let damage = WarningKind::Unmapped {
+                what: UnmappedKind::Substance,
                 name: piece.shape.material.clone(),
             };
             report.warn(source.at.field("asset"), damage);
@@ -226,8 +231,8 @@ impl Reader {
     }
 
     /// A room over each floor.
-    fn rooms(&mut self, report: &mut Report, source: &Source) {
-        let mut names = Names::default();
+    fn rooms(&mut self, report: &mut LoadReport, source: &MjcfSource) {
+        let mut names = UniqueNames::default();
         let bounds_of = |data: &HouseData, kind: StructureKind| -> Vec<Aabb> {
             let pieces = data.structure.iter().filter(|piece| piece.kind == kind);
             pieces
@@ -273,8 +278,8 @@ impl Reader {
             let words = kind_words(&piece.name);
             let kind = words.and_then(|words| room_kind(&words).ok());
             if kind.is_none() {
-                let damage = Damage::Unmapped {
-                    what: Unmapped::RoomType,
+                let damage = WarningKind::Unmapped {
+                    what: UnmappedKind::RoomType,
                     name: piece.name.clone(),
                 };
                 report.warn(source.at.field("worldbody"), damage);
@@ -294,14 +299,20 @@ impl Reader {
     }
 
     /// A body with what hangs on it.
-    fn object(&mut self, source: &Source, root: BodyId, thing: &robot::Robot, report: &mut Report) {
+    fn object(
+        &mut self,
+        source: &MjcfSource,
+        root: BodyId,
+        thing: &robot::Robot,
+        report: &mut LoadReport,
+    ) {
         let body = &source.model.bodies[root].body;
         let file_name = name_of(&source.model, root);
         let name = self.names.unique(&file_name);
         if name != file_name {
             let at = source.at.field(format_args!("body[{file_name}]"));
             let (id, renamed) = (file_name.clone(), name.clone());
-            report.warn(at, Damage::DuplicateId { id, renamed });
+            report.warn(at, WarningKind::DuplicateId { id, renamed });
         }
         let world_from_root = self.world_from_file * pose(&body.pose);
         robot::add(

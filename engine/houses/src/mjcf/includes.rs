@@ -6,11 +6,11 @@ use dwell_scene::interrupt;
 use roxmltree::Node;
 
 use super::numbers;
+use crate::data_root::folder_of;
 use crate::error::HousesError;
 use crate::limits::{MAX_TEXT_BYTES, MAX_XML_ELEMENTS, MAX_XML_FILES};
-use crate::report::At;
-use crate::robot::Files;
-use crate::root::folder_of;
+use crate::report::FileLocation;
+use crate::robot::RobotFiles;
 use crate::xml;
 
 /// Checks the text of `files` and everything it includes or attaches; also that all its numbers are finite.
@@ -18,8 +18,8 @@ use crate::xml;
 /// # Errors
 /// [`HousesError::PathLeavesRoot`], [`HousesError::Syntax`] for what is no XML or includes itself without end,
 /// [`HousesError::TooLarge`] for elements nested too deep, or too many, [`HousesError::Field`] for numbers that are not finite.
-pub(super) fn check(files: &Files, text: &str) -> Result<(), HousesError> {
-    let mut walk = Walk {
+pub(super) fn check(files: &RobotFiles, text: &str) -> Result<(), HousesError> {
+    let mut walk = IncludeResolver {
         files,
         seen: 0,
         open: Vec::new(),
@@ -27,19 +27,19 @@ pub(super) fn check(files: &Files, text: &str) -> Result<(), HousesError> {
     walk.file(&files.file, text).map(|_| ())
 }
 
-struct Walk<'a> {
-    files: &'a Files,
+struct IncludeResolver<'a> {
+    files: &'a RobotFiles,
     /// Files looked at, those that are named again counted again.
     seen: usize,
     /// The file at hand and those that name it.
     open: Vec<String>,
 }
 
-impl Walk<'_> {
+impl IncludeResolver<'_> {
     /// How many elements a file stands for, with all that it includes and attaches.
     fn file(&mut self, name: &str, text: &str) -> Result<u64, HousesError> {
         self.seen += 1;
-        let at = At::file(name);
+        let at = FileLocation::file(name);
         let refuse = |message: String| HousesError::Syntax {
             at: at.clone(),
             message,
@@ -96,7 +96,9 @@ impl Walk<'_> {
     fn named(&mut self, node: Node<'_, '_>, name: &str) -> Result<u64, HousesError> {
         let row = node.document().text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
-        let at = At::file(name).line(row).field(format_args!("{tag}.file"));
+        let at = FileLocation::file(name)
+            .line(row)
+            .field(format_args!("{tag}.file"));
         // The parser takes paths from the folder of the file that names them.
         let stated = node.attribute("file").unwrap_or("");
         let path = self.files.resolve(folder_of(name), stated, &at)?;

@@ -16,7 +16,7 @@ use std::path::Path;
 use dwell_scene::{House, file};
 
 use crate::error::HousesError;
-use crate::report::Report;
+use crate::report::LoadReport;
 use crate::robot;
 
 pub(crate) use read::read;
@@ -42,9 +42,9 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 ///
 /// # Errors
 /// Those of [`open_robot`](crate::open_robot); of a house, what cannot be read is left out and reported.
-pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
-    let mut report = Report::new();
-    let source = read::Source::load(path)?;
+pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
+    let mut report = LoadReport::new();
+    let source = read::MjcfSource::load(path)?;
     if house::is_house(&source) {
         let house = house::read(source, &mut report)?;
         return Ok((house, report));

@@ -5,7 +5,7 @@
 use roxmltree::Node;
 
 use crate::error::HousesError;
-use crate::report::At;
+use crate::report::FileLocation;
 
 /// Attributes that hold numbers of which each must be finite.
 const FINITE: [&str; 34] = [
@@ -51,7 +51,7 @@ const RANGES: [&str; 4] = ["range", "ctrlrange", "forcerange", "actfrcrange"];
 ///
 /// # Errors
 /// [`HousesError::Field`] names line, element and attribute.
-pub(super) fn check(node: Node<'_, '_>, at: &At) -> Result<(), HousesError> {
+pub(super) fn check(node: Node<'_, '_>, at: &FileLocation) -> Result<(), HousesError> {
     for attribute in node.attributes() {
         let name = attribute.name();
         let finite = FINITE.contains(&name);

@@ -9,34 +9,34 @@ use mjcf_rs::body::{Body, InertiaSpec, Inertial, JointType};
 use mjcf_rs::equality::Equality;
 use mjcf_rs::{BodyId, Model};
 
-use super::geoms::{self, Piece};
+use super::geoms::{self, BodyGeom};
 use super::{actuators, includes};
-use crate::damage::Damage;
+use crate::data_root::folder_of;
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
-use crate::report::{At, Report};
-use crate::robot::{Files, Joint, Link, Motion, Robot, Weight, check};
-use crate::root::folder_of;
+use crate::report::{FileLocation, LoadReport};
+use crate::robot::{LinkInertia, Robot, RobotFiles, RobotJoint, RobotJointKind, RobotLink, check};
+use crate::warning_kind::WarningKind;
 
 /// A parsed file and what stands beside it.
-pub(super) struct Source {
+pub(super) struct MjcfSource {
     pub(super) model: Model,
-    files: Files,
-    pub(super) at: At,
+    files: RobotFiles,
+    pub(super) at: FileLocation,
     /// The bodies that hang on each body.
     children: Vec<Vec<BodyId>>,
 }
 
-impl Source {
+impl MjcfSource {
     /// Reads and parses the file at `path`.
     ///
     /// # Errors
     /// Those of [`open_robot`](crate::open_robot) for files that cannot be read or are not this format.
     pub(super) fn load(path: &Path) -> Result<Self, HousesError> {
-        let files = Files::around(path)?;
+        let files = RobotFiles::around(path)?;
         let text = files.text()?;
         includes::check(&files, &text)?;
-        let at = At::file(&files.file);
+        let at = FileLocation::file(&files.file);
         let folder = files.root.folder().join(folder_of(&files.file));
         let model = Model::from_str(&text, folder).map_err(|error| HousesError::Syntax {
             at: at.clone(),
@@ -95,8 +95,8 @@ impl Source {
     pub(super) fn pieces(
         &mut self,
         id: BodyId,
-        report: &mut Report,
-    ) -> Result<Vec<Piece>, HousesError> {
+        report: &mut LoadReport,
+    ) -> Result<Vec<BodyGeom>, HousesError> {
         let name = name_of(&self.model, id);
         let at = self.at.field(format_args!("body[{name}]"));
         let body = &self.model.bodies[id].body;
@@ -110,7 +110,7 @@ impl Source {
     pub(super) fn robot(
         &mut self,
         root: BodyId,
-        report: &mut Report,
+        report: &mut LoadReport,
     ) -> Result<Robot, HousesError> {
         let bodies = self.below(root);
         let (mut links, mut joints) = (Vec::new(), Vec::new());
@@ -118,9 +118,9 @@ impl Source {
             .at
             .field(format_args!("body[{}]", name_of(&self.model, root)));
         let base = base(&self.model.bodies[root].body, &root_at)?;
-        let hung = usize::from(base == Base::Hung);
-        if base == Base::Hung {
-            links.push(Link {
+        let hung = usize::from(base == RootAttachment::Hung);
+        if base == RootAttachment::Hung {
+            links.push(RobotLink {
                 name: format!("{}_frame", name_of(&self.model, root)),
                 weight: None,
                 visuals: Vec::new(),
@@ -134,11 +134,11 @@ impl Source {
             let entry = &self.model.bodies[*id];
             let name = name_of(&self.model, *id);
             let at = self.at.field(format_args!("body[{name}]"));
-            let of = |takes: fn(&Piece) -> bool| {
+            let of = |takes: fn(&BodyGeom) -> bool| {
                 let taken = pieces.iter().filter(|piece| takes(piece));
                 taken.map(|piece| piece.shape.clone()).collect()
             };
-            links.push(Link {
+            links.push(RobotLink {
                 weight: weight(&self.model, &entry.body, &pieces, &at)?,
                 name,
                 visuals: of(|piece| piece.seen),
@@ -146,7 +146,7 @@ impl Source {
             });
             let place = |id: BodyId| places.get(&id).copied().unwrap_or(hung);
             if *id == root {
-                if base == Base::Hung {
+                if base == RootAttachment::Hung {
                     let mut joint = joint(&self.model, root, [0, 1], &at)?;
                     // The frame stands where the body does.
                     joint.parent_from_joint = joint.child_from_joint;
@@ -171,7 +171,7 @@ impl Source {
             format: "mjcf",
             links,
             joints,
-            fixed_base: base != Base::Free,
+            fixed_base: base != RootAttachment::Free,
         })
     }
 }
@@ -180,8 +180,8 @@ impl Source {
 ///
 /// # Errors
 /// Those of [`open_robot`](crate::open_robot).
-pub(crate) fn read(path: &Path, report: &mut Report) -> Result<Robot, HousesError> {
-    let mut source = Source::load(path)?;
+pub(crate) fn read(path: &Path, report: &mut LoadReport) -> Result<Robot, HousesError> {
+    let mut source = MjcfSource::load(path)?;
     let roots = source.roots();
     let Some(root) = roots.first() else {
         return Err(HousesError::Field {
@@ -193,7 +193,10 @@ pub(crate) fn read(path: &Path, report: &mut Report) -> Result<Robot, HousesErro
     let left_out = roots.len() - 1 + source.model.bodies[0].body.geoms.len();
     if left_out > 0 {
         let what = format!("{left_out} bodies or geoms of the world beside the robot are not read");
-        report.warn(source.at.field("worldbody"), Damage::Simplified { what });
+        report.warn(
+            source.at.field("worldbody"),
+            WarningKind::Simplified { what },
+        );
     }
     source.robot(*root, report)
 }
@@ -217,7 +220,11 @@ pub(super) fn pose(pose: &mjcf_rs::Pose) -> Pose {
     Pose::new(pose.translation.as_vec3(), rotation)
 }
 
-fn refuse<T>(at: At, expected: &'static str, found: impl Into<String>) -> Result<T, HousesError> {
+fn refuse<T>(
+    at: FileLocation,
+    expected: &'static str,
+    found: impl Into<String>,
+) -> Result<T, HousesError> {
     Err(HousesError::Field {
         at,
         expected,
@@ -227,7 +234,7 @@ fn refuse<T>(at: At, expected: &'static str, found: impl Into<String>) -> Result
 
 /// What holds a root.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Base {
+enum RootAttachment {
     /// Nothing: it falls.
     Free,
     /// The world.
@@ -236,11 +243,13 @@ enum Base {
     Hung,
 }
 
-fn base(root: &Body, at: &At) -> Result<Base, HousesError> {
+fn base(root: &Body, at: &FileLocation) -> Result<RootAttachment, HousesError> {
     match root.joints[..] {
-        [] => Ok(Base::Fixed),
-        [ref joint] if joint.type_ == JointType::Free => Ok(Base::Free),
-        [ref joint] if matches!(joint.type_, JointType::Hinge | JointType::Slide) => Ok(Base::Hung),
+        [] => Ok(RootAttachment::Fixed),
+        [ref joint] if joint.type_ == JointType::Free => Ok(RootAttachment::Free),
+        [ref joint] if matches!(joint.type_, JointType::Hinge | JointType::Slide) => {
+            Ok(RootAttachment::Hung)
+        }
         _ => refuse(
             at.field("joint"),
             "a free joint, a hinge, a slide or none for the root",
@@ -253,15 +262,15 @@ fn joint(
     model: &Model,
     id: BodyId,
     [parent, child]: [usize; 2],
-    at: &At,
-) -> Result<Joint, HousesError> {
+    at: &FileLocation,
+) -> Result<RobotJoint, HousesError> {
     let body = &model.bodies[id].body;
     let name = joint_name(model, id);
-    let fixed = Joint {
+    let fixed = RobotJoint {
         name: name.clone(),
         parent,
         child,
-        motion: Motion::Fixed,
+        motion: RobotJointKind::Fixed,
         parent_from_joint: pose(&body.pose),
         child_from_joint: Pose::IDENTITY,
         axis: Vec3::X,
@@ -283,8 +292,8 @@ fn joint(
     };
     let at = at.field(format_args!("joint[{name}]"));
     let motion = match joint.type_ {
-        JointType::Hinge => Motion::Hinge,
-        JointType::Slide => Motion::Slide,
+        JointType::Hinge => RobotJointKind::Hinge,
+        JointType::Slide => RobotJointKind::Slide,
         JointType::Ball => return refuse(at.field("type"), "hinge or slide", "ball"),
         JointType::Free => {
             return refuse(at.field("type"), "hinge or slide below the root", "free");
@@ -310,7 +319,7 @@ fn joint(
         .limited
         .resolve(model.compiler.autolimits, joint.range.is_some());
     let range = joint.range.map(|range| range.map(|x| x as f32));
-    Ok(Joint {
+    Ok(RobotJoint {
         motion,
         parent_from_joint: pose(&body.pose) * anchor,
         child_from_joint: anchor,
@@ -327,9 +336,9 @@ fn joint(
 fn weight(
     model: &Model,
     body: &Body,
-    pieces: &[Piece],
-    at: &At,
-) -> Result<Option<Weight>, HousesError> {
+    pieces: &[BodyGeom],
+    at: &FileLocation,
+) -> Result<Option<LinkInertia>, HousesError> {
     use mjcf_rs::compiler::InertiaFromGeom;
     let from_geoms = model.compiler.inertia_from_geom;
     match &body.inertial {
@@ -345,7 +354,7 @@ fn weight(
     }
 }
 
-fn stated_weight(stated: &Inertial) -> Weight {
+fn stated_weight(stated: &Inertial) -> LinkInertia {
     let local = match stated.inertia {
         InertiaSpec::Diagonal(moments) => DMat3::from_diagonal(DVec3::from_array(moments)),
         InertiaSpec::Full([xx, yy, zz, xy, xz, yz]) => {
@@ -354,7 +363,7 @@ fn stated_weight(stated: &Inertial) -> Weight {
     };
     let frame = pose(&stated.pose);
     let turn = DMat3::from_quat(frame.rotation.as_dquat().normalize());
-    Weight {
+    LinkInertia {
         mass: stated.mass,
         center: frame.position.as_dvec3(),
         inertia: turn * local * turn.transpose(),
@@ -362,10 +371,15 @@ fn stated_weight(stated: &Inertial) -> Weight {
 }
 
 /// A joint that an equality ties to another.
-fn follow(equality: &Equality, joints: &mut [Joint], at: &At, report: &mut Report) {
+fn follow(
+    equality: &Equality,
+    joints: &mut [RobotJoint],
+    at: &FileLocation,
+    report: &mut LoadReport,
+) {
     let Equality::Joint(tie) = equality else {
         let what = "equalities other than between two joints are not read".to_owned();
-        return report.warn(at.field("equality"), Damage::Simplified { what });
+        return report.warn(at.field("equality"), WarningKind::Simplified { what });
     };
     let [offset, multiplier, higher @ ..] = tie.polycoef.map(|x| x as f32);
     let named = |name: &str| joints.iter().position(|joint| joint.name == name);
@@ -383,7 +397,7 @@ fn follow(equality: &Equality, joints: &mut [Joint], at: &At, report: &mut Repor
         }
         _ => {
             let what = format!("the equality of joint {:?} is not read", tie.joint1);
-            report.warn(at.field("equality"), Damage::Simplified { what });
+            report.warn(at.field("equality"), WarningKind::Simplified { what });
         }
     }
 }

@@ -15,7 +15,7 @@ pub(super) const VERSIONS: [u32; 3] = [1, 2, VERSION];
 
 /// The head of the file, which every version has.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Head {
+pub(super) struct FormatHeader {
     /// [`FORMAT`].
     #[serde(default)]
     pub(super) format: String,

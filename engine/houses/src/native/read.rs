@@ -8,15 +8,15 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Mesh, SoundFile};
 use glam::{Vec2, Vec3};
 
-use super::file::{FORMAT, Head, NativeFile, VERSIONS, sound_path};
+use super::file::{FORMAT, FormatHeader, NativeFile, VERSIONS, sound_path};
 use super::{GEOMETRY, TABLES};
-use crate::build::PixelBudget;
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
-use crate::gltf::{Geometry, MeshAccessors};
+use crate::gltf::{MeshAccessors, ParsedGlb};
+use crate::import::PixelBudget;
 use crate::json;
 use crate::limits::{MAX_ALL_SOUND_BYTES, MAX_BUFFER_BYTES, MAX_TEXT_BYTES};
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
 
 /// Opens a native house.
 ///
@@ -24,7 +24,7 @@ use crate::root::DataRoot;
 /// [`HousesError::Io`] when a file is missing, [`HousesError::Version`] for another version, [`HousesError::Syntax`]
 /// with the line or field for content that is not of this form or not what its name says, [`HousesError::Scene`] when the tables break a rule of the
 /// scene. The form is exact, so nothing is survived and the report stays empty.
-pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
     let meta = std::fs::metadata(path).map_err(HousesError::io(path))?;
     if !meta.is_dir() {
         let what = format!("is no folder; a .dwell is one, with {TABLES} and {GEOMETRY}");
@@ -35,16 +35,16 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
         let name = path.file_name().unwrap_or(path.as_os_str());
         error.within(&name.to_string_lossy())
     })?;
-    Ok((house, Report::new()))
+    Ok((house, LoadReport::new()))
 }
 
 /// Reads the house; places in errors are relative to its folder.
 fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
     let root = DataRoot::new(path)?;
     let text = root.read(TABLES, MAX_TEXT_BYTES)?;
-    let at = At::file(TABLES);
+    let at = FileLocation::file(TABLES);
     let syntax = json::syntax(&at);
-    let head: Head = json::from_slice(&text).map_err(&syntax)?;
+    let head: FormatHeader = json::from_slice(&text).map_err(&syntax)?;
     if head.format != FORMAT {
         let found = format!("{:?}", head.format);
         return Err(HousesError::Field {
@@ -66,13 +66,13 @@ fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
     let bytes = root.read(GEOMETRY, MAX_BUFFER_BYTES)?;
     // Houses that were written together share what stands beside them.
     let library = DataRoot::new(path.join("../.."))?;
-    let geometry = Geometry::read(&bytes, GEOMETRY, &library)?;
+    let geometry = ParsedGlb::read(&bytes, GEOMETRY, &library)?;
     let mut data = file.house;
     let meshes = threads.map(file.mesh_accessors.len(), |k| {
         read_mesh(&geometry, &file.mesh_accessors[k])
     });
     for (k, mesh) in meshes.into_iter().enumerate() {
-        let at = At::file(TABLES).field(format_args!("mesh_accessors[{k}]"));
+        let at = FileLocation::file(TABLES).field(format_args!("mesh_accessors[{k}]"));
         data.meshes.push(Arc::new(
             mesh.map_err(|message| HousesError::Syntax { at, message })?,
         ));
@@ -80,14 +80,14 @@ fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
     let sizes = &file.texture_sizes;
     let mut budget = PixelBudget::default();
     for (k, [width, height]) in sizes.iter().enumerate() {
-        let at = At::file(TABLES).field(format_args!("texture_sizes[{k}]"));
+        let at = FileLocation::file(TABLES).field(format_args!("texture_sizes[{k}]"));
         budget
             .take(u64::from(*width) * u64::from(*height))
             .map_err(|message| HousesError::Syntax { at, message })?;
     }
     let textures = threads.map(sizes.len(), |k| geometry.texture(k, sizes[k]));
     for (k, texture) in textures.into_iter().enumerate() {
-        let at = At::file(GEOMETRY).field(format_args!("images[{k}]"));
+        let at = FileLocation::file(GEOMETRY).field(format_args!("images[{k}]"));
         data.textures.push(Arc::new(
             texture.map_err(|message| HousesError::Syntax { at, message })?,
         ));
@@ -102,7 +102,7 @@ fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
     House::new(data).map_err(HousesError::scene(&at))
 }
 
-fn read_mesh(geometry: &Geometry<'_>, accessors: &MeshAccessors) -> Result<Mesh, String> {
+fn read_mesh(geometry: &ParsedGlb<'_>, accessors: &MeshAccessors) -> Result<Mesh, String> {
     let triples =
         |accessor: Option<usize>| accessor.map_or(Ok(Vec::new()), |k| geometry.floats::<3>(k));
     let whole = |accessor: Option<usize>| accessor.map_or(Ok(Vec::new()), |k| geometry.indices(k));

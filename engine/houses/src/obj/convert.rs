@@ -9,15 +9,18 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{House, MaterialId, Mesh, TextureId};
 use glam::Affine3A;
 
-use super::file::Run;
+use super::file::FaceGroup;
 use super::load::{MeshFiles, read_mesh};
 use super::read_obj;
-use super::shape::{PartShape, Slots, shape_of};
-use crate::build::{Look, LookTable, Role, Scene, Thing, read_images, substance_of, texture_name};
+use super::shape::{MaterialSlots, PartShape, shape_of};
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
+use crate::import::{
+    ImportedMaterial, ImportedScene, MaterialTableBuilder, NodeRole, SceneNode, read_images,
+    substance_of, texture_name,
+};
 use crate::limits::MAX_NODES;
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
 
 /// Whether `path` names an OBJ file.
 pub(crate) fn recognizes(path: &Path) -> bool {
@@ -32,8 +35,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// # Errors
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Empty`] when it holds no triangle,
 /// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
-pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
-    let mut report = Report::new();
+pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
+    let mut report = LoadReport::new();
     let (scene, at) = read_scene(path, threads, &mut report)?;
     let house = scene.into_house(&at, &mut report)?;
     Ok((house, report))
@@ -46,28 +49,28 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesErro
 pub(crate) fn read_scene(
     path: &Path,
     threads: Threads,
-    report: &mut Report,
-) -> Result<(Scene, At), HousesError> {
+    report: &mut LoadReport,
+) -> Result<(ImportedScene, FileLocation), HousesError> {
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let (root, inside) = locate(path)?;
-    let at = At::file(&inside);
+    let at = FileLocation::file(&inside);
     let files = read_mesh(&root, &inside, report).unwrap_or_default();
     let wanted: BTreeSet<String> = files.textures.iter().flatten().cloned().collect();
     let images = read_images(&root, wanted, threads, report);
-    let slots = Slots::of(&files.obj, &files.mtl, &at, report);
+    let slots = MaterialSlots::of(&files.obj, &files.mtl, &at, report);
     let texture_ids: BTreeMap<&str, TextureId> = images
         .keys()
         .enumerate()
         .map(|(k, path)| (path.as_str(), TextureId(k as u32)))
         .collect();
-    let mut looks = LookTable::default();
+    let mut looks = MaterialTableBuilder::default();
     let materials: Vec<MaterialId> = slots
         .entries
         .iter()
         .map(|(name, in_file)| looks.add(&look(&files, name, *in_file, &texture_ids)))
         .collect();
     let name = texture_name(&inside);
-    let mut things: Vec<(String, Vec<(u16, &Run)>)> = Vec::new();
+    let mut things: Vec<(String, Vec<(u16, &FaceGroup)>)> = Vec::new();
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for run in &files.obj.runs {
         let thing = if run.object.is_empty() {
@@ -103,20 +106,20 @@ pub(crate) fn read_scene(
                 &at,
                 report,
             );
-            Thing {
+            SceneNode {
                 name,
                 mesh: Arc::new(mesh),
                 world_from_mesh: Affine3A::IDENTITY,
                 materials: materials.clone(),
                 level: None,
                 room: None,
-                role: Role::Unsaid,
+                role: NodeRole::Unspecified,
                 part_of: None,
             }
         })
         .collect();
     let textures = images.into_values().collect();
-    let scene = Scene {
+    let scene = ImportedScene {
         name,
         source: "obj",
         things,
@@ -132,14 +135,14 @@ pub(crate) fn read_scene(
 }
 
 /// All faces of an OBJ file as one mesh, without materials.
-pub(crate) fn bare_mesh(bytes: &[u8], path: &str, report: &mut Report) -> Mesh {
+pub(crate) fn bare_mesh(bytes: &[u8], path: &str, report: &mut LoadReport) -> Mesh {
     let obj = read_obj(bytes, path, report);
     let shape = PartShape {
         runs: obj.runs.iter().map(|run| (0, run)).collect(),
         obj: &obj,
         box_mapping: false,
     };
-    shape_of(&shape, &At::file(path), report)
+    shape_of(&shape, &FileLocation::file(path), report)
 }
 
 /// The folder that bounds the file's paths, and the file in it: the data root when the file is a SUNCG model, whose
@@ -179,10 +182,10 @@ fn look(
     name: &str,
     in_file: Option<usize>,
     textures: &BTreeMap<&str, TextureId>,
-) -> Look {
+) -> ImportedMaterial {
     let Some(k) = in_file else {
         let substance = substance_of(name).unwrap_or_else(|| library().default_substance());
-        return Look::plain(if name.is_empty() { "default" } else { name }, substance);
+        return ImportedMaterial::plain(if name.is_empty() { "default" } else { name }, substance);
     };
     let material = &files.mtl.materials[k];
     let path = files.textures[k]
@@ -197,12 +200,12 @@ fn look(
             library().default_substance()
         }
     };
-    Look {
+    ImportedMaterial {
         srgb: material.diffuse.unwrap_or([1.0; 3]),
         texture: path.map(|path| textures[path]),
         opacity,
         emission: material.emission.unwrap_or([0.0; 3]),
         roughness: material.roughness(),
-        ..Look::plain(name, named.unwrap_or_else(usual))
+        ..ImportedMaterial::plain(name, named.unwrap_or_else(usual))
     }
 }

@@ -17,16 +17,16 @@ pub struct ObjFile {
     /// `vn`, not normalized.
     pub normals: Vec<[f32; 3]>,
     /// Corners of all faces, one face after another; positions are in range, the others are in range or [`NONE`].
-    pub corners: Vec<Corner>,
+    pub corners: Vec<FaceCorner>,
     /// Where each face ends in `corners`.
     pub face_ends: Vec<u32>,
     /// Stretches of faces under the same `o`, `g` and `usemtl`; together they cover all faces in order.
-    pub runs: Vec<Run>,
+    pub runs: Vec<FaceGroup>,
 }
 
 /// A corner of a face: 0-based indices, or [`NONE`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Corner {
+pub struct FaceCorner {
     /// Into `positions`.
     pub position: u32,
     /// Into `texcoords`.
@@ -37,7 +37,7 @@ pub struct Corner {
 
 /// Faces that stand under the same names.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Run {
+pub struct FaceGroup {
     /// The last `o`, empty before the first.
     pub object: String,
     /// The last `g`, empty before the first.
@@ -50,7 +50,7 @@ pub struct Run {
 
 impl ObjFile {
     /// The corners of face `face`.
-    pub fn face(&self, face: usize) -> &[Corner] {
+    pub fn face(&self, face: usize) -> &[FaceCorner] {
         let start = if face == 0 {
             0
         } else {

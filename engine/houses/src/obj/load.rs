@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use super::file::{MtlFile, ObjFile};
 use super::{read_mtl, read_obj};
-use crate::damage::Damage;
+use crate::data_root::{DataRoot, folder_of};
 use crate::limits::{MAX_LIBRARIES, MAX_MESH_BYTES};
-use crate::report::{At, Report};
-use crate::root::{DataRoot, folder_of};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// An OBJ file and the materials of its MTL files, one after another.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -21,15 +21,15 @@ pub struct MeshFiles {
 }
 
 /// Reads an OBJ file with its MTL files.
-pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut Report) -> Option<MeshFiles> {
+pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut LoadReport) -> Option<MeshFiles> {
     let bytes = match root.read(path, MAX_MESH_BYTES) {
         Ok(bytes) => bytes,
         Err(error) => {
-            let damage = Damage::UnreadableMesh {
+            let damage = WarningKind::UnreadableMesh {
                 path: path.to_owned(),
                 reason: error.reason(),
             };
-            report.warn(At::file(path), damage);
+            report.warn(FileLocation::file(path), damage);
             return None;
         }
     };
@@ -45,8 +45,8 @@ pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut Report) -> Opt
     for library in named.take(MAX_LIBRARIES) {
         let Ok(mtl_path) = DataRoot::resolve(folder, library) else {
             report.warn(
-                At::file(path),
-                Damage::PathRefused {
+                FileLocation::file(path),
+                WarningKind::PathRefused {
                     path: library.clone(),
                 },
             );
@@ -54,8 +54,8 @@ pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut Report) -> Opt
         };
         let Ok(bytes) = root.read(&mtl_path, MAX_MESH_BYTES) else {
             report.warn(
-                At::file(path),
-                Damage::MissingMaterialFile { path: mtl_path },
+                FileLocation::file(path),
+                WarningKind::MissingMaterialFile { path: mtl_path },
             );
             continue;
         };
@@ -67,8 +67,8 @@ pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut Report) -> Opt
                 .map(|map| (map, DataRoot::resolve(folder_of(&mtl_path), map)));
             if let Some((map, Err(_))) = &texture {
                 report.warn(
-                    At::file(&mtl_path),
-                    Damage::PathRefused {
+                    FileLocation::file(&mtl_path),
+                    WarningKind::PathRefused {
                         path: (*map).to_owned(),
                     },
                 );

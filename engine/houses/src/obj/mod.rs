@@ -19,5 +19,5 @@ pub use load::MeshFiles;
 pub(crate) use load::read_mesh;
 pub use read_mtl::read_mtl;
 pub use read_obj::read_obj;
-pub(crate) use shape::{PartShape, Slots, shape_of};
+pub(crate) use shape::{MaterialSlots, PartShape, shape_of};
 pub(crate) use write::{ObjWriter, mtl_material};

@@ -2,14 +2,14 @@
 
 use super::file::{MtlFile, MtlMaterial};
 use super::lines::{float, integer, lines, name, shorten, split_word, words};
-use crate::damage::Damage;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// Reads MTL text. Never fails: what cannot be read is left out and reported.
 ///
 /// `file` names the file in the report.
-pub fn read_mtl(text: &[u8], file: &str, report: &mut Report) -> MtlFile {
-    let at = At::file(file);
+pub fn read_mtl(text: &[u8], file: &str, report: &mut LoadReport) -> MtlFile {
+    let at = FileLocation::file(file);
     let mut mtl = MtlFile::default();
     for (number, line) in lines(text) {
         let (keyword, rest) = split_word(&line);
@@ -25,7 +25,7 @@ pub fn read_mtl(text: &[u8], file: &str, report: &mut Report) -> MtlFile {
         {
             report.warn(
                 at.line(number),
-                Damage::BadStatement {
+                WarningKind::BadStatement {
                     found: shorten(&line),
                 },
             );
@@ -117,8 +117,8 @@ fn map_path(rest: &[u8]) -> Option<String> {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> (MtlFile, Report) {
-        let mut report = Report::new();
+    fn read(text: &str) -> (MtlFile, LoadReport) {
+        let mut report = LoadReport::new();
         let mtl = read_mtl(text.as_bytes(), "a.mtl", &mut report);
         (mtl, report)
     }

@@ -1,20 +1,20 @@
 //! Reads the text of an OBJ file.
 
-use super::file::{Corner, NONE, ObjFile, Run};
+use super::file::{FaceCorner, FaceGroup, NONE, ObjFile};
 use super::lines::{float, integer, lines, name, shorten, split_word, words};
-use crate::damage::Damage;
 use crate::limits::MAX_CORNERS;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// Reads OBJ text. Never fails: what cannot be read is left out and reported.
 ///
 /// `file` names the file in the report.
-pub fn read_obj(text: &[u8], file: &str, report: &mut Report) -> ObjFile {
-    let mut reader = Reader {
+pub fn read_obj(text: &[u8], file: &str, report: &mut LoadReport) -> ObjFile {
+    let mut reader = ObjReader {
         obj: ObjFile::default(),
-        at: At::file(file),
+        at: FileLocation::file(file),
         report,
-        names: Names::default(),
+        names: OpenNames::default(),
         pending: Vec::new(),
     };
     for (number, line) in lines(text) {
@@ -24,31 +24,31 @@ pub fn read_obj(text: &[u8], file: &str, report: &mut Report) -> ObjFile {
 }
 
 #[derive(Default)]
-struct Names {
+struct OpenNames {
     object: String,
     group: String,
     material: Option<String>,
 }
 
-struct Reader<'a> {
+struct ObjReader<'a> {
     obj: ObjFile,
-    at: At,
-    report: &'a mut Report,
-    names: Names,
+    at: FileLocation,
+    report: &'a mut LoadReport,
+    names: OpenNames,
     /// Corners of the face being read.
-    pending: Vec<Corner>,
+    pending: Vec<FaceCorner>,
 }
 
-impl Reader<'_> {
+impl ObjReader<'_> {
     fn line(&mut self, number: u32, line: &[u8]) {
         let (keyword, rest) = split_word(line);
         match keyword {
             b"v" => {
-                let value = self.floats::<3>(rest, number, &Damage::NanVertices);
+                let value = self.floats::<3>(rest, number, &WarningKind::NanVertices);
                 self.obj.positions.push(value);
             }
             b"vn" => {
-                let value = self.floats::<3>(rest, number, &Damage::NanAttributes);
+                let value = self.floats::<3>(rest, number, &WarningKind::NanAttributes);
                 self.obj.normals.push(value);
             }
             b"vt" => {
@@ -62,7 +62,7 @@ impl Reader<'_> {
                 }
                 if bad || rest.is_empty() {
                     self.report
-                        .warn(self.at.line(number), Damage::NanAttributes);
+                        .warn(self.at.line(number), WarningKind::NanAttributes);
                 }
                 self.obj.texcoords.push(value);
             }
@@ -85,13 +85,18 @@ impl Reader<'_> {
             _ => {
                 let found = shorten(line);
                 self.report
-                    .warn(self.at.line(number), Damage::BadStatement { found });
+                    .warn(self.at.line(number), WarningKind::BadStatement { found });
             }
         }
     }
 
     /// `N` numbers; those missing or not finite are NaN.
-    fn floats<const N: usize>(&mut self, rest: &[u8], number: u32, damage: &Damage) -> [f32; N] {
+    fn floats<const N: usize>(
+        &mut self,
+        rest: &[u8],
+        number: u32,
+        damage: &WarningKind,
+    ) -> [f32; N] {
         let mut value = [f32::NAN; N];
         for (slot, word) in value.iter_mut().zip(words(rest)) {
             *slot = float(word).unwrap_or(f32::NAN);
@@ -140,7 +145,7 @@ impl Reader<'_> {
             if self.pending.len() == MAX_CORNERS {
                 return self.bad_face(number, "too many corners");
             }
-            self.pending.push(Corner {
+            self.pending.push(FaceCorner {
                 position,
                 texcoord,
                 normal,
@@ -159,7 +164,7 @@ impl Reader<'_> {
     fn bad_face(&mut self, number: u32, reason: &str) {
         self.report.warn(
             self.at.line(number),
-            Damage::BadFace {
+            WarningKind::BadFace {
                 reason: reason.to_owned(),
             },
         );
@@ -182,7 +187,7 @@ impl Reader<'_> {
             {
                 run.faces.end = end;
             }
-            _ => self.obj.runs.push(Run {
+            _ => self.obj.runs.push(FaceGroup {
                 object: names.object.clone(),
                 group: names.group.clone(),
                 material: names.material.clone(),
@@ -217,7 +222,7 @@ impl Reader<'_> {
             }
         }
         self.report
-            .warn_times(self.at.clone(), Damage::NanAttributes, bad_attributes);
+            .warn_times(self.at.clone(), WarningKind::NanAttributes, bad_attributes);
         if obj.corners.iter().all(|corner| corner.position < positions) {
             return;
         }
@@ -235,7 +240,7 @@ impl Reader<'_> {
                 }
             }
             if obj.face_ends.len() > start {
-                obj.runs.push(Run {
+                obj.runs.push(FaceGroup {
                     faces: start..obj.face_ends.len(),
                     ..run.clone()
                 });
@@ -243,7 +248,7 @@ impl Reader<'_> {
         }
         let reason = format!("a vertex beyond the {positions} of the file");
         self.report
-            .warn_times(self.at.clone(), Damage::BadFace { reason }, bad);
+            .warn_times(self.at.clone(), WarningKind::BadFace { reason }, bad);
         *obj = ObjFile {
             corners: std::mem::take(&mut obj.corners),
             face_ends: std::mem::take(&mut obj.face_ends),
@@ -257,8 +262,8 @@ impl Reader<'_> {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> (ObjFile, Report) {
-        let mut report = Report::new();
+    fn read(text: &str) -> (ObjFile, LoadReport) {
+        let mut report = LoadReport::new();
         let obj = read_obj(text.as_bytes(), "a.obj", &mut report);
         (obj, report)
     }
@@ -272,7 +277,7 @@ mod tests {
         let second = |face: usize| obj.face(face)[1];
         assert_eq!(
             second(0),
-            Corner {
+            FaceCorner {
                 position: 1,
                 texcoord: NONE,
                 normal: NONE
@@ -280,7 +285,7 @@ mod tests {
         );
         assert_eq!(
             second(1),
-            Corner {
+            FaceCorner {
                 position: 1,
                 texcoord: 0,
                 normal: NONE
@@ -288,7 +293,7 @@ mod tests {
         );
         assert_eq!(
             second(2),
-            Corner {
+            FaceCorner {
                 position: 1,
                 texcoord: NONE,
                 normal: 0
@@ -296,7 +301,7 @@ mod tests {
         );
         assert_eq!(
             second(3),
-            Corner {
+            FaceCorner {
                 position: 1,
                 texcoord: 0,
                 normal: 0
@@ -333,7 +338,10 @@ mod tests {
             ),
             ("B", Some("m"), 1..2)
         );
-        assert_eq!(report.count(|d| matches!(d, Damage::BadFace { .. })), 5);
+        assert_eq!(
+            report.count(|d| matches!(d, WarningKind::BadFace { .. })),
+            5
+        );
     }
 
     #[test]

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use dwell_scene::Mesh;
 use glam::{Vec2, Vec3, Vec3Swizzles as _};
 
-use super::file::{Corner, MtlFile, NONE, ObjFile, Run};
-use crate::damage::Damage;
-use crate::report::{At, Report};
+use super::file::{FaceCorner, FaceGroup, MtlFile, NONE, ObjFile};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// Most material slots of one mesh: slots are 16-bit numbers.
 const MAX_SLOTS: usize = u16::MAX as usize;
@@ -19,22 +19,27 @@ const MAX_CHAIN: usize = 256;
 ///
 /// SUNCG's overrides count these positions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct Slots {
+pub(crate) struct MaterialSlots {
     /// Name of each slot, and its position in the MTL file.
     pub(crate) entries: Vec<(String, Option<usize>)>,
     /// The first slot of each name.
     places: BTreeMap<String, u16>,
 }
 
-impl Slots {
+impl MaterialSlots {
     /// The slots of `obj` with `mtl`.
-    pub(crate) fn of(obj: &ObjFile, mtl: &MtlFile, at: &At, report: &mut Report) -> Self {
+    pub(crate) fn of(
+        obj: &ObjFile,
+        mtl: &MtlFile,
+        at: &FileLocation,
+        report: &mut LoadReport,
+    ) -> Self {
         let mut slots = Self::default();
         for (i, material) in mtl.materials.iter().enumerate().take(MAX_SLOTS) {
             if slots.find(&material.name).is_some() {
                 report.warn(
                     at.clone(),
-                    Damage::DuplicateMaterial {
+                    WarningKind::DuplicateMaterial {
                         name: material.name.clone(),
                     },
                 );
@@ -47,7 +52,7 @@ impl Slots {
                 if run.material.is_some() {
                     report.warn(
                         at.clone(),
-                        Damage::MissingMaterial {
+                        WarningKind::MissingMaterial {
                             name: name.to_owned(),
                         },
                     );
@@ -69,7 +74,7 @@ impl Slots {
     }
 
     /// The slot that a stretch of faces shows.
-    pub(crate) fn of_run(&self, run: &Run) -> u16 {
+    pub(crate) fn of_run(&self, run: &FaceGroup) -> u16 {
         self.find(run.material.as_deref().unwrap_or(""))
             .unwrap_or(0)
     }
@@ -80,14 +85,14 @@ pub(crate) struct PartShape<'a> {
     /// The file.
     pub(crate) obj: &'a ObjFile,
     /// The slot of each run that is taken, with the run.
-    pub(crate) runs: Vec<(u16, &'a Run)>,
+    pub(crate) runs: Vec<(u16, &'a FaceGroup)>,
     /// Whether corners without texture coordinates get some, in metres on the nearest axis plane, because a texture
     /// lies on them.
     pub(crate) box_mapping: bool,
 }
 
 /// Fans polygons into triangles, brings corners together into vertices, replaces numbers that are not finite.
-pub(crate) fn shape_of(shape: &PartShape<'_>, at: &At, report: &mut Report) -> Mesh {
+pub(crate) fn shape_of(shape: &PartShape<'_>, at: &FileLocation, report: &mut LoadReport) -> Mesh {
     let obj = shape.obj;
     let faces = || {
         shape
@@ -99,10 +104,10 @@ pub(crate) fn shape_of(shape: &PartShape<'_>, at: &At, report: &mut Report) -> M
     let normals = corners().any(|corner| corner.normal != NONE);
     let uvs = shape.box_mapping || corners().any(|corner| corner.texcoord != NONE);
     let triangle_count = faces().map(|(_, face)| obj.face(face).len() - 2).sum();
-    let mut builder = Builder {
+    let mut builder = ObjMeshBuilder {
         obj,
         mesh: Mesh::default(),
-        heads: Heads::of(obj.positions.len(), triangle_count),
+        heads: VertexChains::of(obj.positions.len(), triangle_count),
         chain: Vec::new(),
         normals,
         uvs,
@@ -123,17 +128,17 @@ pub(crate) fn shape_of(shape: &PartShape<'_>, at: &At, report: &mut Report) -> M
             degenerate += u64::from((b - a).cross(c - a) == Vec3::ZERO);
         }
     }
-    report.warn_times(at.clone(), Damage::DegenerateTriangles, degenerate);
+    report.warn_times(at.clone(), WarningKind::DegenerateTriangles, degenerate);
     builder.mesh
 }
 
-fn position(obj: &ObjFile, corner: Corner) -> Vec3 {
+fn position(obj: &ObjFile, corner: FaceCorner) -> Vec3 {
     // The first importers set what was no number to 0, and houses depend on it.
     Vec3::from(obj.positions[corner.position as usize].map(|x| if x.is_finite() { x } else { 0.0 }))
 }
 
 /// The unit normal of a polygon (Newell's method); up for one without area.
-fn face_normal(obj: &ObjFile, face: &[Corner]) -> Vec3 {
+fn face_normal(obj: &ObjFile, face: &[FaceCorner]) -> Vec3 {
     let mut sum = Vec3::ZERO;
     for (k, corner) in face.iter().enumerate() {
         let (p, q) = (
@@ -146,12 +151,12 @@ fn face_normal(obj: &ObjFile, face: &[Corner]) -> Vec3 {
 }
 
 /// The newest vertex of each position. A file may hold a few faces each of very many things and ten million positions.
-enum Heads {
+enum VertexChains {
     Dense(Vec<u32>),
     Sparse(BTreeMap<u32, u32>),
 }
 
-impl Heads {
+impl VertexChains {
     fn of(positions: usize, triangles: usize) -> Self {
         if positions / 64 > triangles {
             return Self::Sparse(BTreeMap::new());
@@ -176,21 +181,21 @@ impl Heads {
     }
 }
 
-struct Builder<'a> {
+struct ObjMeshBuilder<'a> {
     obj: &'a ObjFile,
     mesh: Mesh,
     /// For each position of the file the newest vertex made of it.
-    heads: Heads,
+    heads: VertexChains,
     /// For each vertex its corner and the next vertex at the same position.
-    chain: Vec<(Corner, u32)>,
+    chain: Vec<(FaceCorner, u32)>,
     normals: bool,
     uvs: bool,
     box_mapping: bool,
 }
 
-impl Builder<'_> {
+impl ObjMeshBuilder<'_> {
     /// The vertex of a corner; the same corner of another face is the same vertex unless it needs this face's normal.
-    fn vertex(&mut self, corner: Corner, flat: Vec3) -> u32 {
+    fn vertex(&mut self, corner: FaceCorner, flat: Vec3) -> u32 {
         let own = (self.normals && corner.normal == NONE)
             || (self.box_mapping && corner.texcoord == NONE);
         let head = self.heads.get(corner.position);
@@ -259,11 +264,11 @@ mod tests {
     use super::*;
     use crate::obj::{read_mtl, read_obj};
 
-    fn mesh(text: &str, box_mapping: bool) -> (Mesh, Report) {
-        let mut report = Report::new();
-        let at = At::file("a.obj");
+    fn mesh(text: &str, box_mapping: bool) -> (Mesh, LoadReport) {
+        let mut report = LoadReport::new();
+        let at = FileLocation::file("a.obj");
         let obj = read_obj(text.as_bytes(), "a.obj", &mut report);
-        let slots = Slots::of(&obj, &MtlFile::default(), &at, &mut Report::new());
+        let slots = MaterialSlots::of(&obj, &MtlFile::default(), &at, &mut LoadReport::new());
         let runs = obj
             .runs
             .iter()
@@ -327,7 +332,7 @@ mod tests {
             false,
         );
         assert_eq!((mesh.positions[0], mesh.normals[0]), (Vec3::ZERO, Vec3::Y));
-        assert_eq!(report.count(|d| *d == Damage::DegenerateTriangles), 1);
+        assert_eq!(report.count(|d| *d == WarningKind::DegenerateTriangles), 1);
     }
 
     #[test]
@@ -335,11 +340,11 @@ mod tests {
         let obj = read_obj(
             b"v 0 0 0\nusemtl b\nf 1 1 1\nusemtl x\nf 1 1 1\n",
             "a.obj",
-            &mut Report::new(),
+            &mut LoadReport::new(),
         );
-        let mtl = read_mtl(b"newmtl a\nnewmtl b\n", "a.mtl", &mut Report::new());
-        let mut report = Report::new();
-        let slots = Slots::of(&obj, &mtl, &At::file("a.obj"), &mut report);
+        let mtl = read_mtl(b"newmtl a\nnewmtl b\n", "a.mtl", &mut LoadReport::new());
+        let mut report = LoadReport::new();
+        let slots = MaterialSlots::of(&obj, &mtl, &FileLocation::file("a.obj"), &mut report);
         assert_eq!(
             slots.entries,
             [

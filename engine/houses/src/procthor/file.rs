@@ -11,9 +11,9 @@ use serde_json::Value;
 /// What is read of a house. `null` counts as absent.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
-pub(super) struct HouseFile {
+pub(super) struct ProcThorHouse {
     #[serde(deserialize_with = "nullable")]
-    pub(super) rooms: Vec<RoomFile>,
+    pub(super) rooms: Vec<ProcThorRoom>,
     #[serde(deserialize_with = "nullable")]
     pub(super) walls: Vec<WallFile>,
     #[serde(deserialize_with = "nullable")]
@@ -29,7 +29,7 @@ pub(super) struct HouseFile {
 /// A point, m, or Euler angles, degrees; in Unity's left-handed axes: x right, y up, z forward.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct Triple {
+pub(super) struct Vector3 {
     pub(super) x: f32,
     pub(super) y: f32,
     pub(super) z: f32,
@@ -37,13 +37,13 @@ pub(super) struct Triple {
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
-pub(super) struct RoomFile {
+pub(super) struct ProcThorRoom {
     #[serde(deserialize_with = "nullable")]
     pub(super) id: String,
     #[serde(deserialize_with = "nullable")]
     pub(super) room_type: String,
     #[serde(deserialize_with = "nullable")]
-    pub(super) floor_polygon: Vec<Triple>,
+    pub(super) floor_polygon: Vec<Vector3>,
     pub(super) floor_material: Value,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct WallFile {
     pub(super) room_id: String,
     /// Its corners; the two lowest are its foot.
     #[serde(deserialize_with = "nullable")]
-    pub(super) polygon: Vec<Triple>,
+    pub(super) polygon: Vec<Vector3>,
     pub(super) material: Value,
     /// Whether there is no wall at all: rooms flow into each other.
     #[serde(deserialize_with = "nullable")]
@@ -77,7 +77,7 @@ pub(super) struct HoleFile {
     pub(super) wall1: String,
     /// Two corners: along `wall0` from the first point of its foot, and up from it, m.
     #[serde(deserialize_with = "nullable")]
-    pub(super) hole_polygon: Vec<Triple>,
+    pub(super) hole_polygon: Vec<Vector3>,
     /// The same in older files.
     pub(super) bounding_box: Option<BoxFile>,
     /// 0 shut, 1 open.
@@ -88,8 +88,8 @@ pub(super) struct HoleFile {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct BoxFile {
-    pub(super) min: Triple,
-    pub(super) max: Triple,
+    pub(super) min: Vector3,
+    pub(super) max: Vector3,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -102,9 +102,9 @@ pub(super) struct ObjectFile {
     pub(super) asset_id: String,
     /// The middle of its box.
     #[serde(deserialize_with = "nullable")]
-    pub(super) position: Triple,
+    pub(super) position: Vector3,
     #[serde(deserialize_with = "nullable")]
-    pub(super) rotation: Triple,
+    pub(super) rotation: Vector3,
     /// Whether it stays where it is.
     #[serde(deserialize_with = "nullable")]
     pub(super) kinematic: bool,
@@ -117,16 +117,16 @@ pub(super) struct ObjectFile {
 pub(super) struct ParametersFile {
     pub(super) ceiling_material: Value,
     #[serde(deserialize_with = "nullable")]
-    pub(super) lights: Vec<LightFile>,
+    pub(super) lights: Vec<ProcThorLight>,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct LightFile {
+pub(super) struct ProcThorLight {
     #[serde(rename = "type", deserialize_with = "nullable")]
     pub(super) kind: String,
     #[serde(deserialize_with = "nullable")]
-    pub(super) position: Triple,
+    pub(super) position: Vector3,
 }
 
 /// A row of `asset-database.json`: for each type its assets.
@@ -137,7 +137,7 @@ pub(super) struct AssetFile {
     pub(super) asset_id: String,
     /// Width, height and depth, m.
     #[serde(deserialize_with = "nullable")]
-    pub(super) bounding_box: Triple,
+    pub(super) bounding_box: Vector3,
 }
 
 /// `asset-database.json`.

@@ -13,15 +13,15 @@ use std::path::Path;
 use dwell_scene::{Aabb, House, Room, RoomId};
 use glam::{DVec2, Quat, Vec2, Vec3};
 
-use crate::building::assembly::Assembly;
-use crate::damage::Damage;
+use crate::building::assembly::HouseAssembly;
+use crate::data_root::{DataRoot, is_json_with};
 use crate::error::HousesError;
 use crate::json;
 use crate::limits::{MAX_NODES, MAX_TEXT_BYTES};
-use crate::report::{At, Report};
-use crate::root::{DataRoot, is_json_with};
-use file::{HouseFile, ObjectFile, Triple};
-use sizes::Sizes;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
+use file::{ObjectFile, ProcThorHouse, Vector3};
+use sizes::AssetSizes;
 
 /// Whether `path` is a house of ProcTHOR: a JSON file that speaks of its parameters and of walls.
 pub(crate) fn recognizes(path: &Path) -> bool {
@@ -35,25 +35,25 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no JSON of that form,
 /// [`HousesError::TooLarge`] for more objects than are read, [`HousesError::Empty`] without a room,
 /// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
-pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
+pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let root = DataRoot::new(folder)?;
     let bytes = root.read_named(&name, MAX_TEXT_BYTES)?;
-    let mut report = Report::new();
-    let sizes = Sizes::around(folder, &mut report);
+    let mut report = LoadReport::new();
+    let sizes = AssetSizes::around(folder, &mut report);
     convert(&bytes, &name, &sizes, report)
 }
 
 fn convert(
     bytes: &[u8],
     name: &str,
-    sizes: &Sizes,
-    mut report: Report,
-) -> Result<(House, Report), HousesError> {
-    let at = At::file(name);
-    let file: HouseFile = json::from_slice(bytes).map_err(json::syntax(&at))?;
+    sizes: &AssetSizes,
+    mut report: LoadReport,
+) -> Result<(House, LoadReport), HousesError> {
+    let at = FileLocation::file(name);
+    let file: ProcThorHouse = json::from_slice(bytes).map_err(json::syntax(&at))?;
     let openings = file.doors.len() + file.windows.len();
     let lamps = file.procedural_parameters.lights.len();
     let count = file.walls.len() + file.rooms.len() + openings + lamps + count(&file.objects);
@@ -74,9 +74,9 @@ fn convert(
         });
     }
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-    let mut reader = Reader {
+    let mut reader = ProcThorReader {
         at: at.clone(),
-        assembly: Assembly::new(stem, "procthor"),
+        assembly: HouseAssembly::new(stem, "procthor"),
         report: &mut report,
         sizes,
         rooms: Vec::new(),
@@ -101,7 +101,7 @@ fn count(objects: &[ObjectFile]) -> usize {
 }
 
 /// A room that was read.
-struct ReadRoom {
+struct ConvertedRoom {
     id: RoomId,
     file_id: String,
     /// Its floor, (x, z) in our axes, m.
@@ -110,19 +110,19 @@ struct ReadRoom {
 }
 
 /// A house on its way.
-struct Reader<'a> {
-    at: At,
-    assembly: Assembly,
-    report: &'a mut Report,
-    sizes: &'a Sizes,
-    rooms: Vec<ReadRoom>,
+struct ProcThorReader<'a> {
+    at: FileLocation,
+    assembly: HouseAssembly,
+    report: &'a mut LoadReport,
+    sizes: &'a AssetSizes,
+    rooms: Vec<ConvertedRoom>,
     /// Height of the floors, m.
     floor_y: f32,
 }
 
-impl Reader<'_> {
+impl ProcThorReader<'_> {
     /// The room over whose floor a place lies.
-    fn room_over(&self, place: Vec3) -> Option<&ReadRoom> {
+    fn room_over(&self, place: Vec3) -> Option<&ConvertedRoom> {
         let known = &self.assembly.data.rooms;
         let place = Vec2::new(place.x, place.z);
         self.rooms
@@ -131,10 +131,10 @@ impl Reader<'_> {
     }
 
     /// That room, else the one whose middle is nearest.
-    fn room_at(&self, place: Vec3) -> Option<&ReadRoom> {
+    fn room_at(&self, place: Vec3) -> Option<&ConvertedRoom> {
         self.room_over(place).or_else(|| {
             let place = DVec2::new(f64::from(place.x), f64::from(place.z));
-            let distance = |room: &ReadRoom| {
+            let distance = |room: &ConvertedRoom| {
                 let sum: DVec2 = room.outline.iter().sum();
                 (sum / room.outline.len() as f64).distance_squared(place)
             };
@@ -144,18 +144,18 @@ impl Reader<'_> {
         })
     }
 
-    fn warn(&mut self, field: &str, damage: Damage) {
+    fn warn(&mut self, field: &str, damage: WarningKind) {
         self.report.warn(self.at.field(field), damage);
     }
 }
 
 /// A point of the file in our axes: +Z is backwards here, forwards there.
-fn point(p: Triple) -> Vec3 {
+fn point(p: Vector3) -> Vec3 {
     Vec3::new(p.x, p.y, -p.z)
 }
 
 /// Euler angles of the file (about Z, then X, then Y, in left-handed axes) as a rotation in ours.
-fn rotation(degrees: Triple) -> Quat {
+fn rotation(degrees: Vector3) -> Quat {
     let turn = |axis: Vec3, angle: f32| dwell_furniture::shapes::turn(axis, angle.to_radians());
     // Seen in a mirror across z = 0, turns about X and Y run the other way.
     turn(Vec3::Y, -degrees.y) * turn(Vec3::X, -degrees.x) * turn(Vec3::Z, degrees.z)

@@ -13,12 +13,12 @@ use dwell_scene::{Mobility, Pose};
 use glam::Vec3;
 use serde::Deserialize;
 
-use super::file::{LightFile, ObjectFile};
+use super::file::{ObjectFile, ProcThorLight};
 use super::shell::words;
-use super::{Reader, is_place, point, rotation};
-use crate::build::{CategoryRow, category, category_of};
-use crate::building::assembly::Kind;
-use crate::damage::{Damage, Unmapped};
+use super::{ProcThorReader, is_place, point, rotation};
+use crate::building::assembly::ModelInstances;
+use crate::import::{CategoryRow, category, category_of};
+use crate::warning_kind::{UnmappedKind, WarningKind};
 
 /// Between the file's forward (+Z, our -Z) and the front of our models (+Z).
 const HALF_TURN: f32 = std::f32::consts::PI;
@@ -50,12 +50,12 @@ fn kind_of(type_name: &str) -> Option<&'static str> {
 }
 
 /// The kinds of one house by asset, height and whether they stay.
-type Kinds = BTreeMap<(String, u32, bool), Option<Kind>>;
+type AssetKinds = BTreeMap<(String, u32, bool), Option<ModelInstances>>;
 
-impl Reader<'_> {
+impl ProcThorReader<'_> {
     /// All objects, those in and on others too.
     pub(super) fn objects(&mut self, objects: &[ObjectFile]) {
-        let mut kinds = Kinds::new();
+        let mut kinds = AssetKinds::new();
         let mut unsized_count = 0;
         let mut open: Vec<(&ObjectFile, String, bool)> = objects
             .iter()
@@ -73,7 +73,7 @@ impl Reader<'_> {
                 "{unsized_count} things have the usual size of their kind: \
                  no asset-database.json says how large their assets are"
             );
-            self.warn("objects", Damage::Simplified { what });
+            self.warn("objects", WarningKind::Simplified { what });
         }
     }
 
@@ -82,7 +82,7 @@ impl Reader<'_> {
         object: &ObjectFile,
         at: &str,
         inside: bool,
-        kinds: &mut Kinds,
+        kinds: &mut AssetKinds,
         unsized_count: &mut usize,
     ) {
         let known = self.sizes.get(&object.asset_id);
@@ -92,7 +92,7 @@ impl Reader<'_> {
         let (middle, turned) = (point(object.position), rotation(object.rotation));
         if !is_place(middle) || !turned.is_finite() {
             let reason = "it is no place in a house".to_owned();
-            return self.warn(at, Damage::BadTransform { reason });
+            return self.warn(at, WarningKind::BadTransform { reason });
         }
         let Some(room) = self.room_at(middle).map(|room| room.id) else {
             return;
@@ -139,8 +139,8 @@ impl Reader<'_> {
         let style = STYLES.first()?;
         let kind = kind_of(type_name);
         if kind.is_none() {
-            let (what, name) = (Unmapped::Category, type_name.to_owned());
-            self.warn(at, Damage::Unmapped { what, name });
+            let (what, name) = (UnmappedKind::Category, type_name.to_owned());
+            self.warn(at, WarningKind::Unmapped { what, name });
         }
         let key = RandomKey::root(0).child("procthor").child(asset);
         let ours = kind
@@ -165,7 +165,7 @@ impl Reader<'_> {
                 return Some(staying(model, stays));
             }
             let what = format!("{type_name} is our {} stretched by {by:.2}", model.name);
-            self.warn(at, Damage::Simplified { what });
+            self.warn(at, WarningKind::Simplified { what });
         }
         if by != Vec3::ONE {
             model = model.stretched(by);
@@ -174,7 +174,7 @@ impl Reader<'_> {
     }
 
     /// A ceiling lamp below the ceiling wherever the file has a point of light.
-    pub(super) fn lamps(&mut self, lights: &[LightFile]) {
+    pub(super) fn lamps(&mut self, lights: &[ProcThorLight]) {
         let Some(style) = STYLES.first() else { return };
         let Some(lamp) = cached_model("ceiling_lamp", style, RandomKey::root(0).child("procthor"))
         else {

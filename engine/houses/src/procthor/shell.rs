@@ -10,11 +10,11 @@ use glam::{DVec2, Vec2, Vec3};
 use serde_json::Value;
 
 use super::covers::cover;
-use super::file::{HoleFile, HouseFile, RoomFile, Triple, WallFile};
-use super::{ReadRoom, Reader, is_place, point};
-use crate::build::{Names, room_kind, triangulate};
-use crate::damage::{Damage, Unmapped};
+use super::file::{HoleFile, ProcThorHouse, ProcThorRoom, Vector3, WallFile};
+use super::{ConvertedRoom, ProcThorReader, is_place, point};
+use crate::import::{UniqueNames, room_kind, triangulate};
 use crate::limits::MAX_OUTLINE;
+use crate::warning_kind::{UnmappedKind, WarningKind};
 
 /// Thickness of slabs, m; the file has none.
 const SLAB_M: f32 = 0.1;
@@ -32,7 +32,7 @@ const CASEMENT_M: f32 = 0.8;
 const SILL_M: f32 = 0.02;
 
 /// A wall's face: it runs from `foot` along `along`, `height_m` high, and looks along `normal`.
-struct Face {
+struct WallFace {
     foot: Vec3,
     /// Unit length.
     along: Vec3,
@@ -44,18 +44,18 @@ struct Face {
 
 /// A hole on a face: from and to along it, from and to above its foot, m.
 #[derive(Clone, Copy)]
-struct Hole {
+struct FaceHole {
     along: [f32; 2],
     up: [f32; 2],
 }
 
-impl Face {
+impl WallFace {
     fn at(&self, along: f32, up: f32) -> Vec3 {
         self.foot + self.along * along + Vec3::Y * up
     }
 
     /// The face with its holes, each cell between the lines of their edges a rectangle.
-    fn mesh(&self, holes: &[Hole]) -> Mesh {
+    fn mesh(&self, holes: &[FaceHole]) -> Mesh {
         let (mut along, mut up) = (vec![0.0, self.width_m], vec![0.0, self.height_m]);
         for hole in holes {
             along.extend(hole.along.map(|a| a.clamp(0.0, self.width_m)));
@@ -96,10 +96,10 @@ impl Face {
     }
 }
 
-impl Reader<'_> {
+impl ProcThorReader<'_> {
     /// Rooms with floors and ceilings, walls, doors and windows.
-    pub(super) fn shell(&mut self, file: &HouseFile) {
-        let mut names = Names::default();
+    pub(super) fn shell(&mut self, file: &ProcThorHouse) {
+        let mut names = UniqueNames::default();
         let lowest = file
             .rooms
             .iter()
@@ -111,8 +111,8 @@ impl Reader<'_> {
         for (k, room) in file.rooms.iter().enumerate() {
             self.room(k, room, file, &mut names);
         }
-        let mut holes: BTreeMap<&str, Vec<Hole>> = BTreeMap::new();
-        let mut faces: BTreeMap<&str, Face> = BTreeMap::new();
+        let mut holes: BTreeMap<&str, Vec<FaceHole>> = BTreeMap::new();
+        let mut faces: BTreeMap<&str, WallFace> = BTreeMap::new();
         for (k, wall) in file.walls.iter().enumerate() {
             let at = format!("walls[{k}]");
             match self.face(wall) {
@@ -120,7 +120,7 @@ impl Reader<'_> {
                     faces.insert(&wall.id, face);
                 }
                 Ok(None) => {}
-                Err(reason) => self.warn(&at, Damage::BadFace { reason }),
+                Err(reason) => self.warn(&at, WarningKind::BadFace { reason }),
             }
         }
         let kinds = [("doors", &file.doors), ("windows", &file.windows)];
@@ -129,12 +129,12 @@ impl Reader<'_> {
                 let at = format!("{field}[{k}]");
                 let Some(hole) = rectangle(row) else {
                     let reason = "its hole is no rectangle".to_owned();
-                    self.warn(&at, Damage::BadFace { reason });
+                    self.warn(&at, WarningKind::BadFace { reason });
                     continue;
                 };
                 let Some(face) = faces.get(row.wall0.as_str()) else {
                     let reason = format!("there is no wall {:?}", row.wall0);
-                    self.warn(&at, Damage::BadFace { reason });
+                    self.warn(&at, WarningKind::BadFace { reason });
                     continue;
                 };
                 self.filling(row, face, hole, field == "windows");
@@ -146,11 +146,11 @@ impl Reader<'_> {
                     holes
                         .entry(&row.wall1)
                         .or_default()
-                        .push(Hole { along, ..hole });
+                        .push(FaceHole { along, ..hole });
                 }
             }
         }
-        let mut wall_names = Names::default();
+        let mut wall_names = UniqueNames::default();
         for (k, wall) in file.walls.iter().enumerate() {
             let Some(face) = faces.get(wall.id.as_str()).filter(|_| !wall.empty) else {
                 continue;
@@ -170,13 +170,19 @@ impl Reader<'_> {
     fn finish(&mut self, material: &Value, field: &str) -> Finish {
         let (finish, unknown) = cover(material);
         if let Some(name) = unknown {
-            let what = Unmapped::Substance;
-            self.warn(field, Damage::Unmapped { what, name });
+            let what = UnmappedKind::Substance;
+            self.warn(field, WarningKind::Unmapped { what, name });
         }
         finish
     }
 
-    fn room(&mut self, k: usize, room: &RoomFile, file: &HouseFile, names: &mut Names) {
+    fn room(
+        &mut self,
+        k: usize,
+        room: &ProcThorRoom,
+        file: &ProcThorHouse,
+        names: &mut UniqueNames,
+    ) {
         let at = format!("rooms[{k}]");
         let corners: Vec<Vec3> = room.floor_polygon.iter().copied().map(point).collect();
         let mut outline: Vec<DVec2> = corners
@@ -196,7 +202,7 @@ impl Reader<'_> {
             || area.abs() < 1e-3
         {
             let reason = format!("its floor is no polygon of 3 to {MAX_OUTLINE} corners");
-            return self.warn(&at, Damage::BadFace { reason });
+            return self.warn(&at, WarningKind::BadFace { reason });
         }
         // Seen from above with z downwards: what turns clockwise there is counter-clockwise in (x, z).
         if area < 0.0 {
@@ -224,8 +230,8 @@ impl Reader<'_> {
         let kind = words(&room.room_type);
         let kind = room_kind(&kind).unwrap_or_else(|name| {
             if !name.is_empty() {
-                let what = Unmapped::RoomType;
-                let damage = Damage::Unmapped {
+                let what = UnmappedKind::RoomType;
+                let damage = WarningKind::Unmapped {
                     what,
                     name: name.clone(),
                 };
@@ -241,7 +247,10 @@ impl Reader<'_> {
         let name = names.counted(&kind.replace(' ', "_"));
         if self.rooms.iter().any(|other| other.file_id == room.id) {
             let (id, renamed) = (room.id.clone(), name.clone());
-            self.warn(&format!("{at}.id"), Damage::DuplicateId { id, renamed });
+            self.warn(
+                &format!("{at}.id"),
+                WarningKind::DuplicateId { id, renamed },
+            );
         }
         let id = self.assembly.data.rooms.push(Room {
             name: name.clone(),
@@ -277,7 +286,7 @@ impl Reader<'_> {
             self.assembly
                 .structure(&name, kind, Some(id), slab.mesh, &[finish]);
         }
-        self.rooms.push(ReadRoom {
+        self.rooms.push(ConvertedRoom {
             id,
             file_id: room.id.clone(),
             outline,
@@ -286,7 +295,7 @@ impl Reader<'_> {
     }
 
     /// The face of a wall; `None` for a wall of no size.
-    fn face(&self, wall: &WallFile) -> Result<Option<Face>, String> {
+    fn face(&self, wall: &WallFile) -> Result<Option<WallFace>, String> {
         let mut corners: Vec<Vec3> = wall.polygon.iter().copied().map(point).collect();
         if !corners.iter().all(|p| is_place(*p)) {
             return Err("a corner is no place".to_owned());
@@ -314,7 +323,7 @@ impl Reader<'_> {
             (None, Some(back)) => back.file_id != wall.room_id,
             (None, None) => true,
         };
-        Ok(Some(Face {
+        Ok(Some(WallFace {
             foot: *foot,
             along,
             width_m: run.length(),
@@ -324,7 +333,7 @@ impl Reader<'_> {
     }
 
     /// A door or window of the hole's size; a frame without a leaf stays a hole.
-    fn filling(&mut self, row: &HoleFile, face: &Face, hole: Hole, is_window: bool) {
+    fn filling(&mut self, row: &HoleFile, face: &WallFace, hole: FaceHole, is_window: bool) {
         let [width_m, height_m] = [hole.along, hole.up].map(|[low, high]| high - low);
         if width_m < LEAST_M || height_m < LEAST_M {
             return;
@@ -386,12 +395,12 @@ impl Reader<'_> {
 }
 
 /// The rectangle of a hole on its first wall.
-fn rectangle(row: &HoleFile) -> Option<Hole> {
-    let corners: Vec<Triple> = match row.bounding_box {
+fn rectangle(row: &HoleFile) -> Option<FaceHole> {
+    let corners: Vec<Vector3> = match row.bounding_box {
         Some(bounds) if row.hole_polygon.len() < 2 => vec![bounds.min, bounds.max],
         _ => row.hole_polygon.clone(),
     };
-    let range = |of: fn(&Triple) -> f32| {
+    let range = |of: fn(&Vector3) -> f32| {
         let values = corners.iter().map(of);
         values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| {
             [low.min(value), high.max(value)]
@@ -400,7 +409,7 @@ fn rectangle(row: &HoleFile) -> Option<Hole> {
     let (along, up) = (range(|p| p.x), range(|p| p.y));
     let is_range = |[low, high]: [f32; 2]| low > -1e4 && high < 1e4 && low < high;
     let finite = corners.iter().all(|p| p.x.is_finite() && p.y.is_finite());
-    (finite && is_range(along) && is_range(up)).then_some(Hole { along, up })
+    (finite && is_range(along) && is_range(up)).then_some(FaceHole { along, up })
 }
 
 /// `LivingRoom` as words: `living room`.

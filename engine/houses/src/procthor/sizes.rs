@@ -6,10 +6,10 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::file::AssetsFile;
-use crate::damage::Damage;
+use crate::data_root::DataRoot;
 use crate::limits::MAX_TEXT_BYTES;
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// The file's name.
 const FILE: &str = "asset-database.json";
@@ -18,13 +18,13 @@ const FOLDERS: usize = 3;
 
 /// Type and size of each asset.
 #[derive(Debug, Default)]
-pub(super) struct Sizes {
+pub(super) struct AssetSizes {
     known: BTreeMap<String, (String, Vec3)>,
 }
 
-impl Sizes {
+impl AssetSizes {
     /// Reads the nearest file at or above `folder`; none is no fault, one that cannot be read is reported.
-    pub(super) fn around(folder: &Path, report: &mut Report) -> Self {
+    pub(super) fn around(folder: &Path, report: &mut LoadReport) -> Self {
         let folder = folder.canonicalize().unwrap_or_default();
         let mut folders = folder.ancestors().take(FOLDERS);
         let Some(folder) = folders.find(|folder| folder.join(FILE).is_file()) else {
@@ -38,7 +38,7 @@ impl Sizes {
             Ok(sizes) => sizes,
             Err(reason) => {
                 let what = format!("the table of assets is not read: {reason}");
-                report.warn(At::file(FILE), Damage::Simplified { what });
+                report.warn(FileLocation::file(FILE), WarningKind::Simplified { what });
                 Self::default()
             }
         }
@@ -46,7 +46,7 @@ impl Sizes {
 
     /// Reads the table; sizes that no thing can have are left out.
     fn read(text: &[u8]) -> Result<Self, String> {
-        let file: AssetsFile = crate::json::from_slice(text).map_err(crate::plain)?;
+        let file: AssetsFile = crate::json::from_slice(text).map_err(crate::plain_parse_error)?;
         let mut known = BTreeMap::new();
         for (kind, assets) in file {
             for asset in assets {

@@ -11,12 +11,12 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 
-use super::masses::{Fixed, weigh};
-use super::model::{Motion, Robot, Shape};
+use super::masses::{FixedLinks, weigh};
+use super::model::{LinkShape, Robot, RobotJointKind};
 use super::shape::colliders;
-use crate::build::substance_of;
 use crate::error::HousesError;
-use crate::report::At;
+use crate::import::substance_of;
+use crate::report::FileLocation;
 
 /// How far the ground of a robot alone reaches, m.
 const GROUND_M: f32 = 5.0;
@@ -44,12 +44,12 @@ pub(crate) fn add(
         robot
             .joints
             .iter()
-            .filter(|joint| joint.motion != Motion::Fixed)
+            .filter(|joint| joint.motion != RobotJointKind::Fixed)
     };
     let heads: Vec<usize> = std::iter::once(0)
         .chain(moving().map(|joint| joint.child))
         .collect();
-    let rigid = Fixed::new(robot);
+    let rigid = FixedLinks::new(robot);
     let groups: Vec<Vec<(usize, Pose)>> = heads.iter().map(|head| rigid.group(*head)).collect();
     let mut homes: Vec<Option<(usize, Pose)>> = vec![None; robot.links.len()];
     for (k, group) in groups.iter().enumerate() {
@@ -57,7 +57,7 @@ pub(crate) fn add(
             homes[*link] = Some((k, *place));
         }
     }
-    let mut looks = Looks::default();
+    let mut looks = RobotMaterials::default();
     let mut world_from: Vec<Pose> = vec![world_from_root];
     let mut joints: Vec<Articulation> = Vec::new();
     let mut by_name: BTreeMap<&str, usize> = BTreeMap::new();
@@ -66,7 +66,7 @@ pub(crate) fn add(
         else {
             continue;
         };
-        let kind = if joint.motion == Motion::Slide {
+        let kind = if joint.motion == RobotJointKind::Slide {
             JointKind::Slide
         } else {
             JointKind::Hinge
@@ -112,7 +112,7 @@ pub(crate) fn add(
     for (k, group) in groups.iter().enumerate() {
         interrupt::check();
         let fixed = k == 0 && fixed_base;
-        let shapes = |of: fn(&super::Link) -> &Vec<Shape>| {
+        let shapes = |of: fn(&super::RobotLink) -> &Vec<LinkShape>| {
             group.iter().flat_map(move |(link, place)| {
                 let shapes = of(&robot.links[*link]).iter();
                 shapes.map(move |shape| (shape, *place * shape.link_from_shape))
@@ -121,7 +121,7 @@ pub(crate) fn add(
         let mut mesh = Mesh::default();
         let mut materials: Vec<MaterialId> = Vec::new();
         let visible = shapes(|link| &link.visuals).count() > 0;
-        let seen: Vec<(&Shape, Pose)> = if visible {
+        let seen: Vec<(&LinkShape, Pose)> = if visible {
             shapes(|link| &link.visuals).collect()
         } else {
             shapes(|link| &link.collisions).collect()
@@ -199,12 +199,12 @@ pub(crate) fn add(
 
 /// Materials that the robot has already brought.
 #[derive(Default)]
-struct Looks {
+struct RobotMaterials {
     known: Vec<([u32; 4], String, Option<TextureId>, MaterialId)>,
 }
 
-impl Looks {
-    fn material(&mut self, data: &mut HouseData, shape: &Shape, robot: &str) -> MaterialId {
+impl RobotMaterials {
+    fn material(&mut self, data: &mut HouseData, shape: &LinkShape, robot: &str) -> MaterialId {
         let texture = shape.image.as_ref().map(|image| texture(data, image));
         let usual = match texture {
             Some(_) => [1.0; 4],
@@ -309,5 +309,5 @@ pub(crate) fn alone(robot: &Robot) -> Result<House, HousesError> {
             part.world_from_part.position.y -= lowest;
         }
     }
-    House::new(data).map_err(HousesError::scene(&At::file(&robot.source)))
+    House::new(data).map_err(HousesError::scene(&FileLocation::file(&robot.source)))
 }

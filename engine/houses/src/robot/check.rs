@@ -5,13 +5,17 @@ use std::collections::BTreeSet;
 use dwell_scene::Pose;
 use glam::DMat3;
 
-use super::masses::Fixed;
-use super::model::{Joint, Link, Motion, Robot};
+use super::masses::FixedLinks;
+use super::model::{Robot, RobotJoint, RobotJointKind, RobotLink};
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
-use crate::report::At;
+use crate::report::FileLocation;
 
-fn refuse<T>(at: At, expected: &'static str, found: impl Into<String>) -> Result<T, HousesError> {
+fn refuse<T>(
+    at: FileLocation,
+    expected: &'static str,
+    found: impl Into<String>,
+) -> Result<T, HousesError> {
     Err(HousesError::Field {
         at,
         expected,
@@ -24,7 +28,7 @@ fn refuse<T>(at: At, expected: &'static str, found: impl Into<String>) -> Result
 /// # Errors
 /// [`HousesError::Field`] names the link or joint and the field.
 pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
-    let at = At::file(&robot.source);
+    let at = FileLocation::file(&robot.source);
     let count = robot.links.len();
     if count > MAX_NODES {
         let (found, allowed) = (count as u64, MAX_NODES as u64);
@@ -89,7 +93,7 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
         .into_iter()
         .map(|k| {
             let joint = robot.joints[k].clone();
-            Joint {
+            RobotJoint {
                 parent: place(joint.parent),
                 child: place(joint.child),
                 ..joint
@@ -97,7 +101,8 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
         })
         .collect();
     robot.links = order.iter().map(|k| robot.links[*k].clone()).collect();
-    let leads = |joint: &&Joint| joint.motion != Motion::Fixed && joint.mimic.is_none();
+    let leads =
+        |joint: &&RobotJoint| joint.motion != RobotJointKind::Fixed && joint.mimic.is_none();
     let leaders = robot.joints.iter().filter(leads);
     let leaders: BTreeSet<&str> = leaders.map(|joint| joint.name.as_str()).collect();
     for joint in &robot.joints {
@@ -115,7 +120,7 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
 }
 
 fn unique<'a>(
-    at: &At,
+    at: &FileLocation,
     what: &str,
     names: impl Iterator<Item = &'a String>,
 ) -> Result<(), HousesError> {
@@ -132,7 +137,7 @@ fn unique<'a>(
     Ok(())
 }
 
-fn check_pose(pose: &Pose, at: &At, field: &str) -> Result<(), HousesError> {
+fn check_pose(pose: &Pose, at: &FileLocation, field: &str) -> Result<(), HousesError> {
     if pose.is_valid() {
         return Ok(());
     }
@@ -140,7 +145,11 @@ fn check_pose(pose: &Pose, at: &At, field: &str) -> Result<(), HousesError> {
 }
 
 /// `leaders`: the names of joints that others may follow.
-fn check_joint(leaders: &BTreeSet<&str>, joint: &Joint, at: &At) -> Result<(), HousesError> {
+fn check_joint(
+    leaders: &BTreeSet<&str>,
+    joint: &RobotJoint,
+    at: &FileLocation,
+) -> Result<(), HousesError> {
     check_pose(&joint.parent_from_joint, at, "origin")?;
     check_pose(&joint.child_from_joint, at, "origin")?;
     if !joint.axis.is_finite() || (joint.axis.length() - 1.0).abs() > 1e-3 {
@@ -181,7 +190,7 @@ fn check_joint(leaders: &BTreeSet<&str>, joint: &Joint, at: &At) -> Result<(), H
     Ok(())
 }
 
-fn check_link(link: &Link, at: &At) -> Result<(), HousesError> {
+fn check_link(link: &RobotLink, at: &FileLocation) -> Result<(), HousesError> {
     let shapes = [("visual", &link.visuals), ("collision", &link.collisions)];
     for (what, shapes) in shapes {
         for (k, shape) in shapes.iter().enumerate() {
@@ -223,12 +232,12 @@ fn positive(m: &DMat3) -> bool {
 }
 
 /// What moves must have a mass.
-fn massive(robot: &Robot, at: &At) -> Result<(), HousesError> {
-    let fixed = Fixed::new(robot);
+fn massive(robot: &Robot, at: &FileLocation) -> Result<(), HousesError> {
+    let fixed = FixedLinks::new(robot);
     for joint in robot
         .joints
         .iter()
-        .filter(|joint| joint.motion != Motion::Fixed)
+        .filter(|joint| joint.motion != RobotJointKind::Fixed)
     {
         let group = fixed.group(joint.child);
         if group

@@ -8,19 +8,19 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Mesh, Texture};
 
 use super::stl;
-use crate::build::{PixelBudget, decode, is_cut, pixels, texture_name};
-use crate::damage::Damage;
+use crate::data_root::{DataRoot, folder_of};
 use crate::error::HousesError;
+use crate::import::{PixelBudget, decode, is_cut, pixels, texture_name};
 use crate::limits::{MAX_IMAGE_BYTES, MAX_MESH_BYTES, MAX_TEXT_BYTES};
 use crate::obj;
-use crate::report::{At, Report};
-use crate::root::{DataRoot, folder_of};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// How many folders above the file a package may begin.
 const MOST_STEPS: usize = 3;
 
 /// The folder that bounds a robot's files.
-pub(crate) struct Files {
+pub(crate) struct RobotFiles {
     pub(crate) root: DataRoot,
     /// The robot's file, relative to the root.
     pub(crate) file: String,
@@ -30,7 +30,7 @@ pub(crate) struct Files {
     pixels: PixelBudget,
 }
 
-impl Files {
+impl RobotFiles {
     /// The root of the file at `path`: its package's folder, else its own.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ impl Files {
     pub(crate) fn text(&self) -> Result<String, HousesError> {
         let bytes = self.root.read(&self.file, MAX_TEXT_BYTES)?;
         String::from_utf8(bytes).map_err(|error| HousesError::Syntax {
-            at: At::file(&self.file),
+            at: FileLocation::file(&self.file),
             message: error.to_string(),
         })
     }
@@ -74,7 +74,12 @@ impl Files {
     ///
     /// # Errors
     /// [`HousesError::PathLeavesRoot`].
-    pub(crate) fn resolve(&self, folder: &str, name: &str, at: &At) -> Result<String, HousesError> {
+    pub(crate) fn resolve(
+        &self,
+        folder: &str,
+        name: &str,
+        at: &FileLocation,
+    ) -> Result<String, HousesError> {
         let leaves = |_| HousesError::PathLeavesRoot {
             at: at.clone(),
             path: name.to_owned(),
@@ -98,8 +103,8 @@ impl Files {
     pub(crate) fn image(
         &mut self,
         path: &str,
-        at: &At,
-        report: &mut Report,
+        at: &FileLocation,
+        report: &mut LoadReport,
     ) -> Option<Arc<Texture>> {
         if let Some(known) = self.images.get(path) {
             return known.clone();
@@ -111,7 +116,7 @@ impl Files {
             let texture = decode(&texture_name(path), &bytes)?;
             if is_cut(&bytes) {
                 let path = path.to_owned();
-                report.warn(at.clone(), Damage::CutTexture { path });
+                report.warn(at.clone(), WarningKind::CutTexture { path });
             }
             Ok(texture)
         });
@@ -119,7 +124,7 @@ impl Files {
             Ok(image) => Some(Arc::new(image)),
             Err(reason) => {
                 let path = path.to_owned();
-                report.warn(at.clone(), Damage::UnreadableTexture { path, reason });
+                report.warn(at.clone(), WarningKind::UnreadableTexture { path, reason });
                 None
             }
         };
@@ -134,8 +139,8 @@ impl Files {
     pub(crate) fn mesh(
         &mut self,
         path: &str,
-        at: &At,
-        report: &mut Report,
+        at: &FileLocation,
+        report: &mut LoadReport,
     ) -> Result<Arc<Mesh>, HousesError> {
         if let Some(mesh) = self.meshes.get(path) {
             return Ok(mesh.clone());

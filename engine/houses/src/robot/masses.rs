@@ -3,19 +3,19 @@
 use dwell_scene::{Inertial, Pose};
 use glam::{DMat3, DQuat, DVec3};
 
-use super::model::{Joint, Motion, Robot, Weight};
+use super::model::{LinkInertia, Robot, RobotJoint, RobotJointKind};
 
 /// Who is fixed to whom in a robot.
-pub(super) struct Fixed<'a> {
+pub(super) struct FixedLinks<'a> {
     /// The fixed joints below each link. Shape (link,).
-    below: Vec<Vec<&'a Joint>>,
+    below: Vec<Vec<&'a RobotJoint>>,
 }
 
-impl<'a> Fixed<'a> {
+impl<'a> FixedLinks<'a> {
     pub(super) fn new(robot: &'a Robot) -> Self {
         let mut below = vec![Vec::new(); robot.links.len()];
         for joint in &robot.joints {
-            if joint.motion == Motion::Fixed {
+            if joint.motion == RobotJointKind::Fixed {
                 below[joint.parent].push(joint);
             }
         }
@@ -39,23 +39,23 @@ impl<'a> Fixed<'a> {
 }
 
 /// The common mass of links, in the frame of the first; `None` when none has a mass.
-pub(super) fn weigh(robot: &Robot, group: &[(usize, Pose)]) -> Option<Weight> {
-    let placed: Vec<Weight> = group
+pub(super) fn weigh(robot: &Robot, group: &[(usize, Pose)]) -> Option<LinkInertia> {
+    let placed: Vec<LinkInertia> = group
         .iter()
         .filter_map(|(link, place)| {
             let weight = robot.links[*link].weight?;
             let turn = DMat3::from_quat(place.rotation.as_dquat().normalize());
-            Some(Weight {
+            Some(LinkInertia {
                 mass: weight.mass,
                 center: place.position.as_dvec3() + turn * weight.center,
                 inertia: turn * weight.inertia * turn.transpose(),
             })
         })
         .collect();
-    Weight::sum(&placed)
+    LinkInertia::sum(&placed)
 }
 
-impl Weight {
+impl LinkInertia {
     /// Several masses as one; `None` for none.
     pub(crate) fn sum(lumps: &[Self]) -> Option<Self> {
         let mass: f64 = lumps.iter().map(|lump| lump.mass).sum();
@@ -132,7 +132,7 @@ mod tests {
     fn principal_axes_give_the_matrix_back() {
         let turn = DMat3::from_quat(DQuat::from_euler(glam::EulerRot::XYZ, 0.3, -1.1, 2.0));
         let inertia = turn * DMat3::from_diagonal(DVec3::new(0.3, 0.2, 0.45)) * turn.transpose();
-        let weight = Weight {
+        let weight = LinkInertia {
             mass: 2.0,
             center: DVec3::X,
             inertia,

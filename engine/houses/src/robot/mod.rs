@@ -16,15 +16,17 @@ pub use model::Robot;
 
 pub(crate) use assemble::{add, alone, ours_from_robot, texture};
 pub(crate) use check::check;
-pub(crate) use files::Files;
-pub(crate) use model::{Joint, Link, Motion, Shape, Solid, Weight};
+pub(crate) use files::RobotFiles;
+pub(crate) use model::{
+    LinkInertia, LinkShape, RobotJoint, RobotJointKind, RobotLink, ShapeGeometry,
+};
 
 use std::path::Path;
 
 use dwell_scene::{House, Pose};
 
 use crate::error::HousesError;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
 
 /// Opens a robot: a `.urdf`, or a `.xml` of MuJoCo. Meshes are read below the folder of the file, or below the folder of
 /// its package when a `package.xml` stands up to three folders above it.
@@ -33,8 +35,8 @@ use crate::report::{At, Report};
 /// [`HousesError`] with the file, the node and the field: [`HousesError::Syntax`] for what is no XML or not this format,
 /// [`HousesError::Field`] for a loop, a mass that is not above 0, a number that is not finite, a mesh that is missing or of a
 /// form that is not read, [`HousesError::PathLeavesRoot`] for a path out of the data root.
-pub fn open_robot(path: &Path) -> Result<(Robot, Report), HousesError> {
-    let mut report = Report::new();
+pub fn open_robot(path: &Path) -> Result<(Robot, LoadReport), HousesError> {
+    let mut report = LoadReport::new();
     let robot = if crate::urdf::recognizes(path) {
         crate::urdf::read(path, &mut report)?
     } else if crate::mjcf::recognizes(path) {
@@ -69,5 +71,5 @@ pub fn with_robot(
     let mut data = house.data().clone();
     let world_from_root = world_from_base * assemble::ours_from_robot();
     assemble::add(&mut data, robot, name, world_from_root, fixed_base);
-    House::new(data).map_err(HousesError::scene(&At::file(&robot.source)))
+    House::new(data).map_err(HousesError::scene(&FileLocation::file(&robot.source)))
 }

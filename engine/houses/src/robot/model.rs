@@ -15,25 +15,25 @@ pub struct Robot {
     /// `"urdf"` or `"mjcf"`.
     pub(crate) format: &'static str,
     /// The root first, each after its parent.
-    pub(crate) links: Vec<Link>,
+    pub(crate) links: Vec<RobotLink>,
     /// One for each link but the root, in their order.
-    pub(crate) joints: Vec<Joint>,
+    pub(crate) joints: Vec<RobotJoint>,
     /// Whether the file holds the base for good.
     pub(crate) fixed_base: bool,
 }
 
 /// A rigid piece.
 #[derive(Clone, Debug)]
-pub(crate) struct Link {
+pub(crate) struct RobotLink {
     pub(crate) name: String,
-    pub(crate) weight: Option<Weight>,
-    pub(crate) visuals: Vec<Shape>,
-    pub(crate) collisions: Vec<Shape>,
+    pub(crate) weight: Option<LinkInertia>,
+    pub(crate) visuals: Vec<LinkShape>,
+    pub(crate) collisions: Vec<LinkShape>,
 }
 
 /// Mass, and how it is spread.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Weight {
+pub(crate) struct LinkInertia {
     /// kg.
     pub(crate) mass: f64,
     /// In the link's frame, m.
@@ -45,9 +45,9 @@ pub(crate) struct Weight {
 /// A shape on a link.
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_field_names, reason = "a transform names both its ends")]
-pub(crate) struct Shape {
+pub(crate) struct LinkShape {
     pub(crate) link_from_shape: Pose,
-    pub(crate) solid: Solid,
+    pub(crate) solid: ShapeGeometry,
     /// sRGB and opacity.
     pub(crate) rgba: Option<[f32; 4]>,
     /// What the file calls its material.
@@ -58,7 +58,7 @@ pub(crate) struct Shape {
 
 /// What a shape is; cylinders and capsules stand along their Z.
 #[derive(Clone, Debug)]
-pub(crate) enum Solid {
+pub(crate) enum ShapeGeometry {
     Cuboid { half: Vec3 },
     Ball { radius: f32 },
     Cylinder { half_height: f32, radius: f32 },
@@ -69,7 +69,7 @@ pub(crate) enum Solid {
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Motion {
+pub(crate) enum RobotJointKind {
     Fixed,
     Hinge,
     Slide,
@@ -78,12 +78,12 @@ pub(crate) enum Motion {
 /// A joint between two links.
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_field_names, reason = "a transform names both its ends")]
-pub(crate) struct Joint {
+pub(crate) struct RobotJoint {
     pub(crate) name: String,
     /// Places in the robot's links.
     pub(crate) parent: usize,
     pub(crate) child: usize,
-    pub(crate) motion: Motion,
+    pub(crate) motion: RobotJointKind,
     pub(crate) parent_from_joint: Pose,
     pub(crate) child_from_joint: Pose,
     pub(crate) axis: Vec3,
@@ -119,7 +119,7 @@ impl Robot {
         let moving = self
             .joints
             .iter()
-            .filter(|joint| joint.motion != Motion::Fixed);
+            .filter(|joint| joint.motion != RobotJointKind::Fixed);
         moving.map(|joint| joint.name.as_str())
     }
 

@@ -2,7 +2,7 @@
 
 use dwell_scene::Pose;
 
-use super::model::{Motion, Robot, Shape, Solid};
+use super::model::{LinkShape, Robot, RobotJointKind, ShapeGeometry};
 
 impl Robot {
     /// The same robot with all lengths multiplied by `factor` and all masses by `mass_factor`.
@@ -19,7 +19,7 @@ impl Robot {
                 weight.inertia *= mass * length * length;
             }
             for shape in link.visuals.iter_mut().chain(&mut link.collisions) {
-                *shape = Shape {
+                *shape = LinkShape {
                     link_from_shape: moved(shape.link_from_shape),
                     solid: shape.solid.scaled(factor),
                     ..shape.clone()
@@ -29,7 +29,7 @@ impl Robot {
         for joint in &mut self.joints {
             joint.parent_from_joint = moved(joint.parent_from_joint);
             joint.child_from_joint = moved(joint.child_from_joint);
-            if joint.motion == Motion::Slide {
+            if joint.motion == RobotJointKind::Slide {
                 joint.limits = joint
                     .limits
                     .map(|limits| limits.map(|limit| limit * factor));
@@ -39,7 +39,7 @@ impl Robot {
     }
 }
 
-impl Solid {
+impl ShapeGeometry {
     fn scaled(&self, factor: f32) -> Self {
         match self.clone() {
             Self::Cuboid { half } => Self::Cuboid {

@@ -4,14 +4,14 @@ use dwell_scene::{Collider, Mesh, Pose, math};
 use glam::{Affine3A, Quat, Vec3};
 use std::f32::consts::{PI, TAU};
 
-use super::model::{Shape, Solid};
-use crate::build::convex_pieces;
+use super::model::{LinkShape, ShapeGeometry};
+use crate::import::convex_pieces;
 
 /// Corners around a cylinder, and bands of a half ball.
 const AROUND: u32 = 32;
 const BANDS: u32 = 8;
 
-impl Solid {
+impl ShapeGeometry {
     /// Its sizes, m.
     pub(super) fn numbers(&self) -> Vec<f32> {
         match self {
@@ -121,7 +121,7 @@ fn z_from_y() -> Pose {
 }
 
 /// The collision pieces of a shape at a place.
-pub(super) fn colliders(shape: &Shape, part_from_shape: &Pose) -> Vec<Collider> {
+pub(super) fn colliders(shape: &LinkShape, part_from_shape: &Pose) -> Vec<Collider> {
     let ball = |along: f32, radius: f32| Collider::Ball {
         center: part_from_shape.transform_point(Vec3::Z * along),
         radius,
@@ -132,16 +132,16 @@ pub(super) fn colliders(shape: &Shape, part_from_shape: &Pose) -> Vec<Collider> 
         radius,
     };
     match &shape.solid {
-        Solid::Cuboid { half } => vec![Collider::Cuboid {
+        ShapeGeometry::Cuboid { half } => vec![Collider::Cuboid {
             part_from_box: *part_from_shape,
             half_extents: *half,
         }],
-        Solid::Ball { radius } => vec![ball(0.0, *radius)],
-        Solid::Cylinder {
+        ShapeGeometry::Ball { radius } => vec![ball(0.0, *radius)],
+        ShapeGeometry::Cylinder {
             half_height,
             radius,
         } => vec![cylinder(*half_height, *radius)],
-        Solid::Capsule {
+        ShapeGeometry::Capsule {
             half_height,
             radius,
         } => vec![
@@ -149,10 +149,10 @@ pub(super) fn colliders(shape: &Shape, part_from_shape: &Pose) -> Vec<Collider> 
             ball(*half_height, *radius),
             ball(-half_height, *radius),
         ],
-        Solid::Ellipsoid { .. } => {
+        ShapeGeometry::Ellipsoid { .. } => {
             convex_pieces(&shape.solid.surface(), &part_from_shape.to_affine())
         }
-        Solid::Mesh { mesh, scale } => {
+        ShapeGeometry::Mesh { mesh, scale } => {
             let map = part_from_shape.to_affine() * Affine3A::from_scale(*scale);
             convex_pieces(mesh, &map)
         }
@@ -170,16 +170,16 @@ mod tests {
         let ball = 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
         let tube = 2.0 * h * std::f64::consts::PI * r * r;
         let solids = [
-            (Solid::Ball { radius: 0.2 }, ball),
+            (ShapeGeometry::Ball { radius: 0.2 }, ball),
             (
-                Solid::Cylinder {
+                ShapeGeometry::Cylinder {
                     half_height: 0.3,
                     radius: 0.2,
                 },
                 tube,
             ),
             (
-                Solid::Capsule {
+                ShapeGeometry::Capsule {
                     half_height: 0.3,
                     radius: 0.2,
                 },

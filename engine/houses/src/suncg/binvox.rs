@@ -4,11 +4,11 @@
 
 use crate::error::HousesError;
 use crate::limits::MAX_VOXEL_SIDE;
-use crate::report::At;
+use crate::report::FileLocation;
 
 /// A grid of solid voxels.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Voxels {
+pub struct VoxelGrid {
     /// Voxels along each side.
     pub dims: [u32; 3],
     /// Smallest corner, m: (min x, min z, min y) of the model.
@@ -19,7 +19,7 @@ pub struct Voxels {
     pub solid: Vec<bool>,
 }
 
-impl Voxels {
+impl VoxelGrid {
     /// How many voxels are solid.
     pub fn count(&self) -> u64 {
         self.solid.iter().filter(|solid| **solid).count() as u64
@@ -40,8 +40,8 @@ impl Voxels {
 ///
 /// # Errors
 /// [`HousesError::Syntax`] or [`HousesError::TooLarge`] with the line of the header or the byte of the runs.
-pub fn read_binvox(bytes: &[u8], file: &str) -> Result<Voxels, HousesError> {
-    let at = At::file(file);
+pub fn read_binvox(bytes: &[u8], file: &str) -> Result<VoxelGrid, HousesError> {
+    let at = FileLocation::file(file);
     let syntax = |line: u32, message: String| HousesError::Syntax {
         at: at.line(line),
         message,
@@ -122,7 +122,7 @@ pub fn read_binvox(bytes: &[u8], file: &str) -> Result<Voxels, HousesError> {
             message,
         });
     }
-    Ok(Voxels {
+    Ok(VoxelGrid {
         dims,
         translate,
         scale,

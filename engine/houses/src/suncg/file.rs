@@ -5,40 +5,40 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::lenient;
+use super::lenient_json;
 
 /// A whole `house.json`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct HouseFile {
+pub struct SuncgHouse {
     /// `suncg@1.0.0` or `suncg@1.0.2`.
     #[serde(
-        deserialize_with = "lenient::text",
+        deserialize_with = "lenient_json::text",
         skip_serializing_if = "Option::is_none"
     )]
     pub version: Option<String>,
     /// The folder's name, 32 hexadecimal digits.
     #[serde(
-        deserialize_with = "lenient::text",
+        deserialize_with = "lenient_json::text",
         skip_serializing_if = "Option::is_none"
     )]
     pub id: Option<String>,
     /// The up direction, `[0, 1, 0]`.
     #[serde(
-        deserialize_with = "lenient::numbers",
+        deserialize_with = "lenient_json::numbers",
         skip_serializing_if = "Option::is_none"
     )]
     pub up: Option<Vec<f64>>,
     /// The front direction, `[0, 0, 1]`.
     #[serde(
-        deserialize_with = "lenient::numbers",
+        deserialize_with = "lenient_json::numbers",
         skip_serializing_if = "Option::is_none"
     )]
     pub front: Option<Vec<f64>>,
     /// Metres in one unit of the file.
     #[serde(
         rename = "scaleToMeters",
-        deserialize_with = "lenient::number",
+        deserialize_with = "lenient_json::number",
         skip_serializing_if = "Option::is_none"
     )]
     pub scale_to_meters: Option<f64>,
@@ -49,7 +49,7 @@ pub struct HouseFile {
     pub bbox: Option<BoundsFile>,
     /// The table that `materialIndices` point into.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub materials: Vec<MaterialFile>,
+    pub materials: Vec<SuncgMaterial>,
 }
 
 /// A storey.
@@ -58,16 +58,16 @@ pub struct HouseFile {
 pub struct LevelFile {
     /// Its index as text.
     #[serde(
-        deserialize_with = "lenient::text",
+        deserialize_with = "lenient_json::text",
         skip_serializing_if = "Option::is_none"
     )]
     pub id: Option<String>,
     /// 1 or 0; absent means 1.
     #[serde(
-        deserialize_with = "lenient::flag",
+        deserialize_with = "lenient_json::flag",
         skip_serializing_if = "Option::is_none"
     )]
-    pub valid: Option<Flag>,
+    pub valid: Option<BinaryFlag>,
     /// The box around its nodes, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bbox: Option<BoundsFile>,
@@ -81,38 +81,38 @@ pub struct LevelFile {
 pub struct NodeFile {
     /// `<level>_<index>` as a rule.
     #[serde(
-        deserialize_with = "lenient::text",
+        deserialize_with = "lenient_json::text",
         skip_serializing_if = "Option::is_none"
     )]
     pub id: Option<String>,
     /// `Room`, `Object`, `Ground`, `Box` or `None`.
     #[serde(
         rename = "type",
-        deserialize_with = "lenient::text",
+        deserialize_with = "lenient_json::text",
         skip_serializing_if = "Option::is_none"
     )]
     pub kind: Option<String>,
     /// 0 means: skip; absent means 1.
     #[serde(
-        deserialize_with = "lenient::flag",
+        deserialize_with = "lenient_json::flag",
         skip_serializing_if = "Option::is_none"
     )]
-    pub valid: Option<Flag>,
+    pub valid: Option<BinaryFlag>,
     /// The model without `_0`, or `fr_<level>rm_<room>`, or `fr_<level>gd_<ground>`.
     #[serde(
-        deserialize_with = "lenient::text",
+        deserialize_with = "lenient_json::text",
         skip_serializing_if = "Option::is_none"
     )]
     pub model_id: Option<String>,
     /// World from object, 16 numbers, column by column. `null` entries are NaN.
     #[serde(
-        deserialize_with = "lenient::numbers",
+        deserialize_with = "lenient_json::numbers",
         skip_serializing_if = "Option::is_none"
     )]
     pub transform: Option<Vec<f64>>,
     /// Full extents of a box, m.
     #[serde(
-        deserialize_with = "lenient::numbers",
+        deserialize_with = "lenient_json::numbers",
         skip_serializing_if = "Option::is_none"
     )]
     pub dimensions: Option<Vec<f64>>,
@@ -121,76 +121,76 @@ pub struct NodeFile {
     pub bbox: Option<BoundsFile>,
     /// 1 when the transform mirrors.
     #[serde(
-        deserialize_with = "lenient::flag",
+        deserialize_with = "lenient_json::flag",
         skip_serializing_if = "Option::is_none"
     )]
-    pub is_mirrored: Option<Flag>,
+    pub is_mirrored: Option<BinaryFlag>,
     /// 1 means the `_0` mesh.
     #[serde(
-        deserialize_with = "lenient::number",
+        deserialize_with = "lenient_json::number",
         skip_serializing_if = "Option::is_none"
     )]
     pub state: Option<f64>,
     /// Overrides by position in the model's material file.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub materials: Option<Vec<MaterialFile>>,
+    pub materials: Option<Vec<SuncgMaterial>>,
     /// The same as indices into the house's table.
     #[serde(
-        deserialize_with = "lenient::numbers",
+        deserialize_with = "lenient_json::numbers",
         skip_serializing_if = "Option::is_none"
     )]
     pub material_indices: Option<Vec<f64>>,
     /// What the room is used for, as its designer typed it.
     #[serde(
-        deserialize_with = "lenient::texts",
+        deserialize_with = "lenient_json::texts",
         skip_serializing_if = "Option::is_none"
     )]
     pub room_types: Option<Vec<String>>,
     /// Positions in this level's `nodes`. Entries that are no number are NaN.
     #[serde(
-        deserialize_with = "lenient::numbers",
+        deserialize_with = "lenient_json::numbers",
         skip_serializing_if = "Option::is_none"
     )]
     pub node_indices: Option<Vec<f64>>,
     /// 1 means: no ceiling.
     #[serde(
-        deserialize_with = "lenient::flag",
+        deserialize_with = "lenient_json::flag",
         skip_serializing_if = "Option::is_none"
     )]
-    pub hide_ceiling: Option<Flag>,
+    pub hide_ceiling: Option<BinaryFlag>,
     /// 1 means: no floor.
     #[serde(
-        deserialize_with = "lenient::flag",
+        deserialize_with = "lenient_json::flag",
         skip_serializing_if = "Option::is_none"
     )]
-    pub hide_floor: Option<Flag>,
+    pub hide_floor: Option<BinaryFlag>,
     /// 1 means: no walls.
     #[serde(
-        deserialize_with = "lenient::flag",
+        deserialize_with = "lenient_json::flag",
         skip_serializing_if = "Option::is_none"
     )]
-    pub hide_walls: Option<Flag>,
+    pub hide_walls: Option<BinaryFlag>,
 }
 
 /// A material override. Without `diffuse` and `texture` the model keeps its own.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct MaterialFile {
+pub struct SuncgMaterial {
     /// The designer's label; repeats.
     #[serde(
-        deserialize_with = "lenient::text",
+        deserialize_with = "lenient_json::text",
         skip_serializing_if = "Option::is_none"
     )]
     pub name: Option<String>,
     /// `#rrggbb`.
     #[serde(
-        deserialize_with = "lenient::text",
+        deserialize_with = "lenient_json::text",
         skip_serializing_if = "Option::is_none"
     )]
     pub diffuse: Option<String>,
     /// Name below `texture/`, without ending; may hold slashes.
     #[serde(
-        deserialize_with = "lenient::text",
+        deserialize_with = "lenient_json::text",
         skip_serializing_if = "Option::is_none"
     )]
     pub texture: Option<String>,
@@ -201,18 +201,18 @@ pub struct MaterialFile {
 #[serde(default)]
 pub struct BoundsFile {
     /// Smallest coordinates, m.
-    #[serde(deserialize_with = "lenient::numbers")]
+    #[serde(deserialize_with = "lenient_json::numbers")]
     pub min: Option<Vec<f64>>,
     /// Largest coordinates, m.
-    #[serde(deserialize_with = "lenient::numbers")]
+    #[serde(deserialize_with = "lenient_json::numbers")]
     pub max: Option<Vec<f64>>,
 }
 
 /// A truth value, written as 1 or 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Flag(pub bool);
+pub struct BinaryFlag(pub bool);
 
-impl Serialize for Flag {
+impl Serialize for BinaryFlag {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_u8(u8::from(self.0))
     }
@@ -221,6 +221,6 @@ impl Serialize for Flag {
 impl NodeFile {
     /// Whether the node is to be used.
     pub fn is_valid(&self) -> bool {
-        self.valid != Some(Flag(false))
+        self.valid != Some(BinaryFlag(false))
     }
 }

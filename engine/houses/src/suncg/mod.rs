@@ -4,14 +4,14 @@ pub mod arch;
 mod binvox;
 mod convert;
 pub mod file;
-mod lenient;
+mod lenient_json;
 pub mod metadata;
 mod open;
 mod parse;
 mod read;
 mod write;
 
-pub use binvox::{Voxels, read_binvox};
+pub use binvox::{VoxelGrid, read_binvox};
 pub use convert::convert;
 pub use open::open;
 pub(crate) use open::recognizes;

@@ -7,7 +7,7 @@ use dwell_scene::parallel::Threads;
 
 use super::{SuncgFiles, convert, locate};
 use crate::error::HousesError;
-use crate::report::Report;
+use crate::report::LoadReport;
 
 /// Whether `path` is a SUNCG house: a JSON file, a house's folder, or a data root.
 pub(crate) fn recognizes(path: &Path) -> bool {
@@ -22,10 +22,10 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// # Errors
 /// [`HousesError::NotOneHouse`] for a data root with no house or several, else those of [`SuncgFiles::read`] and
 /// [`convert`].
-pub fn open(path: &Path, threads: Threads) -> Result<(House, Report), HousesError> {
+pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
     let house_json = house_json(path)?;
     let (root, inside) = locate(&house_json)?;
-    let mut report = Report::new();
+    let mut report = LoadReport::new();
     let files = SuncgFiles::read(&root, &inside, threads, &mut report)?;
     let house = convert(&files, threads, &mut report)?;
     Ok((house, report))

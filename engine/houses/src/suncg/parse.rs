@@ -1,14 +1,14 @@
-//! The text of `house.json` into [`HouseFile`], node by node, so that one bad field costs that field only.
+//! The text of `house.json` into [`SuncgHouse`], node by node, so that one bad field costs that field only.
 
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::file::{HouseFile, LevelFile, MaterialFile, NodeFile};
-use super::lenient::{SEPARATOR, shorten};
-use crate::damage::Damage;
+use super::file::{LevelFile, NodeFile, SuncgHouse, SuncgMaterial};
+use super::lenient_json::{SEPARATOR, shorten};
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// Parses the text of a `house.json`.
 ///
@@ -17,8 +17,8 @@ use crate::report::{At, Report};
 /// # Errors
 /// [`HousesError::Syntax`] with the line when the text is no JSON, [`HousesError::Field`] when there are no levels,
 /// [`HousesError::TooLarge`] for too many nodes.
-pub fn parse(text: &[u8], name: &str, report: &mut Report) -> Result<HouseFile, HousesError> {
-    let at = At::file(name);
+pub fn parse(text: &[u8], name: &str, report: &mut LoadReport) -> Result<SuncgHouse, HousesError> {
+    let at = FileLocation::file(name);
     let value: Value = crate::json::from_slice(text).map_err(|error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
         message: format!("no valid JSON: {error}"),
@@ -55,8 +55,8 @@ pub fn parse(text: &[u8], name: &str, report: &mut Report) -> Result<HouseFile, 
             allowed,
         });
     }
-    let materials = list::<MaterialFile>(top.remove("materials"), &at, "materials", report);
-    let mut house: HouseFile = fields(top, &at, report);
+    let materials = list::<SuncgMaterial>(top.remove("materials"), &at, "materials", report);
+    let mut house: SuncgHouse = fields(top, &at, report);
     house.materials = materials.unwrap_or_default();
     for (i, level) in levels.into_iter().enumerate() {
         let at = at.field(format_args!("levels[{i}]"));
@@ -72,7 +72,11 @@ pub fn parse(text: &[u8], name: &str, report: &mut Report) -> Result<HouseFile, 
     Ok(house)
 }
 
-fn read_level(mut object: Map<String, Value>, at: &At, report: &mut Report) -> LevelFile {
+fn read_level(
+    mut object: Map<String, Value>,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> LevelFile {
     let nodes = object.remove("nodes");
     let mut level: LevelFile = fields(object, at, report);
     match nodes {
@@ -91,11 +95,11 @@ fn read_level(mut object: Map<String, Value>, at: &At, report: &mut Report) -> L
     level
 }
 
-fn read_node(node: Value, at: &At, report: &mut Report) -> NodeFile {
+fn read_node(node: Value, at: &FileLocation, report: &mut LoadReport) -> NodeFile {
     let Value::Object(mut object) = node else {
         bad_field(&node, "an object", at.clone(), report);
         return NodeFile {
-            valid: Some(super::file::Flag(false)),
+            valid: Some(super::file::BinaryFlag(false)),
             ..NodeFile::default()
         };
     };
@@ -107,9 +111,9 @@ fn read_node(node: Value, at: &At, report: &mut Report) -> NodeFile {
 /// A list of structs whose bad entries count as empty ones, because positions matter.
 fn list<T: DeserializeOwned + Default>(
     value: Option<Value>,
-    at: &At,
+    at: &FileLocation,
     field: &str,
-    report: &mut Report,
+    report: &mut LoadReport,
 ) -> Option<Vec<T>> {
     match value {
         Some(Value::Array(items)) => Some(
@@ -141,8 +145,8 @@ fn list<T: DeserializeOwned + Default>(
 /// as absent.
 fn fields<T: DeserializeOwned + Default>(
     object: Map<String, Value>,
-    at: &At,
-    report: &mut Report,
+    at: &FileLocation,
+    report: &mut LoadReport,
 ) -> T {
     let whole = Value::Object(object);
     if let Ok(value) = T::deserialize(&whole) {
@@ -160,21 +164,21 @@ fn fields<T: DeserializeOwned + Default>(
         let (found, expected) = if let Some((found, expected)) = message.split_once(SEPARATOR) {
             (found.to_owned(), expected.to_owned())
         } else {
-            let told = crate::plain(message);
+            let told = crate::plain_parse_error(message);
             let expected = told.rsplit_once("expected ");
             let expected = expected.map_or(told.as_str(), |(_, expected)| expected);
             (shorten(value), expected.to_owned())
         };
-        report.warn(at.field(key), Damage::BadField { found, expected });
+        report.warn(at.field(key), WarningKind::BadField { found, expected });
         false
     });
     T::deserialize(Value::Object(object)).unwrap_or_default()
 }
 
-fn bad_field(found: &Value, expected: &str, at: At, report: &mut Report) {
+fn bad_field(found: &Value, expected: &str, at: FileLocation, report: &mut LoadReport) {
     report.warn(
         at,
-        Damage::BadField {
+        WarningKind::BadField {
             found: shorten(found),
             expected: expected.to_owned(),
         },
@@ -184,10 +188,10 @@ fn bad_field(found: &Value, expected: &str, at: At, report: &mut Report) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::suncg::file::Flag;
+    use crate::suncg::file::BinaryFlag;
 
-    fn read(text: &str) -> (HouseFile, Report) {
-        let mut report = Report::new();
+    fn read(text: &str) -> (SuncgHouse, LoadReport) {
+        let mut report = LoadReport::new();
         let house = parse(text.as_bytes(), "house.json", &mut report).unwrap();
         (house, report)
     }
@@ -212,7 +216,7 @@ mod tests {
                 nodes[0].state,
                 nodes[0].is_mirrored
             ),
-            (Some("83"), Some(1.0), Some(Flag(false)))
+            (Some("83"), Some(1.0), Some(BinaryFlag(false)))
         );
         assert_eq!(
             nodes[0].node_indices.as_deref().map(|i| &i[..3]),
@@ -246,7 +250,7 @@ mod tests {
     #[test]
     fn files_without_levels_are_refused_with_the_place() {
         let message = |text: &str| {
-            parse(text.as_bytes(), "house.json", &mut Report::new())
+            parse(text.as_bytes(), "house.json", &mut LoadReport::new())
                 .unwrap_err()
                 .to_string()
         };

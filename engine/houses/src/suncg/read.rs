@@ -9,16 +9,16 @@ use dwell_scene::parallel::Threads;
 use tracing::debug_span;
 
 use super::arch::{self, ArchFile};
-use super::file::{HouseFile, NodeFile};
+use super::file::{NodeFile, SuncgHouse};
 use super::metadata::{CategoryTable, LightTable, SoundTable, read_table};
 use super::parse;
-use crate::build::read_images;
-use crate::damage::Damage;
+use crate::data_root::{DataRoot, folder_of};
 use crate::error::HousesError;
+use crate::import::read_images;
 use crate::limits::MAX_TEXT_BYTES;
 use crate::obj::{MeshFiles, read_mesh};
-use crate::report::{At, Report};
-use crate::root::{DataRoot, folder_of};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// All files of one house, parsed.
 #[derive(Debug)]
@@ -28,7 +28,7 @@ pub struct SuncgFiles {
     /// `house.json`, relative to the root.
     pub house_path: String,
     /// Its content.
-    pub house: HouseFile,
+    pub house: SuncgHouse,
     /// OBJ files by path relative to the root, with their materials; those that do not exist are absent.
     pub meshes: BTreeMap<String, MeshFiles>,
     /// `arch.json` with its path, when the house has no room meshes.
@@ -98,7 +98,7 @@ impl SuncgFiles {
         root: &DataRoot,
         house_path: &str,
         threads: Threads,
-        report: &mut Report,
+        report: &mut LoadReport,
     ) -> Result<Self, HousesError> {
         let house = {
             let _span = debug_span!("house.json").entered();
@@ -120,7 +120,7 @@ impl SuncgFiles {
         let arch = read_arch(root, &scene_id, &meshes, report);
         let textures = {
             let _span = debug_span!("textures").entered();
-            let at = At::file(house_path);
+            let at = FileLocation::file(house_path);
             read_textures(root, &house, &meshes, arch.as_ref(), threads, &at, report)
         };
         let _span = debug_span!("tables").entered();
@@ -139,7 +139,7 @@ impl SuncgFiles {
         Ok(files)
     }
 
-    fn read_tables(&mut self, root: &DataRoot, report: &mut Report) {
+    fn read_tables(&mut self, root: &DataRoot, report: &mut LoadReport) {
         let path = ["metadata/ModelCategoryMapping.csv"];
         if let Some((file, text)) = read_table(root, &path, "no object has a category", report) {
             self.categories = CategoryTable::read(&text, file, report);
@@ -149,7 +149,7 @@ impl SuncgFiles {
             self.lights = LightTable::read(&text, file, report);
         }
         // Not part of the data's own tables, so that nobody misses them.
-        let unreported = &mut Report::new();
+        let unreported = &mut LoadReport::new();
         let paths = [
             "metadata/suncg.lights.json",
             "metadata/sstk/suncg.lights.json",
@@ -174,7 +174,7 @@ impl SuncgFiles {
     }
 }
 
-fn nodes(house: &HouseFile) -> impl Iterator<Item = &NodeFile> {
+fn nodes(house: &SuncgHouse) -> impl Iterator<Item = &NodeFile> {
     house
         .levels
         .iter()
@@ -185,9 +185,9 @@ fn nodes(house: &HouseFile) -> impl Iterator<Item = &NodeFile> {
 fn read_meshes(
     root: &DataRoot,
     scene_id: &str,
-    house: &HouseFile,
+    house: &SuncgHouse,
     threads: Threads,
-    report: &mut Report,
+    report: &mut LoadReport,
 ) -> BTreeMap<String, MeshFiles> {
     let wanted: BTreeSet<String> = nodes(house)
         .flat_map(|node| paths::of_node(scene_id, node))
@@ -197,7 +197,7 @@ fn read_meshes(
         .filter(|path| root.has_file(path))
         .collect();
     let read = threads.map(wanted.len(), |k| {
-        let mut report = Report::new();
+        let mut report = LoadReport::new();
         let files = read_mesh(root, &wanted[k], &mut report);
         (files, report)
     });
@@ -216,7 +216,7 @@ fn read_arch(
     root: &DataRoot,
     scene_id: &str,
     meshes: &BTreeMap<String, MeshFiles>,
-    report: &mut Report,
+    report: &mut LoadReport,
 ) -> Option<(String, ArchFile)> {
     let path = format!("wall/{scene_id}/{scene_id}.arch.json");
     if meshes.keys().any(|path| path.starts_with("room/")) || !root.has_file(&path) {
@@ -226,11 +226,11 @@ fn read_arch(
     match read.and_then(|text| arch::parse(&text, &path, report)) {
         Ok(file) => Some((path, file)),
         Err(error) => {
-            let damage = Damage::UnreadableMesh {
+            let damage = WarningKind::UnreadableMesh {
                 path: path.clone(),
                 reason: error.reason(),
             };
-            report.warn(At::file(path), damage);
+            report.warn(FileLocation::file(path), damage);
             None
         }
     }
@@ -238,12 +238,12 @@ fn read_arch(
 
 fn read_textures(
     root: &DataRoot,
-    house: &HouseFile,
+    house: &SuncgHouse,
     meshes: &BTreeMap<String, MeshFiles>,
     arch: Option<&(String, ArchFile)>,
     threads: Threads,
-    at: &At,
-    report: &mut Report,
+    at: &FileLocation,
+    report: &mut LoadReport,
 ) -> BTreeMap<String, Arc<Texture>> {
     let of_meshes = meshes
         .values()
@@ -259,7 +259,7 @@ fn read_textures(
         let Some(candidates) = paths::texture(name) else {
             report.warn(
                 at.clone(),
-                Damage::PathRefused {
+                WarningKind::PathRefused {
                     path: name.to_owned(),
                 },
             );
@@ -271,7 +271,7 @@ fn read_textures(
             }
             None => report.warn(
                 at.clone(),
-                Damage::MissingTexture {
+                WarningKind::MissingTexture {
                     path: format!("texture/{name}"),
                 },
             ),

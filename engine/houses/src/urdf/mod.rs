@@ -10,7 +10,7 @@ use std::path::Path;
 use dwell_scene::House;
 
 use crate::error::HousesError;
-use crate::report::Report;
+use crate::report::LoadReport;
 use crate::robot;
 
 pub(crate) use read::read;
@@ -25,8 +25,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 ///
 /// # Errors
 /// Those of [`open_robot`](crate::open_robot).
-pub fn open(path: &Path) -> Result<(House, Report), HousesError> {
-    let mut report = Report::new();
+pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
+    let mut report = LoadReport::new();
     let robot = read(path, &mut report)?;
     Ok((robot::alone(&robot)?, report))
 }

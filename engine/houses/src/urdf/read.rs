@@ -7,12 +7,15 @@ use dwell_scene::{Pose, Servo};
 use glam::{DMat3, DVec3, EulerRot, Quat, Vec3};
 use roxmltree::Node;
 
-use crate::damage::Damage;
+use crate::data_root::folder_of;
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
-use crate::report::{At, Report};
-use crate::robot::{Files, Joint, Link, Motion, Robot, Shape, Solid, Weight, check};
-use crate::root::folder_of;
+use crate::report::{FileLocation, LoadReport};
+use crate::robot::{
+    LinkInertia, LinkShape, Robot, RobotFiles, RobotJoint, RobotJointKind, RobotLink,
+    ShapeGeometry, check,
+};
+use crate::warning_kind::WarningKind;
 use crate::xml;
 
 /// How fast a position motor that states nothing follows, 1/s: URDF names no gains, so they come from the effort: full
@@ -23,10 +26,10 @@ const FULL_EFFORT_AT: f32 = 0.02;
 ///
 /// # Errors
 /// Those of [`open_robot`](crate::open_robot).
-pub(crate) fn read(path: &Path, report: &mut Report) -> Result<Robot, HousesError> {
-    let files = Files::around(path)?;
+pub(crate) fn read(path: &Path, report: &mut LoadReport) -> Result<Robot, HousesError> {
+    let files = RobotFiles::around(path)?;
     let text = files.text()?;
-    let at = At::file(&files.file);
+    let at = FileLocation::file(&files.file);
     let document = xml::parse(&text, &at)?;
     let root = document.root_element();
     if root.tag_name().name() != "robot" {
@@ -36,7 +39,7 @@ pub(crate) fn read(path: &Path, report: &mut Report) -> Result<Robot, HousesErro
             found: format!("<{}>", root.tag_name().name()),
         });
     }
-    let mut reader = Reader {
+    let mut reader = UrdfReader {
         at,
         files,
         report,
@@ -78,14 +81,14 @@ fn first<'a, 'b>(node: Node<'a, 'b>, name: &'static str) -> Option<Node<'a, 'b>>
     named(node, name).next()
 }
 
-struct Reader<'r> {
-    at: At,
-    files: Files,
-    report: &'r mut Report,
+struct UrdfReader<'r> {
+    at: FileLocation,
+    files: RobotFiles,
+    report: &'r mut LoadReport,
     colours: BTreeMap<String, [f32; 4]>,
 }
 
-impl Reader<'_> {
+impl UrdfReader<'_> {
     fn fault<T>(
         &self,
         node: Node<'_, '_>,
@@ -101,7 +104,7 @@ impl Reader<'_> {
     }
 
     /// The line of a node, and the link or joint it is in: `arm.urdf:12: link[hand].visual`.
-    fn place(&self, node: Node<'_, '_>) -> At {
+    fn place(&self, node: Node<'_, '_>) -> FileLocation {
         let line = node.document().text_pos_at(node.range().start).row;
         let mut words: Vec<String> = node
             .ancestors()
@@ -179,12 +182,12 @@ impl Reader<'_> {
         if first(node, "texture").is_some() {
             let what = "textures of robots are not read; the plain colour is used".to_owned();
             let at = self.place(node);
-            self.report.warn(at, Damage::Simplified { what });
+            self.report.warn(at, WarningKind::Simplified { what });
         }
         Ok(())
     }
 
-    fn link(&mut self, node: Node<'_, '_>) -> Result<Link, HousesError> {
+    fn link(&mut self, node: Node<'_, '_>) -> Result<RobotLink, HousesError> {
         let weight = match first(node, "inertial") {
             Some(inertial) => Some(self.weight(inertial)?),
             None => None,
@@ -196,7 +199,7 @@ impl Reader<'_> {
             }
         }
         let [visuals, collisions] = shapes;
-        Ok(Link {
+        Ok(RobotLink {
             name: self.name(node)?,
             weight,
             visuals,
@@ -204,7 +207,7 @@ impl Reader<'_> {
         })
     }
 
-    fn weight(&self, node: Node<'_, '_>) -> Result<Weight, HousesError> {
+    fn weight(&self, node: Node<'_, '_>) -> Result<LinkInertia, HousesError> {
         let Some(mass) = first(node, "mass") else {
             return self.fault(node, "mass", "a <mass>", "nothing");
         };
@@ -222,14 +225,14 @@ impl Reader<'_> {
         let local = DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
         let origin = self.origin(node)?;
         let turn = DMat3::from_quat(origin.rotation.as_dquat().normalize());
-        Ok(Weight {
+        Ok(LinkInertia {
             mass: value,
             center: origin.position.as_dvec3(),
             inertia: turn * local * turn.transpose(),
         })
     }
 
-    fn shape(&mut self, node: Node<'_, '_>) -> Result<Shape, HousesError> {
+    fn shape(&mut self, node: Node<'_, '_>) -> Result<LinkShape, HousesError> {
         let link_from_shape = self.origin(node)?;
         let Some(geometry) = first(node, "geometry") else {
             return self.fault(node, "geometry", "a <geometry>", "nothing");
@@ -245,23 +248,23 @@ impl Reader<'_> {
         let solid = match form.tag_name().name() {
             "box" => {
                 let size = self.numbers(form, "size", [0.0; 3])?;
-                Solid::Cuboid {
+                ShapeGeometry::Cuboid {
                     half: 0.5 * DVec3::from_array(size).as_vec3(),
                 }
             }
-            "sphere" => Solid::Ball {
+            "sphere" => ShapeGeometry::Ball {
                 radius: self.needed(form, "radius")? as f32,
             },
             kind @ ("cylinder" | "capsule") => {
                 let radius = self.needed(form, "radius")? as f32;
                 let half_height = 0.5 * self.needed(form, "length")? as f32;
                 if kind == "cylinder" {
-                    Solid::Cylinder {
+                    ShapeGeometry::Cylinder {
                         half_height,
                         radius,
                     }
                 } else {
-                    Solid::Capsule {
+                    ShapeGeometry::Capsule {
                         half_height,
                         radius,
                     }
@@ -275,7 +278,7 @@ impl Reader<'_> {
                 let scale = self.numbers(form, "scale", [1.0; 3])?;
                 let folder = folder_of(&self.files.file).to_owned();
                 let path = self.files.resolve(&folder, name, &at)?;
-                Solid::Mesh {
+                ShapeGeometry::Mesh {
                     mesh: self.files.mesh(&path, &at, self.report)?,
                     scale: DVec3::from_array(scale).as_vec3(),
                 }
@@ -285,7 +288,7 @@ impl Reader<'_> {
                 return self.fault(geometry, "shape", expected, format!("<{other}>"));
             }
         };
-        let mut shape = Shape {
+        let mut shape = LinkShape {
             link_from_shape,
             solid,
             rgba: None,
@@ -305,7 +308,7 @@ impl Reader<'_> {
         &mut self,
         node: Node<'_, '_>,
         places: &BTreeMap<String, usize>,
-    ) -> Result<Joint, HousesError> {
+    ) -> Result<RobotJoint, HousesError> {
         let link = |tag: &'static str| {
             let name = first(node, tag).and_then(|end| end.attribute("link"));
             if let Some(place) = name.and_then(|name| places.get(name)) {
@@ -317,10 +320,10 @@ impl Reader<'_> {
         let (parent, child) = (link("parent")?, link("child")?);
         let kind = node.attribute("type").unwrap_or("");
         let (motion, bounded) = match kind {
-            "fixed" => (Motion::Fixed, false),
-            "revolute" => (Motion::Hinge, true),
-            "continuous" => (Motion::Hinge, false),
-            "prismatic" => (Motion::Slide, true),
+            "fixed" => (RobotJointKind::Fixed, false),
+            "revolute" => (RobotJointKind::Hinge, true),
+            "continuous" => (RobotJointKind::Hinge, false),
+            "prismatic" => (RobotJointKind::Slide, true),
             _ => {
                 let expected = "fixed, revolute, continuous or prismatic";
                 return self.fault(node, "type", expected, format!("{kind:?}"));
@@ -363,11 +366,11 @@ impl Reader<'_> {
             }
             None => None,
         };
-        let moves = motion != Motion::Fixed && mimic.is_none();
+        let moves = motion != RobotJointKind::Fixed && mimic.is_none();
         let servo = effort
             .filter(|effort| moves && *effort > 0.0)
             .map(|effort| servo(effort, velocity.unwrap_or(0.0)));
-        Ok(Joint {
+        Ok(RobotJoint {
             name: self.name(node)?,
             parent,
             child,

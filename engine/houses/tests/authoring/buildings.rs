@@ -1,19 +1,19 @@
 //! Buildings from plans.
 
 use dwell_houses::HousesError;
-use dwell_houses::authoring::{Files, Plan, build};
+use dwell_houses::authoring::{FileAccess, HousePlan, build};
 use dwell_scene::{Collider, House, Mesh, StructureKind};
 use glam::Vec3;
 use serde_json::{Value, json};
 
 fn built(plan: Value) -> House {
-    let plan: Plan = serde_json::from_value(plan).unwrap();
-    build(&plan, &Files::Anywhere).unwrap().0
+    let plan: HousePlan = serde_json::from_value(plan).unwrap();
+    build(&plan, &FileAccess::Anywhere).unwrap().0
 }
 
 fn refused(building: Value) -> String {
-    let plan: Plan = serde_json::from_value(json!({"building": building})).unwrap();
-    let error: HousesError = build(&plan, &Files::Anywhere).unwrap_err();
+    let plan: HousePlan = serde_json::from_value(json!({"building": building})).unwrap();
+    let error: HousesError = build(&plan, &FileAccess::Anywhere).unwrap_err();
     error.to_string()
 }
 
@@ -296,7 +296,7 @@ fn plans_that_cannot_be_are_refused_by_name() {
         let told = refused(building);
         assert!(told.contains(said), "{told}\n  should say: {said}");
     }
-    let neither = build(&Plan::default(), &Files::Anywhere)
+    let neither = build(&HousePlan::default(), &FileAccess::Anywhere)
         .unwrap_err()
         .to_string();
     assert!(

@@ -1,7 +1,7 @@
 //! The algebra of edits, and what they say when they cannot be.
 
 use super::{chair, edited, edits, middle, refused, studio};
-use dwell_houses::authoring::{Files, edit};
+use dwell_houses::authoring::{FileAccess, edit};
 use dwell_houses::{native, open};
 use dwell_scene::{Aabb, House, Mobility, ObjectId};
 use serde_json::json;
@@ -370,7 +370,7 @@ fn errors_name_what_was_found_and_what_is_possible() {
         assert!(told.contains(said), "{told}\n  should say: {said}");
     }
     let two = edits(json!([chair(&house), chair(&house)]));
-    let told = edit(&house, &two, &Files::Anywhere)
+    let told = edit(&house, &two, &FileAccess::Anywhere)
         .unwrap_err()
         .to_string();
     assert!(

@@ -1,7 +1,7 @@
 //! The user's own mesh files, and plans as files.
 
 use super::{edited, middle, studio};
-use dwell_houses::authoring::Plan;
+use dwell_houses::authoring::HousePlan;
 use dwell_houses::open;
 use dwell_scene::{Mobility, ShoeboxMaterials};
 use serde_json::json;
@@ -138,12 +138,12 @@ fn a_plan_file_opens_as_a_house_and_reads_only_below_its_folder() {
 
 #[test]
 fn a_plan_is_the_same_after_json() {
-    let plan: Plan = serde_json::from_value(json!({"house": "seed:3", "edits": [
+    let plan: HousePlan = serde_json::from_value(json!({"house": "seed:3", "edits": [
         {"add": {"what": {"catalogue": {"kind": "mug"}}, "place": {"on": "table_1"}}},
         {"re_material": {"of": {"room": {"name": "a", "side": "floor"}}, "look": {"substance": "oak"}}},
     ]}))
     .unwrap();
-    let again: Plan = serde_json::from_str(&serde_json::to_string(&plan).unwrap()).unwrap();
+    let again: HousePlan = serde_json::from_str(&serde_json::to_string(&plan).unwrap()).unwrap();
     assert_eq!(again, plan);
 }
 

@@ -1,19 +1,19 @@
 //! Things that are put on others find room there, and what is in something else is told.
 
 use super::{edited, edits, refused};
-use dwell_houses::authoring::{Files, Plan, build, edit};
+use dwell_houses::authoring::{FileAccess, HousePlan, build, edit};
 use dwell_scene::{Aabb, House, State};
 use serde_json::{Value, json};
 
 /// A room of 4 x 3 m with a table of 1.2 x 0.8 m in its middle.
 pub(super) fn house() -> House {
-    let plan: Plan = serde_json::from_value(json!({
+    let plan: HousePlan = serde_json::from_value(json!({
         "building": {"storeys": [{"rooms": [{"name": "kitchen", "outline": [[0, 0], [4, 0], [4, 3], [0, 3]]}]}]},
         "edits": [{"add": {"what": {"box": {"size_m": [1.2, 0.7, 0.8]}}, "name": "table", "place": {"at": [2, 0, 1.5]},
                            "traits": {"mobility": "fixed"}}}],
     }))
     .unwrap();
-    build(&plan, &Files::Anywhere).unwrap().0
+    build(&plan, &FileAccess::Anywhere).unwrap().0
 }
 
 fn thing(name: &str, size_m: [f32; 3], place: Value) -> Value {
@@ -26,7 +26,7 @@ fn bounds(house: &House, name: &str) -> Aabb {
 }
 
 fn warnings(house: &House, list: Value) -> Vec<String> {
-    let (_, report) = edit(house, &edits(list), &Files::Anywhere).unwrap();
+    let (_, report) = edit(house, &edits(list), &FileAccess::Anywhere).unwrap();
     report.warnings().iter().map(ToString::to_string).collect()
 }
 

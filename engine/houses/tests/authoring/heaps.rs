@@ -2,7 +2,7 @@
 
 use super::free_places::house as house_with_table;
 use super::{edit, edited, edits, refused, studio};
-use dwell_houses::authoring::Files;
+use dwell_houses::authoring::FileAccess;
 use dwell_scene::{House, State};
 use serde_json::{Value, json};
 
@@ -16,7 +16,7 @@ fn each_thing_of_a_heap_is_compared_with_a_few() {
     let size = |k: usize| [0.6 - 0.002 * k as f32; 3];
     let things = (0..100).map(|k| cuboid(&format!("box {k}"), size(k), [2.0, 0.0, 2.0]));
     let list: Vec<Value> = things.collect();
-    let (_, report) = edit(&studio(), &edits(json!(list)), &Files::Anywhere).unwrap();
+    let (_, report) = edit(&studio(), &edits(json!(list)), &FileAccess::Anywhere).unwrap();
     let overlaps = report.warnings().iter();
     let overlaps = overlaps.filter(|warning| warning.to_string().contains("stands in"));
     // Equal ones are counted. All pairs would be 4950.

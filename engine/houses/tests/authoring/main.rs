@@ -15,7 +15,7 @@ mod maps;
 mod sounds;
 mod starts;
 
-use dwell_houses::authoring::{Edit, Files, edit};
+use dwell_houses::authoring::{Edit, FileAccess, edit};
 use dwell_scene::House;
 use serde_json::{Value, json};
 
@@ -28,14 +28,14 @@ fn edits(list: Value) -> Vec<Edit> {
 }
 
 fn edited(house: &House, list: Value) -> House {
-    edit(house, &edits(list), &Files::Anywhere).unwrap().0
+    edit(house, &edits(list), &FileAccess::Anywhere).unwrap().0
 }
 
 /// What is said about edits that cannot be.
 fn refused(house: &House, list: Value) -> String {
     match serde_json::from_value::<Vec<Edit>>(list.clone()) {
         Err(error) => error.to_string(),
-        Ok(edits) => match edit(house, &edits, &Files::Anywhere) {
+        Ok(edits) => match edit(house, &edits, &FileAccess::Anywhere) {
             Err(error) => error.to_string(),
             Ok(_) => panic!("{list} can be"),
         },

@@ -1,7 +1,7 @@
 //! Where agents start.
 
 use super::{edited, refused};
-use dwell_houses::authoring::{Files, Plan, build};
+use dwell_houses::authoring::{FileAccess, HousePlan, build};
 use dwell_houses::{native, open};
 use dwell_scene::House;
 use glam::Vec3;
@@ -10,13 +10,13 @@ use serde_json::{Value, json};
 /// Two rooms; in the middle of the study stands a block that nobody walks through.
 fn house() -> House {
     let room = |name: &str, x0: f32, x1: f32| json!({"name": name, "outline": [[x0, 0], [x1, 0], [x1, 3], [x0, 3]]});
-    let plan: Plan = serde_json::from_value(json!({
+    let plan: HousePlan = serde_json::from_value(json!({
         "building": {"storeys": [{"rooms": [room("study", 0.0, 4.0), room("hall", 4.1, 8.0)]}]},
         "edits": [{"add": {"what": {"box": {"size_m": [1, 1, 1]}}, "name": "block", "place": {"at": [2, 0, 1.5]},
                            "traits": {"mobility": "fixed"}}}],
     }))
     .unwrap();
-    build(&plan, &Files::Anywhere).unwrap().0
+    build(&plan, &FileAccess::Anywhere).unwrap().0
 }
 
 fn start(start: Value) -> Value {

@@ -11,7 +11,7 @@ pub(crate) mod samples;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use dwell_houses::Report;
+use dwell_houses::LoadReport;
 use dwell_houses::suncg::{SuncgFiles, convert, locate};
 use dwell_scene::House;
 use dwell_scene::parallel::Threads;
@@ -24,7 +24,7 @@ pub(crate) struct Real {
     pub(crate) root: PathBuf,
     pub(crate) files: SuncgFiles,
     pub(crate) house: House,
-    pub(crate) report: Report,
+    pub(crate) report: LoadReport,
 }
 
 /// The folder of the shared sample data, if this machine has it.
@@ -41,7 +41,7 @@ pub(crate) fn real() -> Option<&'static Real> {
     let real = REAL.get_or_init(|| {
         let root = data_root()?;
         let (data, path) = locate(&root.join("house").join(SCENE_ID).join("house.json")).unwrap();
-        let mut report = Report::new();
+        let mut report = LoadReport::new();
         let files = SuncgFiles::read(&data, &path, Threads::exactly(2), &mut report).unwrap();
         let house = convert(&files, Threads::exactly(2), &mut report).unwrap();
         Some(Real {

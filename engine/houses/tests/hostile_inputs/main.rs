@@ -19,7 +19,7 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use dwell_houses::suncg::read_binvox;
-use dwell_houses::{HousesError, Report, open_with};
+use dwell_houses::{HousesError, LoadReport, open_with};
 use dwell_scene::parallel::Threads;
 use kit::{Case, Ends};
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
@@ -48,7 +48,7 @@ fn asked() -> u64 {
 }
 
 /// Opens a HOUSE; also how many bytes that asked for.
-fn opened(house: &Path) -> (Result<Report, HousesError>, u64) {
+fn opened(house: &Path) -> (Result<LoadReport, HousesError>, u64) {
     let before = asked();
     let opened = open_with(&house.to_string_lossy(), Threads::exactly(2));
     let taken = asked() - before;

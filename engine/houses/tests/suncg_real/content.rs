@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use dwell_houses::Report;
+use dwell_houses::LoadReport;
 use dwell_houses::suncg::metadata::{CategoryTable, LightTable, ModelTable, VoteTable, base_model};
 use dwell_houses::suncg::read_binvox;
 use glam::DVec3;
@@ -10,8 +10,8 @@ use glam::DVec3;
 use super::common::{Real, real};
 use super::{model_of, nodes, objects};
 
-fn table<T>(real: &Real, name: &str, read: fn(&[u8], &str, &mut Report) -> T) -> T {
-    let mut report = Report::new();
+fn table<T>(real: &Real, name: &str, read: fn(&[u8], &str, &mut LoadReport) -> T) -> T {
+    let mut report = LoadReport::new();
     let table = read(
         &std::fs::read(real.root.join("metadata").join(name)).unwrap(),
         name,
@@ -244,7 +244,7 @@ fn fact_16_overrides_change_colors() {
     );
     assert_eq!(
         real.report
-            .count(|d| matches!(d, dwell_houses::Damage::MissingTexture { .. })),
+            .count(|d| matches!(d, dwell_houses::WarningKind::MissingTexture { .. })),
         0
     );
     let toilet = real

@@ -1,6 +1,6 @@
 //! Materials, overrides, textures and boxes.
 
-use dwell_houses::Damage;
+use dwell_houses::WarningKind;
 use glam::{Vec2, Vec3};
 
 use super::{count, materials, reported_at, root_part, srgb, texture_name, traps};
@@ -53,7 +53,7 @@ fn overrides_count_positions_in_the_material_file() {
     );
     assert!(reported_at("levels[0].nodes[0].materials", |d| matches!(
         d,
-        Damage::ExtraOverrides {
+        WarningKind::ExtraOverrides {
             found: 4,
             allowed: 3
         }
@@ -76,11 +76,11 @@ fn overrides_with_faults_keep_what_can_be_kept() {
     assert_eq!((srgb(gone), gone.texture), ([32; 3], None));
     assert!(reported_at(
         "levels[0].nodes[5].materials[1].diffuse",
-        |d| matches!(d, Damage::BadColor { .. })
+        |d| matches!(d, WarningKind::BadColor { .. })
     ));
     assert_eq!(
         count(
-            |d| matches!(d, Damage::MissingTexture { path } if path == "texture/no_such_texture")
+            |d| matches!(d, WarningKind::MissingTexture { path } if path == "texture/no_such_texture")
         ),
         1
     );
@@ -97,7 +97,7 @@ fn overrides_may_be_indices_into_the_house() {
     );
     assert!(reported_at(
         "levels[0].nodes[6].materialIndices",
-        |d| matches!(d, Damage::BadIndex { found, .. } if found == "99")
+        |d| matches!(d, WarningKind::BadIndex { found, .. } if found == "99")
     ));
 }
 

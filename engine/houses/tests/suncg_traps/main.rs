@@ -11,7 +11,7 @@ mod second_release;
 
 use std::sync::OnceLock;
 
-use dwell_houses::{Damage, Report, Unmapped, open};
+use dwell_houses::{LoadReport, UnmappedKind, WarningKind, open};
 use dwell_scene::{
     House, LightShape, Material, Mobility, Object, Part, RoomId, State, StructureKind, TextureId,
     units,
@@ -19,8 +19,8 @@ use dwell_scene::{
 use files::compose;
 use glam::{Vec2, Vec3};
 
-pub(crate) fn traps() -> &'static (House, Report) {
-    static TRAPS: OnceLock<(House, Report)> = OnceLock::new();
+pub(crate) fn traps() -> &'static (House, LoadReport) {
+    static TRAPS: OnceLock<(House, LoadReport)> = OnceLock::new();
     TRAPS.get_or_init(|| {
         let root = tempfile::tempdir().unwrap();
         compose(root.path());
@@ -60,11 +60,11 @@ pub(crate) fn texture_name(id: Option<TextureId>) -> Option<&'static str> {
     id.map(|id| traps().0.textures[id].name.as_str())
 }
 
-pub(crate) fn count(is: impl Fn(&Damage) -> bool) -> u64 {
+pub(crate) fn count(is: impl Fn(&WarningKind) -> bool) -> u64 {
     traps().1.count(is)
 }
 
-pub(crate) fn reported_at(field: &str, is: impl Fn(&Damage) -> bool) -> bool {
+pub(crate) fn reported_at(field: &str, is: impl Fn(&WarningKind) -> bool) -> bool {
     traps()
         .1
         .warnings()
@@ -99,11 +99,11 @@ fn nodes_that_are_not_valid_and_unknown_keys_are_passed_over() {
 fn ids_that_are_missing_or_taken_are_given() {
     assert!(reported_at(
         "levels[0].nodes[5].id",
-        |d| matches!(d, Damage::DuplicateId { id, .. } if id == "0_4")
+        |d| matches!(d, WarningKind::DuplicateId { id, .. } if id == "0_4")
     ));
     assert!(reported_at(
         "levels[0].nodes[6].id",
-        |d| matches!(d, Damage::MissingId { given } if given == "0_6")
+        |d| matches!(d, WarningKind::MissingId { given } if given == "0_6")
     ));
 }
 
@@ -123,7 +123,7 @@ fn a_room_may_come_after_its_nodes_and_list_them_in_any_spelling() {
         .warnings()
         .iter()
         .filter_map(|w| match &w.damage {
-            Damage::BadIndex { found, .. }
+            WarningKind::BadIndex { found, .. }
                 if w.at.to_string().ends_with("nodes[7].nodeIndices") =>
             {
                 Some(found.clone())
@@ -138,7 +138,7 @@ fn a_room_may_come_after_its_nodes_and_list_them_in_any_spelling() {
 fn a_node_listed_twice_stays_in_the_first_room() {
     assert!(reported_at(
         "levels[0].nodes[8].nodeIndices",
-        |d| matches!(d, Damage::InTwoRooms { node, first, second } if node == "0_0" && first == "0_7" && second == "0_8")
+        |d| matches!(d, WarningKind::InTwoRooms { node, first, second } if node == "0_0" && first == "0_7" && second == "0_8")
     ));
 }
 
@@ -173,11 +173,11 @@ fn room_types_may_be_several_missing_or_unknown() {
         traps()
             .1
             .unmapped()
-            .any(|u| u == (Unmapped::RoomType, "Wine_Cellar", 1))
+            .any(|u| u == (UnmappedKind::RoomType, "Wine_Cellar", 1))
     );
     assert!(reported_at(
         "levels[0].nodes[20].nodeIndices",
-        |d| matches!(d, Damage::BadField { .. })
+        |d| matches!(d, WarningKind::BadField { .. })
     ));
 }
 
@@ -204,10 +204,12 @@ fn hidden_meshes_are_not_loaded_and_missing_ones_are_reported() {
     assert_eq!(of_room(RoomId(1)), ["Ceiling#0_8"]);
     assert!(reported_at(
         "levels[0].nodes[8]",
-        |d| matches!(d, Damage::MissingMesh { path } if path == "room/00traps/fr_0rm_1f.obj")
+        |d| matches!(d, WarningKind::MissingMesh { path } if path == "room/00traps/fr_0rm_1f.obj")
     ));
     assert_eq!(
-        count(|d| matches!(d, Damage::MissingMesh { path } if path.ends_with("fr_0rm_1w.obj"))),
+        count(
+            |d| matches!(d, WarningKind::MissingMesh { path } if path.ends_with("fr_0rm_1w.obj"))
+        ),
         0,
         "hidden"
     );
@@ -234,7 +236,7 @@ fn pieces_are_gathered_by_group_and_know_their_kind() {
     );
     assert_eq!(piece("Niche#0_0").kind, StructureKind::Wall);
     assert_eq!(
-        count(|d| matches!(d, Damage::UnknownPiece { found, .. } if found == "Niche#0_0")),
+        count(|d| matches!(d, WarningKind::UnknownPiece { found, .. } if found == "Niche#0_0")),
         1
     );
     let ground = piece("Ground#0_9");
@@ -269,13 +271,13 @@ fn numbers_that_are_none_become_zero_and_are_counted() {
         .1
         .warnings()
         .iter()
-        .find(|w| w.damage == Damage::NanVertices)
+        .find(|w| w.damage == WarningKind::NanVertices)
         .unwrap();
     assert_eq!(
         (nan.at.to_string().as_str(), nan.count),
         ("object/83/83.obj:6", 1)
     );
-    assert_eq!(count(|d| *d == Damage::DegenerateTriangles), 1);
+    assert_eq!(count(|d| *d == WarningKind::DegenerateTriangles), 1);
 }
 
 #[test]
@@ -329,7 +331,7 @@ fn a_mirrored_door_opens_to_the_other_side() {
 fn a_missing_second_state_falls_back_to_the_first() {
     assert!(reported_at(
         "levels[0].nodes[5].state",
-        |d| matches!(d, Damage::MissingVariant { state: 1, path } if path == "object/s__9/s__9_0.obj")
+        |d| matches!(d, WarningKind::MissingVariant { state: 1, path } if path == "object/s__9/s__9_0.obj")
     ));
 }
 
@@ -359,38 +361,38 @@ fn scale_that_differs_by_axis_and_turns_is_kept() {
 fn nodes_that_cannot_be_placed_or_found_are_reported_and_left_out() {
     assert!(reported_at(
         "levels[0].nodes[11]",
-        |d| matches!(d, Damage::MissingMesh { path } if path == "object/nowhere/nowhere.obj")
+        |d| matches!(d, WarningKind::MissingMesh { path } if path == "object/nowhere/nowhere.obj")
     ));
     assert!(reported_at("levels[0].nodes[12].modelId", |d| matches!(
         d,
-        Damage::PathRefused { .. }
+        WarningKind::PathRefused { .. }
     )));
     for node in [13, 14, 15] {
         assert!(
             reported_at(&format!("levels[0].nodes[{node}].transform"), |d| matches!(
                 d,
-                Damage::BadTransform { .. }
+                WarningKind::BadTransform { .. }
             )),
             "{node}"
         );
     }
     assert!(reported_at(
         "levels[0].nodes[16].type",
-        |d| matches!(d, Damage::UnknownNodeType { found } if found == "Portal")
+        |d| matches!(d, WarningKind::UnknownNodeType { found } if found == "Portal")
     ));
     assert_eq!(
-        count(|d| matches!(d, Damage::EmptyMesh { path } if path == "object/empty/empty.obj")),
+        count(|d| matches!(d, WarningKind::EmptyMesh { path } if path == "object/empty/empty.obj")),
         1
     );
     assert_eq!(
         count(
-            |d| matches!(d, Damage::MissingMaterialFile { path } if path == "object/empty/missing.mtl")
+            |d| matches!(d, WarningKind::MissingMaterialFile { path } if path == "object/empty/missing.mtl")
         ),
         1
     );
     assert!(reported_at("levels[0].nodes[19].dimensions", |d| matches!(
         d,
-        Damage::BadField { .. }
+        WarningKind::BadField { .. }
     )));
 }
 
@@ -406,7 +408,7 @@ fn tables_give_categories_lights_and_sounds() {
         traps()
             .1
             .unmapped()
-            .any(|u| u == (Unmapped::Category, "s__9", 2))
+            .any(|u| u == (UnmappedKind::Category, "s__9", 2))
     );
     assert_eq!(
         object("0_4_2").mobility,
@@ -437,7 +439,7 @@ fn tables_give_categories_lights_and_sounds() {
         ]
     );
     assert_eq!(
-        count(|d| matches!(d, Damage::BadRow { reason } if reason.contains("\"124\""))),
+        count(|d| matches!(d, WarningKind::BadRow { reason } if reason.contains("\"124\""))),
         1,
         "the moon is no lamp"
     );
@@ -452,7 +454,7 @@ fn tables_give_categories_lights_and_sounds() {
         "an entry for the model goes before its category's, and a bell that rings all day is none"
     );
     assert_eq!(
-        count(|d| matches!(d, Damage::Simplified { what } if what.contains("doorbell"))),
+        count(|d| matches!(d, WarningKind::Simplified { what } if what.contains("doorbell"))),
         2
     );
 }

@@ -1,6 +1,6 @@
 //! The second release, whose walls stand in `arch.json`.
 
-use dwell_houses::{Damage, open};
+use dwell_houses::{WarningKind, open};
 use dwell_scene::{RoomId, StructureKind};
 use glam::Vec2;
 
@@ -60,6 +60,9 @@ fn walls_floors_and_ceilings_come_from_arch_json() {
         (outside.texture.is_some(), outside.substance.as_str()),
         (true, "brick")
     );
-    assert_eq!(report.count(|d| matches!(d, Damage::BadRow { .. })), 1);
-    assert_eq!(report.count(|d| matches!(d, Damage::MissingMesh { .. })), 0);
+    assert_eq!(report.count(|d| matches!(d, WarningKind::BadRow { .. })), 1);
+    assert_eq!(
+        report.count(|d| matches!(d, WarningKind::MissingMesh { .. })),
+        0
+    );
 }

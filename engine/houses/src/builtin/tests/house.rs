@@ -1,7 +1,7 @@
 //! Tables, names, meshes, bytes.
 
 use super::support::apartment;
-use crate::build::category;
+use crate::import::category;
 use dwell_furniture::testing::meshes::assert_closed;
 use dwell_furniture::testing::overlap::{ConvexPiece, depth, object_pieces};
 use dwell_scene::bvh::{Ray, RayMask};

@@ -1,8 +1,8 @@
 //! Small things on and in larger ones.
 
 use super::place::REST_GAP_M;
-use super::rules::Clutter;
-use super::space::{Piece, Space};
+use super::rules::SmallItemRule;
+use super::space::{PlacedFurniture, RoomLayout};
 use crate::building::yaw::yaw;
 use dwell_furniture::model_cache::{CachedModel, cached_model};
 use dwell_furniture::style::Style;
@@ -20,8 +20,8 @@ const EDGE_M: f32 = 0.01;
 
 /// Follows one rule on everything that stands in the room.
 pub(crate) fn scatter(
-    space: &mut Space,
-    rule: &Clutter,
+    space: &mut RoomLayout,
+    rule: &SmallItemRule,
     amount: f32,
     style: &Style,
     key: RandomKey,
@@ -41,8 +41,8 @@ pub(crate) fn scatter(
 }
 
 fn on_one(
-    space: &mut Space,
-    rule: &Clutter,
+    space: &mut RoomLayout,
+    rule: &SmallItemRule,
     [host, k]: [usize; 2],
     amount: f32,
     style: &Style,
@@ -72,7 +72,7 @@ fn on_one(
             let Some(pose) = place(&space.pieces[host], k, &stock, rule.turn_deg, &mut draw) else {
                 break;
             };
-            let piece = Piece::new(&stock, pose).of(host);
+            let piece = PlacedFurniture::new(&stock, pose).of(host);
             if piece.bounds.max.y < HIGHEST_M && space.rests(&piece, host, rule.inside) {
                 space.add_small(piece);
                 break;
@@ -83,7 +83,7 @@ fn on_one(
 
 /// Somewhere in a space of the host, turned at random; `None` when the thing is too large.
 fn place(
-    host: &Piece,
+    host: &PlacedFurniture,
     k: usize,
     stock: &Arc<CachedModel>,
     turn_deg: f32,

@@ -1,16 +1,16 @@
 //! Furniture by the rules of `assets/furnishing.toml`.
 
 mod clutter;
+mod fit_to_window;
 mod place;
 mod rules;
-mod sized;
 mod space;
 
-pub(crate) use space::{Piece, stands_in_the_way, zone};
+pub(crate) use space::{PlacedFurniture, stands_in_the_way, zone};
 
-use super::openings::{Filling, Hole};
-use super::plan::{Cells, FloorPlan, metres};
-use super::rooms::RoomKind;
+use super::openings::{HoleContents, WallHole};
+use super::plan::{GeneratedPlan, StoreyCells, metres};
+use super::rooms::GeneratedRoomKind;
 use super::spec::HouseSpec;
 use crate::building::yaw::yaw;
 use dwell_furniture::model_cache::{CachedModel, cached_model};
@@ -18,8 +18,8 @@ use dwell_furniture::style::Style;
 use dwell_scene::Pose;
 use dwell_scene::random::{RandomKey, RandomStream};
 use glam::Vec3;
-use rules::{Place, Rule, Run, rules};
-use space::Space;
+use rules::{FittedRunRule, FurnishingRule, PlacementKind, rules};
+use space::RoomLayout;
 use std::sync::Arc;
 
 /// Half of the width of the paths that are kept, m: the first that a room allows, then narrower ones for what it needs.
@@ -32,28 +32,28 @@ const LOOKS: u64 = 3;
 const UNLIKE_LOOKS: u64 = 24;
 
 /// What stands in one room, heights above its floor.
-pub(crate) struct Furnished {
-    pub(crate) pieces: Vec<Piece>,
+pub(crate) struct RoomFurniture {
+    pub(crate) pieces: Vec<PlacedFurniture>,
     /// What a room of its kind has and this one has not.
     pub(crate) missing: Vec<String>,
 }
 
 /// What rooms are furnished from.
-pub(crate) struct Furnisher<'a> {
-    pub(crate) plan: &'a FloorPlan,
-    pub(crate) holes: &'a [Vec<Hole>],
+pub(crate) struct HouseFurnisher<'a> {
+    pub(crate) plan: &'a GeneratedPlan,
+    pub(crate) holes: &'a [Vec<WallHole>],
     pub(crate) style: &'a Style,
     pub(crate) spec: &'a HouseSpec,
     pub(crate) key: RandomKey,
 }
 
-impl Furnisher<'_> {
+impl HouseFurnisher<'_> {
     /// Furnishes every room, by storey.
-    pub(crate) fn furnish(&self) -> Vec<Vec<Furnished>> {
+    pub(crate) fn furnish(&self) -> Vec<Vec<RoomFurniture>> {
         let storeys = self.plan.storeys.iter().enumerate();
         storeys
             .map(|(level, storey)| {
-                let cells = Cells::new(&storey.rooms);
+                let cells = StoreyCells::new(&storey.rooms);
                 (0..storey.rooms.len())
                     .map(|room| self.room(level, &cells, room, 1.0, self.key))
                     .collect()
@@ -65,15 +65,18 @@ impl Furnisher<'_> {
     pub(crate) fn room(
         &self,
         level: usize,
-        cells: &Cells,
+        cells: &StoreyCells,
         room: usize,
         share: f32,
         key: RandomKey,
-    ) -> Furnished {
+    ) -> RoomFurniture {
         let storey = &self.plan.storeys[level];
         let kind = storey.rooms[room].kind;
-        let stairs = self.plan.stairs.filter(|_| kind == RoomKind::Hallway);
-        let mut space = Space::new(
+        let stairs = self
+            .plan
+            .stairs
+            .filter(|_| kind == GeneratedRoomKind::Hallway);
+        let mut space = RoomLayout::new(
             storey,
             cells,
             room,
@@ -87,7 +90,7 @@ impl Furnisher<'_> {
             space.walk(room, storey, PATHS_M[path]);
         }
         let key = key.child(level as u64).child(room as u64);
-        let mut furnishing = Furnishing {
+        let mut furnishing = RoomFurnisher {
             area_m2: space
                 .floor
                 .iter()
@@ -130,7 +133,7 @@ impl Furnisher<'_> {
                 clutter::scatter(&mut furnishing.space, rule, amount, self.style, key);
             }
         }
-        Furnished {
+        RoomFurniture {
             pieces: furnishing.space.pieces,
             missing,
         }
@@ -138,26 +141,26 @@ impl Furnisher<'_> {
 }
 
 /// A room while rules are followed.
-struct Furnishing<'a> {
+struct RoomFurnisher<'a> {
     area_m2: f32,
-    space: Space,
+    space: RoomLayout,
     style: &'a Style,
     density: f32,
 }
 
-impl Furnishing<'_> {
+impl RoomFurnisher<'_> {
     /// Follows a rule; false when nothing came of it that was wanted.
-    fn follow(&mut self, rule: &Rule, key: RandomKey) -> bool {
+    fn follow(&mut self, rule: &FurnishingRule, key: RandomKey) -> bool {
         let mut draw = key.stream();
         let chance = rule.chance * (self.density / 0.8);
         if self.area_m2 < rule.from_m2 || (!rule.needed && draw.uniform_f32() >= chance) {
             return true;
         }
-        let has = |piece: &Piece| rule.kinds.iter().any(|kind| kind == piece.stock.kind);
+        let has = |piece: &PlacedFurniture| rule.kinds.iter().any(|kind| kind == piece.stock.kind);
         if rule.once && self.space.pieces.iter().any(has) {
             return true;
         }
-        if rule.place == Place::Window {
+        if rule.place == PlacementKind::Window {
             return self.at_windows(rule, key);
         }
         let mut anchors: Vec<Option<usize>> = (0..self.space.pieces.len())
@@ -185,7 +188,7 @@ impl Furnishing<'_> {
     /// Puts one thing of a rule: the first of its kinds for which there is a place.
     fn put(
         &mut self,
-        rule: &Rule,
+        rule: &FurnishingRule,
         anchor: Option<usize>,
         look: RandomKey,
         draw: &mut RandomStream,
@@ -201,12 +204,12 @@ impl Furnishing<'_> {
                     continue;
                 }
                 let host = anchor.map(|k| &self.space.pieces[k]);
-                let ideas = place::ideas(rule, &self.space, &stock, host, draw);
+                let ideas = place::candidate_poses(rule, &self.space, &stock, host, draw);
                 for pose in ideas.into_iter().take(TRIES) {
-                    let mut piece = Piece::new(&stock, pose).with_front(rule.front_m);
+                    let mut piece = PlacedFurniture::new(&stock, pose).with_front(rule.front_m);
                     piece.anchor = anchor;
                     let fits = match (rule.place, anchor) {
-                        (Place::On, Some(host)) => self.space.rests(&piece, host, false),
+                        (PlacementKind::On, Some(host)) => self.space.rests(&piece, host, false),
                         _ => self.space.fits(&piece),
                     };
                     if fits {
@@ -225,21 +228,22 @@ impl Furnishing<'_> {
         picture_id.is_some() && pieces.any(|piece| piece.stock.picture_id == picture_id)
     }
 
-    fn at_windows(&mut self, rule: &Rule, key: RandomKey) -> bool {
+    fn at_windows(&mut self, rule: &FurnishingRule, key: RandomKey) -> bool {
         let holes = self.space.holes.clone();
         let windows = holes
             .iter()
-            .filter(|hole| matches!(hole.filling, Filling::Window { .. }));
+            .filter(|hole| matches!(hole.filling, HoleContents::Window { .. }));
         for hole in windows {
             for kind in &rule.kinds {
-                let Some((stock, height_m)) = sized::sized(kind, hole, self.style, key) else {
+                let Some((stock, height_m)) = fit_to_window::sized(kind, hole, self.style, key)
+                else {
                     continue;
                 };
                 let Some(place) = self.space.inner_face(hole) else {
                     continue;
                 };
                 let pose = Pose::new(place + Vec3::Y * height_m, yaw(hole.yaw_deg()));
-                let piece = Piece::new(&stock, pose).at_window();
+                let piece = PlacedFurniture::new(&stock, pose).at_window();
                 if self.space.fits(&piece) {
                     self.space.add(piece);
                 }
@@ -249,7 +253,7 @@ impl Furnishing<'_> {
     }
 
     /// Fitted units along the wall that holds the first row; false without a place.
-    fn run(&mut self, run: &Run, key: RandomKey) -> bool {
+    fn run(&mut self, run: &FittedRunRule, key: RandomKey) -> bool {
         let mut draw = key.stream();
         for row in &run.rows {
             let units: Vec<Option<Arc<CachedModel>>> = row
@@ -284,7 +288,7 @@ impl Furnishing<'_> {
     fn row_fits(&mut self, row: &[Option<Arc<CachedModel>>], poses: &[Pose], front_m: f32) -> bool {
         let before = self.space.clone();
         for (stock, pose) in row.iter().flatten().zip(poses) {
-            let piece = Piece::new(stock, *pose).with_front(front_m);
+            let piece = PlacedFurniture::new(stock, *pose).with_front(front_m);
             if !self.space.fits(&piece) {
                 self.space = before;
                 return false;
@@ -296,7 +300,7 @@ impl Furnishing<'_> {
 }
 
 /// What rooms of a kind have that nobody could find a place for, and nothing of the kind at all.
-pub(crate) fn missing(rooms: &[Vec<Furnished>]) -> Vec<String> {
+pub(crate) fn missing(rooms: &[Vec<RoomFurniture>]) -> Vec<String> {
     rooms
         .iter()
         .flatten()

@@ -1,8 +1,8 @@
 //! Places where a rule would put a thing, the likeliest first.
 
-use super::rules::{Place, Rule};
-use super::space::{Piece, Space, Span};
-use crate::building::plan::CEILING_M;
+use super::rules::{FurnishingRule, PlacementKind};
+use super::space::{PlacedFurniture, RoomLayout, WallSpan};
+use crate::building::room::CEILING_M;
 use crate::building::yaw::yaw;
 use dwell_furniture::model_cache::CachedModel;
 use dwell_scene::random::RandomStream;
@@ -22,7 +22,7 @@ const ALONG_M: f32 = 0.12;
 const SEAT_M: f32 = 0.6;
 
 /// A place and how little it is liked.
-type Idea = (f32, Pose);
+type CandidatePose = (f32, Pose);
 
 /// Half of a thing's width with its doors open, and from its origin to its back with its lid up.
 fn half_and_back(stock: &CachedModel) -> (f32, f32) {
@@ -34,31 +34,31 @@ fn half_and_back(stock: &CachedModel) -> (f32, f32) {
 }
 
 /// The places for a thing, the likeliest first.
-pub(crate) fn ideas(
-    rule: &Rule,
-    space: &Space,
+pub(crate) fn candidate_poses(
+    rule: &FurnishingRule,
+    space: &RoomLayout,
     stock: &Arc<CachedModel>,
-    anchor: Option<&Piece>,
+    anchor: Option<&PlacedFurniture>,
     stream: &mut RandomStream,
 ) -> Vec<Pose> {
-    let mut ideas: Vec<Idea> = match (rule.place, anchor) {
-        (Place::Wall, _) => walls(space, stock, None, false, stream),
-        (Place::Corner, _) => walls(space, stock, None, true, stream),
-        (Place::Hung, None) => walls(space, stock, Some(rule.height_m), false, stream),
-        (Place::Hung, Some(anchor)) => near(
+    let mut ideas: Vec<CandidatePose> = match (rule.place, anchor) {
+        (PlacementKind::Wall, _) => walls(space, stock, None, false, stream),
+        (PlacementKind::Corner, _) => walls(space, stock, None, true, stream),
+        (PlacementKind::Hung, None) => walls(space, stock, Some(rule.height_m), false, stream),
+        (PlacementKind::Hung, Some(anchor)) => near(
             walls(space, stock, Some(rule.height_m), false, stream),
             anchor,
             rule.gap_m[1],
         ),
-        (Place::Centre, _) => centre(space, stream),
-        (Place::Ceiling, anchor) => ceiling(space, anchor),
-        (Place::Beside, Some(anchor)) => beside(stock, anchor, rule.gap_m[0], stream),
-        (Place::Before, Some(anchor)) => before(stock, anchor, rule.gap_m, 0.0, stream),
-        (Place::Facing, Some(anchor)) => before(stock, anchor, rule.gap_m, 180.0, stream),
-        (Place::Around, Some(anchor)) => around(stock, anchor),
-        (Place::At, Some(anchor)) => at(stock, anchor, stream),
-        (Place::On, Some(anchor)) => on(stock, anchor, stream),
-        (Place::Above, Some(anchor)) => above(space, anchor, rule.height_m),
+        (PlacementKind::Centre, _) => centre(space, stream),
+        (PlacementKind::Ceiling, anchor) => ceiling(space, anchor),
+        (PlacementKind::Beside, Some(anchor)) => beside(stock, anchor, rule.gap_m[0], stream),
+        (PlacementKind::Before, Some(anchor)) => before(stock, anchor, rule.gap_m, 0.0, stream),
+        (PlacementKind::Facing, Some(anchor)) => before(stock, anchor, rule.gap_m, 180.0, stream),
+        (PlacementKind::Around, Some(anchor)) => around(stock, anchor),
+        (PlacementKind::At, Some(anchor)) => at(stock, anchor, stream),
+        (PlacementKind::On, Some(anchor)) => on(stock, anchor, stream),
+        (PlacementKind::Above, Some(anchor)) => above(space, anchor, rule.height_m),
         _ => Vec::new(),
     };
     ideas.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -67,12 +67,12 @@ pub(crate) fn ideas(
 
 /// With the back to a wall; hung at a height, or standing.
 fn walls(
-    space: &Space,
+    space: &RoomLayout,
     stock: &CachedModel,
     height_m: Option<f32>,
     corners: bool,
     stream: &mut RandomStream,
-) -> Vec<Idea> {
+) -> Vec<CandidatePose> {
     let (half, back) = half_and_back(stock);
     let mut ideas = Vec::new();
     for span in &space.spans {
@@ -107,7 +107,7 @@ fn walls(
 }
 
 /// Those places within a hand's reach (`reach_m`) of the middle of an anchor's front, the nearest first.
-fn near(ideas: Vec<Idea>, anchor: &Piece, reach_m: f32) -> Vec<Idea> {
+fn near(ideas: Vec<CandidatePose>, anchor: &PlacedFurniture, reach_m: f32) -> Vec<CandidatePose> {
     let front = Vec3::Z * anchor.stock.collider_bounds.max.z;
     let hand = anchor.pose.transform_point(front).with_y(0.0);
     let away = |pose: &Pose| pose.position.with_y(0.0).distance(hand);
@@ -115,7 +115,7 @@ fn near(ideas: Vec<Idea>, anchor: &Piece, reach_m: f32) -> Vec<Idea> {
     ideas.filter(|(away, _)| *away <= reach_m).collect()
 }
 
-fn centre(space: &Space, stream: &mut RandomStream) -> Vec<Idea> {
+fn centre(space: &RoomLayout, stream: &mut RandomStream) -> Vec<CandidatePose> {
     let area = |z: &[f32; 4]| (z[2] - z[0]) * (z[3] - z[1]);
     let Some(largest) = space
         .floor
@@ -144,7 +144,7 @@ fn centre(space: &Space, stream: &mut RandomStream) -> Vec<Idea> {
     ideas
 }
 
-fn ceiling(space: &Space, anchor: Option<&Piece>) -> Vec<Idea> {
+fn ceiling(space: &RoomLayout, anchor: Option<&PlacedFurniture>) -> Vec<CandidatePose> {
     let at = |x: f32, z: f32| Pose::new(Vec3::new(x, CEILING_M, z), yaw(0.0));
     if let Some(anchor) = anchor {
         let middle = anchor.bounds.center();
@@ -171,7 +171,12 @@ fn ceiling(space: &Space, anchor: Option<&Piece>) -> Vec<Idea> {
     ideas
 }
 
-fn beside(stock: &CachedModel, anchor: &Piece, gap_m: f32, stream: &mut RandomStream) -> Vec<Idea> {
+fn beside(
+    stock: &CachedModel,
+    anchor: &PlacedFurniture,
+    gap_m: f32,
+    stream: &mut RandomStream,
+) -> Vec<CandidatePose> {
     let (half, back) = half_and_back(stock);
     let host = anchor.stock.collider_bounds;
     let z = host.min.z + back;
@@ -188,11 +193,11 @@ fn beside(stock: &CachedModel, anchor: &Piece, gap_m: f32, stream: &mut RandomSt
 
 fn before(
     stock: &CachedModel,
-    anchor: &Piece,
+    anchor: &PlacedFurniture,
     gap_m: [f32; 2],
     turn_deg: f32,
     stream: &mut RandomStream,
-) -> Vec<Idea> {
+) -> Vec<CandidatePose> {
     let depth = if turn_deg == 0.0 {
         -stock.collider_bounds.min.z
     } else {
@@ -212,7 +217,7 @@ fn before(
     ideas
 }
 
-fn around(stock: &CachedModel, anchor: &Piece) -> Vec<Idea> {
+fn around(stock: &CachedModel, anchor: &PlacedFurniture) -> Vec<CandidatePose> {
     let host = anchor.stock.collider_bounds;
     let size = host.size();
     let depth = stock.collider_bounds.max.z;
@@ -242,7 +247,11 @@ fn around(stock: &CachedModel, anchor: &Piece) -> Vec<Idea> {
     ideas
 }
 
-fn at(stock: &CachedModel, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
+fn at(
+    stock: &CachedModel,
+    anchor: &PlacedFurniture,
+    stream: &mut RandomStream,
+) -> Vec<CandidatePose> {
     let mut ideas = Vec::new();
     for (k, tuck) in [0.25, 0.15, 0.05, -0.06, -0.15].into_iter().enumerate() {
         for x in [-0.2, 0.0, 0.2, -0.35] {
@@ -255,7 +264,11 @@ fn at(stock: &CachedModel, anchor: &Piece, stream: &mut RandomStream) -> Vec<Ide
     ideas
 }
 
-fn on(stock: &CachedModel, anchor: &Piece, stream: &mut RandomStream) -> Vec<Idea> {
+fn on(
+    stock: &CachedModel,
+    anchor: &PlacedFurniture,
+    stream: &mut RandomStream,
+) -> Vec<CandidatePose> {
     let tops = anchor.stock.model.spaces.iter();
     let area = |space: &Aabb| space.size().x * space.size().z;
     let largest = tops
@@ -291,7 +304,7 @@ fn on(stock: &CachedModel, anchor: &Piece, stream: &mut RandomStream) -> Vec<Ide
 }
 
 /// On the wall behind the anchor; nothing where the anchor stands away from walls.
-fn above(space: &Space, anchor: &Piece, height_m: f32) -> Vec<Idea> {
+fn above(space: &RoomLayout, anchor: &PlacedFurniture, height_m: f32) -> Vec<CandidatePose> {
     let mut ideas = Vec::new();
     for x in [0.0, 0.2, -0.2] {
         let behind = Vec3::new(x, height_m - REST_GAP_M, anchor.stock.collider_bounds.min.z);
@@ -333,7 +346,7 @@ pub(crate) fn row_length(row: &[Option<Arc<CachedModel>>]) -> f32 {
 /// The poses of a row of fitted units along a span, from left to right as one stands before them, starting `start_m` from
 /// the left end; `None` when the row is longer than the span.
 pub(crate) fn row(
-    span: &Span,
+    span: &WallSpan,
     row: &[Option<Arc<CachedModel>>],
     start_m: f32,
 ) -> Option<Vec<Pose>> {

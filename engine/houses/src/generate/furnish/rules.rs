@@ -1,13 +1,13 @@
 //! The rules of `assets/furnishing.toml`.
 
-use crate::generate::rooms::RoomKind;
+use crate::generate::rooms::GeneratedRoomKind;
 use serde::Deserialize;
 use std::sync::OnceLock;
 
 /// Where a thing goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Place {
+pub(crate) enum PlacementKind {
     /// With its back to a wall.
     Wall,
     /// With its back to a wall and a side to another.
@@ -39,11 +39,11 @@ pub(crate) enum Place {
 /// One rule.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Rule {
-    pub(crate) rooms: Vec<RoomKind>,
+pub(crate) struct FurnishingRule {
+    pub(crate) rooms: Vec<GeneratedRoomKind>,
     /// Kinds of the catalogue: the first that fits is taken.
     pub(crate) kinds: Vec<String>,
-    pub(crate) place: Place,
+    pub(crate) place: PlacementKind,
     /// Kinds of things that it goes with.
     #[serde(default)]
     pub(crate) of: Vec<String>,
@@ -81,8 +81,8 @@ pub(crate) struct Rule {
 /// A run of fitted units along one wall: the first row that fits is taken.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Run {
-    pub(crate) rooms: Vec<RoomKind>,
+pub(crate) struct FittedRunRule {
+    pub(crate) rooms: Vec<GeneratedRoomKind>,
     /// `"gap"` is no thing but leaves a gap.
     pub(crate) rows: Vec<Vec<String>>,
     /// Free floor before it, m.
@@ -93,7 +93,7 @@ pub(crate) struct Run {
 /// Small things on or in larger ones.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Clutter {
+pub(crate) struct SmallItemRule {
     pub(crate) kinds: Vec<String>,
     /// Kinds of things on which it stands.
     pub(crate) on: Vec<String>,
@@ -102,7 +102,7 @@ pub(crate) struct Clutter {
     pub(crate) spaces: Vec<String>,
     /// Rooms; empty: any.
     #[serde(default)]
-    pub(crate) rooms: Vec<RoomKind>,
+    pub(crate) rooms: Vec<GeneratedRoomKind>,
     /// Whether it lies inside, else on top.
     #[serde(default)]
     pub(crate) inside: bool,
@@ -133,18 +133,18 @@ const fn always() -> f32 {
 /// All rules, in the order in which they are followed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Rules {
-    pub(crate) run: Vec<Run>,
-    pub(crate) rule: Vec<Rule>,
-    pub(crate) clutter: Vec<Clutter>,
+pub(crate) struct FurnishingRules {
+    pub(crate) run: Vec<FittedRunRule>,
+    pub(crate) rule: Vec<FurnishingRule>,
+    pub(crate) clutter: Vec<SmallItemRule>,
 }
 
 /// The rules of `assets/furnishing.toml`.
 ///
 /// # Panics
 /// Never: the file is part of the build, and this module's tests read it.
-pub(crate) fn rules() -> &'static Rules {
-    static RULES: OnceLock<Rules> = OnceLock::new();
+pub(crate) fn rules() -> &'static FurnishingRules {
+    static RULES: OnceLock<FurnishingRules> = OnceLock::new();
     RULES.get_or_init(|| {
         let text = include_str!("../../../../../assets/furnishing.toml");
         toml::from_str(text).expect("assets/furnishing.toml is checked by this module's tests")
@@ -154,7 +154,7 @@ pub(crate) fn rules() -> &'static Rules {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generate::furnish::sized::SIZED;
+    use crate::generate::furnish::fit_to_window::SIZED;
     use dwell_furniture::catalogue::entries;
 
     #[test]

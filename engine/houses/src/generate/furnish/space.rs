@@ -3,8 +3,8 @@
 //! World x and z, heights above the room's floor. All tests are on boxes around collision pieces: what they allow is free
 //! of overlap for sure.
 
-use crate::generate::openings::{Filling, Hole, Zone, overlap};
-use crate::generate::plan::{Cells, Storey, metres};
+use crate::generate::openings::{HoleContents, WallHole, ZoneXz, overlap};
+use crate::generate::plan::{GeneratedStorey, StoreyCells, metres};
 use crate::generate::shell::{covers, free_floor, half_wall};
 use dwell_furniture::model_cache::CachedModel;
 use dwell_scene::{Aabb, Pose};
@@ -24,7 +24,7 @@ const DOOR_FRONT_M: f32 = 0.7;
 
 /// A straight stretch of wall as seen from its room.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Span {
+pub(crate) struct WallSpan {
     /// Whether it runs along x.
     pub(crate) along_x: bool,
     /// Where its face stands, m.
@@ -35,7 +35,7 @@ pub(crate) struct Span {
     pub(crate) inward: f32,
 }
 
-impl Span {
+impl WallSpan {
     /// The yaw of what turns its back to it, degrees.
     pub(crate) fn yaw_deg(&self) -> f32 {
         match (self.along_x, self.inward > 0.0) {
@@ -59,7 +59,7 @@ impl Span {
 
 /// Something that stands in the room.
 #[derive(Clone, Debug)]
-pub(crate) struct Piece {
+pub(crate) struct PlacedFurniture {
     pub(crate) stock: Arc<CachedModel>,
     pub(crate) pose: Pose,
     pub(crate) boxes: Vec<Aabb>,
@@ -68,14 +68,14 @@ pub(crate) struct Piece {
     /// Around all swings.
     pub(crate) reach: Aabb,
     /// Floor that must stay free for its use.
-    pub(crate) clear: Vec<Zone>,
+    pub(crate) clear: Vec<ZoneXz>,
     /// What it belongs to; the two may share free floor.
     pub(crate) anchor: Option<usize>,
     /// Whether it hangs or stands before a window.
     at_window: bool,
 }
 
-impl Piece {
+impl PlacedFurniture {
     /// A thing at a place; `pose` maps the model to the room.
     pub(crate) fn new(stock: &Arc<CachedModel>, pose: Pose) -> Self {
         let place = pose.to_affine();
@@ -130,7 +130,7 @@ impl Piece {
 }
 
 /// The floor under a box.
-pub(crate) fn zone(bounds: &Aabb) -> Zone {
+pub(crate) fn zone(bounds: &Aabb) -> ZoneXz {
     [bounds.min.x, bounds.min.z, bounds.max.x, bounds.max.z]
 }
 
@@ -144,24 +144,24 @@ pub(crate) fn stands_in_the_way(bounds: &Aabb) -> bool {
 
 /// A room while it is furnished.
 #[derive(Clone, Debug)]
-pub(crate) struct Space {
-    pub(crate) floor: Vec<Zone>,
-    pub(crate) spans: Vec<Span>,
+pub(crate) struct RoomLayout {
+    pub(crate) floor: Vec<ZoneXz>,
+    pub(crate) spans: Vec<WallSpan>,
     /// The holes of its walls; those of doors into it or out of it, too.
-    pub(crate) holes: Vec<Hole>,
-    pub(crate) pieces: Vec<Piece>,
+    pub(crate) holes: Vec<WallHole>,
+    pub(crate) pieces: Vec<PlacedFurniture>,
     /// Windows and doors as boxes before their walls: nothing hangs or stands there.
     openings: Vec<Aabb>,
     /// Floor that doors need.
-    keep: Vec<Zone>,
+    keep: Vec<ZoneXz>,
     /// The stairs.
-    void: Option<Zone>,
-    grid: Grid,
+    void: Option<ZoneXz>,
+    grid: ClearanceGrid,
 }
 
 /// The walkable floor of a room.
 #[derive(Clone, Debug, Default)]
-struct Grid {
+struct ClearanceGrid {
     corner: [f32; 2],
     columns: usize,
     rows: usize,
@@ -174,19 +174,19 @@ struct Grid {
     shut: bool,
 }
 
-impl Space {
+impl RoomLayout {
     /// An empty room; paths stay `2 * radius_m` wide where they start so.
     pub(crate) fn new(
-        storey: &Storey,
-        cells: &Cells,
+        storey: &GeneratedStorey,
+        cells: &StoreyCells,
         room: usize,
-        holes: &[Hole],
-        void: Option<Zone>,
+        holes: &[WallHole],
+        void: Option<ZoneXz>,
         radius_m: f32,
     ) -> Self {
         let mut floor = free_floor(storey, cells, room);
         floor.retain(|zone| void.is_none_or(|void| !overlap(&void, zone)));
-        let own: Vec<Hole> = holes
+        let own: Vec<WallHole> = holes
             .iter()
             .copied()
             .filter(|hole| hole.room == room || hole.behind == Some(room))
@@ -199,12 +199,12 @@ impl Space {
             openings: Vec::new(),
             keep: Vec::new(),
             void: None,
-            grid: Grid::default(),
+            grid: ClearanceGrid::default(),
         };
         for hole in &own {
             let side = if hole.room == room { 1.0 } else { -1.0 };
             let wall = 0.5 * hole.wall_m(storey);
-            if matches!(hole.filling, Filling::Window { .. }) {
+            if matches!(hole.filling, HoleContents::Window { .. }) {
                 let [x0, z0, x1, z1] = hole.front(side, wall + 0.06, 0.0);
                 space.openings.push(Aabb::new(
                     Vec3::new(x0, hole.low_m - 0.03, z0),
@@ -236,12 +236,12 @@ impl Space {
     }
 
     /// Looks at the walkable floor anew for paths of another width.
-    pub(crate) fn walk(&mut self, room: usize, storey: &Storey, radius_m: f32) {
+    pub(crate) fn walk(&mut self, room: usize, storey: &GeneratedStorey, radius_m: f32) {
         let corner = [0, 1].map(|k| self.floor.iter().map(|z| z[k]).fold(f32::MAX, f32::min));
         let far = [2, 3].map(|k| self.floor.iter().map(|z| z[k]).fold(f32::MIN, f32::max));
         let cells = |k: usize| ((far[k] - corner[k]) / CELL_M).ceil().max(0.0) as usize;
         let (columns, rows) = (cells(0), cells(1));
-        let mut grid = Grid {
+        let mut grid = ClearanceGrid {
             corner,
             columns,
             rows,
@@ -261,7 +261,7 @@ impl Space {
             }
         }
         let leaves = self.holes.iter().filter(|hole| hole.room == room);
-        for leaf in leaves.filter_map(Hole::open_leaf) {
+        for leaf in leaves.filter_map(WallHole::open_leaf) {
             grid.block(&leaf);
         }
         if let Some([x0, z0, x1, z1]) = self.void {
@@ -269,7 +269,7 @@ impl Space {
             grid.doors.extend(grid.nearest_free(middle, f32::MAX));
         }
         for hole in &self.holes {
-            if matches!(hole.filling, Filling::Window { .. }) {
+            if matches!(hole.filling, HoleContents::Window { .. }) {
                 continue;
             }
             let side = if hole.room == room { 1.0 } else { -1.0 };
@@ -295,12 +295,12 @@ impl Space {
     }
 
     /// Whether a rectangle lies over the floor entirely.
-    pub(crate) fn covers(&self, rect: &Zone) -> bool {
+    pub(crate) fn covers(&self, rect: &ZoneXz) -> bool {
         covers(&self.floor, rect)
     }
 
     /// Whether a thing can stand there without touching anything or standing in anyone's way.
-    pub(crate) fn fits(&self, piece: &Piece) -> bool {
+    pub(crate) fn fits(&self, piece: &PlacedFurniture) -> bool {
         let own = zone(&piece.bounds);
         if !self.covers(&own) {
             return false;
@@ -341,8 +341,8 @@ impl Space {
         self.leaves_paths(piece)
     }
 
-    fn leaves_paths(&self, piece: &Piece) -> bool {
-        let blocking: Vec<Zone> = piece
+    fn leaves_paths(&self, piece: &PlacedFurniture) -> bool {
+        let blocking: Vec<ZoneXz> = piece
             .boxes
             .iter()
             .filter(|b| stands_in_the_way(b))
@@ -352,7 +352,7 @@ impl Space {
     }
 
     /// Whether a small thing can lie there, on or (`inside`) in its host.
-    pub(crate) fn rests(&self, piece: &Piece, host: usize, inside: bool) -> bool {
+    pub(crate) fn rests(&self, piece: &PlacedFurniture, host: usize, inside: bool) -> bool {
         self.pieces.iter().enumerate().all(|(k, other)| {
             let boxes = meets(&piece.bounds, &other.bounds)
                 && piece
@@ -378,12 +378,12 @@ impl Space {
     }
 
     /// Puts a small thing there, which is in nobody's way.
-    pub(crate) fn add_small(&mut self, piece: Piece) {
+    pub(crate) fn add_small(&mut self, piece: PlacedFurniture) {
         self.pieces.push(piece);
     }
 
     /// The point on the wall's inner face below the middle of a window, at the height of the floor.
-    pub(crate) fn inner_face(&self, hole: &Hole) -> Option<Vec3> {
+    pub(crate) fn inner_face(&self, hole: &WallHole) -> Option<Vec3> {
         let middle = 0.5 * (hole.from_m + hole.to_m);
         let span = self.spans.iter().find(|span| {
             span.along_x == hole.along_x
@@ -394,7 +394,7 @@ impl Space {
     }
 
     /// Puts a thing there.
-    pub(crate) fn add(&mut self, piece: Piece) -> usize {
+    pub(crate) fn add(&mut self, piece: PlacedFurniture) -> usize {
         for bounds in piece.boxes.iter().filter(|b| stands_in_the_way(b)) {
             self.grid.block(&zone(bounds));
         }
@@ -404,7 +404,7 @@ impl Space {
 }
 
 /// Whether two things leave each other alone; those that belong together may share free floor.
-fn apart(a: &Piece, b: &Piece, together: bool) -> bool {
+fn apart(a: &PlacedFurniture, b: &PlacedFurniture, together: bool) -> bool {
     let touch = |p: &[Aabb], around_p: &Aabb, q: &[Aabb], around_q: &Aabb| {
         meets(around_p, around_q)
             && p.iter()
@@ -417,14 +417,14 @@ fn apart(a: &Piece, b: &Piece, together: bool) -> bool {
     {
         return false;
     }
-    let blocks = |p: &Piece, q: &Piece| {
+    let blocks = |p: &PlacedFurniture, q: &PlacedFurniture| {
         let mut low = p.boxes.iter().filter(|b| stands_in_the_way(b));
         low.any(|b| q.clear.iter().any(|clear| overlap(clear, &zone(b))))
     };
     together || (!blocks(a, b) && !blocks(b, a))
 }
 
-impl Grid {
+impl ClearanceGrid {
     fn place(&self, cell: usize) -> [f32; 2] {
         let (column, row) = (cell % self.columns, cell / self.columns);
         [
@@ -434,13 +434,13 @@ impl Grid {
     }
 
     /// The cells whose middle lies in a rectangle grown by the radius.
-    fn block(&mut self, zone: &Zone) {
+    fn block(&mut self, zone: &ZoneXz) {
         let mut free = std::mem::take(&mut self.free);
         self.blocked(zone, |cell| free[cell] = false);
         self.free = free;
     }
 
-    fn blocked(&self, zone: &Zone, mut each: impl FnMut(usize)) {
+    fn blocked(&self, zone: &ZoneXz, mut each: impl FnMut(usize)) {
         let cell = |value: f32, k: usize, count: usize| {
             (((value - self.corner[k]) / CELL_M).max(0.0) as usize).min(count)
         };
@@ -472,7 +472,7 @@ impl Grid {
     }
 
     /// Whether all doors are on one free island when `zones` are blocked, too, and half of the free floor is on it.
-    fn is_joined(&self, zones: &[Zone]) -> bool {
+    fn is_joined(&self, zones: &[ZoneXz]) -> bool {
         let mut free = self.free.clone();
         for zone in zones {
             self.blocked(zone, |cell| free[cell] = false);
@@ -516,8 +516,8 @@ impl Grid {
 }
 
 /// The walls around a room, those that go on straight joined.
-fn spans(storey: &Storey, cells: &Cells, room: usize) -> Vec<Span> {
-    let mut spans: Vec<Span> = Vec::new();
+fn spans(storey: &GeneratedStorey, cells: &StoreyCells, room: usize) -> Vec<WallSpan> {
+    let mut spans: Vec<WallSpan> = Vec::new();
     for run in cells.runs() {
         let inward = match run.sides {
             [_, Some(own)] if own == room => 1.0,
@@ -534,7 +534,7 @@ fn spans(storey: &Storey, cells: &Cells, room: usize) -> Vec<Span> {
             continue;
         }
         let half = half_wall(storey, room, other);
-        let span = Span {
+        let span = WallSpan {
             along_x: run.along_x,
             face_m: metres(run.at) + inward * half,
             from_m: metres(run.from),

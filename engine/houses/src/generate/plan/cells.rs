@@ -1,21 +1,21 @@
 //! Which room lies where on a storey, and the walls between rooms.
 
-use super::{Area, PlanRoom, Steps};
+use super::{GeneratedRoom, GridRect, GridSteps};
 
 /// A straight stretch between the same two rooms (or a room and the outside).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Run {
+pub(crate) struct RoomBoundary {
     /// Whether it runs along x (west to east); else along z.
     pub(crate) along_x: bool,
     /// Its place across: z of one along x, x of one along z.
-    pub(crate) at: Steps,
-    pub(crate) from: Steps,
-    pub(crate) to: Steps,
+    pub(crate) at: GridSteps,
+    pub(crate) from: GridSteps,
+    pub(crate) to: GridSteps,
     /// The rooms at smaller and at larger `at`; `None`: outside.
     pub(crate) sides: [Option<usize>; 2],
 }
 
-impl Run {
+impl RoomBoundary {
     /// Whether it parts these two.
     pub(crate) fn parts(&self, a: Option<usize>, b: Option<usize>) -> bool {
         self.sides == [a, b] || self.sides == [b, a]
@@ -24,27 +24,27 @@ impl Run {
 
 /// A storey cut by all edges of its rooms.
 #[derive(Clone, Debug)]
-pub(crate) struct Cells {
-    lines: [Vec<Steps>; 2],
+pub(crate) struct StoreyCells {
+    lines: [Vec<GridSteps>; 2],
     /// The room of each cell, rows of growing x.
     rooms: Vec<Option<usize>>,
 }
 
-impl Cells {
-    pub(crate) fn new(rooms: &[PlanRoom]) -> Self {
+impl StoreyCells {
+    pub(crate) fn new(rooms: &[GeneratedRoom]) -> Self {
         let lines = [0, 1].map(|axis| {
             let areas = rooms.iter().flat_map(|room| &room.areas);
-            let mut lines: Vec<Steps> = areas.flat_map(|a| [a[axis], a[axis + 2]]).collect();
+            let mut lines: Vec<GridSteps> = areas.flat_map(|a| [a[axis], a[axis + 2]]).collect();
             lines.sort_unstable();
             lines.dedup();
             lines
         });
         let columns = lines[0].len().saturating_sub(1);
         let rows = lines[1].len().saturating_sub(1);
-        let inside = |[x0, z0, x1, z1]: &Area, x: Steps, z: Steps| {
+        let inside = |[x0, z0, x1, z1]: &GridRect, x: GridSteps, z: GridSteps| {
             (*x0..*x1).contains(&x) && (*z0..*z1).contains(&z)
         };
-        let owner = |x: Steps, z: Steps| {
+        let owner = |x: GridSteps, z: GridSteps| {
             rooms
                 .iter()
                 .position(|room| room.areas.iter().any(|area| inside(area, x, z)))
@@ -75,7 +75,7 @@ impl Cells {
     }
 
     /// The cells of a room, each with the rooms to its west, north, east and south.
-    pub(crate) fn of(&self, room: usize) -> Vec<(Area, [Option<usize>; 4])> {
+    pub(crate) fn of(&self, room: usize) -> Vec<(GridRect, [Option<usize>; 4])> {
         let mut found = Vec::new();
         for (cell, owner) in self.rooms.iter().enumerate() {
             if *owner != Some(room) {
@@ -95,12 +95,12 @@ impl Cells {
     }
 
     /// All stretches, those along x first, from north to south and west to east.
-    pub(crate) fn runs(&self) -> Vec<Run> {
+    pub(crate) fn runs(&self) -> Vec<RoomBoundary> {
         let mut runs = Vec::new();
         for along_x in [true, false] {
             let (along, across) = if along_x { (0, 1) } else { (1, 0) };
             for (k, at) in self.lines[across].iter().enumerate() {
-                let mut open: Option<Run> = None;
+                let mut open: Option<RoomBoundary> = None;
                 for pair in 0..self.lines[along].len().saturating_sub(1) {
                     let side = |across: Option<usize>| {
                         if along_x {
@@ -115,7 +115,7 @@ impl Cells {
                         Some(run) if run.sides == sides => run.to = to,
                         _ => {
                             runs.extend(open.take().filter(|run| run.sides[0] != run.sides[1]));
-                            open = Some(Run {
+                            open = Some(RoomBoundary {
                                 along_x,
                                 at: *at,
                                 from,

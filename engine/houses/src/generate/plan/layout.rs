@@ -1,10 +1,13 @@
 //! The best of many drawn plans.
 
 use super::links::{join, score_links};
-use super::storey::{Arrangement, Frame, STAIRS_DEPTH, STAIRS_WIDTH, draw, end_width};
-use super::{Area, FloorPlan, PlanRoom, Stairs, Steps, Storey, metres, steps};
-use crate::generate::programme::{Programme, Wanted};
-use crate::generate::rooms::RoomKind;
+use super::storey::{STAIRS_DEPTH, STAIRS_WIDTH, StoreyFrame, StripLayout, draw, end_width};
+use super::{
+    GeneratedPlan, GeneratedRoom, GeneratedStorey, GridRect, GridSteps, StairwellPlan, metres,
+    steps,
+};
+use crate::generate::room_program::{RoomProgram, RoomRequirement};
+use crate::generate::rooms::GeneratedRoomKind;
 use crate::generate::spec::HomeKind;
 use dwell_scene::random::{RandomKey, RandomStream};
 
@@ -15,11 +18,11 @@ const AT_MOST: u64 = 1600;
 
 /// The best plan of a bounded number of drawn ones; `None` when none fits.
 pub(crate) fn lay_out(
-    programme: &Programme,
-    adjacency: &[[RoomKind; 2]],
+    programme: &RoomProgram,
+    adjacency: &[[GeneratedRoomKind; 2]],
     key: RandomKey,
-) -> Option<FloorPlan> {
-    let mut best: Option<(f32, FloorPlan)> = None;
+) -> Option<GeneratedPlan> {
+    let mut best: Option<(f32, GeneratedPlan)> = None;
     for round in 0..AT_MOST {
         if round >= DRAWN && best.is_some() {
             break;
@@ -44,12 +47,12 @@ pub(crate) fn lay_out(
 
 /// One plan with its faults: the less the better.
 fn attempt(
-    programme: &Programme,
-    adjacency: &[[RoomKind; 2]],
+    programme: &RoomProgram,
+    adjacency: &[[GeneratedRoomKind; 2]],
     stream: &mut RandomStream,
-) -> Option<(f32, FloorPlan)> {
+) -> Option<(f32, GeneratedPlan)> {
     let stairs = programme.storeys.len() > 1;
-    let arrangements: Vec<Arrangement> = programme
+    let arrangements: Vec<StripLayout> = programme
         .storeys
         .iter()
         .enumerate()
@@ -62,39 +65,39 @@ fn attempt(
         let rooms = draw(&frame, arrangement, k == 0, stream)?;
         score += faults(&rooms, wanted)?;
         let links = join(&rooms, k == 0, adjacency)?;
-        storeys.push(Storey { rooms, links });
+        storeys.push(GeneratedStorey { rooms, links });
     }
-    let unmet = score_links(&storeys, adjacency);
-    score += 3.0 * unmet.len() as f32;
+    let missing_connections = score_links(&storeys, adjacency);
+    score += 3.0 * missing_connections.len() as f32;
     let stairs = stairs.then(|| {
         let west = arrangements.iter().any(|a| a.west.is_some());
         debug_assert!(!west, "stairs stand at the west end");
-        Stairs {
+        StairwellPlan {
             area: [0, 0, STAIRS_WIDTH, frame.strips[0]],
             climb: [0, -1],
             across: [1, 0],
         }
     });
-    let plan = FloorPlan {
+    let plan = GeneratedPlan {
         storeys,
         stairs,
-        unmet,
+        missing_connections,
     };
     Some((score, plan))
 }
 
 /// Deals the rooms of a storey to the strips and ends.
 fn arrange(
-    rooms: &[Wanted],
+    rooms: &[RoomRequirement],
     home: HomeKind,
     stairs: bool,
     ground: bool,
     stream: &mut RandomStream,
-) -> Arrangement {
-    use RoomKind::{DiningRoom, Kitchen, LivingRoom, Lobby, Studio};
-    let mut rest: Vec<Wanted> = rooms.to_vec();
-    let mut arrangement = Arrangement::default();
-    let public = |room: &Wanted| matches!(room.kind, LivingRoom | Lobby | Studio);
+) -> StripLayout {
+    use GeneratedRoomKind::{DiningRoom, Kitchen, LivingRoom, Lobby, Studio};
+    let mut rest: Vec<RoomRequirement> = rooms.to_vec();
+    let mut arrangement = StripLayout::default();
+    let public = |room: &RoomRequirement| matches!(room.kind, LivingRoom | Lobby | Studio);
     let mut main = rest.iter().position(public);
     // Without a room for all, the largest one takes the end, or none on an upper storey.
     if main.is_none() && (rest.len() < 3 || stream.below(2) == 0) {
@@ -141,11 +144,11 @@ fn arrange(
 
 /// Depths and width that suit the first storey; the others follow.
 fn frame(
-    arrangements: &[Arrangement],
+    arrangements: &[StripLayout],
     home: HomeKind,
     stairs: bool,
     stream: &mut RandomStream,
-) -> Option<Frame> {
+) -> Option<StoreyFrame> {
     let used = |strip: usize| arrangements.iter().any(|a| !a.strips[strip].is_empty());
     let draw = |used: bool, low: f32, high: f32, stream: &mut RandomStream| {
         let depth = steps(stream.range(low, high));
@@ -167,16 +170,16 @@ fn frame(
         (_, HomeKind::Office) => steps(stream.range(1.5, 2.0)),
         _ => steps(stream.range(1.25, 1.6)),
     };
-    let mut frame = Frame {
+    let mut frame = StoreyFrame {
         strips,
         corridor,
         width: 0,
         stairs,
     };
     // The floor of all rooms stays what it shall be.
-    let width = |arrangement: &Arrangement| {
+    let width = |arrangement: &StripLayout| {
         let mut floor = [0.0; 2];
-        let mut widest: Steps = 0;
+        let mut widest: GridSteps = 0;
         for k in 0..2 {
             let extra = if k == 0 && stairs { STAIRS_WIDTH } else { 0 };
             let leg = if k == 1 && arrangement.west.is_some() {
@@ -200,27 +203,27 @@ fn frame(
             + end_width(arrangement.west.map_or(0.0, |r| r.area_m2), frame.depth());
         steps(mean).max(widest * 9 / 10) + ends
     };
-    let widths: Vec<Steps> = arrangements.iter().map(width).collect();
+    let widths: Vec<GridSteps> = arrangements.iter().map(width).collect();
     let widest = widths.iter().copied().max()?;
     frame.width = widest;
     (metres(frame.width) <= 30.0).then_some(frame)
 }
 
 /// How far rooms are from what is wanted; `None` when one cannot be used.
-fn faults(rooms: &[PlanRoom], wanted: &[Wanted]) -> Option<f32> {
+fn faults(rooms: &[GeneratedRoom], wanted: &[RoomRequirement]) -> Option<f32> {
     let mut score = 0.0;
-    let mut open: Vec<&Wanted> = wanted.iter().collect();
+    let mut open: Vec<&RoomRequirement> = wanted.iter().collect();
     for room in rooms {
         let area_m2: f32 = room
             .areas
             .iter()
             .map(|[x0, z0, x1, z1]| metres(x1 - x0) * metres(z1 - z0))
             .sum();
-        if room.kind == RoomKind::Hallway {
+        if room.kind == GeneratedRoomKind::Hallway {
             score += 0.04 * area_m2;
             continue;
         }
-        let of_kind = |w: &&Wanted| w.kind == room.kind;
+        let of_kind = |w: &&RoomRequirement| w.kind == room.kind;
         let nearest = (0..open.len())
             .filter(|k| of_kind(&open[*k]))
             .min_by(|a, b| {
@@ -247,18 +250,22 @@ fn faults(rooms: &[PlanRoom], wanted: &[Wanted]) -> Option<f32> {
 }
 
 /// A balcony or terrace at the longest outer wall of the room for all (or the largest), if there is one long enough.
-fn add_outside(plan: &mut FloorPlan, kind: Option<RoomKind>, stream: &mut RandomStream) {
+fn add_outside(
+    plan: &mut GeneratedPlan,
+    kind: Option<GeneratedRoomKind>,
+    stream: &mut RandomStream,
+) {
     let (Some(kind), Some(storey)) = (kind, plan.storeys.first_mut()) else {
         return;
     };
-    let depth = if kind == RoomKind::Balcony {
+    let depth = if kind == GeneratedRoomKind::Balcony {
         steps(stream.range(1.5, 2.0))
     } else {
         steps(stream.range(2.4, 3.4))
     };
-    let cells = super::Cells::new(&storey.rooms);
-    let social = |room: &PlanRoom| {
-        use RoomKind::{Bedroom, LivingRoom, Lobby, Office, Studio};
+    let cells = super::StoreyCells::new(&storey.rooms);
+    let social = |room: &GeneratedRoom| {
+        use GeneratedRoomKind::{Bedroom, LivingRoom, Lobby, Office, Studio};
         match room.kind {
             LivingRoom | Studio | Lobby => 3,
             Bedroom => 2,
@@ -294,41 +301,41 @@ fn add_outside(plan: &mut FloorPlan, kind: Option<RoomKind>, stream: &mut Random
     } else {
         (run.at - depth, run.at)
     };
-    let area: Area = if run.along_x {
+    let area: GridRect = if run.along_x {
         [from, near, from + long, far]
     } else {
         [near, from, far, from + long]
     };
-    storey.rooms.push(PlanRoom {
+    storey.rooms.push(GeneratedRoom {
         kind,
         areas: vec![area],
     });
-    storey.links.push(super::Link {
+    storey.links.push(super::RoomConnection {
         into: room,
         from: Some(storey.rooms.len() - 1),
-        kind: super::LinkKind::Door,
+        kind: super::ConnectionKind::Door,
     });
 }
 
 /// Mirrors and turns the plan in one of eight ways and moves its corner to the origin.
-fn turn(plan: &mut FloorPlan, stream: &mut RandomStream) {
+fn turn(plan: &mut GeneratedPlan, stream: &mut RandomStream) {
     let [swap, flip_x, flip_z] = [0; 3].map(|_| stream.below(2) == 1);
-    let point = |x: Steps, z: Steps| {
+    let point = |x: GridSteps, z: GridSteps| {
         let (x, z) = if swap { (z, x) } else { (x, z) };
         (if flip_x { -x } else { x }, if flip_z { -z } else { z })
     };
-    let area = |[x0, z0, x1, z1]: Area| -> Area {
+    let area = |[x0, z0, x1, z1]: GridRect| -> GridRect {
         let ((a, b), (c, d)) = (point(x0, z0), point(x1, z1));
         [a.min(c), b.min(d), a.max(c), b.max(d)]
     };
-    let mut corner = [Steps::MAX; 2];
+    let mut corner = [GridSteps::MAX; 2];
     for room in plan.storeys.iter_mut().flat_map(|storey| &mut storey.rooms) {
         for place in &mut room.areas {
             *place = area(*place);
             corner = [corner[0].min(place[0]), corner[1].min(place[1])];
         }
     }
-    let shift = |place: &mut Area| {
+    let shift = |place: &mut GridRect| {
         for (k, value) in place.iter_mut().enumerate() {
             *value -= corner[k % 2];
         }

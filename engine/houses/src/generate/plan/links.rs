@@ -1,28 +1,32 @@
 //! Which rooms are joined: all with the hallway or the living room, never through a bedroom or a bathroom.
 
-use super::{Cells, Link, LinkKind, PlanRoom, Run, Steps, Storey};
-use crate::generate::rooms::RoomKind;
+use super::{
+    ConnectionKind, GeneratedRoom, GeneratedStorey, GridSteps, RoomBoundary, RoomConnection,
+    StoreyCells,
+};
+use crate::generate::rooms::GeneratedRoomKind;
 
 /// The least stretch of wall for a door with its frame and the wall beside it.
-const DOOR_RUN: Steps = 24;
+const DOOR_RUN: GridSteps = 24;
 /// The least stretch for a wide opening.
-const OPEN_RUN: Steps = 40;
+const OPEN_RUN: GridSteps = 40;
 
 /// The longest stretch between two rooms.
-fn shared(runs: &[Run], a: usize, b: Option<usize>) -> Steps {
+fn shared(runs: &[RoomBoundary], a: usize, b: Option<usize>) -> GridSteps {
     let between = runs.iter().filter(|run| run.parts(Some(a), b));
     between.map(|run| run.to - run.from).max().unwrap_or(0)
 }
 
 /// Joins the rooms of a storey; `None` when one cannot be reached.
 pub(super) fn join(
-    rooms: &[PlanRoom],
+    rooms: &[GeneratedRoom],
     ground: bool,
-    adjacency: &[[RoomKind; 2]],
-) -> Option<Vec<Link>> {
-    use RoomKind::{DiningRoom, Hallway, Kitchen, LivingRoom, Lobby, Studio};
-    let runs = Cells::new(rooms).runs();
-    let of = |wanted: fn(RoomKind) -> bool| rooms.iter().position(|room| wanted(room.kind));
+    adjacency: &[[GeneratedRoomKind; 2]],
+) -> Option<Vec<RoomConnection>> {
+    use GeneratedRoomKind::{DiningRoom, Hallway, Kitchen, LivingRoom, Lobby, Studio};
+    let runs = StoreyCells::new(rooms).runs();
+    let of =
+        |wanted: fn(GeneratedRoomKind) -> bool| rooms.iter().position(|room| wanted(room.kind));
     let hallway = of(|kind| kind == Hallway);
     let public = of(|kind| matches!(kind, LivingRoom | Lobby | Studio));
     // Where one comes in, and from where the others are reached.
@@ -30,10 +34,10 @@ pub(super) fn join(
     let mut links = Vec::new();
     if ground {
         (shared(&runs, hub, None) >= DOOR_RUN).then_some(())?;
-        links.push(Link {
+        links.push(RoomConnection {
             into: hub,
             from: None,
-            kind: LinkKind::Door,
+            kind: ConnectionKind::Door,
         });
     }
     for (k, room) in rooms.iter().enumerate().filter(|(k, _)| *k != hub) {
@@ -41,16 +45,16 @@ pub(super) fn join(
         let social = public.filter(|p| *p != k && behind);
         // Kitchens and dining rooms open wide to the living room where they touch it.
         if let Some(public) = social.filter(|p| shared(&runs, k, Some(*p)) >= OPEN_RUN) {
-            links.push(Link {
+            links.push(RoomConnection {
                 into: k,
                 from: Some(public),
-                kind: LinkKind::Open,
+                kind: ConnectionKind::Open,
             });
         } else if shared(&runs, k, Some(hub)) >= DOOR_RUN {
-            links.push(Link {
+            links.push(RoomConnection {
                 into: k,
                 from: Some(hub),
-                kind: LinkKind::Door,
+                kind: ConnectionKind::Door,
             });
         } else {
             return None;
@@ -64,7 +68,7 @@ pub(super) fn join(
                 && rooms[*q].kind == *b
                 && shared(&runs, *p, Some(*q)) >= DOOR_RUN
         });
-        let joined = |links: &[Link], p: usize, q: usize| {
+        let joined = |links: &[RoomConnection], p: usize, q: usize| {
             links.iter().any(|link| {
                 (link.into, link.from) == (p, Some(q)) || (link.into, link.from) == (q, Some(p))
             })
@@ -72,10 +76,10 @@ pub(super) fn join(
         if let Some((p, q)) = fitting.next()
             && !joined(&links, p, q)
         {
-            links.push(Link {
+            links.push(RoomConnection {
                 into: p,
                 from: Some(q),
-                kind: LinkKind::Door,
+                kind: ConnectionKind::Door,
             });
         }
     }
@@ -83,8 +87,11 @@ pub(super) fn join(
 }
 
 /// Pairs of kinds that should be joined and are not.
-pub(super) fn score_links(storeys: &[Storey], adjacency: &[[RoomKind; 2]]) -> Vec<[RoomKind; 2]> {
-    let joined = |[a, b]: &[RoomKind; 2]| {
+pub(super) fn score_links(
+    storeys: &[GeneratedStorey],
+    adjacency: &[[GeneratedRoomKind; 2]],
+) -> Vec<[GeneratedRoomKind; 2]> {
+    let joined = |[a, b]: &[GeneratedRoomKind; 2]| {
         storeys.iter().any(|storey| {
             storey.links.iter().any(|link| {
                 let kinds = [

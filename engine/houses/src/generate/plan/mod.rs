@@ -9,41 +9,41 @@ mod layout;
 mod links;
 mod storey;
 
-pub(crate) use cells::{Cells, Run};
+pub(crate) use cells::{RoomBoundary, StoreyCells};
 pub(crate) use layout::lay_out;
 
-use super::rooms::RoomKind;
+use super::rooms::GeneratedRoomKind;
 
 /// A length in steps of 5 cm.
-pub(crate) type Steps = i32;
+pub(crate) type GridSteps = i32;
 
 /// Metres of a step.
 pub(crate) const STEP_M: f32 = 0.05;
 
 /// Steps of a length in metres, rounded.
-pub(crate) fn steps(metres: f32) -> Steps {
-    (metres / STEP_M).round() as Steps
+pub(crate) fn steps(metres: f32) -> GridSteps {
+    (metres / STEP_M).round() as GridSteps
 }
 
 /// Metres of a number of steps.
-pub(crate) fn metres(steps: Steps) -> f32 {
+pub(crate) fn metres(steps: GridSteps) -> f32 {
     steps as f32 * STEP_M
 }
 
 /// A rectangle between the middles of walls: x from, z from, x to, z to.
-pub(crate) type Area = [Steps; 4];
+pub(crate) type GridRect = [GridSteps; 4];
 
 /// A room of the plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct PlanRoom {
-    pub(crate) kind: RoomKind,
+pub(crate) struct GeneratedRoom {
+    pub(crate) kind: GeneratedRoomKind,
     /// Rectangles that touch each other and do not overlap.
-    pub(crate) areas: Vec<Area>,
+    pub(crate) areas: Vec<GridRect>,
 }
 
 /// What joins two rooms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LinkKind {
+pub(crate) enum ConnectionKind {
     /// A door.
     Door,
     /// A wide opening without a leaf.
@@ -52,37 +52,37 @@ pub(crate) enum LinkKind {
 
 /// Two rooms that are joined, or a room and the outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Link {
+pub(crate) struct RoomConnection {
     /// The room into which the leaf swings.
     pub(crate) into: usize,
     /// The other one; `None`: the outside.
     pub(crate) from: Option<usize>,
-    pub(crate) kind: LinkKind,
+    pub(crate) kind: ConnectionKind,
 }
 
 /// A storey of the plan.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Storey {
-    pub(crate) rooms: Vec<PlanRoom>,
-    pub(crate) links: Vec<Link>,
+pub(crate) struct GeneratedStorey {
+    pub(crate) rooms: Vec<GeneratedRoom>,
+    pub(crate) links: Vec<RoomConnection>,
 }
 
 /// The stairs from every storey to the next: two flights beside each other with a landing at the far end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Stairs {
+pub(crate) struct StairwellPlan {
     /// Its place on every storey, part of the hallway.
-    pub(crate) area: Area,
+    pub(crate) area: GridRect,
     /// The direction in which the first flight climbs, (x, z).
-    pub(crate) climb: [Steps; 2],
+    pub(crate) climb: [GridSteps; 2],
     /// The direction from the first flight to the second.
-    pub(crate) across: [Steps; 2],
+    pub(crate) across: [GridSteps; 2],
 }
 
 /// The plan of a house.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct FloorPlan {
-    pub(crate) storeys: Vec<Storey>,
-    pub(crate) stairs: Option<Stairs>,
+pub(crate) struct GeneratedPlan {
+    pub(crate) storeys: Vec<GeneratedStorey>,
+    pub(crate) stairs: Option<StairwellPlan>,
     /// Pairs of kinds that should have been joined and are not.
-    pub(crate) unmet: Vec<[RoomKind; 2]>,
+    pub(crate) missing_connections: Vec<[GeneratedRoomKind; 2]>,
 }

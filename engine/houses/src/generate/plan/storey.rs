@@ -1,53 +1,53 @@
 //! One storey: rooms in strips along a corridor.
 
-use super::{Area, PlanRoom, Steps, metres, steps};
-use crate::generate::programme::Wanted;
-use crate::generate::rooms::RoomKind;
+use super::{GeneratedRoom, GridRect, GridSteps, metres, steps};
+use crate::generate::room_program::RoomRequirement;
+use crate::generate::rooms::GeneratedRoomKind;
 use dwell_scene::random::RandomStream;
 
 /// Width of the stairs' place: two flights and a gap between them.
-pub(super) const STAIRS_WIDTH: Steps = 44;
+pub(super) const STAIRS_WIDTH: GridSteps = 44;
 /// The least depth of the strip that holds the stairs.
-pub(super) const STAIRS_DEPTH: Steps = 66;
+pub(super) const STAIRS_DEPTH: GridSteps = 66;
 /// A doorway with what it needs on both sides.
-const DOORWAY: Steps = 25;
+const DOORWAY: GridSteps = 25;
 
 /// What all storeys of a house share: the strips' depths and the corridor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Frame {
+pub(super) struct StoreyFrame {
     /// Depth of the strips north and south of the corridor; 0: none.
-    pub(super) strips: [Steps; 2],
-    pub(super) corridor: Steps,
+    pub(super) strips: [GridSteps; 2],
+    pub(super) corridor: GridSteps,
     /// From west to east.
-    pub(super) width: Steps,
+    pub(super) width: GridSteps,
     /// Whether stairs stand at the west end of the northern strip.
     pub(super) stairs: bool,
 }
 
-impl Frame {
-    pub(super) fn depth(&self) -> Steps {
+impl StoreyFrame {
+    pub(super) fn depth(&self) -> GridSteps {
         self.strips[0] + self.corridor + self.strips[1]
     }
 
     /// Where the corridor begins and ends from north to south.
-    fn aisle(&self) -> [Steps; 2] {
+    fn aisle(&self) -> [GridSteps; 2] {
         [self.strips[0], self.strips[0] + self.corridor]
     }
 }
 
 /// Which room stands where on a storey.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Arrangement {
+pub(super) struct StripLayout {
     /// Rooms of the northern and the southern strip from west to east.
-    pub(super) strips: [Vec<Wanted>; 2],
+    pub(super) strips: [Vec<RoomRequirement>; 2],
     /// A room over the full depth at the east end, and rooms carved from it.
-    pub(super) east: Option<Wanted>,
-    pub(super) carved: Vec<Wanted>,
+    pub(super) east: Option<RoomRequirement>,
+    pub(super) carved: Vec<RoomRequirement>,
     /// A room over the full depth at the west end; the way in then crosses the southern strip.
-    pub(super) west: Option<Wanted>,
+    pub(super) west: Option<RoomRequirement>,
 }
 
-impl Arrangement {
+impl StripLayout {
     /// Floor of the rooms at the east end, m².
     pub(super) fn east_m2(&self) -> f32 {
         let rooms = self.east.iter().chain(&self.carved);
@@ -55,31 +55,31 @@ impl Arrangement {
     }
 
     /// How wide a strip wants to be.
-    pub(super) fn wish(&self, strip: usize, depth: Steps) -> Steps {
+    pub(super) fn wish(&self, strip: usize, depth: GridSteps) -> GridSteps {
         let rooms = self.strips[strip].iter();
         rooms.map(|room| width_of(room, depth)).sum()
     }
 }
 
 /// The width of a room in a strip.
-pub(super) fn width_of(room: &Wanted, depth: Steps) -> Steps {
+pub(super) fn width_of(room: &RoomRequirement, depth: GridSteps) -> GridSteps {
     let least = steps(room.kind.traits().least_width_m);
     let depth_m = metres(depth).max(0.5);
     steps(room.area_m2 / depth_m).max(least)
 }
 
 /// Widths of rooms that fill `length` exactly, in proportion to what they want; `None` when they do not fit.
-fn fill(rooms: &[Wanted], depth: Steps, length: Steps) -> Option<Vec<Steps>> {
-    let wishes: Vec<Steps> = rooms.iter().map(|room| width_of(room, depth)).collect();
-    let total: Steps = wishes.iter().sum();
+fn fill(rooms: &[RoomRequirement], depth: GridSteps, length: GridSteps) -> Option<Vec<GridSteps>> {
+    let wishes: Vec<GridSteps> = rooms.iter().map(|room| width_of(room, depth)).collect();
+    let total: GridSteps = wishes.iter().sum();
     if total == 0 {
         return (length == 0).then(Vec::new);
     }
-    let mut widths: Vec<Steps> = wishes
+    let mut widths: Vec<GridSteps> = wishes
         .iter()
         .map(|wish| (wish * length / total).max(1))
         .collect();
-    let rest = length - widths.iter().sum::<Steps>();
+    let rest = length - widths.iter().sum::<GridSteps>();
     *widths.last_mut()? += rest;
     let fits = rooms
         .iter()
@@ -90,11 +90,11 @@ fn fill(rooms: &[Wanted], depth: Steps, length: Steps) -> Option<Vec<Steps>> {
 
 /// The rooms of a storey; the hallway is the last one if there is any. `None` when they do not fit the frame.
 pub(super) fn draw(
-    frame: &Frame,
-    arrangement: &Arrangement,
+    frame: &StoreyFrame,
+    arrangement: &StripLayout,
     way_in: bool,
     stream: &mut RandomStream,
-) -> Option<Vec<PlanRoom>> {
+) -> Option<Vec<GeneratedRoom>> {
     let depth = frame.depth();
     let east_width = end_width(arrangement.east_m2(), depth);
     let west_width = end_width(arrangement.west.map_or(0.0, |room| room.area_m2), depth);
@@ -136,7 +136,7 @@ pub(super) fn draw(
             continue;
         }
         for (room, width) in strip.iter().zip(fill(strip, z1 - z0, to - x)?) {
-            rooms.push(PlanRoom {
+            rooms.push(GeneratedRoom {
                 kind: room.kind,
                 areas: vec![[x, z0, x + width, z1]],
             });
@@ -159,7 +159,7 @@ pub(super) fn draw(
         hallway.insert(0, [from, north, end, south]);
     }
     if let Some(room) = arrangement.west {
-        rooms.push(PlanRoom {
+        rooms.push(GeneratedRoom {
             kind: room.kind,
             areas: vec![[0, 0, west_width, depth]],
         });
@@ -171,7 +171,7 @@ pub(super) fn draw(
         if end < to {
             areas.push([end, north, to, south]);
         }
-        let mut living = PlanRoom {
+        let mut living = GeneratedRoom {
             kind: room.kind,
             areas,
         };
@@ -181,8 +181,8 @@ pub(super) fn draw(
         rooms.push(living);
     }
     if !hallway.is_empty() {
-        rooms.push(PlanRoom {
-            kind: RoomKind::Hallway,
+        rooms.push(GeneratedRoom {
+            kind: GeneratedRoomKind::Hallway,
             areas: hallway,
         });
     }
@@ -190,7 +190,7 @@ pub(super) fn draw(
 }
 
 /// The width of a room over the full depth.
-pub(super) fn end_width(area_m2: f32, depth: Steps) -> Steps {
+pub(super) fn end_width(area_m2: f32, depth: GridSteps) -> GridSteps {
     if area_m2 > 0.0 {
         steps(area_m2 / metres(depth).max(0.5)).max(steps(2.8))
     } else {
@@ -201,12 +201,12 @@ pub(super) fn end_width(area_m2: f32, depth: Steps) -> Steps {
 /// Takes a corner of the room at the east end for another one: at the north or the south. What is left must keep its width
 /// and stay at the corridor's end.
 fn carve(
-    living: &mut PlanRoom,
-    block: Area,
-    carved: &Wanted,
+    living: &mut GeneratedRoom,
+    block: GridRect,
+    carved: &RoomRequirement,
     at_north: bool,
-    aisle: [Steps; 2],
-) -> Option<PlanRoom> {
+    aisle: [GridSteps; 2],
+) -> Option<GeneratedRoom> {
     let [x0, z0, x1, z1] = block;
     let least = steps(carved.kind.traits().least_width_m);
     let width = x1 - x0;
@@ -248,7 +248,7 @@ fn carve(
     if beside[2] > beside[0] {
         living.areas.push(beside);
     }
-    Some(PlanRoom {
+    Some(GeneratedRoom {
         kind: carved.kind,
         areas: vec![corner],
     })

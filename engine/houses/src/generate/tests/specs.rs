@@ -1,7 +1,7 @@
 //! Specs that are wrong say so; those that are right are kept.
 
 use crate::error::HousesError;
-use crate::generate::{DoorStates, HomeKind, HouseSpec, RoomKind, generate};
+use crate::generate::{DoorStates, GeneratedRoomKind, HomeKind, HouseSpec, generate};
 
 fn refused(spec: &HouseSpec, wanted: &str) -> String {
     match generate(1, spec) {
@@ -38,13 +38,13 @@ fn impossible_specs_name_the_field_and_what_is_possible() {
         assert!(refused(&spec, "time_of_day").contains("0 to 24"));
     }
     let crowded = HouseSpec {
-        rooms: vec![RoomKind::Bedroom; 40],
+        rooms: vec![GeneratedRoomKind::Bedroom; 40],
         area_m2: Some(20.0),
         ..base()
     };
     assert!(refused(&crowded, "rooms").contains("12"));
     let tight = HouseSpec {
-        rooms: vec![RoomKind::Bedroom; 10],
+        rooms: vec![GeneratedRoomKind::Bedroom; 10],
         area_m2: Some(20.0),
         ..base()
     };
@@ -66,14 +66,14 @@ fn impossible_specs_name_the_field_and_what_is_possible() {
     );
     refused(
         &HouseSpec {
-            rooms: vec![RoomKind::Hallway],
+            rooms: vec![GeneratedRoomKind::Hallway],
             ..base()
         },
         "rooms",
     );
     refused(
         &HouseSpec {
-            rooms: vec![RoomKind::Balcony],
+            rooms: vec![GeneratedRoomKind::Balcony],
             ..base()
         },
         "rooms",
@@ -107,8 +107,8 @@ fn impossible_specs_name_the_field_and_what_is_possible() {
     );
     refused(
         &HouseSpec {
-            rooms: vec![RoomKind::Kitchen],
-            adjacency: vec![[RoomKind::Kitchen, RoomKind::Gym]],
+            rooms: vec![GeneratedRoomKind::Kitchen],
+            adjacency: vec![[GeneratedRoomKind::Kitchen, GeneratedRoomKind::Gym]],
             ..base()
         },
         "adjacency",
@@ -122,14 +122,14 @@ fn a_spec_is_kept() {
     for seed in 0..12 {
         let spec = HouseSpec {
             rooms: vec![
-                RoomKind::LivingRoom,
-                RoomKind::Kitchen,
-                RoomKind::Bedroom,
-                RoomKind::Bathroom,
-                RoomKind::Toilet,
+                GeneratedRoomKind::LivingRoom,
+                GeneratedRoomKind::Kitchen,
+                GeneratedRoomKind::Bedroom,
+                GeneratedRoomKind::Bathroom,
+                GeneratedRoomKind::Toilet,
             ],
             area_m2: Some(75.0),
-            adjacency: vec![[RoomKind::Kitchen, RoomKind::LivingRoom]],
+            adjacency: vec![[GeneratedRoomKind::Kitchen, GeneratedRoomKind::LivingRoom]],
             doors: DoorStates::Closed,
             ..HouseSpec::default()
         };
@@ -145,7 +145,7 @@ fn a_spec_is_kept() {
         assert!(house.joints.iter().all(|joint| joint.initial == 0.0));
     }
     let studio = HouseSpec {
-        rooms: vec![RoomKind::Studio],
+        rooms: vec![GeneratedRoomKind::Studio],
         ..HouseSpec::default()
     };
     assert_eq!(generate(3, &studio).unwrap().house.rooms.len(), 1);

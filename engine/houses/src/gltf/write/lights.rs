@@ -13,19 +13,19 @@ use glam::{Quat, Vec3};
 use serde_json::{Value, json};
 
 use super::super::lights::{LEAST_CONE_RAD, LUMENS_PER_WATT};
-use crate::loss::Losses;
+use crate::export_loss::ExportLosses;
 
 /// The name of the extension.
 pub(super) const EXTENSION: &str = "KHR_lights_punctual";
 
 /// A light of the file, and the node that carries it: in the world, as it stands at the start.
-pub(super) struct Lamp {
+pub(super) struct WrittenLamp {
     pub(super) light: Value,
     pub(super) node: Value,
 }
 
 /// The `index`-th light of the file.
-pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> Lamp {
+pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> WrittenLamp {
     let object = &house.objects[light.object];
     let part = &house.parts[light.part];
     let lumens = light.power_w * LUMENS_PER_WATT;
@@ -66,16 +66,16 @@ pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> Lamp {
             },
         }},
     });
-    Lamp { light: value, node }
+    WrittenLamp { light: value, node }
 }
 
 /// The sun: a directional light along -Z of its node, its intensity in lx. All of the sky stands in the node's extras.
-pub(super) fn sun(sky: &Sky, index: usize) -> Lamp {
+pub(super) fn sun(sky: &Sky, index: usize) -> WrittenLamp {
     let rgb = Vec3::from_array(sky.sun_lx);
     let most = rgb.max_element();
     let color = if most > 0.0 { rgb / most } else { Vec3::ONE };
     let turn = Quat::from_rotation_arc(Vec3::NEG_Z, -sky.to_sun);
-    Lamp {
+    WrittenLamp {
         light: json!({
             "name": "sun", "type": "directional", "color": color.to_array(), "intensity": most,
         }),
@@ -89,7 +89,7 @@ pub(super) fn sun(sky: &Sky, index: usize) -> Lamp {
 }
 
 /// What the extension cannot say of lights; extras say it.
-pub(super) fn losses(house: &HouseData, losses: &mut Losses) {
+pub(super) fn losses(house: &HouseData, losses: &mut ExportLosses) {
     let count = |is: fn(&Light) -> bool| house.lights.iter().filter(|light| is(light)).count();
     losses.add(
         "glowing lines; they shine from their middles",

@@ -6,7 +6,7 @@ use dwell_scene::{HouseData, Id, MaterialId, Mesh, MeshId};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
-use super::super::glb::{Binary, UNSIGNED_INT, UNSIGNED_SHORT};
+use super::super::glb::{BinaryChunk, UNSIGNED_INT, UNSIGNED_SHORT};
 
 /// Where the numbers of a mesh stand in the file: accessors.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -25,14 +25,14 @@ pub(crate) struct MeshAccessors {
 }
 
 /// A mesh in the file.
-pub(super) struct Stored {
+pub(super) struct MeshInFile {
     pub(super) accessors: MeshAccessors,
     /// The indices of each slot in use.
     by_slot: Vec<(u16, usize)>,
 }
 
 /// Writes the numbers of a mesh.
-pub(super) fn store(binary: &mut Binary, mesh: &Mesh) -> Stored {
+pub(super) fn store(binary: &mut BinaryChunk, mesh: &Mesh) -> MeshInFile {
     let some = |count: usize| (count > 0).then_some(());
     let positions = some(mesh.positions.len())
         .map(|()| binary.floats(mesh.positions.iter().map(Vec3::to_array), "VEC3", true));
@@ -63,7 +63,7 @@ pub(super) fn store(binary: &mut Binary, mesh: &Mesh) -> Stored {
             })
             .collect(),
     };
-    Stored {
+    MeshInFile {
         accessors: MeshAccessors {
             positions,
             normals,
@@ -75,7 +75,7 @@ pub(super) fn store(binary: &mut Binary, mesh: &Mesh) -> Stored {
     }
 }
 
-fn indices(binary: &mut Binary, triangles: impl Iterator<Item = [u32; 3]>) -> usize {
+fn indices(binary: &mut BinaryChunk, triangles: impl Iterator<Item = [u32; 3]>) -> usize {
     let bytes: Vec<u8> = triangles.flatten().flat_map(u32::to_le_bytes).collect();
     let view = binary.view(&bytes);
     binary.accessor(view, 0, UNSIGNED_INT, bytes.len() / 4, "SCALAR")
@@ -91,16 +91,16 @@ fn groups(mesh: &Mesh) -> BTreeMap<u16, Vec<usize>> {
 }
 
 /// glTF binds materials to meshes where we bind them to instances: a mesh of the file for each pair in use.
-pub(super) struct Shapes<'a> {
+pub(super) struct MeshTable<'a> {
     house: &'a HouseData,
-    stored: &'a [Stored],
+    stored: &'a [MeshInFile],
     known: BTreeMap<(MeshId, &'a [MaterialId]), usize>,
     /// The meshes of the file.
     pub(super) meshes: Vec<Value>,
 }
 
-impl<'a> Shapes<'a> {
-    pub(super) fn new(house: &'a HouseData, stored: &'a [Stored]) -> Self {
+impl<'a> MeshTable<'a> {
+    pub(super) fn new(house: &'a HouseData, stored: &'a [MeshInFile]) -> Self {
         Self {
             house,
             stored,
@@ -114,7 +114,7 @@ impl<'a> Shapes<'a> {
         if let Some(known) = self.known.get(&(id, materials)) {
             return Some(*known);
         }
-        let Stored { accessors, by_slot } = &self.stored[id.index()];
+        let MeshInFile { accessors, by_slot } = &self.stored[id.index()];
         let (Some(positions), Some(_)) = (accessors.positions, accessors.triangles) else {
             return None;
         };

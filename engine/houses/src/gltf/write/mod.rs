@@ -16,17 +16,17 @@ use dwell_scene::{House, HouseData, Id, LevelId, Mobility, RoomId};
 use glam::Affine3A;
 use serde_json::{Value, json};
 
-use super::glb::{Beside, Binary};
-use crate::build::encode_png;
+use super::glb::{BinaryChunk, SidecarFile};
 use crate::error::HousesError;
-use crate::loss::{Loss, Losses};
-use meshes::Shapes;
+use crate::export_loss::{ExportLoss, ExportLosses};
+use crate::import::encode_png;
+use meshes::MeshTable;
 
 /// A written house: the file, and where its tables went.
-pub(crate) struct Written {
+pub(crate) struct WrittenGlb {
     pub(crate) file: Vec<u8>,
     /// Files beside it that its URIs name: what several houses share.
-    pub(crate) beside: Vec<Beside>,
+    pub(crate) beside: Vec<SidecarFile>,
     pub(crate) meshes: Vec<MeshAccessors>,
 }
 
@@ -44,7 +44,7 @@ pub(crate) enum Storage {
 ///
 /// # Errors
 /// [`HousesError::Unwritable`] beyond the format's 4 GiB, [`HousesError::Io`] when the system refuses.
-pub fn write(house: &House, path: &Path) -> Result<Vec<Loss>, HousesError> {
+pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError> {
     let written = encode(house, Storage::Inside).map_err(|message| HousesError::Unwritable {
         path: path.to_owned(),
         message,
@@ -54,8 +54,8 @@ pub fn write(house: &House, path: &Path) -> Result<Vec<Loss>, HousesError> {
 }
 
 /// What viewers do not get to know: they may pass over `extras`, which our own reader reads.
-fn losses(house: &HouseData) -> Vec<Loss> {
-    let mut losses = Losses::default();
+fn losses(house: &HouseData) -> Vec<ExportLoss> {
+    let mut losses = ExportLosses::default();
     losses.add(
         "rooms; named nodes, told in extras, which our reader reads",
         house.rooms.len(),
@@ -95,13 +95,13 @@ fn losses(house: &HouseData) -> Vec<Loss> {
 }
 
 /// The file's bytes.
-pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<Written, String> {
-    let mut binary = Binary::default();
+pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, String> {
+    let mut binary = BinaryChunk::default();
     let mut of_building = vec![false; house.meshes.len()];
     for piece in &house.structure {
         of_building[piece.mesh.index()] = true;
     }
-    let stored: Vec<meshes::Stored> = house
+    let stored: Vec<meshes::MeshInFile> = house
         .meshes
         .iter_ids()
         .map(|(id, mesh)| {
@@ -122,9 +122,9 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<Written, Str
             Ok(image)
         })
         .collect::<Result<_, String>>()?;
-    let mut tree = Tree::new(house, Shapes::new(house, &stored));
+    let mut tree = NodeTreeBuilder::new(house, MeshTable::new(house, &stored));
     tree.fill();
-    let Tree {
+    let NodeTreeBuilder {
         nodes,
         roots,
         shapes,
@@ -160,7 +160,7 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<Written, Str
         document[name] = Value::Array(table);
     }
     let (file, beside) = binary.into_glb(document)?;
-    Ok(Written {
+    Ok(WrittenGlb {
         file,
         beside,
         meshes: stored.into_iter().map(|stored| stored.accessors).collect(),
@@ -168,9 +168,9 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<Written, Str
 }
 
 /// The nodes under construction.
-struct Tree<'a> {
+struct NodeTreeBuilder<'a> {
     house: &'a HouseData,
-    shapes: Shapes<'a>,
+    shapes: MeshTable<'a>,
     nodes: Vec<Value>,
     /// Nodes of storeys, and of the sun.
     roots: Vec<usize>,
@@ -180,8 +180,8 @@ struct Tree<'a> {
     of_room: Vec<usize>,
 }
 
-impl<'a> Tree<'a> {
-    fn new(house: &'a HouseData, shapes: Shapes<'a>) -> Self {
+impl<'a> NodeTreeBuilder<'a> {
+    fn new(house: &'a HouseData, shapes: MeshTable<'a>) -> Self {
         Self {
             house,
             shapes,

@@ -3,10 +3,10 @@
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::super::file::MaterialFile;
-use crate::damage::Damage;
+use super::super::file::SuncgMaterial;
 use crate::error::HousesError;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// Most corners of a slab; ear clipping takes their cube.
 const MAX_POINTS: usize = crate::limits::MAX_OUTLINE;
@@ -19,7 +19,7 @@ const MAX_ELEMENTS: usize = 20_000;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ArchFile {
     /// Walls, floors, ceilings and grounds.
-    pub elements: Vec<Element>,
+    pub elements: Vec<ArchElement>,
 }
 
 /// What an element is.
@@ -37,7 +37,7 @@ pub enum ElementKind {
 
 /// A wall or a slab.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Element {
+pub struct ArchElement {
     /// Its id.
     pub id: String,
     /// What it is.
@@ -51,14 +51,14 @@ pub struct Element {
     /// The ends of a wall or the outline of a slab, offset included, m.
     pub points: Vec<[f64; 3]>,
     /// Openings of a wall.
-    pub holes: Vec<Hole>,
+    pub holes: Vec<ArchHole>,
     /// Looks of its sides.
-    pub materials: Vec<MaterialFile>,
+    pub materials: Vec<SuncgMaterial>,
 }
 
 /// An opening of a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hole {
+pub struct ArchHole {
     /// Smallest (along the wall, up), m.
     pub min: [f64; 2],
     /// Largest (along the wall, up), m.
@@ -69,8 +69,8 @@ pub struct Hole {
 ///
 /// # Errors
 /// [`HousesError::Syntax`] when the text is no JSON, [`HousesError::TooLarge`] for too many elements.
-pub fn parse(text: &[u8], name: &str, report: &mut Report) -> Result<ArchFile, HousesError> {
-    let at = At::file(name);
+pub fn parse(text: &[u8], name: &str, report: &mut LoadReport) -> Result<ArchFile, HousesError> {
+    let at = FileLocation::file(name);
     let value: Value = crate::json::from_slice(text).map_err(|error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
         message: format!("no valid JSON: {error}"),
@@ -97,7 +97,7 @@ pub fn parse(text: &[u8], name: &str, report: &mut Report) -> Result<ArchFile, H
             Ok(element) => file.elements.push(element),
             Err(reason) => report.warn(
                 at.field(format_args!("elements[{k}]")),
-                Damage::BadRow { reason },
+                WarningKind::BadRow { reason },
             ),
         }
     }
@@ -122,7 +122,7 @@ fn vector<const N: usize>(value: &Value) -> Option<[f64; N]> {
     numbers.try_into().ok()
 }
 
-fn read_element(element: &Value, file: &Value, scale: f64) -> Result<Element, String> {
+fn read_element(element: &Value, file: &Value, scale: f64) -> Result<ArchElement, String> {
     let text = |field: &str| {
         element
             .get(field)
@@ -186,7 +186,7 @@ fn read_element(element: &Value, file: &Value, scale: f64) -> Result<Element, St
         let corner = |name: &str| {
             Some(vector::<2>(hole.pointer(&format!("/box/{name}"))?)?.map(|x| x * scale))
         };
-        Some(Hole {
+        Some(ArchHole {
             min: corner("min")?,
             max: corner("max")?,
         })
@@ -205,7 +205,7 @@ fn read_element(element: &Value, file: &Value, scale: f64) -> Result<Element, St
             .collect(),
         _ => Vec::new(),
     };
-    Ok(Element {
+    Ok(ArchElement {
         id: text("id"),
         kind,
         rooms,
@@ -219,7 +219,7 @@ fn read_element(element: &Value, file: &Value, scale: f64) -> Result<Element, St
             .collect(),
         materials: list("materials")
             .iter()
-            .map(|m| MaterialFile::deserialize(m).unwrap_or_default())
+            .map(|m| SuncgMaterial::deserialize(m).unwrap_or_default())
             .collect(),
     })
 }

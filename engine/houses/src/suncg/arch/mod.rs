@@ -8,6 +8,6 @@ mod file;
 mod slab;
 mod wall;
 
-pub use file::{ArchFile, Element, ElementKind, Hole, parse};
+pub use file::{ArchElement, ArchFile, ArchHole, ElementKind, parse};
 pub(crate) use slab::slab;
 pub(crate) use wall::wall;

@@ -3,13 +3,13 @@
 use dwell_scene::Mesh;
 use glam::{DVec2, Vec2, Vec3};
 
-use super::file::{Element, ElementKind};
+use super::file::{ArchElement, ElementKind};
 use super::wall::quad;
-use crate::build::triangulate;
+use crate::import::triangulate;
 
 /// The closed mesh of a slab, texture coordinates in metres: slot 0 is the side that the room sees, slot 1 the other one,
 /// slot 2 the rim. Empty for an outline without area.
-pub(crate) fn slab(element: &Element) -> Mesh {
+pub(crate) fn slab(element: &ArchElement) -> Mesh {
     let points: Vec<Vec3> = element
         .points
         .iter()
@@ -80,7 +80,7 @@ mod tests {
                 [40.0, 1.0, 43.0],
             ];
             for _ in 0..2 {
-                let element = Element {
+                let element = ArchElement {
                     id: "f".into(),
                     kind,
                     rooms: vec![],

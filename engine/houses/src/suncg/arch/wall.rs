@@ -3,14 +3,14 @@
 use dwell_scene::Mesh;
 use glam::{Vec2, Vec3};
 
-use super::file::Element;
+use super::file::ArchElement;
 
 /// The slots of a wall: the side to the left when walking from the first point to the second, the other side, and all rims.
 const SIDES: [u16; 2] = [0, 1];
 const RIM: u16 = 2;
 
 /// The closed mesh of a wall, texture coordinates in metres; empty for one without length.
-pub(crate) fn wall(element: &Element) -> Mesh {
+pub(crate) fn wall(element: &ArchElement) -> Mesh {
     let mut mesh = Mesh::default();
     let [from, to] = [0, 1].map(|k| Vec3::from(element.points[k].map(|x| x as f32)));
     let along = (to - from).with_y(0.0);
@@ -46,7 +46,7 @@ pub(crate) fn wall(element: &Element) -> Mesh {
             f32::midpoint(rows[k], rows[k + 1]),
         ]
         .map(f64::from);
-        let inside = |axis: usize, hole: &super::Hole| {
+        let inside = |axis: usize, hole: &super::ArchHole| {
             (hole.min[axis]..hole.max[axis]).contains(&center[axis])
         };
         !element
@@ -127,10 +127,10 @@ pub(super) fn quad(mesh: &mut Mesh, corners: [Vec3; 4], normal: Vec3, uvs: [Vec2
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::suncg::arch::{ElementKind, Hole};
+    use crate::suncg::arch::{ArchHole, ElementKind};
 
-    fn element(holes: Vec<Hole>) -> Element {
-        Element {
+    fn element(holes: Vec<ArchHole>) -> ArchElement {
+        ArchElement {
             id: "w".into(),
             kind: ElementKind::Wall,
             rooms: vec![],
@@ -146,11 +146,11 @@ mod tests {
     fn a_wall_is_closed_and_its_openings_are_open() {
         let mesh = wall(&element(vec![]));
         assert!((mesh.enclosed_volume_m3() - 1.0).abs() < 1e-6);
-        let door = Hole {
+        let door = ArchHole {
             min: [1.0, 0.0],
             max: [1.9, 2.0],
         };
-        let window = Hole {
+        let window = ArchHole {
             min: [2.5, 0.9],
             max: [3.5, 2.2],
         };
@@ -167,7 +167,7 @@ mod tests {
                 && bounds.max.abs_diff_eq(Vec3::new(1.05, 2.5, 6.0), 1e-6)
         );
         assert!(
-            wall(&Element {
+            wall(&ArchElement {
                 points: vec![[0.0; 3]; 2],
                 ..element(vec![])
             })

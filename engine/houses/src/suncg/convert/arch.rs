@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use dwell_scene::{LevelId, RoomId, Structure, StructureKind};
 
-use super::super::arch::{Element, ElementKind, slab, wall};
+use super::super::arch::{ArchElement, ElementKind, slab, wall};
 use super::super::file::NodeFile;
 use super::Converter;
-use crate::damage::Damage;
-use crate::report::At;
+use crate::report::FileLocation;
+use crate::warning_kind::WarningKind;
 
 impl<'a> Converter<'a> {
     /// Whether the walls stand in `arch.json`.
@@ -25,7 +25,7 @@ impl<'a> Converter<'a> {
         hidden: &[StructureKind],
     ) {
         let ids = [node.id.as_deref(), node.model_id.as_deref()];
-        let belongs = |element: &Element| {
+        let belongs = |element: &ArchElement| {
             element
                 .rooms
                 .iter()
@@ -43,7 +43,7 @@ impl<'a> Converter<'a> {
 
     fn arch_where(
         &mut self,
-        wanted: impl Fn(&Element) -> bool,
+        wanted: impl Fn(&ArchElement) -> bool,
         level: LevelId,
         room: Option<RoomId>,
         hidden: &[StructureKind],
@@ -57,7 +57,7 @@ impl<'a> Converter<'a> {
                 continue;
             }
             self.arch_used[k] = true;
-            let at = At::file(path).field(format_args!("elements[{k}]"));
+            let at = FileLocation::file(path).field(format_args!("elements[{k}]"));
             let kind = match element.kind {
                 ElementKind::Wall => StructureKind::Wall,
                 ElementKind::Floor => StructureKind::Floor,
@@ -72,11 +72,11 @@ impl<'a> Converter<'a> {
 
     fn arch_piece(
         &mut self,
-        element: &'a Element,
+        element: &'a ArchElement,
         kind: StructureKind,
         level: LevelId,
         room: Option<RoomId>,
-        at: &At,
+        at: &FileLocation,
     ) {
         let mesh = if kind == StructureKind::Wall {
             wall(element)
@@ -86,7 +86,7 @@ impl<'a> Converter<'a> {
         if mesh.triangles.is_empty() {
             return self.report.warn(
                 at.clone(),
-                Damage::EmptyMesh {
+                WarningKind::EmptyMesh {
                     path: element.id.clone(),
                 },
             );

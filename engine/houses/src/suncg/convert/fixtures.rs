@@ -3,10 +3,10 @@
 use dwell_scene::{Light, LightShape, ObjectId, Part, PartId, SoundEmitter, units};
 use glam::Vec3;
 
-use super::super::metadata::LightFile;
+use super::super::metadata::SuncgLight;
 use super::Converter;
-use crate::damage::Damage;
-use crate::report::At;
+use crate::report::FileLocation;
+use crate::warning_kind::WarningKind;
 
 /// A lamp's cone narrower than this is a mistake, rad.
 const LEAST_CUTOFF_RAD: f32 = 0.01;
@@ -18,7 +18,7 @@ impl Converter<'_> {
         model: &str,
         object: ObjectId,
         part_id: PartId,
-        at: &At,
+        at: &FileLocation,
     ) -> bool {
         let lights = self.files.lights.get(model);
         let part = &self.data.parts[part_id];
@@ -27,7 +27,7 @@ impl Converter<'_> {
             .filter_map(|light| convert_light(light, object, part_id, part))
             .collect();
         if made.len() < lights.len() {
-            let damage = Damage::BadRow {
+            let damage = WarningKind::BadRow {
                 reason: format!("a light of model {model:?} has no usable place, power or kind"),
             };
             self.report
@@ -46,7 +46,7 @@ impl Converter<'_> {
         categories: &[&str],
         object: ObjectId,
         part_id: PartId,
-        at: &At,
+        at: &FileLocation,
     ) -> bool {
         let part = &self.data.parts[part_id];
         let mesh = &self.data.meshes[part.mesh];
@@ -56,7 +56,8 @@ impl Converter<'_> {
             let Some((signal, level_db)) = signal_of(recording).filter(|_| lasts(event)) else {
                 let what =
                     format!("the sound {recording:?} of {event:?} has no lasting signal; left out");
-                self.report.warn(at.clone(), Damage::Simplified { what });
+                self.report
+                    .warn(at.clone(), WarningKind::Simplified { what });
                 continue;
             };
             let emitter = SoundEmitter::steady(object, part_id, position, signal, level_db);
@@ -67,7 +68,7 @@ impl Converter<'_> {
 }
 
 fn convert_light(
-    light: &LightFile,
+    light: &SuncgLight,
     object: ObjectId,
     part_id: PartId,
     part: &Part,

@@ -7,7 +7,7 @@
 use dwell_scene::{Aabb, Mesh};
 use glam::{DMat2, DVec2, Vec3};
 
-use crate::build::Component;
+use crate::import::Component;
 
 /// Pieces whose boxes differ less stand still, m.
 const STILL_M: f32 = 1e-3;
@@ -18,14 +18,14 @@ const LEAST_TURN_RAD: f64 = 0.05;
 
 /// An upright hinge in mesh space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Hinge {
+pub(super) struct MeshHinge {
     /// Where it stands, (x, z), m.
     pub(super) point: DVec2,
     /// The turn about +Y that leads to the other state, rad.
     pub(super) turn_rad: f64,
 }
 
-impl Hinge {
+impl MeshHinge {
     /// The same hinge seen from the other state.
     pub(super) fn back(self) -> Self {
         Self {
@@ -37,13 +37,13 @@ impl Hinge {
 
 /// A hinge and the triangles that move, in either state.
 #[derive(Debug)]
-pub(super) struct Fit {
-    pub(super) hinge: Hinge,
+pub(super) struct HingeFit {
+    pub(super) hinge: MeshHinge,
     pub(super) moving: [Vec<u32>; 2],
 }
 
 /// Finds the hinge between two states; `None` when no single upright hinge explains them.
-pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<Component>; 2]) -> Option<Fit> {
+pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<Component>; 2]) -> Option<HingeFit> {
     let mut still_in_second = vec![false; pieces[1].len()];
     let mut moving = [Vec::new(), Vec::new()];
     for piece in &pieces[0] {
@@ -62,8 +62,8 @@ pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<Component>; 2]) -> Option<Fi
         moving[1].extend(&piece.triangles);
     }
     let [first, second] = [
-        Outline::of(meshes[0], &moving[0])?,
-        Outline::of(meshes[1], &moving[1])?,
+        SurfaceOutline::of(meshes[0], &moving[0])?,
+        SurfaceOutline::of(meshes[1], &moving[1])?,
     ];
     // The states are meshed apart and may differ a little in hidden faces; the turned box below decides.
     if (first.area - second.area).abs() > 0.15 * first.area {
@@ -81,7 +81,7 @@ pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<Component>; 2]) -> Option<Fi
         // second = hinge + R (first - hinge), so (1 - R) hinge = second - R first.
         let point =
             (DMat2::IDENTITY - rotation).inverse() * (second.center - rotation * first.center);
-        let hinge = Hinge { point, turn_rad };
+        let hinge = MeshHinge { point, turn_rad };
         let turned = Aabb::from_points(points(meshes[0], &moving[0]).map(|p| turned(p, &hinge)));
         let there = Aabb::from_points(points(meshes[1], &moving[1]));
         // A hinge stands at the leaf's edge, not somewhere in the room.
@@ -90,7 +90,7 @@ pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<Component>; 2]) -> Option<Fi
         (point.is_finite() && beside && same(&turned, &there, MISS_M)).then_some(hinge)
     });
     let hinge = hinges.min_by(|a, b| a.turn_rad.abs().total_cmp(&b.turn_rad.abs()))?;
-    Some(Fit { hinge, moving })
+    Some(HingeFit { hinge, moving })
 }
 
 fn same(a: &Aabb, b: &Aabb, tolerance_m: f32) -> bool {
@@ -111,14 +111,14 @@ fn rotation(turn_rad: f64) -> DMat2 {
     DMat2::from_cols(DVec2::new(c, -s), DVec2::new(s, c))
 }
 
-fn turned(point: Vec3, hinge: &Hinge) -> Vec3 {
+fn turned(point: Vec3, hinge: &MeshHinge) -> Vec3 {
     let flat = DVec2::new(f64::from(point.x), f64::from(point.z));
     let flat = hinge.point + rotation(hinge.turn_rad) * (flat - hinge.point);
     Vec3::new(flat.x as f32, point.y, flat.y as f32)
 }
 
 /// A surface seen from above.
-struct Outline {
+struct SurfaceOutline {
     /// m².
     area: f64,
     /// The area's centre, (x, z), m.
@@ -127,7 +127,7 @@ struct Outline {
     direction_rad: f64,
 }
 
-impl Outline {
+impl SurfaceOutline {
     fn of(mesh: &Mesh, triangles: &[u32]) -> Option<Self> {
         let (mut area, mut sum) = (0.0, DVec2::ZERO);
         let (mut xx, mut xz, mut zz) = (0.0, 0.0, 0.0);
@@ -167,7 +167,7 @@ impl Outline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::build::components;
+    use crate::import::components;
 
     fn door(turn_rad: f64, hinge: DVec2) -> Mesh {
         let mut leaf = Mesh::cuboid(Vec3::new(-0.4, 0.0, -0.02), Vec3::new(0.36, 2.0, 0.02));
@@ -175,7 +175,7 @@ mod tests {
             &Mesh::cuboid(Vec3::new(0.25, 1.0, 0.02), Vec3::new(0.35, 1.05, 0.07)),
             0,
         );
-        let hinge = Hinge {
+        let hinge = MeshHinge {
             point: hinge,
             turn_rad,
         };

@@ -4,7 +4,7 @@ use dwell_scene::{Aabb, Room};
 use glam::{Vec2, Vec3};
 
 use super::super::metadata::CategoryEntry;
-use crate::build::CategoryRow;
+use crate::import::CategoryRow;
 
 /// How far something may hover above what it stands on, m; SUNCG's objects rarely touch exactly.
 const GAP_M: f32 = 0.06;

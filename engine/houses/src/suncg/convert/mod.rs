@@ -21,9 +21,9 @@ use glam::Affine3A;
 use tracing::debug_span;
 
 use super::read::SuncgFiles;
-use crate::build::{LookTable, Names};
 use crate::error::HousesError;
-use crate::report::{At, Report};
+use crate::import::{MaterialTableBuilder, UniqueNames};
+use crate::report::{FileLocation, LoadReport};
 
 /// Makes a house of the files.
 ///
@@ -33,9 +33,9 @@ use crate::report::{At, Report};
 pub fn convert(
     files: &SuncgFiles,
     threads: Threads,
-    report: &mut Report,
+    report: &mut LoadReport,
 ) -> Result<House, HousesError> {
-    let at = At::file(&files.house_path);
+    let at = FileLocation::file(&files.house_path);
     let data = HouseData {
         name: files
             .house
@@ -61,10 +61,10 @@ pub fn convert(
         at,
         report,
         data,
-        looks: LookTable::default(),
+        looks: MaterialTableBuilder::default(),
         textures: BTreeMap::new(),
-        object_names: Names::default(),
-        structure_names: Names::default(),
+        object_names: UniqueNames::default(),
+        structure_names: UniqueNames::default(),
         stands: Vec::new(),
         arch_used: Vec::new(),
         corners_shown: 0,
@@ -87,19 +87,19 @@ pub fn convert(
 /// A house under construction.
 struct Converter<'a> {
     files: &'a SuncgFiles,
-    at: At,
-    report: &'a mut Report,
+    at: FileLocation,
+    report: &'a mut LoadReport,
     /// Scale and axes of the file; the identity in every file seen.
     world_from_file: Affine3A,
     /// The name of each node by level and index.
     node_names: Vec<Vec<String>>,
     shapes: shapes::ModelShapes,
     data: HouseData,
-    looks: LookTable,
+    looks: MaterialTableBuilder,
     /// Textures that are in use, by path.
     textures: BTreeMap<&'a str, TextureId>,
-    object_names: Names,
-    structure_names: Names,
+    object_names: UniqueNames,
+    structure_names: UniqueNames,
     /// Where the objects made so far stand, to see what rests on what.
     stands: Vec<(PartId, Aabb)>,
     /// Which elements of `arch.json` some room has.
@@ -113,7 +113,7 @@ type NodeKey = (usize, usize);
 
 impl Converter<'_> {
     /// The place of a node in `house.json`.
-    fn node_at(&self, (level, node): NodeKey) -> At {
+    fn node_at(&self, (level, node): NodeKey) -> FileLocation {
         self.at.field(format_args!("levels[{level}].nodes[{node}]"))
     }
 
@@ -130,7 +130,7 @@ impl Converter<'_> {
             });
         }
         for (k, level) in self.files.house.levels.iter().enumerate() {
-            if level.valid == Some(super::file::Flag(false)) {
+            if level.valid == Some(super::file::BinaryFlag(false)) {
                 continue;
             }
             for (i, node) in level
@@ -162,7 +162,7 @@ impl Converter<'_> {
     }
 
     fn finish(mut self) -> Result<House, HousesError> {
-        self.data.materials = self.looks.into_materials();
+        self.data.materials = self.looks.finish_materials();
         let seen = self
             .data
             .structure

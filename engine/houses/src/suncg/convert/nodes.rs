@@ -4,15 +4,19 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use dwell_scene::RoomId;
 
-use super::super::file::{HouseFile, NodeFile};
+use super::super::file::{NodeFile, SuncgHouse};
 use super::{Converter, NodeKey};
-use crate::build::Names;
-use crate::damage::Damage;
-use crate::report::{At, Report};
+use crate::import::UniqueNames;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// A name for every node: its id, or `<level>_<index>`; ids used twice get a number.
-pub(super) fn names(house: &HouseFile, at: &At, report: &mut Report) -> Vec<Vec<String>> {
-    let mut names = Names::default();
+pub(super) fn names(
+    house: &SuncgHouse,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> Vec<Vec<String>> {
+    let mut names = UniqueNames::default();
     let mut all = Vec::new();
     for (k, level) in house.levels.iter().enumerate() {
         let mut of_level = Vec::new();
@@ -24,7 +28,7 @@ pub(super) fn names(house: &HouseFile, at: &At, report: &mut Report) -> Vec<Vec<
                 Some(id) if id != name => {
                     report.warn(
                         at,
-                        Damage::DuplicateId {
+                        WarningKind::DuplicateId {
                             id: id.to_owned(),
                             renamed: name.clone(),
                         },
@@ -32,7 +36,7 @@ pub(super) fn names(house: &HouseFile, at: &At, report: &mut Report) -> Vec<Vec<
                 }
                 None if node.is_valid() => report.warn(
                     at,
-                    Damage::MissingId {
+                    WarningKind::MissingId {
                         given: name.clone(),
                     },
                 ),
@@ -72,7 +76,7 @@ impl Converter<'_> {
                 if let Some(reason) = reason {
                     self.report.warn(
                         at.clone(),
-                        Damage::BadIndex {
+                        WarningKind::BadIndex {
                             found: number.to_string(),
                             reason,
                         },
@@ -89,7 +93,7 @@ impl Converter<'_> {
                     let node = self.node_names[level][child].clone();
                     self.report.warn(
                         at.clone(),
-                        Damage::InTwoRooms {
+                        WarningKind::InTwoRooms {
                             node,
                             first: name(first),
                             second: name(id),
@@ -106,7 +110,7 @@ impl Converter<'_> {
         let is_room = |node: &NodeFile| node.is_valid() && node.kind.as_deref() == Some("Room");
         let levels = self.files.house.levels.iter().enumerate();
         let levels =
-            levels.filter(|(_, level)| level.valid != Some(super::super::file::Flag(false)));
+            levels.filter(|(_, level)| level.valid != Some(super::super::file::BinaryFlag(false)));
         let keys = levels.flat_map(|(k, level)| {
             level
                 .nodes

@@ -5,19 +5,19 @@ use std::sync::Arc;
 use dwell_scene::{Category, Pose, RoomId, space};
 use glam::{Affine3A, DAffine3, Vec3};
 
-use super::super::file::{Flag, MaterialFile, NodeFile};
+use super::super::file::{BinaryFlag, NodeFile, SuncgMaterial};
 use super::super::read::paths;
-use super::parts::{Plan, Shape, hinge_on_part};
+use super::parts::{ObjectPlan, PartGeometry, hinge_on_part};
 use super::{Converter, NodeKey, boxes, mobility, place};
-use crate::build::CategoryRow;
-use crate::damage::{Damage, Unmapped};
-use crate::report::At;
+use crate::import::CategoryRow;
+use crate::report::FileLocation;
+use crate::warning_kind::{UnmappedKind, WarningKind};
 
 impl<'a> Converter<'a> {
     pub(super) fn objects(&mut self) {
         let rooms = self.membership();
         for (k, level) in self.files.house.levels.iter().enumerate() {
-            if level.valid == Some(Flag(false)) {
+            if level.valid == Some(BinaryFlag(false)) {
                 continue;
             }
             for (i, node) in level
@@ -35,7 +35,7 @@ impl<'a> Converter<'a> {
                         let found = kind.unwrap_or("").to_owned();
                         self.report.warn(
                             self.node_at((k, i)).field("type"),
-                            Damage::UnknownNodeType { found },
+                            WarningKind::UnknownNodeType { found },
                         );
                     }
                 }
@@ -47,7 +47,7 @@ impl<'a> Converter<'a> {
     fn object(&mut self, key: NodeKey, node: &'a NodeFile, room: Option<RoomId>) {
         let at = self.node_at(key);
         let Some(model) = node.model_id.as_deref() else {
-            let damage = Damage::MissingField {
+            let damage = WarningKind::MissingField {
                 consequence: "the object is left out".to_owned(),
             };
             return self.report.warn(at.field("modelId"), damage);
@@ -55,7 +55,7 @@ impl<'a> Converter<'a> {
         if !paths::is_plain(model) {
             return self.report.warn(
                 at.field("modelId"),
-                Damage::PathRefused {
+                WarningKind::PathRefused {
                     path: model.to_owned(),
                 },
             );
@@ -73,19 +73,19 @@ impl<'a> Converter<'a> {
             nyu40: e.nyu40.clone(),
         });
         let category = category.unwrap_or_default();
-        let row = crate::build::category([category.fine.as_str(), category.coarse.as_str()]);
+        let row = crate::import::category([category.fine.as_str(), category.coarse.as_str()]);
         // A table that says nothing of the model, or a class that nobody knows.
         if row.is_none() && !self.files.categories.is_empty() {
             self.report.warn(
                 at.field("modelId"),
-                Damage::Unmapped {
-                    what: Unmapped::Category,
+                WarningKind::Unmapped {
+                    what: UnmappedKind::Category,
                     name: model.to_owned(),
                 },
             );
         }
         let moves = mobility::kind_moves(row, entry);
-        let plan = Plan {
+        let plan = ObjectPlan {
             key,
             at,
             model,
@@ -100,35 +100,35 @@ impl<'a> Converter<'a> {
     }
 
     /// Where a node stands: a rigid pose, and the scale and mirror that its mesh keeps.
-    fn placement(&mut self, node: &NodeFile, at: &At) -> Option<(Pose, Affine3A)> {
+    fn placement(&mut self, node: &NodeFile, at: &FileLocation) -> Option<(Pose, Affine3A)> {
         let at = at.field("transform");
         let matrix = match place::transform(node.transform.as_deref()) {
             Ok(matrix) => matrix,
             Err(reason) => {
-                self.report.warn(at, Damage::BadTransform { reason });
+                self.report.warn(at, WarningKind::BadTransform { reason });
                 return None;
             }
         };
         let mirrors = matrix.determinant() < 0.0;
-        if let Some(Flag(stated)) = node.is_mirrored.filter(|flag| flag.0 != mirrors) {
+        if let Some(BinaryFlag(stated)) = node.is_mirrored.filter(|flag| flag.0 != mirrors) {
             let (found, expected) = (
                 u8::from(stated).to_string(),
                 format!("{}, as the transform has it", u8::from(mirrors)),
             );
             self.report
-                .warn(at.clone(), Damage::BadField { found, expected });
+                .warn(at.clone(), WarningKind::BadField { found, expected });
         }
         let world_from_mesh = self.world_from_file * DAffine3::from_mat4(matrix).as_affine3a();
         let split = space::split_affine(&world_from_mesh);
         if split.is_none() {
             let reason = "it flattens space".to_owned();
-            self.report.warn(at, Damage::BadTransform { reason });
+            self.report.warn(at, WarningKind::BadTransform { reason });
         }
         split.map(|(pose, rest)| (pose, place::snapped(rest)))
     }
 
     /// The OBJ file of a node's state: `_0` for state 1 where it exists.
-    fn mesh_of_state(&mut self, model: &str, node: &NodeFile, at: &At) -> Option<String> {
+    fn mesh_of_state(&mut self, model: &str, node: &NodeFile, at: &FileLocation) -> Option<String> {
         let second = node.state.is_some_and(|state| (state - 1.0).abs() < 1e-9);
         let path = paths::model(model, second);
         if self.shapes.get_mut(&path).is_some() {
@@ -136,18 +136,21 @@ impl<'a> Converter<'a> {
         }
         let base = paths::model(model, false);
         if second && self.shapes.get_mut(&base).is_some() {
-            self.report
-                .warn(at.field("state"), Damage::MissingVariant { state: 1, path });
+            self.report.warn(
+                at.field("state"),
+                WarningKind::MissingVariant { state: 1, path },
+            );
             return Some(base);
         }
         // An empty or unreadable file was reported when it was read.
         if !self.files.meshes.contains_key(&path) {
-            self.report.warn(at.clone(), Damage::MissingMesh { path });
+            self.report
+                .warn(at.clone(), WarningKind::MissingMesh { path });
         }
         None
     }
 
-    fn model_object(&mut self, plan: &Plan<'a>, path: &str, node: &'a NodeFile) {
+    fn model_object(&mut self, plan: &ObjectPlan<'a>, path: &str, node: &'a NodeFile) {
         let overrides = self.overrides(node, &plan.at);
         let Some(files) = self.files.meshes.get(path) else {
             return;
@@ -181,7 +184,7 @@ impl<'a> Converter<'a> {
                 plan.model
             );
             self.report
-                .warn(plan.at.clone(), Damage::Simplified { what });
+                .warn(plan.at.clone(), WarningKind::Simplified { what });
         }
         if !two_states && plan.category.coarse == "door" {
             let what = format!(
@@ -189,7 +192,7 @@ impl<'a> Converter<'a> {
                 plan.model
             );
             self.report
-                .warn(plan.at.clone(), Damage::Simplified { what });
+                .warn(plan.at.clone(), WarningKind::Simplified { what });
         }
         let usual = plan.row.map_or_else(
             || dwell_scene::material::library().default_substance(),
@@ -200,7 +203,7 @@ impl<'a> Converter<'a> {
             self.object_materials(files, &slots, &overrides, usual, &emissive, &plan.at);
         let shapes = meshes
             .into_iter()
-            .map(|(name, mesh)| Shape {
+            .map(|(name, mesh)| PartGeometry {
                 name,
                 mesh,
                 materials: materials.clone(),
@@ -211,7 +214,7 @@ impl<'a> Converter<'a> {
     }
 
     /// A node's overrides, spelled out or as indices into the house's table.
-    fn overrides(&mut self, node: &'a NodeFile, at: &At) -> Vec<&'a MaterialFile> {
+    fn overrides(&mut self, node: &'a NodeFile, at: &FileLocation) -> Vec<&'a SuncgMaterial> {
         if let Some(materials) = &node.materials {
             return materials.iter().collect();
         }
@@ -223,7 +226,7 @@ impl<'a> Converter<'a> {
                 .filter(|_| index >= 0.0 && index.fract() == 0.0);
             if entry.is_none() {
                 let reason = format!("the house's table has {} materials", table.len());
-                let damage = Damage::BadIndex {
+                let damage = WarningKind::BadIndex {
                     found: index.to_string(),
                     reason,
                 };
@@ -243,9 +246,10 @@ impl<'a> Converter<'a> {
         if !size.is_finite() || size.min_element() <= 0.0 || size.max_element() > 1e4 {
             let found = format!("{:?}", node.dimensions.as_deref().unwrap_or_default());
             let expected = "three lengths above 0; the box is left out".to_owned();
-            return self
-                .report
-                .warn(at.field("dimensions"), Damage::BadField { found, expected });
+            return self.report.warn(
+                at.field("dimensions"),
+                WarningKind::BadField { found, expected },
+            );
         }
         let Some((pose, part_from_mesh)) = self.placement(node, &at) else {
             return;
@@ -254,7 +258,7 @@ impl<'a> Converter<'a> {
         if overrides.len() > 6 {
             self.report.warn(
                 at.field("materials"),
-                Damage::ExtraOverrides {
+                WarningKind::ExtraOverrides {
                     found: overrides.len(),
                     allowed: 6,
                 },
@@ -274,8 +278,8 @@ impl<'a> Converter<'a> {
             nyu40: "box".into(),
         };
         // Designers build steps, boards and counters from boxes, so they stay where they are.
-        let row = crate::build::category(["box"]);
-        let plan = Plan {
+        let row = crate::import::category(["box"]);
+        let plan = ObjectPlan {
             key,
             at,
             model: "box",
@@ -288,7 +292,7 @@ impl<'a> Converter<'a> {
         };
         self.push_object(
             &plan,
-            vec![Shape {
+            vec![PartGeometry {
                 name: "body",
                 mesh,
                 materials,
@@ -298,7 +302,7 @@ impl<'a> Converter<'a> {
     }
 }
 
-static NO_OVERRIDE: MaterialFile = MaterialFile {
+static NO_OVERRIDE: SuncgMaterial = SuncgMaterial {
     name: None,
     diffuse: None,
     texture: None,

@@ -9,10 +9,10 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Vec3};
 
-use super::hinge::Hinge;
+use super::hinge::MeshHinge;
 use super::{Converter, NodeKey, mobility};
-use crate::build::{CategoryRow, convex_pieces};
-use crate::report::At;
+use crate::import::{CategoryRow, convex_pieces};
+use crate::report::FileLocation;
 
 /// Friction of a door's hinge, N·m, and its damping, N·m·s/rad: a leaf that stays where it is left and needs a few
 /// newtons at the handle. Estimates of ours; SUNCG says nothing.
@@ -23,9 +23,9 @@ const HINGE_DAMPING: f32 = 1.5;
 const LEAST_SWING_RAD: f32 = 1.6;
 
 /// What a node says about an object, before its parts are made.
-pub(super) struct Plan<'a> {
+pub(super) struct ObjectPlan<'a> {
     pub(super) key: NodeKey,
-    pub(super) at: At,
+    pub(super) at: FileLocation,
     pub(super) model: &'a str,
     pub(super) category: Category,
     pub(super) row: Option<&'static CategoryRow>,
@@ -36,7 +36,7 @@ pub(super) struct Plan<'a> {
 }
 
 /// A part without its place in the tables.
-pub(super) struct Shape {
+pub(super) struct PartGeometry {
     pub(super) name: &'static str,
     pub(super) mesh: MeshId,
     pub(super) materials: Vec<MaterialId>,
@@ -45,8 +45,8 @@ pub(super) struct Shape {
 impl Converter<'_> {
     pub(super) fn push_object(
         &mut self,
-        plan: &Plan<'_>,
-        shapes: Vec<Shape>,
+        plan: &ObjectPlan<'_>,
+        shapes: Vec<PartGeometry>,
         hinge: Option<(HingeOnPart, bool)>,
     ) {
         let id = ObjectId(self.data.objects.len() as u32);
@@ -112,7 +112,13 @@ impl Converter<'_> {
         self.stands.push((first_part, bounds));
     }
 
-    fn part(&mut self, plan: &Plan<'_>, object: ObjectId, shape: Shape, swings: bool) -> Part {
+    fn part(
+        &mut self,
+        plan: &ObjectPlan<'_>,
+        object: ObjectId,
+        shape: PartGeometry,
+        swings: bool,
+    ) -> Part {
         let fixed = !swings && !plan.moves;
         let mesh = self.data.meshes[shape.mesh].clone();
         // What moves gets its convex pieces at the end, several at once.
@@ -203,7 +209,7 @@ pub(super) struct HingeOnPart {
 }
 
 /// Takes a hinge from mesh space onto the part; `None` when the scale would make the turn something else.
-pub(super) fn hinge_on_part(hinge: &Hinge, part_from_mesh: &Affine3A) -> Option<HingeOnPart> {
+pub(super) fn hinge_on_part(hinge: &MeshHinge, part_from_mesh: &Affine3A) -> Option<HingeOnPart> {
     let m = part_from_mesh.matrix3;
     let upright = m
         .y_axis

@@ -3,12 +3,15 @@
 use dwell_scene::Aabb;
 use glam::{Affine3A, DMat4, DVec3, Mat3A, Vec3};
 
-use super::super::file::{BoundsFile, HouseFile};
+use super::super::file::{BoundsFile, SuncgHouse};
 use crate::error::HousesError;
-use crate::report::At;
+use crate::report::FileLocation;
 
 /// Scale and axes of the file against the world (+Y up, front +Z, metres).
-pub(super) fn world_from_file(house: &HouseFile, at: &At) -> Result<Affine3A, HousesError> {
+pub(super) fn world_from_file(
+    house: &SuncgHouse,
+    at: &FileLocation,
+) -> Result<Affine3A, HousesError> {
     let scale = house.scale_to_meters.unwrap_or(1.0);
     if !(1e-6..=1e6).contains(&scale) {
         let (at, expected) = (at.field("scaleToMeters"), "a number from 1e-6 to 1e6");
@@ -155,13 +158,13 @@ mod tests {
 
     #[test]
     fn z_up_files_are_turned_upright() {
-        let house = HouseFile {
+        let house = SuncgHouse {
             up: Some(vec![0.0, 0.0, 1.0]),
             front: Some(vec![0.0, -1.0, 0.0]),
             scale_to_meters: Some(0.01),
-            ..HouseFile::default()
+            ..SuncgHouse::default()
         };
-        let map = world_from_file(&house, &At::file("house.json")).unwrap();
+        let map = world_from_file(&house, &FileLocation::file("house.json")).unwrap();
         // HoME's (x, -z, y) form, in centimetres: (42, -39, 1) m there is (42, 1, 39) m here.
         assert!(
             map.transform_point3(Vec3::new(4200.0, -3900.0, 100.0))

@@ -5,16 +5,16 @@ use std::sync::Arc;
 use dwell_scene::{Aabb, LevelId, Mesh, Room, RoomId, Structure, StructureKind};
 use glam::{Vec2, Vec3};
 
-use super::super::file::{Flag, NodeFile};
+use super::super::file::{BinaryFlag, NodeFile};
 use super::super::read::paths;
 use super::{Converter, NodeKey, place};
-use crate::build::room_kind;
-use crate::damage::{Damage, Unmapped};
+use crate::import::room_kind;
 use crate::limits::MAX_CORNERS_SHOWN;
 use crate::obj::MeshFiles;
-use crate::obj::file::Run;
-use crate::obj::{PartShape, Slots, shape_of};
-use crate::report::At;
+use crate::obj::file::FaceGroup;
+use crate::obj::{MaterialSlots, PartShape, shape_of};
+use crate::report::FileLocation;
+use crate::warning_kind::{UnmappedKind, WarningKind};
 
 /// Faces that look up at least this much belong to the floor that one walks on.
 const UPWARD: f32 = 0.7;
@@ -42,7 +42,7 @@ impl<'a> Converter<'a> {
                 StructureKind::Floor => node.hide_floor,
                 _ => node.hide_walls,
             };
-            (flag == Some(Flag(true))).then_some(kind)
+            (flag == Some(BinaryFlag(true))).then_some(kind)
         });
         if self.has_arch() {
             let hidden: Vec<StructureKind> = hidden.into_iter().flatten().collect();
@@ -65,7 +65,7 @@ impl<'a> Converter<'a> {
     pub(super) fn ground(&mut self, key: NodeKey, node: &'a NodeFile) {
         let at = self.node_at(key);
         let name = self.node_names[key.0][key.1].clone();
-        if node.hide_floor == Some(Flag(true)) {
+        if node.hide_floor == Some(BinaryFlag(true)) {
             return;
         }
         if self.has_arch() {
@@ -84,18 +84,20 @@ impl<'a> Converter<'a> {
         }
     }
 
-    fn room_model(&mut self, node: &'a NodeFile, at: &At) -> Option<&'a str> {
+    fn room_model(&mut self, node: &'a NodeFile, at: &FileLocation) -> Option<&'a str> {
         let model = node.model_id.as_deref();
         match model {
             None => {
                 let consequence = "it has no walls, floor or ceiling".to_owned();
-                self.report
-                    .warn(at.field("modelId"), Damage::MissingField { consequence });
+                self.report.warn(
+                    at.field("modelId"),
+                    WarningKind::MissingField { consequence },
+                );
             }
             Some(id) if !paths::is_plain(id) => {
                 self.report.warn(
                     at.field("modelId"),
-                    Damage::PathRefused {
+                    WarningKind::PathRefused {
                         path: id.to_owned(),
                     },
                 );
@@ -106,12 +108,12 @@ impl<'a> Converter<'a> {
         model
     }
 
-    fn room_kinds(&mut self, node: &NodeFile, at: &At) -> Vec<String> {
+    fn room_kinds(&mut self, node: &NodeFile, at: &FileLocation) -> Vec<String> {
         let mut kinds = Vec::new();
         for given in node.room_types.iter().flatten() {
             let kind = room_kind(given).unwrap_or_else(|plain| {
-                let damage = Damage::Unmapped {
-                    what: Unmapped::RoomType,
+                let damage = WarningKind::Unmapped {
+                    what: UnmappedKind::RoomType,
                     name: given.clone(),
                 };
                 self.report.warn(at.field("roomTypes"), damage);
@@ -136,21 +138,21 @@ impl<'a> Converter<'a> {
         node: &str,
         level: LevelId,
         room: Option<RoomId>,
-        at: &At,
+        at: &FileLocation,
     ) {
         let Some((path, files)) = self.files.meshes.get_key_value(path) else {
             self.report.warn(
                 at.clone(),
-                Damage::MissingMesh {
+                WarningKind::MissingMesh {
                     path: path.to_owned(),
                 },
             );
             return;
         };
-        let mesh_at = At::file(path);
+        let mesh_at = FileLocation::file(path);
         if files.obj.face_count() == 0 {
             self.report
-                .warn(mesh_at, Damage::EmptyMesh { path: path.clone() });
+                .warn(mesh_at, WarningKind::EmptyMesh { path: path.clone() });
             return;
         }
         // Any number of nodes may show the same file.
@@ -161,13 +163,13 @@ impl<'a> Converter<'a> {
             let reason = format!("with it rooms have {all} corners; {MAX_CORNERS_SHOWN} are read");
             let path = path.clone();
             self.report
-                .warn(at.clone(), Damage::UnreadableMesh { path, reason });
+                .warn(at.clone(), WarningKind::UnreadableMesh { path, reason });
             return;
         }
         self.corners_shown = all;
-        let slots = Slots::of(&files.obj, &files.mtl, &mesh_at, self.report);
+        let slots = MaterialSlots::of(&files.obj, &files.mtl, &mesh_at, self.report);
         // A group may be interrupted by others: pieces are gathered by name, in the order of their first faces.
-        let mut groups: Vec<(&str, Vec<&Run>)> = Vec::new();
+        let mut groups: Vec<(&str, Vec<&FaceGroup>)> = Vec::new();
         for run in &files.obj.runs {
             let name = if run.object.is_empty() {
                 run.group.as_str()
@@ -205,7 +207,12 @@ impl<'a> Converter<'a> {
     }
 
     /// What a piece is, by the name of its group.
-    fn piece_kind(&mut self, group: &str, of_file: StructureKind, at: &At) -> StructureKind {
+    fn piece_kind(
+        &mut self,
+        group: &str,
+        of_file: StructureKind,
+        at: &FileLocation,
+    ) -> StructureKind {
         let kind = match group.split('#').next().unwrap_or("") {
             "Floor" if of_file == StructureKind::Ground => StructureKind::Ground,
             "Floor" => StructureKind::Floor,
@@ -214,7 +221,7 @@ impl<'a> Converter<'a> {
             name if name.starts_with("Wall") => StructureKind::Wall,
             "" => of_file,
             _ => {
-                let damage = Damage::UnknownPiece {
+                let damage = WarningKind::UnknownPiece {
                     found: group.to_owned(),
                     taken_for: format!("{of_file:?}").to_lowercase(),
                 };
@@ -250,7 +257,7 @@ impl<'a> Converter<'a> {
         level: LevelId,
         kinds: Vec<String>,
         node: &NodeFile,
-        at: &At,
+        at: &FileLocation,
     ) -> Room {
         let pieces = &self.data.structure.as_slice()[pieces];
         let meshes = |kind| {
@@ -280,11 +287,11 @@ impl<'a> Converter<'a> {
             for mesh in meshes(StructureKind::Ceiling) {
                 footprint.extend(facing(mesh, -1.0, under..=under + FLOOR_STEP_M));
             }
-            if node.hide_floor != Some(Flag(true)) {
+            if node.hide_floor != Some(BinaryFlag(true)) {
                 let consequence =
                     "no floor; the outline is taken from the ceiling or the box".to_owned();
                 self.report
-                    .warn(at.clone(), Damage::MissingField { consequence });
+                    .warn(at.clone(), WarningKind::MissingField { consequence });
             }
         }
         if footprint.is_empty() && !bounds.is_empty() {
@@ -318,10 +325,10 @@ impl<'a> Converter<'a> {
 /// The mesh of a piece with its own few slots, and the file's slots that they are.
 fn piece_mesh(
     files: &MeshFiles,
-    slots: &Slots,
-    runs: Vec<&Run>,
-    at: &At,
-    report: &mut crate::Report,
+    slots: &MaterialSlots,
+    runs: Vec<&FaceGroup>,
+    at: &FileLocation,
+    report: &mut crate::LoadReport,
 ) -> (Mesh, Vec<u16>) {
     let mut used: Vec<u16> = Vec::new();
     let mut own = Vec::new();

@@ -8,19 +8,19 @@ use dwell_scene::{IdVec, Mesh, MeshId};
 
 use super::super::file::NodeFile;
 use super::super::read::{SuncgFiles, paths};
-use super::hinge::{self, Hinge};
-use crate::build::{components, submesh};
-use crate::damage::Damage;
+use super::hinge::{self, MeshHinge};
+use crate::import::{components, submesh};
 use crate::obj::MeshFiles;
-use crate::obj::{PartShape, Slots, shape_of};
-use crate::report::{At, Report};
+use crate::obj::{MaterialSlots, PartShape, shape_of};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// The mesh of one OBJ file of a model.
 pub(super) struct ModelShape {
-    pub(super) slots: Slots,
+    pub(super) slots: MaterialSlots,
     pub(super) whole: SharedMesh,
     /// How it moves between its two states, when a hinge explains them.
-    pub(super) swing: Option<Swing>,
+    pub(super) swing: Option<HingedModel>,
 }
 
 /// A mesh that becomes part of the house at its first use.
@@ -30,13 +30,13 @@ pub(super) struct SharedMesh {
 }
 
 /// A model taken apart at its hinge.
-pub(super) struct Swing {
+pub(super) struct HingedModel {
     /// What stands still, if anything does.
     pub(super) frame: Option<SharedMesh>,
     /// What turns.
     pub(super) leaf: SharedMesh,
     /// The hinge, and the turn to the model's other state.
-    pub(super) hinge: Hinge,
+    pub(super) hinge: MeshHinge,
 }
 
 impl SharedMesh {
@@ -62,7 +62,7 @@ pub(super) struct ModelShapes {
 
 impl ModelShapes {
     /// Makes the shapes, several at once.
-    pub(super) fn build(files: &SuncgFiles, threads: Threads, report: &mut Report) -> Self {
+    pub(super) fn build(files: &SuncgFiles, threads: Threads, report: &mut LoadReport) -> Self {
         // Model ids in use, and whether some instance lays a texture on it.
         let mut models: BTreeMap<&str, bool> = BTreeMap::new();
         for node in files.house.levels.iter().flat_map(|level| &level.nodes) {
@@ -80,7 +80,7 @@ impl ModelShapes {
             .collect();
         let built = threads.map(models.len(), |k| {
             let (model, textured) = models[k];
-            let mut report = Report::new();
+            let mut report = LoadReport::new();
             let shapes = of_model(files, model, textured, &mut report);
             (shapes, report)
         });
@@ -115,7 +115,7 @@ fn of_model(
     files: &SuncgFiles,
     model: &str,
     textured: bool,
-    report: &mut Report,
+    report: &mut LoadReport,
 ) -> Vec<(String, ModelShape)> {
     let mut shapes = Vec::new();
     for second in [false, true] {
@@ -123,11 +123,11 @@ fn of_model(
         let Some(mesh_files) = files.meshes.get(&path) else {
             continue;
         };
-        let at = At::file(&path);
-        let slots = Slots::of(&mesh_files.obj, &mesh_files.mtl, &at, report);
+        let at = FileLocation::file(&path);
+        let slots = MaterialSlots::of(&mesh_files.obj, &mesh_files.mtl, &at, report);
         let mesh = model_mesh(mesh_files, &slots, textured, &at, report);
         if mesh.triangles.is_empty() {
-            report.warn(at, Damage::EmptyMesh { path });
+            report.warn(at, WarningKind::EmptyMesh { path });
             continue;
         }
         shapes.push((
@@ -147,10 +147,10 @@ fn of_model(
 
 fn model_mesh(
     files: &MeshFiles,
-    slots: &Slots,
+    slots: &MaterialSlots,
     textured: bool,
-    at: &At,
-    report: &mut Report,
+    at: &FileLocation,
+    report: &mut LoadReport,
 ) -> Mesh {
     let box_mapping = textured || files.textures.iter().any(Option::is_some);
     let runs = files
@@ -193,7 +193,7 @@ fn take_apart(first: &mut ModelShape, second: &mut ModelShape) {
             .filter(|k| !is_moving[*k as usize])
             .collect();
         let frame = (!still.is_empty()).then(|| SharedMesh::new(submesh(mesh, &still)));
-        shape.swing = Some(Swing {
+        shape.swing = Some(HingedModel {
             frame,
             leaf: SharedMesh::new(submesh(mesh, &moving)),
             hinge,

@@ -3,20 +3,20 @@
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{MaterialId, StructureKind, TextureId};
 
-use super::super::file::MaterialFile;
+use super::super::file::SuncgMaterial;
 use super::Converter;
-use crate::build::{Look, category, substance_of};
-use crate::damage::{Damage, Unmapped};
+use crate::import::{ImportedMaterial, category, substance_of};
+use crate::obj::MaterialSlots;
 use crate::obj::MeshFiles;
-use crate::obj::Slots;
-use crate::report::At;
+use crate::report::FileLocation;
+use crate::warning_kind::{UnmappedKind, WarningKind};
 
 impl<'a> Converter<'a> {
     /// The material of a slot of a wall, floor or ceiling.
     pub(super) fn structure_material(
         &mut self,
         files: &'a MeshFiles,
-        slots: &Slots,
+        slots: &MaterialSlots,
         slot: u16,
         kind: StructureKind,
     ) -> MaterialId {
@@ -29,11 +29,11 @@ impl<'a> Converter<'a> {
     /// The material of a side of a wall or slab that has only what `change` says.
     pub(super) fn plain_structure_material(
         &mut self,
-        change: Option<&'a MaterialFile>,
+        change: Option<&'a SuncgMaterial>,
         kind: StructureKind,
-        at: &At,
+        at: &FileLocation,
     ) -> MaterialId {
-        let mut surface = Surface::default();
+        let mut surface = SlotSurface::default();
         if let Some(change) = change {
             self.apply_override(&mut surface, change, at);
         }
@@ -49,14 +49,14 @@ impl<'a> Converter<'a> {
     pub(super) fn object_materials(
         &mut self,
         files: &'a MeshFiles,
-        slots: &Slots,
-        overrides: &[&'a MaterialFile],
+        slots: &MaterialSlots,
+        overrides: &[&'a SuncgMaterial],
         usual: &'static Substance,
         emissive: &[usize],
-        at: &At,
+        at: &FileLocation,
     ) -> Vec<MaterialId> {
         if overrides.len() > slots.entries.len() {
-            let damage = Damage::ExtraOverrides {
+            let damage = WarningKind::ExtraOverrides {
                 found: overrides.len(),
                 allowed: slots.entries.len(),
             };
@@ -79,8 +79,12 @@ impl<'a> Converter<'a> {
     }
 
     /// The material of a box's face, which has only what its override says.
-    pub(super) fn box_material(&mut self, change: Option<&'a MaterialFile>, at: &At) -> MaterialId {
-        let mut surface = Surface::default();
+    pub(super) fn box_material(
+        &mut self,
+        change: Option<&'a SuncgMaterial>,
+        at: &FileLocation,
+    ) -> MaterialId {
+        let mut surface = SlotSurface::default();
         if let Some(change) = change {
             self.apply_override(&mut surface, change, at);
         }
@@ -88,17 +92,22 @@ impl<'a> Converter<'a> {
         self.look(&surface, substance, false)
     }
 
-    fn slot_surface(&mut self, files: &'a MeshFiles, slots: &Slots, slot: usize) -> Surface<'a> {
+    fn slot_surface(
+        &mut self,
+        files: &'a MeshFiles,
+        slots: &MaterialSlots,
+        slot: usize,
+    ) -> SlotSurface<'a> {
         let Some(in_file) = slots.entries[slot].1 else {
-            return Surface::default();
+            return SlotSurface::default();
         };
         let material = &files.mtl.materials[in_file];
-        let mut surface = Surface {
+        let mut surface = SlotSurface {
             srgb: material.diffuse.unwrap_or([1.0; 3]),
             opacity: material.opacity.unwrap_or(1.0),
             roughness: material.roughness(),
             emission: material.emission.unwrap_or([0.0; 3]),
-            ..Surface::default()
+            ..SlotSurface::default()
         };
         if let Some((path, _)) = files.textures[in_file]
             .as_ref()
@@ -110,13 +119,18 @@ impl<'a> Converter<'a> {
         surface
     }
 
-    fn apply_override(&mut self, surface: &mut Surface<'a>, change: &'a MaterialFile, at: &At) {
+    fn apply_override(
+        &mut self,
+        surface: &mut SlotSurface<'a>,
+        change: &'a SuncgMaterial,
+        at: &FileLocation,
+    ) {
         let diffuse = change.diffuse.as_deref().and_then(|text| {
             let color = parse_color(text);
             if color.is_none() {
                 self.report.warn(
                     at.field("diffuse"),
-                    Damage::BadColor {
+                    WarningKind::BadColor {
                         found: text.to_owned(),
                     },
                 );
@@ -150,17 +164,17 @@ impl<'a> Converter<'a> {
     /// What a surface is made of: by its names, by its transparency, else as usual for the kind of thing.
     fn substance(
         &mut self,
-        surface: &Surface<'_>,
+        surface: &SlotSurface<'_>,
         usual: &'static Substance,
-        at: &At,
+        at: &FileLocation,
     ) -> &'static Substance {
         if let Some(found) = surface.named_substance() {
             return found;
         }
         if let Some(path) = surface.texture {
-            let damage = Damage::Unmapped {
-                what: Unmapped::Substance,
-                name: crate::build::texture_name(path),
+            let damage = WarningKind::Unmapped {
+                what: UnmappedKind::Substance,
+                name: crate::import::texture_name(path),
             };
             self.report.warn(at.clone(), damage);
         }
@@ -173,7 +187,7 @@ impl<'a> Converter<'a> {
 
     fn look(
         &mut self,
-        surface: &Surface<'a>,
+        surface: &SlotSurface<'a>,
         substance: &'static Substance,
         glows: bool,
     ) -> MaterialId {
@@ -184,7 +198,7 @@ impl<'a> Converter<'a> {
                 .map(|c| format!("{:02x}", (c.clamp(0.0, 1.0) * 255.0).round() as u8))
                 .concat()
         };
-        let name = match surface.texture.map(crate::build::texture_name) {
+        let name = match surface.texture.map(crate::import::texture_name) {
             Some(name) if hex() == "ffffff" => name,
             Some(name) => format!("{name}_{}", hex()),
             None => format!("{}_{}", substance.name, hex()),
@@ -194,7 +208,7 @@ impl<'a> Converter<'a> {
         } else {
             surface.emission
         };
-        self.looks.add(&Look {
+        self.looks.add(&ImportedMaterial {
             name,
             srgb: surface.srgb,
             texture,
@@ -227,7 +241,7 @@ fn usual_of_structure(kind: StructureKind) -> &'static Substance {
 }
 
 /// What a slot shows.
-struct Surface<'a> {
+struct SlotSurface<'a> {
     srgb: [f32; 3],
     /// Path of a texture that exists.
     texture: Option<&'a str>,
@@ -238,7 +252,7 @@ struct Surface<'a> {
     names: Vec<&'a str>,
 }
 
-impl Surface<'_> {
+impl SlotSurface<'_> {
     fn named_substance(&self) -> Option<&'static Substance> {
         self.texture
             .and_then(substance_of)
@@ -246,7 +260,7 @@ impl Surface<'_> {
     }
 }
 
-impl Default for Surface<'_> {
+impl Default for SlotSurface<'_> {
     fn default() -> Self {
         Self {
             srgb: [0.8; 3],

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::base_model;
-use super::rows::Rows;
-use crate::report::{At, Report};
+use super::rows::CsvRows;
+use crate::report::{FileLocation, LoadReport};
 
 /// A row of the table.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -29,8 +29,8 @@ pub struct CategoryTable {
 
 impl CategoryTable {
     /// Reads the table, of either release.
-    pub fn read(text: &[u8], file: &str, report: &mut Report) -> Self {
-        let at = At::file(file);
+    pub fn read(text: &[u8], file: &str, report: &mut LoadReport) -> Self {
+        let at = FileLocation::file(file);
         let names = [
             "model_id",
             "fine_grained_class",
@@ -40,7 +40,7 @@ impl CategoryTable {
             "wnsynsetid",
         ];
         let mut table = Self::default();
-        let Some(rows) = Rows::new(text, &names, &at, report) else {
+        let Some(rows) = CsvRows::new(text, &names, &at, report) else {
             return table;
         };
         rows.each(&at, report, |row| {

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::base_model;
-use crate::damage::Damage;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// One light of a model, in the model's space.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
-pub struct LightFile {
+pub struct SuncgLight {
     /// `SpotLight`, `PointLight` or `LineLight`.
     #[serde(rename = "type")]
     pub kind: String,
@@ -41,21 +41,21 @@ pub struct LightFile {
 /// The lights of all models.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LightTable {
-    lights: BTreeMap<String, Vec<LightFile>>,
+    lights: BTreeMap<String, Vec<SuncgLight>>,
     /// Slots that glow.
     emissive: BTreeMap<String, Vec<usize>>,
 }
 
 impl LightTable {
     /// Reads either file: `{model: [light, ...]}` or `{model: {lights: [...], materials: {emissive: [slot, ...]}}}`.
-    pub fn read(text: &[u8], file: &str, report: &mut Report) -> Self {
-        let at = At::file(file);
+    pub fn read(text: &[u8], file: &str, report: &mut LoadReport) -> Self {
+        let at = FileLocation::file(file);
         let mut table = Self::default();
         let models: BTreeMap<String, Value> = match crate::json::from_slice(text) {
             Ok(models) => models,
             Err(error) => {
-                let damage = Damage::BadRow {
-                    reason: crate::plain(&error),
+                let damage = WarningKind::BadRow {
+                    reason: crate::plain_parse_error(&error),
                 };
                 report.warn(at.line(error.line() as u32), damage);
                 return table;
@@ -73,14 +73,14 @@ impl LightTable {
                 .flatten()
                 .enumerate()
             {
-                match LightFile::deserialize(light) {
+                match SuncgLight::deserialize(light) {
                     Ok(light) => table.lights.entry(model.clone()).or_default().push(light),
                     Err(error) => {
                         let at = at.field(format_args!("{model}[{i}]"));
                         report.warn(
                             at,
-                            Damage::BadRow {
-                                reason: crate::plain(&error),
+                            WarningKind::BadRow {
+                                reason: crate::plain_parse_error(&error),
                             },
                         );
                     }
@@ -103,7 +103,7 @@ impl LightTable {
     }
 
     /// The lights of a model; none for most.
-    pub fn get(&self, model: &str) -> &[LightFile] {
+    pub fn get(&self, model: &str) -> &[SuncgLight] {
         let found = self
             .lights
             .get(model)
@@ -121,7 +121,7 @@ impl LightTable {
     }
 
     /// All lights, by model id.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &[LightFile])> {
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &[SuncgLight])> {
         self.lights
             .iter()
             .map(|(id, lights)| (id.as_str(), lights.as_slice()))

@@ -1,36 +1,36 @@
 //! SUNCG's tables: categories, models, lights, sounds, votes. All optional, all below `metadata/` of the data root.
 
+mod acceptability;
 mod categories;
 mod lights;
 mod models;
 mod rows;
 mod sounds;
-mod votes;
 
+pub use acceptability::{AcceptabilityVotes, VoteTable};
 pub use categories::{CategoryEntry, CategoryTable};
-pub use lights::{LightFile, LightTable};
+pub use lights::{LightTable, SuncgLight};
 pub use models::{ModelEntry, ModelTable};
 pub use sounds::{OneOrMany, SoundEntry, SoundTable};
-pub use votes::{VoteTable, Votes};
 
-use crate::damage::Damage;
+use crate::data_root::DataRoot;
 use crate::limits::MAX_TEXT_BYTES;
-use crate::report::{At, Report};
-use crate::root::DataRoot;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// The bytes of the first of `paths` that exists; `None` with a warning when none does or it cannot be read.
 pub(crate) fn read_table<'a>(
     root: &DataRoot,
     paths: &[&'a str],
     consequence: &str,
-    report: &mut Report,
+    report: &mut LoadReport,
 ) -> Option<(&'a str, Vec<u8>)> {
     let Some(path) = paths.iter().find(|path| root.has_file(path)) else {
-        let damage = Damage::MissingTable {
+        let damage = WarningKind::MissingTable {
             path: paths[0].to_owned(),
             consequence: consequence.to_owned(),
         };
-        report.warn(At::file(paths[0]), damage);
+        report.warn(FileLocation::file(paths[0]), damage);
         return None;
     };
     match root.read(path, MAX_TEXT_BYTES) {
@@ -38,8 +38,8 @@ pub(crate) fn read_table<'a>(
         Err(error) => {
             let consequence = format!("{consequence} ({})", error.reason());
             report.warn(
-                At::file(*path),
-                Damage::MissingTable {
+                FileLocation::file(*path),
+                WarningKind::MissingTable {
                     path: (*path).to_owned(),
                     consequence,
                 },

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::rows::Rows;
-use crate::report::{At, Report};
+use super::rows::CsvRows;
+use crate::report::{FileLocation, LoadReport};
 
 /// A row of the table.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -35,8 +35,8 @@ pub struct ModelTable {
 
 impl ModelTable {
     /// Reads the table.
-    pub fn read(text: &[u8], file: &str, report: &mut Report) -> Self {
-        let at = At::file(file);
+    pub fn read(text: &[u8], file: &str, report: &mut LoadReport) -> Self {
+        let at = FileLocation::file(file);
         let names = [
             "id",
             "front",
@@ -46,7 +46,7 @@ impl ModelTable {
             "aligned.dims",
         ];
         let mut table = Self::default();
-        let Some(rows) = Rows::new(text, &names, &at, report) else {
+        let Some(rows) = CsvRows::new(text, &names, &at, report) else {
             return table;
         };
         rows.each(&at, report, |row| {

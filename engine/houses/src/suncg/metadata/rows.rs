@@ -1,21 +1,21 @@
 //! Rows of a CSV table by column name.
 
-use crate::damage::Damage;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// A CSV table; columns are found by name, because later releases add some.
-pub(super) struct Rows<'a> {
+pub(super) struct CsvRows<'a> {
     reader: csv::Reader<&'a [u8]>,
     columns: Vec<Option<usize>>,
 }
 
 /// A row: the cells of the columns that were asked for, empty where missing.
-pub(super) struct Row<'a> {
+pub(super) struct CsvRow<'a> {
     record: &'a csv::StringRecord,
     columns: &'a [Option<usize>],
 }
 
-impl Row<'_> {
+impl CsvRow<'_> {
     /// The cell of the `column`-th name asked for.
     pub(super) fn cell(&self, column: usize) -> &str {
         self.columns[column]
@@ -39,20 +39,20 @@ impl Row<'_> {
     }
 }
 
-impl<'a> Rows<'a> {
+impl<'a> CsvRows<'a> {
     /// A table with the columns `names`; the first must exist.
     pub(super) fn new(
         text: &'a [u8],
         names: &[&str],
-        at: &At,
-        report: &mut Report,
+        at: &FileLocation,
+        report: &mut LoadReport,
     ) -> Option<Self> {
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text);
         let headers = match reader.headers() {
             Ok(headers) => headers.clone(),
             Err(error) => {
                 let reason = error.to_string();
-                report.warn(at.line(1), Damage::BadRow { reason });
+                report.warn(at.line(1), WarningKind::BadRow { reason });
                 return None;
             }
         };
@@ -66,7 +66,7 @@ impl<'a> Rows<'a> {
                 names.first().unwrap_or(&""),
                 headers.iter().take(8).collect::<Vec<_>>()
             );
-            report.warn(at.line(1), Damage::BadRow { reason });
+            report.warn(at.line(1), WarningKind::BadRow { reason });
             return None;
         }
         Some(Self { reader, columns })
@@ -75,9 +75,9 @@ impl<'a> Rows<'a> {
     /// Calls `row` for every row; rows that cannot be read, and those for which it says so, are reported.
     pub(super) fn each(
         mut self,
-        at: &At,
-        report: &mut Report,
-        mut row: impl FnMut(&Row<'_>) -> Result<(), &'static str>,
+        at: &FileLocation,
+        report: &mut LoadReport,
+        mut row: impl FnMut(&CsvRow<'_>) -> Result<(), &'static str>,
     ) {
         let mut record = csv::StringRecord::new();
         loop {
@@ -86,18 +86,18 @@ impl<'a> Rows<'a> {
             }
             let result = match self.reader.read_record(&mut record) {
                 Ok(false) => return,
-                Ok(true) => row(&Row {
+                Ok(true) => row(&CsvRow {
                     record: &record,
                     columns: &self.columns,
                 })
                 .map_err(str::to_owned),
-                Err(error) => Err(crate::plain(&error)),
+                Err(error) => Err(crate::plain_parse_error(&error)),
             };
             if let Err(reason) = result {
                 let line = record
                     .position()
                     .map_or(0, |position| position.line() as u32);
-                report.warn(at.line(line), Damage::BadRow { reason });
+                report.warn(at.line(line), WarningKind::BadRow { reason });
             }
         }
     }

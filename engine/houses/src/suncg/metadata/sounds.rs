@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::damage::Damage;
-use crate::report::{At, Report};
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
 
 /// One entry: a category, or single models of it, and the sounds by event.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,14 +53,14 @@ pub struct SoundTable {
 
 impl SoundTable {
     /// Reads the table.
-    pub fn read(text: &[u8], file: &str, report: &mut Report) -> Self {
+    pub fn read(text: &[u8], file: &str, report: &mut LoadReport) -> Self {
         match crate::json::from_slice(text) {
             Ok(entries) => Self { entries },
             Err(error) => {
-                let damage = Damage::BadRow {
-                    reason: crate::plain(&error),
+                let damage = WarningKind::BadRow {
+                    reason: crate::plain_parse_error(&error),
                 };
-                report.warn(At::file(file).line(error.line() as u32), damage);
+                report.warn(FileLocation::file(file).line(error.line() as u32), damage);
                 Self::default()
             }
         }

@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use dwell_scene::material::library;
 use dwell_scene::{House, Material, Mobility};
 
-use crate::loss::Losses;
+use crate::export_loss::ExportLosses;
 
 /// Losses that follow from the house's tables alone.
-pub(super) fn of_house(house: &House) -> Losses {
-    let mut losses = Losses::default();
+pub(super) fn of_house(house: &House) -> ExportLosses {
+    let mut losses = ExportLosses::default();
     losses.add(
         "names of rooms and objects",
         house.rooms.len() + house.objects.len(),

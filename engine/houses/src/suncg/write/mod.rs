@@ -15,26 +15,26 @@ use dwell_scene::file::StagedPath;
 use dwell_scene::{Aabb, House, LevelId, Material, MaterialId, RoomId, State, TextureId, units};
 use glam::Vec3;
 
-use super::file::{BoundsFile, HouseFile, LevelFile, NodeFile};
+use super::file::{BoundsFile, LevelFile, NodeFile, SuncgHouse};
 use crate::atomic::write_folder;
-use crate::build::{Names, encode_png};
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
-use crate::loss::Loss;
+use crate::export_loss::ExportLoss;
+use crate::import::{UniqueNames, encode_png};
 use crate::obj::mtl_material;
-use crate::root::DataRoot;
 
 /// Writes `house` as a new SUNCG data root at `path`, as it stands at the start, and returns what it does not hold.
 ///
 /// # Errors
 /// [`HousesError::Unwritable`] when something stands at `path` already or a texture cannot be written,
 /// [`HousesError::Io`] when the system refuses.
-pub fn write(house: &House, path: &Path) -> Result<Vec<Loss>, HousesError> {
+pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError> {
     let mut losses = losses::of_house(house);
     write_folder(
         path,
         |_| false,
         |folder| {
-            let mut writer = Writer::new(house, folder, plain_name(&house.name), false);
+            let mut writer = SuncgWriter::new(house, folder, plain_name(&house.name), false);
             writer.everything(&mut losses)?;
             tables::write_tables(folder, &writer.models.rows)
         },
@@ -51,11 +51,11 @@ pub fn write_into(
     house: &House,
     root: &Path,
     name: &str,
-) -> Result<(PathBuf, Vec<Loss>), HousesError> {
+) -> Result<(PathBuf, Vec<ExportLoss>), HousesError> {
     let scene_id = plain_name(name);
     let mut losses = losses::of_house(house);
     let draft = StagedPath::folder(&root.join(&scene_id)).map_err(HousesError::io(root))?;
-    Writer::new(house, draft.path(), scene_id.clone(), true).everything(&mut losses)?;
+    SuncgWriter::new(house, draft.path(), scene_id.clone(), true).everything(&mut losses)?;
     // What is shared comes first and the house last: a house that is there is whole.
     for (folder, is_shared) in [
         ("texture", true),
@@ -113,7 +113,7 @@ pub fn finish(root: &Path) -> Result<(), HousesError> {
 }
 
 /// A data root under construction.
-struct Writer<'a> {
+struct SuncgWriter<'a> {
     house: &'a House,
     folder: PathBuf,
     scene_id: String,
@@ -121,12 +121,12 @@ struct Writer<'a> {
     shared: bool,
     /// File name without ending of each texture.
     textures: BTreeMap<TextureId, String>,
-    models: models::Models,
+    models: models::WrittenModels,
     /// Where everything starts.
     start: State,
 }
 
-impl<'a> Writer<'a> {
+impl<'a> SuncgWriter<'a> {
     fn new(house: &'a House, folder: &Path, scene_id: String, shared: bool) -> Self {
         Self {
             house,
@@ -134,13 +134,16 @@ impl<'a> Writer<'a> {
             scene_id,
             shared,
             textures: BTreeMap::new(),
-            models: models::Models::default(),
+            models: models::WrittenModels::default(),
             start: State::new(house),
         }
     }
 
     /// Everything but the tables.
-    fn everything(&mut self, losses: &mut crate::loss::Losses) -> Result<(), HousesError> {
+    fn everything(
+        &mut self,
+        losses: &mut crate::export_loss::ExportLosses,
+    ) -> Result<(), HousesError> {
         self.textures()?;
         let mut levels: Vec<LevelFile> = Vec::new();
         for (id, level) in self.house.levels.iter_ids() {
@@ -166,7 +169,7 @@ impl<'a> Writer<'a> {
     }
 
     fn textures(&mut self) -> Result<(), HousesError> {
-        let mut names = Names::default();
+        let mut names = UniqueNames::default();
         for (id, texture) in self.house.textures.iter_ids() {
             let plain = plain_name(&texture.name);
             let bytes = encode_png(texture).map_err(|message| HousesError::Unwritable {
@@ -204,7 +207,7 @@ impl<'a> Writer<'a> {
     fn nodes(
         &mut self,
         level: LevelId,
-        losses: &mut crate::loss::Losses,
+        losses: &mut crate::export_loss::ExportLosses,
     ) -> Result<Vec<NodeFile>, HousesError> {
         let mut nodes = Vec::new();
         let mut node_of_room: BTreeMap<RoomId, usize> = BTreeMap::new();
@@ -251,7 +254,7 @@ impl<'a> Writer<'a> {
             .levels
             .iter()
             .fold(Aabb::EMPTY, |all, level| all.union(&level.bounds));
-        let file = HouseFile {
+        let file = SuncgHouse {
             version: Some("suncg@1.0.0".to_owned()),
             id: Some(self.scene_id.clone()),
             up: Some(vec![0.0, 1.0, 0.0]),

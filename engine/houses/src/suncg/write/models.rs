@@ -8,26 +8,26 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Mat4, Vec3};
 
-use super::super::file::{Flag, MaterialFile, NodeFile};
+use super::super::file::{BinaryFlag, NodeFile, SuncgMaterial};
 use super::tables::{ModelRow, model_lights};
-use super::{Writer, bounds, hex, model_name, short_name};
-use crate::build::Names;
+use super::{SuncgWriter, bounds, hex, model_name, short_name};
 use crate::error::HousesError;
-use crate::loss::Losses;
+use crate::export_loss::ExportLosses;
+use crate::import::UniqueNames;
 use crate::obj::ObjWriter;
 
 /// Models written so far.
 #[derive(Default)]
-pub(super) struct Models {
+pub(super) struct WrittenModels {
     by_key: BTreeMap<String, String>,
-    names: Names,
+    names: UniqueNames,
     /// What the tables say about each model.
     pub(super) rows: Vec<ModelRow>,
     /// The materials of the MTL file of each.
     materials: Vec<Vec<MaterialId>>,
 }
 
-impl Models {
+impl WrittenModels {
     /// An id that no model has yet.
     fn unused_name(&mut self, base: &str) -> String {
         let id = self.names.unique(&model_name(base));
@@ -50,19 +50,19 @@ struct TwoStates {
 }
 
 /// A part with its place in the model.
-struct Piece<'a> {
+struct ModelPiece<'a> {
     part: &'a Part,
     model_from_mesh: Affine3A,
     first_slot: usize,
 }
 
-impl Writer<'_> {
+impl SuncgWriter<'_> {
     /// The node of an object, its model written when it is new.
     pub(super) fn object_node(
         &mut self,
         object_id: ObjectId,
         id: String,
-        losses: &mut Losses,
+        losses: &mut ExportLosses,
     ) -> Result<NodeFile, HousesError> {
         let house = self.house;
         let object = &house.objects[object_id];
@@ -96,11 +96,11 @@ impl Writer<'_> {
         Ok(NodeFile {
             id: Some(id),
             kind: Some("Object".to_owned()),
-            valid: Some(Flag(true)),
+            valid: Some(BinaryFlag(true)),
             model_id: Some(model),
             transform: Some(matrix.to_vec()),
             bbox: bounds(&house.object_bounds(&self.start, object_id)),
-            is_mirrored: mirrored.then_some(Flag(true)),
+            is_mirrored: mirrored.then_some(BinaryFlag(true)),
             state: states.filter(|states| states.starts_closed).map(|_| 1.0),
             materials: overrides,
             ..NodeFile::default()
@@ -143,7 +143,7 @@ impl Writer<'_> {
         mut row: ModelRow,
         materials: &[MaterialId],
         states: Option<&TwoStates>,
-        losses: &mut Losses,
+        losses: &mut ExportLosses,
     ) -> Result<String, HousesError> {
         let house = self.house;
         let object = &house.objects[object_id];
@@ -207,7 +207,7 @@ impl Writer<'_> {
     }
 
     /// Overrides by position that show `materials`.
-    fn overrides(&self, materials: &[MaterialId], losses: &mut Losses) -> Vec<MaterialFile> {
+    fn overrides(&self, materials: &[MaterialId], losses: &mut ExportLosses) -> Vec<SuncgMaterial> {
         let rounded = |c: f32| {
             let encoded = dwell_scene::units::srgb_from_linear(c) * 255.0;
             (encoded - encoded.round()).abs() > 1e-3
@@ -217,7 +217,7 @@ impl Writer<'_> {
             if material.base_color.into_iter().any(rounded) {
                 losses.add("colours between the 256 steps of an override", 1);
             }
-            MaterialFile {
+            SuncgMaterial {
                 name: Some(material.substance.clone()),
                 diffuse: Some(hex(material)),
                 texture: material.texture.map(|id| self.textures[&id].clone()),
@@ -294,7 +294,7 @@ fn pieces<'a>(
     house: &'a House,
     object: &Object,
     joint: Option<(&Articulation, f32)>,
-) -> Vec<Piece<'a>> {
+) -> Vec<ModelPiece<'a>> {
     let root = &house.parts[object.first_part];
     let mut first_slot = 0;
     object
@@ -315,7 +315,7 @@ fn pieces<'a>(
             } else {
                 (root.world_from_part.inverse() * world_from_part).to_affine() * part.part_from_mesh
             };
-            let piece = Piece {
+            let piece = ModelPiece {
                 part,
                 model_from_mesh,
                 first_slot,

@@ -3,8 +3,8 @@
 use dwell_scene::{LevelId, MaterialId, Room, RoomId, Structure, StructureKind};
 use glam::Affine3A;
 
-use super::super::file::{Flag, NodeFile};
-use super::{Writer, bounds};
+use super::super::file::{BinaryFlag, NodeFile};
+use super::{SuncgWriter, bounds};
 use crate::error::HousesError;
 use crate::obj::ObjWriter;
 
@@ -39,7 +39,7 @@ fn group_name(piece: &Structure) -> String {
     }
 }
 
-impl Writer<'_> {
+impl SuncgWriter<'_> {
     /// The node of a room, or of the pieces of a storey that stand in no room.
     pub(super) fn room_node(
         &self,
@@ -56,7 +56,7 @@ impl Writer<'_> {
         let mut node = NodeFile {
             id: Some(format!("{}_{index}", level.0)),
             kind: Some("Room".to_owned()),
-            valid: Some(Flag(true)),
+            valid: Some(BinaryFlag(true)),
             model_id: Some(model.clone()),
             room_types: Some(room.map_or_else(Vec::new, |(_, room)| {
                 room.kinds.iter().map(|kind| room_type(kind)).collect()
@@ -77,7 +77,7 @@ impl Writer<'_> {
                     'f' => &mut node.hide_floor,
                     _ => &mut node.hide_walls,
                 };
-                *hidden = Some(Flag(true));
+                *hidden = Some(BinaryFlag(true));
             } else {
                 self.pieces(&format!("{model}{part}"), &pieces)?;
             }
@@ -102,7 +102,7 @@ impl Writer<'_> {
             nodes.push(NodeFile {
                 id: Some(format!("{}_{}", level.0, first + k)),
                 kind: Some("Ground".to_owned()),
-                valid: Some(Flag(true)),
+                valid: Some(BinaryFlag(true)),
                 model_id: Some(model),
                 bbox: bounds(&self.house.meshes[piece.mesh].bounds()),
                 ..NodeFile::default()

@@ -8,13 +8,13 @@ use dwell_scene::{Aabb, Category, Light, LightShape, units};
 use glam::{Affine3A, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::super::metadata::{LightFile, OneOrMany, SoundEntry};
-use super::Writer;
+use super::super::metadata::{OneOrMany, SoundEntry, SuncgLight};
+use super::SuncgWriter;
 use crate::atomic::write_file;
+use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::limits::MAX_TEXT_BYTES;
-use crate::report::At;
-use crate::root::DataRoot;
+use crate::report::FileLocation;
 
 /// A model as the tables know it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -23,20 +23,20 @@ pub(super) struct ModelRow {
     pub(super) category: Category,
     pub(super) slots: usize,
     pub(super) bounds: Aabb,
-    pub(super) lights: Vec<LightFile>,
+    pub(super) lights: Vec<SuncgLight>,
     pub(super) signals: Vec<String>,
 }
 
 /// Beside a model that houses share: its [`ModelRow`].
 const ROW: &str = "row.json";
 
-impl Writer<'_> {
+impl SuncgWriter<'_> {
     /// Writes what the tables will say of a shared model beside it.
     pub(super) fn row_file(&self, row: &ModelRow) -> Result<(), HousesError> {
         let path = format!("object/{}/{ROW}", row.id);
         let text = serde_json::to_vec(row).map_err(|error| HousesError::Unwritable {
             path: self.folder.join(&path),
-            message: crate::plain(&error),
+            message: crate::plain_parse_error(&error),
         })?;
         self.file(&path, &text)
     }
@@ -64,8 +64,8 @@ pub(super) fn read_rows(root: &DataRoot) -> Result<Vec<ModelRow>, HousesError> {
     rows.map(|path| {
         let text = root.read(&path, MAX_TEXT_BYTES)?;
         crate::json::from_slice(&text).map_err(|error| HousesError::Syntax {
-            at: At::file(&path),
-            message: crate::plain(&error),
+            at: FileLocation::file(&path),
+            message: crate::plain_parse_error(&error),
         })
     })
     .collect()
@@ -154,7 +154,7 @@ pub(super) fn write_tables(folder: &Path, models: &[ModelRow]) -> Result<(), Hou
         &csv_text(&header, rows).map_err(|message| unwritable(path, message))?,
     )?;
 
-    let lights: BTreeMap<&str, &[LightFile]> = models
+    let lights: BTreeMap<&str, &[SuncgLight]> = models
         .iter()
         .filter(|row| !row.lights.is_empty())
         .map(|row| (row.id.as_str(), row.lights.as_slice()))
@@ -205,7 +205,7 @@ fn csv_text(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Result<
 }
 
 /// A light in the space of its model.
-pub(super) fn model_lights(light: &Light, model_from_part: &Affine3A) -> LightFile {
+pub(super) fn model_lights(light: &Light, model_from_part: &Affine3A) -> SuncgLight {
     let point = |p: Vec3| {
         model_from_part
             .transform_point3(p)
@@ -216,15 +216,15 @@ pub(super) fn model_lights(light: &Light, model_from_part: &Affine3A) -> LightFi
         .color
         .map(|c| (units::srgb_from_linear(c) * 255.0).round() as u8);
     let [r, g, b] = color;
-    let file = LightFile {
+    let file = SuncgLight {
         power: f64::from(light.power_w),
         color: format!("#{r:02x}{g:02x}{b:02x}"),
         position: point(light.position),
         attenuation: light.attenuation.map(f64::from),
-        ..LightFile::default()
+        ..SuncgLight::default()
     };
     match light.shape {
-        LightShape::Point => LightFile {
+        LightShape::Point => SuncgLight {
             kind: "PointLight".to_owned(),
             ..file
         },
@@ -232,7 +232,7 @@ pub(super) fn model_lights(light: &Light, model_from_part: &Affine3A) -> LightFi
             direction,
             cutoff_rad,
             dropoff_rate,
-        } => LightFile {
+        } => SuncgLight {
             kind: "SpotLight".to_owned(),
             direction: Some(
                 model_from_part
@@ -244,7 +244,7 @@ pub(super) fn model_lights(light: &Light, model_from_part: &Affine3A) -> LightFi
             dropoff_rate: Some(f64::from(dropoff_rate)),
             ..file
         },
-        LightShape::Line { end } => LightFile {
+        LightShape::Line { end } => SuncgLight {
             kind: "LineLight".to_owned(),
             position2: Some(point(end)),
             ..file

@@ -1,0 +1,125 @@
+//! What is wrong with an edit or a plan, in one form: the field, what was found, what is possible.
+
+use std::fmt::Display;
+
+use dwell_scene::material::{Substance, library};
+
+use crate::error::HousesError;
+use crate::spelling::nearest;
+
+/// Names that are offered in place of an unknown one.
+pub(super) const OFFERED: usize = 6;
+
+/// A field that cannot be.
+pub(super) fn fault(
+    field: impl Display,
+    found: impl Display,
+    possible: impl Into<String>,
+) -> HousesError {
+    HousesError::Spec {
+        field: field.to_string(),
+        found: found.to_string(),
+        possible: possible.into(),
+    }
+}
+
+/// The same error, its field inside of `place`.
+pub(super) fn inside(place: impl Display) -> impl FnOnce(HousesError) -> HousesError {
+    move |error| match error {
+        HousesError::Spec {
+            field,
+            found,
+            possible,
+        } => fault(format_args!("{place}.{field}"), found, possible),
+        other => other,
+    }
+}
+
+/// A name that nothing has; offers the nearest of those that exist.
+pub(super) fn unknown<'a>(
+    field: impl Display,
+    name: &str,
+    of: &str,
+    known: impl Iterator<Item = &'a str>,
+) -> HousesError {
+    let known: Vec<&str> = known.collect();
+    let near = nearest(name, known.iter().copied(), OFFERED + 1);
+    let possible = match near.len() {
+        0 => format!("nothing: there are no {of}"),
+        few if few <= OFFERED => format!("one of the {of}: {}", near.join(", ")),
+        _ => format!(
+            "one of {} {of}; the nearest are {}",
+            known.len(),
+            near[..OFFERED].join(", ")
+        ),
+    };
+    fault(field, format_args!("{name:?}"), possible)
+}
+
+/// A number within `[low, high]`.
+pub(super) fn within(
+    field: &str,
+    value: f32,
+    [low, high]: [f32; 2],
+    unit: &str,
+) -> Result<f32, HousesError> {
+    if (low..=high).contains(&value) {
+        return Ok(value);
+    }
+    Err(fault(
+        field,
+        value,
+        format!("{low} to {high} {unit}").trim(),
+    ))
+}
+
+/// A place of the scene, m.
+pub(super) fn point(field: &str, value: [f32; 3]) -> Result<glam::Vec3, HousesError> {
+    let near = |x: &f32| x.abs() <= 32_768.0;
+    if value.iter().all(near) {
+        return Ok(value.into());
+    }
+    let found = format!("{value:?}");
+    Err(fault(
+        field,
+        found,
+        "coordinates within 32768 m of the origin",
+    ))
+}
+
+/// A row of the materials table.
+pub(super) fn substance(field: &str, name: &str) -> Result<&'static Substance, HousesError> {
+    let known = || library().iter().map(|substance| substance.name.as_str());
+    library()
+        .get(name)
+        .ok_or_else(|| unknown(field, name, "substances", known()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_name_is_answered_with_the_nearest() {
+        let known = [
+            "chair_1",
+            "chair_2",
+            "sofa_1",
+            "lamp",
+            "table",
+            "bed_1",
+            "wardrobe_1",
+        ];
+        let told = unknown("object", "chiar_1", "objects", known.into_iter()).to_string();
+        assert!(
+            told.starts_with("object: found \"chiar_1\"; possible: one of 7 objects"),
+            "{told}"
+        );
+        assert!(told.contains("nearest are chair_1, chair_2"), "{told}");
+        let few = unknown("on", "tabel", "objects", ["table", "cup"].into_iter()).to_string();
+        assert_eq!(
+            few,
+            "on: found \"tabel\"; possible: one of the objects: table, cup"
+        );
+    }
+}

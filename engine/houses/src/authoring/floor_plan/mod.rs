@@ -1,0 +1,17 @@
+//! A building from a plan: rooms with their floors free of walls, what is left between them is wall.
+//!
+//! `data` is the data, `grid` says what is room, wall and air, `walls` cuts the walls into straight stretches, `construct` makes
+//! the house of them, with the walls, slabs, doors and windows of generated houses.
+
+mod construct;
+mod data;
+mod finishes;
+mod grid;
+mod openings;
+mod walls;
+
+pub(super) use construct::construct;
+pub use data::{
+    BuildingPlan, CardinalDirection, DoorLeaf, DoorPlan, HingeSide, OUTSIDE, RoomPlan, StairsPlan,
+    StoreyPlan, SurfaceFinish, WindowPlan,
+};

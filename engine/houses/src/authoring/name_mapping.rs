@@ -1,0 +1,564 @@
+//! A map file: what foreign names of materials, nodes and rooms mean. TOML; `docs/authoring.md` lists its fields.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::{self, Write as _};
+use std::path::Path;
+use std::sync::Arc;
+
+use dwell_scene::{House, HouseData, Mobility, ObjectId, Structure, StructureKind};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use super::edit_errors::{fault, inside};
+use super::edits::{ObjectAttributes, SurfaceStyle};
+use super::hinge::{NodeHinge, hang};
+use super::unmapped::UnmappedNames;
+use super::{describe, place, remove_objects, surfaces};
+use crate::data_root::UserFile;
+use crate::error::HousesError;
+use crate::import::{category, room_kind, room_over_floors};
+use crate::limits::MAX_TEXT_BYTES;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
+
+/// The most patterns, and letters of one.
+const MOST: [usize; 2] = [20_000, 256];
+/// How far a thing may hover above what it stands on, m.
+const GAP_M: f32 = 0.03;
+
+/// What foreign names mean: patterns with `*` and `?`, without regard to case. Of those that fit, the one with the most plain
+/// letters counts.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct NameMapping {
+    /// Names of materials or their images.
+    pub materials: BTreeMap<String, MappedMaterial>,
+    /// Names of nodes or models.
+    pub nodes: BTreeMap<String, MappedNode>,
+    /// Names of rooms or their foreign kinds.
+    pub rooms: BTreeMap<String, MappedRoom>,
+}
+
+/// What a material is: a substance's name, or a table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MappedMaterial(pub MaterialMapping);
+
+/// What a material is.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MaterialMapping {
+    /// A row of `assets/materials.toml`; empty: as without a map.
+    pub substance: String,
+    /// sRGB, 0 to 255, instead of the file's look.
+    pub srgb: Option<[u8; 3]>,
+    /// 0 to 1.
+    pub opacity: Option<f32>,
+    /// 0 to 1.
+    pub roughness: Option<f32>,
+}
+
+/// What a node is: a category's name, or a table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MappedNode(pub NodeMapping);
+
+/// What a node is.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct NodeMapping {
+    /// A row of `assets/categories.csv`; empty: as without a map.
+    pub category: String,
+    /// The object's name; a number follows where several nodes fit.
+    pub name: Option<String>,
+    /// Fixed or movable; without it, as things of the category are.
+    pub mobility: Option<Mobility>,
+    /// kg.
+    pub mass_kg: Option<f32>,
+    /// kg/m³.
+    pub density_kg_m3: Option<f32>,
+    /// Whether a hand can take it.
+    pub pickable: Option<bool>,
+    /// It is no object but a piece of the building.
+    pub structure: Option<StructureKind>,
+    /// It opens about this hinge; a thing that nobody knows is a door then.
+    pub hinge: Option<NodeHinge>,
+}
+
+/// What people call a room.
+pub type MappedRoom = String;
+
+macro_rules! word_or_table {
+    ($row:ident, $table:ident, $field:ident, $expected:literal) => {
+        impl<'de> Deserialize<'de> for $row {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                struct Row;
+                impl<'de> Visitor<'de> for Row {
+                    type Value = $row;
+                    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                        f.write_str($expected)
+                    }
+                    fn visit_str<E>(self, word: &str) -> Result<$row, E> {
+                        Ok($row($table {
+                            $field: word.to_owned(),
+                            ..$table::default()
+                        }))
+                    }
+                    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<$row, A::Error> {
+                        $table::deserialize(MapAccessDeserializer::new(map)).map($row)
+                    }
+                }
+                deserializer.deserialize_any(Row)
+            }
+        }
+    };
+}
+
+word_or_table!(
+    MappedMaterial,
+    MaterialMapping,
+    substance,
+    "a substance's name, or a table with `substance`"
+);
+word_or_table!(
+    MappedNode,
+    NodeMapping,
+    category,
+    "a category's name, or a table with `category`"
+);
+
+impl NameMapping {
+    /// Reads a map from TOML; `at` stands in errors.
+    ///
+    /// # Errors
+    /// [`HousesError::Syntax`] for what is no such TOML, [`HousesError::TooLarge`].
+    pub fn parse(text: &str, at: &FileLocation) -> Result<Self, HousesError> {
+        let map: Self = toml::from_str(text).map_err(|error| HousesError::Syntax {
+            at: at.clone(),
+            message: crate::plain_parse_error(&error),
+        })?;
+        let count = map.materials.len() + map.nodes.len() + map.rooms.len();
+        let too_large = |what, found: usize, allowed: usize| HousesError::TooLarge {
+            at: at.clone(),
+            what,
+            found: found as u64,
+            allowed: allowed as u64,
+        };
+        if count > MOST[0] {
+            return Err(too_large("pattern count", count, MOST[0]));
+        }
+        let patterns = map
+            .materials
+            .keys()
+            .chain(map.nodes.keys())
+            .chain(map.rooms.keys());
+        match patterns.map(|pattern| pattern.chars().count()).max() {
+            Some(letters) if letters > MOST[1] => {
+                Err(too_large("letters of a pattern", letters, MOST[1]))
+            }
+            _ => map.check_numbers(at).map(|()| map),
+        }
+    }
+
+    /// Refuses numbers that are none, also in rows that no name of the house fits.
+    fn check_numbers(&self, at: &FileLocation) -> Result<(), HousesError> {
+        let materials = self
+            .materials
+            .iter()
+            .flat_map(|(pattern, MappedMaterial(row))| {
+                let numbers = [("opacity", row.opacity), ("roughness", row.roughness)];
+                numbers.map(|(name, number)| (format!("materials.{pattern:?}.{name}"), number))
+            });
+        let nodes = self.nodes.iter().flat_map(|(pattern, MappedNode(row))| {
+            let place = row.hinge.and_then(|hinge| hinge.at);
+            let numbers = [
+                ("mass_kg", row.mass_kg),
+                ("density_kg_m3", row.density_kg_m3),
+                ("hinge.open_deg", row.hinge.map(|hinge| hinge.open_deg)),
+                ("hinge.closed_deg", row.hinge.map(|hinge| hinge.closed_deg)),
+                ("hinge.at[0]", place.map(|at| at[0])),
+                ("hinge.at[1]", place.map(|at| at[1])),
+                ("hinge.at[2]", place.map(|at| at[2])),
+            ];
+            numbers.map(|(name, number)| (format!("nodes.{pattern:?}.{name}"), number))
+        });
+        for (field, number) in materials.chain(nodes) {
+            if let Some(number) = number.filter(|number| !number.is_finite()) {
+                return Err(HousesError::Field {
+                    at: at.field(field),
+                    expected: "a finite number",
+                    found: number.to_string(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads a map file.
+    ///
+    /// # Errors
+    /// [`HousesError::Io`], and those of [`Self::parse`].
+    pub fn read(path: &Path) -> Result<Self, HousesError> {
+        let UserFile { name, bytes, .. } = UserFile::read(path, MAX_TEXT_BYTES)?;
+        let at = FileLocation::file(&name);
+        let text = std::str::from_utf8(&bytes).map_err(|error| HousesError::Syntax {
+            at: at.clone(),
+            message: error.to_string(),
+        })?;
+        Self::parse(text, &at)
+    }
+
+    /// The house with its foreign names understood; what the map explains leaves the report.
+    ///
+    /// # Errors
+    /// [`HousesError::Spec`] names the pattern and the field, what was found and what is possible; [`HousesError::Scene`].
+    pub fn apply(&self, house: &House, report: &mut LoadReport) -> Result<House, HousesError> {
+        let mut data = house.data().clone();
+        self.materials_of(&mut data)?;
+        self.nodes_of(&mut data)?;
+        for room in &mut data.rooms {
+            let names = room
+                .kinds
+                .iter()
+                .map(String::as_str)
+                .chain([room.name.as_str()]);
+            if let Some((_, kind)) = best(&self.rooms, names).filter(|(_, kind)| !kind.is_empty()) {
+                room.kinds = vec![room_kind(kind).unwrap_or_else(|plain| plain)];
+            }
+        }
+        report.retain(|warning| match &warning.damage {
+            WarningKind::Unmapped { name, .. } => {
+                let name = || std::iter::once(name.as_str());
+                let material = best(&self.materials, name())
+                    .is_some_and(|(_, row)| !row.0.substance.is_empty());
+                let node = best(&self.nodes, name())
+                    .is_some_and(|(_, row)| !row.0.category.is_empty() || row.0.hinge.is_some());
+                let room = best(&self.rooms, name()).is_some_and(|(_, kind)| !kind.is_empty());
+                !(material || node || room)
+            }
+            _ => true,
+        });
+        House::new(data).map_err(HousesError::scene(&FileLocation::file("map")))
+    }
+
+    fn materials_of(&self, data: &mut HouseData) -> Result<(), HousesError> {
+        for k in 0..data.materials.len() {
+            let id = dwell_scene::MaterialId(k as u32);
+            let material = &data.materials[id];
+            let image = material
+                .texture
+                .map(|texture| data.textures[texture].name.as_str());
+            let Some((pattern, MappedMaterial(row))) = best(
+                &self.materials,
+                image.into_iter().chain([material.name.as_str()]),
+            ) else {
+                continue;
+            };
+            let look = SurfaceStyle {
+                substance: Some(row.substance.clone()).filter(|name| !name.is_empty()),
+                srgb: row.srgb,
+                opacity: row.opacity,
+                roughness: row.roughness,
+                keep_look: true,
+            };
+            if look
+                == (SurfaceStyle {
+                    keep_look: true,
+                    ..SurfaceStyle::default()
+                })
+            {
+                continue;
+            }
+            let place = format!("materials.{pattern:?}");
+            surfaces::change_in_place(data, id, &look).map_err(inside(place))?;
+        }
+        Ok(())
+    }
+
+    fn nodes_of(&self, data: &mut HouseData) -> Result<(), HousesError> {
+        let mut taken: BTreeSet<String> = data
+            .objects
+            .iter()
+            .map(|object| object.name.clone())
+            .collect();
+        let mut walls = BTreeSet::new();
+        for k in 0..data.objects.len() {
+            let id = ObjectId(k as u32);
+            let object = &data.objects[id];
+            let names = [
+                object.source_id.as_str(),
+                object.model.as_str(),
+                object.name.as_str(),
+            ];
+            let Some((pattern, MappedNode(row))) = best(&self.nodes, names.into_iter()) else {
+                continue;
+            };
+            let place = format!("nodes.{pattern:?}");
+            if row.hinge.is_some() && (row.structure.is_some() || row.mobility.is_some()) {
+                let found = "it beside `structure` or `mobility`";
+                let possible = "a hinge alone: what hangs on one moves with it";
+                return Err(inside(place)(fault("hinge", found, possible)));
+            }
+            if let Some(kind) = row.structure {
+                becomes_structure(data, id, kind).map_err(inside(place))?;
+                walls.insert(id);
+                continue;
+            }
+            let unknown = object.category.coarse.is_empty();
+            let told = Some(row.category.clone()).filter(|name| !name.is_empty());
+            let door = (unknown && row.hinge.is_some()).then(|| "door".to_owned());
+            let told = told.or(door);
+            let traits = ObjectAttributes {
+                category: told,
+                mobility: row.mobility.or_else(|| {
+                    let loose = row.hinge.is_none();
+                    loose
+                        .then(|| usual_mobility(data, id, unknown, &row.category))
+                        .flatten()
+                }),
+                mass_kg: row.mass_kg,
+                density_kg_m3: row.density_kg_m3,
+                pickable: row.pickable,
+                switch: None,
+            };
+            if let Some(hinge) = &row.hinge {
+                hang(data, id, hinge).map_err(inside(&place))?;
+            }
+            describe::describe(data, id, &traits).map_err(inside(&place))?;
+            let object = &mut data.objects[id];
+            let kind = category([object.category.coarse.as_str()]);
+            if unknown
+                && object.switch.is_none()
+                && kind.is_some_and(crate::import::CategoryRow::is_switchable)
+            {
+                object.switch = Some(false);
+            }
+            if let Some(name) = row.name.as_ref().filter(|name| **name != object.name) {
+                let mut free = name.clone();
+                let mut number = 2;
+                while name.is_empty() || taken.contains(&free) {
+                    if name.is_empty() {
+                        return Err(inside(place)(fault("name", "nothing", "a name")));
+                    }
+                    free = format!("{name}_{number}");
+                    number += 1;
+                }
+                taken.insert(free.clone());
+                object.name = free;
+            }
+        }
+        if !walls.is_empty() {
+            remove_objects::remove(data, &walls);
+            if data.rooms.is_empty() {
+                room_over_floors(data);
+                for k in 0..data.objects.len() {
+                    place::settle(data, ObjectId(k as u32));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The row whose pattern fits one of the names with the most plain letters; of equals the first.
+fn best<'a, 'n, T>(
+    rows: &'a BTreeMap<String, T>,
+    names: impl Iterator<Item = &'n str>,
+) -> Option<(&'a str, &'a T)> {
+    let names: Vec<Vec<char>> = names.map(letters).collect();
+    let plain = |pattern: &str| pattern.chars().filter(|c| !matches!(c, '*' | '?')).count();
+    let mut found: Option<(&'a str, &'a T)> = None;
+    for (pattern, row) in rows {
+        let word = letters(pattern);
+        if names.iter().any(|name| fits(&word, name))
+            && found.is_none_or(|(other, _)| plain(pattern) > plain(other))
+        {
+            found = Some((pattern, row));
+        }
+    }
+    found
+}
+
+fn letters(text: &str) -> Vec<char> {
+    text.chars().flat_map(char::to_lowercase).collect()
+}
+
+/// Whether a name fits a pattern: `*` stands for any letters, `?` for one.
+fn fits(pattern: &[char], name: &[char]) -> bool {
+    let (mut p, mut n) = (0, 0);
+    // After the last star: where the pattern goes on, and what of the name the star has taken.
+    let mut star: Option<(usize, usize)> = None;
+    while n < name.len() {
+        match pattern.get(p) {
+            Some('*') => {
+                p += 1;
+                star = Some((p, n));
+            }
+            Some(c) if *c == '?' || *c == name[n] => {
+                p += 1;
+                n += 1;
+            }
+            _ => {
+                let Some((after, taken)) = star else {
+                    return false;
+                };
+                (p, n) = (after, taken + 1);
+                star = Some((after, taken + 1));
+            }
+        }
+    }
+    pattern[p..].iter().all(|c| *c == '*')
+}
+
+/// Movable, for a thing of which nothing was known, whose category moves, and which stands on something.
+fn usual_mobility(data: &HouseData, id: ObjectId, unknown: bool, name: &str) -> Option<Mobility> {
+    let object = &data.objects[id];
+    let row = category([name])?;
+    let loose = unknown && row.is_movable() && !row.is_mounted();
+    let rigid = object.part_count == 1 && object.mobility == Mobility::Fixed;
+    (loose && rigid && stands(data, id)).then_some(Mobility::Movable)
+}
+
+fn stands(data: &HouseData, id: ObjectId) -> bool {
+    let own = place::world_box(data, id);
+    let foot = own.center().with_y(own.min.y);
+    let floors = data.rooms.iter().map(|room| room.floor_y);
+    let on_floor = floors.into_iter().any(|y| (foot.y - y).abs() <= GAP_M);
+    on_floor
+        || data
+            .objects
+            .ids()
+            .filter(|other| *other != id)
+            .any(|other| {
+                let below = place::world_box(data, other);
+                below.min.y < foot.y - 0.01
+                    && foot.y < below.max.y + GAP_M
+                    && below.contains(foot.with_y(below.center().y))
+            })
+}
+
+/// Makes a piece of the building of an object; the object is left for the caller to take out.
+fn becomes_structure(
+    data: &mut HouseData,
+    id: ObjectId,
+    kind: StructureKind,
+) -> Result<(), HousesError> {
+    let object = data.objects[id].clone();
+    if object.mobility == Mobility::Articulated || object.part_count > 1 {
+        let found = format!("{:?}, which has {} parts", object.name, object.part_count);
+        return Err(fault("structure", found, "an object of one rigid part"));
+    }
+    let part = data.parts[object.first_part].clone();
+    let map = part.world_from_part.to_affine() * part.part_from_mesh;
+    let mesh = data.meshes[part.mesh].transformed(&map);
+    let mesh = data.meshes.push(Arc::new(mesh));
+    let mut name = object.name.clone();
+    let mut number = 2;
+    while data.structure.iter().any(|piece| piece.name == name) {
+        name = format!("{}_{number}", object.name);
+        number += 1;
+    }
+    data.structure.push(Structure {
+        name,
+        kind,
+        room: object.room,
+        level: object.level,
+        mesh,
+        materials: part.materials,
+    });
+    Ok(())
+}
+
+/// A map file with everything that stayed unmapped, to be filled in; as it is, it changes nothing.
+pub fn map_template(house: &str, names: &UnmappedNames) -> String {
+    let mut text = format!(
+        "# What the names of {} mean: `dwell info HOUSE --map FILE`. Patterns may hold * and ?. docs/authoring.md lists the fields.\n",
+        house.replace(['\n', '\r'], " ")
+    );
+    let quoted = |name: &str| serde_json::Value::from(name).to_string();
+    text += "\n# A substance of assets/materials.toml, or { substance = \"oak\", opacity = 1.0 }.\n[materials]\n";
+    for row in &names.materials {
+        let _ = write!(
+            text,
+            "# {:.2} m2 on {}; taken for {}\n{} = \"\"\n",
+            row.area_m2,
+            many(row.count, "surface"),
+            row.taken_for,
+            quoted(&row.name)
+        );
+    }
+    text += "\n# A category of assets/categories.csv, or { category = \"chair\", mobility = \"movable\", mass_kg = 4.0 }, or { structure = \"wall\" }.\n[nodes]\n";
+    for row in &names.nodes {
+        let _ = write!(
+            text,
+            "# {:.2} m2 on {}\n{} = \"\"\n",
+            row.area_m2,
+            many(row.count, "object"),
+            quoted(&row.name)
+        );
+    }
+    text += "\n# What people call the room: \"living room\".\n[rooms]\n";
+    for row in &names.rooms {
+        let _ = write!(
+            text,
+            "# {:.2} m2\n{} = \"\"\n",
+            row.area_m2,
+            quoted(&row.name)
+        );
+    }
+    text
+}
+
+fn many(count: usize, noun: &str) -> String {
+    let s = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{s}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_fit_as_in_a_shell_and_the_longest_counts() {
+        let is = |pattern: &str, name: &str| fits(&letters(pattern), &letters(name));
+        assert!(
+            is("Wood_*", "wood_12")
+                && is("*", "")
+                && is("a?c*", "ABCde")
+                && is("*a*b*", "xxaxxbxx")
+        );
+        assert!(!is("wood", "wood_1") && !is("a?c", "ac") && !is("*a*b", "xxbxxa"));
+        let rows: BTreeMap<String, u8> = [
+            ("*".into(), 0),
+            ("wood*".into(), 1),
+            ("wood_dark*".into(), 2),
+        ]
+        .into();
+        let of = |name: &str| best(&rows, [name].into_iter()).map(|(_, row)| *row);
+        assert_eq!(
+            (of("Wood_Dark_3"), of("wood_3"), of("x")),
+            (Some(2), Some(1), Some(0))
+        );
+    }
+
+    #[test]
+    fn a_map_says_where_it_is_wrong() {
+        let told = |text: &str| {
+            NameMapping::parse(text, &FileLocation::file("m.toml"))
+                .unwrap_err()
+                .to_string()
+        };
+        let unknown = told("[materials]\n\"a\" = { substanc = \"oak\" }\n");
+        assert!(
+            unknown.contains("substanc") && unknown.contains("opacity"),
+            "{unknown}"
+        );
+        let number = told("[nodes]\nchair = 3\n");
+        assert!(number.contains("a category's name, or a table"), "{number}");
+        assert!(told("[things]\n").contains("expected one of"));
+        let sound = NameMapping::parse(
+            "[materials]\na = \"oak\"\n[nodes]\nb = \"chair\"\n[rooms]\nr = \"kitchen\"\n",
+            &FileLocation::file("m"),
+        );
+        assert_eq!(sound.unwrap().materials["a"].0.substance, "oak");
+    }
+}

@@ -1,0 +1,27 @@
+//! What several formats need to make a [`HouseData`](dwell_scene::HouseData) out of their files.
+
+mod annotated;
+mod components;
+mod convex_pieces;
+mod lamps;
+mod materials;
+mod merge_meshes;
+mod names;
+mod scene;
+mod textures;
+
+pub(crate) use annotated::{AnnotatedLight, AnnotatedObject, AnnotatedPart};
+pub(crate) use components::{Component, components, submesh};
+pub(crate) use convex_pieces::convex_pieces;
+pub(crate) use dwell_furniture::shapes::triangulate;
+pub(crate) use dwell_furniture::tables::{CategoryRow, category, room_kind, substance_of};
+pub(crate) use lamps::ImportedLamp;
+pub(crate) use materials::{ImportedMaterial, MaterialTableBuilder};
+pub(crate) use merge_meshes::merge_meshes;
+pub(crate) use names::UniqueNames;
+pub(crate) use scene::{
+    ImportedScene, NamedRoom, NodeRole, SceneNode, category_of, room_over_floors, structure_kind,
+};
+pub(crate) use textures::{
+    PixelBudget, decode, encode_png, is_cut, pixels, read_images, texture_name,
+};
